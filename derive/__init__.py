@@ -1,0 +1,1 @@
+"""From SymPy specs to checked-in C: derivation, code generation, drift check, verification."""

@@ -1,0 +1,36 @@
+"""The list of everything that is generated. A new spec joins by one entry in its own list."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from funicular.derive import element_kernels
+from funicular.derive.bodies import rigid
+from funicular.derive.elements import ELEMENTS
+from funicular.derive.joints import slide
+from funicular.derive.spec import Element, Family
+
+SHARED = ("spec", "stages", "printer", "emit")
+
+
+def _element(element: Element) -> Family:
+    return Family(element.name, element.doc, partial(element_kernels.build, element),
+                  (f"elements.{element.name}", "element_kernels", "gram", "moments", *SHARED),
+                  role="element",
+                  facts={"nodes": len(element.nodes), "vectors": len(element.nodal_vectors), "dim": element.dim})
+
+
+def _slide(element: Element) -> Family:
+    return Family(f"slide_{element.name}_{rigid.NAME}",
+                  f"sliding joint of a {rigid.NAME} rider on a {element.name} cable",
+                  partial(slide.build, element),
+                  ("joints.slide", f"elements.{element.name}", f"bodies.{rigid.NAME}", "frames", *SHARED),
+                  role="slide", facts={"coordinates": element.n_coordinates + rigid.N_VELOCITY})
+
+
+def families() -> dict[str, Family]:
+    """Every family by name: elements, bodies, and the slide for each pair of them."""
+    every = [*map(_element, ELEMENTS.values()),
+             Family(rigid.NAME, "rigid body", rigid.build, (f"bodies.{rigid.NAME}", "frames", *SHARED)),
+             *map(_slide, ELEMENTS.values())]
+    return {f.name: f for f in every}

@@ -1,0 +1,291 @@
+"""Elastic energy in Gram products of strain vectors (eq 5-8), for any element whose energy is St. Venant-Kirchhoff.
+
+r is linear in the nodal vectors, so r = sum_m c_m psi_m in any other basis psi of the same span. With psi_0 = 1
+and the others built on Legendre polynomials along the axis, the gradient F needs the *strain vectors* c_m,
+m > 0, only: combinations of slopes and of differences of positions. The Green strain E = (F'F - I)/2 is linear
+in their Gram products G_mn = c_m . c_n, hence
+
+    U = 1/2 (G - G0)' A (G - G0),  u = A (G - G0),  f_m = sum_n u_mn dG_mn/dc_m,
+
+with A constant, integrated exactly, and sparse, because Legendre polynomials are orthogonal (beam24: 114 entries
+of 784; in nodal slopes 228). G0 belongs to the straight reference of length l, whose strain vectors are unit axes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+
+import numpy as np
+import sympy as sp
+
+from funicular.derive import moments
+from funicular.derive.spec import Element, l, x, y, z
+from funicular.derive.stages import Program
+
+DIRECTIONS = "xyz"
+
+
+class Gram:
+    """Strain vectors, Gram pairs and the constant form A of an element."""
+
+    def __init__(self, element: Element):
+        self.element = element
+        ring_basis, names = [], []
+        for monomial in element.basis:
+            a, b, c = sp.Poly(monomial, x, y, z).monoms()[0]
+            section = moments.Y**b * moments.Z**c
+            if b == c == 0 and a > 0:  # the axis: psi' = P_{a-1}, so that r_x is a Legendre series
+                psi = _antiderivative(moments.legendre(a - 1))
+                names.append(f"t{a - 1}")
+            else:
+                psi = section * moments.legendre(a)
+                names.append("y" * b + "z" * c + str(a))
+            ring_basis.append(psi)
+        self.psi = ring_basis[1:]
+        self.names = names[1:]
+        self.all_psi = ring_basis
+
+    @cached_property
+    def pairs(self) -> list[tuple[int, int]]:
+        """Pairs m <= n of strain vectors."""
+        n = len(self.psi)
+        return [(a, b) for a in range(n) for b in range(a, n)]
+
+    @cached_property
+    def transform(self) -> sp.Matrix:
+        """T with c = T d over nodal vectors d (rows: strain vectors), exact in l."""
+        functions = [_to_sympy(p) for p in self.all_psi]
+        return self.element.nodal_conditions(functions).inv().applyfunc(sp.cancel)[1:, :]
+
+    @cached_property
+    def gradient(self) -> list[list]:
+        """F = sum_m c_m (x) gradient[m]: derivatives of psi_m by x, y, z in the ring."""
+        by = [moments.d_dx, lambda p: p.diff(moments.Y), lambda p: p.diff(moments.Z)]
+        return [[by[i](p) for i in range(self.element.dim)] for p in self.psi]
+
+    @cached_property
+    def reference(self) -> list[int]:
+        """G0 over the pairs: the straight reference r = (x, y, z) has c = unit axes, the rest zero."""
+        axis = {name: i for i, name in enumerate(("t0", "y0", "z0")[: self.element.dim])}
+        return [int(a == b and self.names[a] in axis) for a, b in self.pairs]
+
+    @cached_property
+    def strain(self) -> dict[tuple[int, int], list]:
+        """E_ij = 1/2 sum_pairs strain[ij][p] (G - G0)_p, in the ring."""
+        g, d = self.gradient, range(self.element.dim)
+        return {(i, j): [g[a][i] * g[b][j] + (g[b][i] * g[a][j] if a != b else 0) for a, b in self.pairs]
+                for i in d for j in d if i <= j}
+
+    @cached_property
+    def elasticity(self) -> dict[tuple, int]:
+        """Index into the argument D of the law S_ij = D E, by (ij, kl); orthotropic, axes x, y, z."""
+        normal = [(i, i) for i in range(self.element.dim)]
+        shear = [ij for ij in self.strain if ij[0] != ij[1]]
+        off = [(a, b) for k, a in enumerate(normal) for b in normal[k + 1:]]
+        order = [(a, a) for a in normal] + off + [(s, s) for s in shear]
+        law = {}
+        for k, (a, b) in enumerate(order):
+            law[a, b] = law[b, a] = k
+        return law
+
+    @cached_property
+    def form(self) -> dict[tuple[int, int], dict]:
+        """A over pairs (p, q): {(elastic constant, section moment, power of l): rational}, zeros left out.
+
+        Shear enters as gamma = 2 E, so W = 1/2 sum D E_ii E_jj + 1/2 sum G gamma^2.
+        """
+        products: dict = {}
+        form = {}
+        for p in range(len(self.pairs)):
+            for q in range(p, len(self.pairs)):
+                entry: dict = {}
+                for (ij, kl), k in self.elasticity.items():
+                    if not (self.strain[ij][p] and self.strain[kl][q]):
+                        continue
+                    integrand = self.strain[ij][p] * self.strain[kl][q]
+                    if integrand not in products:
+                        products[integrand] = moments.over_element(integrand)
+                    weight = sp.QQ(1, 4) if ij[0] == ij[1] else sp.QQ(1)
+                    for (m, power), value in products[integrand].items():
+                        entry[k, m, power] = entry.get((k, m, power), 0) + weight * value
+                entry = {k: v for k, v in sorted(entry.items()) if v}
+                if entry:
+                    form[p, q] = form[q, p] = entry
+        return form
+
+    @cached_property
+    def constants(self) -> list[tuple]:
+        """The different entries of A, in order of first use: the argument A of the kernels."""
+        return list(dict.fromkeys(tuple(e.items()) for e in self.form.values()))
+
+    @cached_property
+    def index(self) -> dict[tuple[int, int], int]:
+        """Index into `constants` of each non-zero entry of A."""
+        place = {c: k for k, c in enumerate(self.constants)}
+        return {pq: place[tuple(e.items())] for pq, e in self.form.items()}
+
+    # --- stages that the kernels share -------------------------------------------------------------------
+
+    def differences(self, program: Program, e: np.ndarray, w: sp.Expr, tag: str = "") -> np.ndarray:
+        """Stage: nodal vectors e (n, dim) to strain vectors (m, dim), through chords (r_k - r_1) w, w = 1/l."""
+        d = [program.vector(f"chord{tag}{k}" if v else "", (e[k] - e[0]) * w) if v else e[k]
+             for k, v in enumerate(self._is_position)]
+        return np.array([
+            program.vector(f"{tag}{name}", sum(self._scaled[m][k] * d[k] for k in range(1, len(d))
+                                               if self._scaled[m][k] != 0))
+            for m, name in enumerate(self.names)])
+
+    def gram(self, program: Program, c: np.ndarray) -> list[sp.Expr]:
+        """Stage: G - G0 over the pairs."""
+        return [program.define(f"G_{self._pair(p)}", c[a].dot(c[b]) - self.reference[p])
+                for p, (a, b) in enumerate(self.pairs)]
+
+    def gram_rate(self, program: Program, c: np.ndarray, rate: np.ndarray) -> list[sp.Expr]:
+        """Stage: dG/dt over the pairs."""
+        return [program.define(f"dG_{self._pair(p)}", c[a].dot(rate[b]) + rate[a].dot(c[b]))
+                for p, (a, b) in enumerate(self.pairs)]
+
+    def stress(self, program: Program, A: np.ndarray, strain: Sequence[sp.Expr],
+               scale: sp.Expr = sp.S.One) -> list[sp.Expr]:
+        """Stage: u = scale A strain, the work-conjugates of the Gram products."""
+        u = []
+        for p in range(len(self.pairs)):
+            alike: dict[int, sp.Expr] = {}
+            for q in range(len(self.pairs)):
+                if (p, q) in self.index:
+                    k = self.index[p, q]
+                    alike[k] = alike.get(k, sp.S.Zero) + strain[q]
+            u.append(program.define(f"u_{self._pair(p)}", scale * sum(A[k] * s for k, s in alike.items())))
+        return u
+
+    def by_vector(self, c: np.ndarray, p: int, m: int) -> np.ndarray | None:
+        """dG_p/dc_m, a vector, or None where it is zero."""
+        a, b = self.pairs[p]
+        if a == b == m:
+            return 2 * c[m]
+        return c[b] if a == m else c[a] if b == m else None
+
+    def vector_forces(self, program: Program, c: np.ndarray, u: Sequence[sp.Expr]) -> np.ndarray:
+        """Stage: f_m = sum_p u_p dG_p/dc_m."""
+        terms = [[u[p] * g for p in range(len(self.pairs)) if (g := self.by_vector(c, p, m)) is not None]
+                 for m in range(len(self.names))]
+        return np.array([program.vector(f"f_{name}", sum(t)) for name, t in zip(self.names, terms, strict=True)])
+
+    def nodal_forces(self, program: Program, f: np.ndarray, w: sp.Expr) -> np.ndarray:
+        """Stage: forces on strain vectors to forces on nodal vectors, f_d = T' f_c."""
+        nodal = []
+        for k, position in enumerate(self._is_position):
+            column = sum(self._scaled[m][k] * f[m] for m in range(len(f)) if self._scaled[m][k] != 0)
+            nodal.append(program.vector(f"f_{self.element.names[k]}", column * w if position else column))
+        nodal[0] = -sum(nodal[k] for k, position in enumerate(self._is_position) if position and k)
+        return np.array(nodal)
+
+    def tangent(self, program: Program, c: np.ndarray, b: np.ndarray, A: np.ndarray, u: Sequence[sp.Expr],
+                w: sp.Expr) -> np.ndarray:
+        """Stages: B(c)' A B(b) + u (x) I over nodal coordinates -> (n, n), B(c) = dG/dc.
+
+        With b = c this is the elastic tangent; with b = tau (dc/dt + rate c) that of the damping force.
+        """
+        n, dim, symmetric = len(self.names), self.element.dim, c is b
+        program.stage("A B: stress resultants per strain vector")
+        t = {}
+        for p in range(len(self.pairs)):
+            for m in range(n):
+                alike: dict[int, np.ndarray] = {}
+                for q in range(len(self.pairs)):
+                    g = self.by_vector(b, q, m)
+                    if g is not None and (p, q) in self.index:
+                        k = self.index[p, q]
+                        alike[k] = alike.get(k, 0) + g
+                if alike:
+                    t[p, m] = program.vector(f"t_{self._pair(p)}_{self.names[m]}",
+                                             sum(A[k] * v for k, v in alike.items()))
+        program.stage("B' A B + u (x) I: blocks over strain vectors")
+        block = np.zeros((n, n, dim, dim), dtype=object)
+        for m in range(n):
+            for k in range(m if symmetric else 0, n):
+                outer = np.zeros((dim, dim), dtype=object)
+                for p in range(len(self.pairs)):
+                    g = self.by_vector(c, p, m)
+                    if g is not None and (p, k) in t:
+                        outer = outer + np.outer(g, t[p, k])
+                p = self.pairs.index((min(m, k), max(m, k)))
+                outer = outer + np.eye(dim, dtype=int) * (2 * u[p] if m == k else u[p])
+                for i in range(dim):
+                    for j in range(dim):
+                        if symmetric and m == k and j < i:
+                            continue
+                        block[m, k, i, j] = program.define(
+                            f"K_{self.names[m]}_{self.names[k]}_{DIRECTIONS[i]}{DIRECTIONS[j]}", outer[i, j])
+                if symmetric:
+                    if m == k:
+                        for i in range(dim):
+                            for j in range(i):
+                                block[m, k, i, j] = block[m, k, j, i]
+                    block[k, m] = block[m, k].T
+        return self._nodal_tangent(program, block, w, symmetric)
+
+    def _nodal_tangent(self, program, block, w, symmetric):
+        """T' K T over nodal vectors; the first node's position is minus the sum of the others' columns."""
+        n, dim, count = len(self.names), self.element.dim, self.element.n_vectors
+        position = self._is_position
+        scale = [w if p else sp.S.One for p in position]
+        program.stage("over nodal vectors: K T")
+        right = np.zeros((n, count, dim, dim), dtype=object)
+        for a in range(n):
+            for k in range(1, count):
+                value = scale[k] * sum(self._scaled[m][k] * block[a, m] for m in range(n)
+                                       if self._scaled[m][k] != 0)
+                right[a, k] = _define_block(program, f"KT_{self.names[a]}_{self.element.names[k]}", value)
+        program.stage("over nodal vectors: T' K T")
+        K = np.zeros((count, count, dim, dim), dtype=object)
+        for j in range(1, count):
+            for k in range(j if symmetric else 1, count):
+                value = scale[j] * sum(self._scaled[m][j] * right[m, k] for m in range(n)
+                                       if self._scaled[m][j] != 0)
+                K[j, k] = _define_block(program, f"K_{self.element.names[j]}_{self.element.names[k]}", value)
+                if symmetric:
+                    if j == k:
+                        K[j, j] = np.triu(K[j, j]) + np.triu(K[j, j], 1).T
+                    K[k, j] = K[j, k].T
+        others = [k for k in range(1, count) if position[k]]
+        program.stage("the first position: rigid translation makes no force")
+        for k in range(1, count):
+            value = -sum(K[j, k] for j in others)
+            K[0, k] = _define_block(program, f"K_{self.element.names[0]}_{self.element.names[k]}", value)
+            K[k, 0] = K[0, k].T if symmetric else -sum(K[k, j] for j in others)
+        K[0, 0] = -sum(K[0, j] for j in others)
+        return K.transpose(0, 2, 1, 3).reshape(count * dim, count * dim)
+
+    @cached_property
+    def _is_position(self) -> list[bool]:
+        return self.element.is_position
+
+    @cached_property
+    def _scaled(self) -> list[list[sp.Expr]]:
+        """T with positions measured in lengths l: plain rationals."""
+        scale = [l if p else 1 for p in self._is_position]
+        return [[sp.cancel(self.transform[m, k] * scale[k]) for k in range(self.element.n_vectors)]
+                for m in range(len(self.names))]
+
+    def _pair(self, p: int) -> str:
+        a, b = self.pairs[p]
+        return self.names[a] + self.names[b]
+
+
+def _define_block(program: Program, name: str, value: np.ndarray) -> np.ndarray:
+    return np.array([[program.define(f"{name}_{DIRECTIONS[i]}{DIRECTIONS[j]}", v) for j, v in enumerate(row)]
+                     for i, row in enumerate(value)], dtype=object)
+
+
+def _antiderivative(p):
+    """Integral from the element's start of a polynomial in X, times dx/dX = l/2."""
+    integral = sum((moments.RING(c / (k[0] + 1)) * moments.X ** (k[0] + 1) for k, c in p.terms()),
+                   moments.RING(0))
+    at_start = sum((c * (-1) ** k[0] for k, c in integral.terms()), moments.RING(0))
+    return (integral - at_start) * moments.L / 2
+
+
+def _to_sympy(p) -> sp.Expr:
+    return p.as_expr(2 * x / l - 1, y, z, l, 1 / l)

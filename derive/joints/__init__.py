@@ -1,0 +1,1 @@
+"""Joint specs: constraints and everything that follows from them by differentiation."""

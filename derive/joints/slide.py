@@ -1,0 +1,162 @@
+"""The sliding joint (eq 19-37): a point of a rider stays on the centreline of a cable at arc-length s.
+
+Everything is differentiated from C = A_t' (r(s) - p). The derivations are by the cable's nodal vectors e, by the
+rider's coordinates, by s, and along the motion; Q_d is the second derivative along the motion with q'' = s'' = 0.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import sympy as sp
+
+from funicular.derive.bodies import rigid
+from funicular.derive.frames import tangent_frame
+from funicular.derive.spec import Element, l, x, y, z
+from funicular.derive.stages import Derivation, Program, jacobian
+
+
+class Slide:
+    """Symbols that every kernel of the joint starts from: inputs, derivations and r_p = r - p (eq 19)."""
+
+    def __init__(self, program: Program, element: Element, rider=rigid):
+        self.program, self.element = program, element
+        self.length = program.input("l", (), "m", "length of the element that holds s")
+        self.x = program.input("x", (), "m", "arc-length s from the element's first node")
+        self.e = program.input("e", (element.n_vectors, element.dim), "m, 1", "nodal vectors of that element")
+        self.b, self.u = rider.configuration(program), rider.attachment(program)
+        self.by_s = Derivation(program, "ds", {self.x: 1})
+        self.by_e = [Derivation(program, f"de{k}", {symbol: 1}) for k, symbol in enumerate(self.e.ravel())]
+        self.by_rider = rider.tangents(program, self.b)
+        self.rider = rider
+        program.stage("centreline at s and rider's point (eq 19)")
+        w = program.define("w", 1 / self.length)
+        self.xi = program.define("xi", self.x * w)
+        # from the first node and from the rider's origin: no digits are lost far from the global origin
+        self.r = self._on_axis("r", element.shape_functions, self.e - self._first_position())
+        arm = rider.arm(program, self.b, self.u)
+        gap = program.vector("gap", self.e[0] - rider.origin(self.b))
+        self.r_p = program.vector("r_p", gap + (self.r - arm))
+
+    def _first_position(self) -> np.ndarray:
+        """r_1 in the rows of e that are positions, zero in the slopes."""
+        return np.outer(np.array(self.element.is_position, dtype=int), self.e[0])
+
+    def _on_axis(self, name: str, functions, vectors: np.ndarray) -> np.ndarray:
+        """Sum of functions(x, 0, 0) times nodal vectors."""
+        N = [self.program.define(f"N{name}_{k}", sp.horner(sp.expand(f.subs({y: 0, z: 0, x: self.xi * l})),
+                                                           self.xi).subs(l, self.length))
+             for k, f in zip(self.element.names, functions, strict=True)]
+        return self.program.vector(name, sum(N[k] * vectors[k] for k in range(len(N))))
+
+    def constraint(self) -> np.ndarray:
+        """C = A_t' r_p (eq 20), with the cut (r_p, r_x, director) through which it is differentiated."""
+        self.program.stage("tangent and director")
+        self.t = self.by_s.array(self.r)
+        by = {"x": x, "y": y, "z": z}[self.element.director.partition("_")[2]]
+        self.n = self._on_axis("n", [sp.diff(f, by) for f in self.element.shape_functions], self.e)
+        self.program.stage("tangent frame (eq 13-18)")
+        self.A_t = tangent_frame(self.program, self.t, self.n)
+        self.program.stage("C (eq 20)")
+        self.C = np.array([self.program.define(name, c) for name, c in
+                           zip(("C_l", "C_m1", "C_m2"), self.A_t.T.dot(self.r_p), strict=True)])
+        self.cut = [*self.r_p, *self.t, *self.n]
+        self.program.stage("derivatives of C by r_p, r_x, director")
+        self.C_cut = jacobian(self.program, self.C, self.cut)
+        return self.C
+
+    def through_cut(self, derivation: Derivation) -> np.ndarray:
+        """Derivative of C along a derivation, by the chain rule through the cut."""
+        return self.C_cut.dot(derivation.array(np.array(self.cut, dtype=object)))
+
+
+def build(element: Element) -> list[Program]:
+    """The kernels of the slide of a rigid rider on a cable of this element."""
+    name = f"slide_{element.name}_{rigid.NAME}"
+    return [_constraint(name, element), _terms(name, element), _residual(name, element), _tangent(name, element)]
+
+
+def _constraint(name: str, element: Element) -> Program:
+    p = Program(f"{name}_constraint", "C, C_s and the Newton step for s", "eq 19-22")
+    slide = Slide(p, element)
+    C = slide.constraint()
+    p.stage("C_s (eq 22)")
+    C_s = slide.through_cut(slide.by_s)
+    p.output("C", C, "m", "constraint in the tangent frame: C_l, C_m1, C_m2")
+    p.output("C_s", C_s, "1", "derivative of C by s")
+    p.output("s_step", [-C[0] / p.define("C_ls", C_s[0])], "m", "Newton step of C_l(s) = 0")
+    p.output("A_t", slide.A_t, "1", "tangent frame, columns i j k (eq 18)")
+    return p
+
+
+def _terms(name: str, element: Element) -> Program:
+    p = Program(f"{name}_terms", "terms of the equations of motion with the slide", "eq 20-37")
+    slide = Slide(p, element)
+    v = p.input("v", slide.e.shape, "m/s, 1/s", "rates of the nodal vectors")
+    w = slide.rider.velocity(p)
+    C = slide.constraint()
+    p.stage("C_s and C_q (eq 22-23)")
+    C_s = np.array([p.define(f"C_s{k}", c) for k, c in zip(("l", "m1", "m2"), slide.through_cut(slide.by_s),
+                                                          strict=True)])
+    by_q = slide.by_e + slide.by_rider
+    C_q = np.stack([[p.define(f"C_q{name}_{k}", c) for name, c in zip(("l", "m1", "m2"), slide.through_cut(d),
+                                                                      strict=True)]
+                    for k, d in enumerate(by_q)], axis=1)
+    p.stage("G (eq 24) and the rate of s (eq 25)")
+    inverse = p.define("inv_C_sl", 1 / C_s[0])
+    G = np.array([p.define(f"G_{k}", -inverse * c) for k, c in enumerate(C_q[0])])
+    velocities = np.concatenate([v.ravel(), w])
+    s_rate = p.define("sdot", G.dot(velocities))
+    p.stage("Q_d: second derivative along the motion (eq 33)")
+    motion = dict(zip(slide.e.ravel(), v.ravel(), strict=True)) | {slide.x: s_rate} | slide.rider.rate(slide.b, w)
+    # velocities are held: the derivation knows s_rate as a constant, not as the function of q that it is
+    along = Derivation(p, "dt", motion | {s_rate: 0})
+    Q_d = np.array([p.define(f"Q_d{k}", c) for k, c in zip(("l", "m1", "m2"), along.array(along.array(C)),
+                                                          strict=True)])
+    p.stage("H (eq 31) and W (eq 37)")
+    H = C_q[1:] + np.outer(C_s[1:], G)
+    W = -Q_d[1:] + C_s[1:] * inverse * Q_d[0]
+    p.output("C", C, "m", "constraint in the tangent frame: C_l, C_m1, C_m2")
+    p.output("C_q", C_q, "1, m", "derivatives of C by the nodal vectors, then the rider")
+    p.output("C_s", C_s, "1", "derivative of C by s")
+    p.output("G", G, "1, m", "ds = G dq (eq 24)")
+    p.output("s_rate", [s_rate], "m/s", "rate of s (eq 25)")
+    p.output("Q_d", Q_d, "m/s^2", "second derivative of C at zero accelerations (eq 33)")
+    p.output("H", H, "1, m", "Jacobian of the two constraints that stay (eq 31)")
+    p.output("W", W, "m/s^2", "H q'' = W (eq 36-37)")
+    # eq 34 prints the last term with the wrong sign: s'' = -Q_dl/C_sl + G q''
+    p.output("s_bias", [-inverse * Q_d[0]], "m/s^2", "s'' - G q'' (eq 34, sign mended)")
+    return p
+
+
+def _lagrangian(p: Program, element: Element):
+    """phi = r_p, its Jacobian by (e, rider, s), and the gradient of f . phi.
+
+    The integrator carries s and the whole force f on the joint as unknowns instead of C_M and two multipliers:
+    f . r_x = 0, the s-entry of the gradient, is eq 30's statement that the force along the tangent is nil. Same
+    solutions, no frame in the Newton matrix, and that matrix stays symmetric.
+    """
+    slide = Slide(p, element)
+    f = p.input("f", 3, "N", "force of the joint on the rider")
+    p.stage("Jacobian of phi")
+    J = np.stack([d.array(slide.r_p) for d in (*slide.by_e, *slide.by_rider, slide.by_s)], axis=1)
+    p.stage("gradient of f . phi")
+    g = np.array([p.define(f"g_{k}", f.dot(column)) for k, column in enumerate(J.T)])
+    return slide, J, g
+
+
+def _residual(name: str, element: Element) -> Program:
+    p = Program(f"{name}_residual", "phi and the gradient of f . phi by (e, rider, s)", "eq 19, 28-30")
+    slide, _, g = _lagrangian(p, element)
+    p.output("phi", slide.r_p, "m", "r(s) - p")
+    p.output("g", g, "N, N m", "gradient of f . phi")
+    return p
+
+
+def _tangent(name: str, element: Element) -> Program:
+    p = Program(f"{name}_tangent", "derivatives of phi and of the gradient of f . phi", "eq 19, 28-30")
+    slide, J, g = _lagrangian(p, element)
+    p.stage("derivative of the gradient")
+    K = np.stack([d.array(g) for d in (*slide.by_e, *slide.by_rider, slide.by_s)], axis=1)
+    p.output("J", J, "1, m", "derivatives of phi by (e, rider, s)")
+    p.output("K", K, "N/m, N, N m", "derivatives of g by (e, rider, s)")
+    return p

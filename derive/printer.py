@@ -1,0 +1,75 @@
+"""SymPy expressions to C text: the same text on every machine.
+
+Order is SymPy's canonical one, small integer powers become products, rationals become quotients of doubles
+that the compiler folds, and square roots go through FU_SQRT so that the same text serves double and complex.
+"""
+
+from __future__ import annotations
+
+import sympy as sp
+from sympy.printing.c import C99CodePrinter
+from sympy.printing.precedence import PRECEDENCE
+
+_ADD, _MUL, _ATOM = PRECEDENCE["Add"], PRECEDENCE["Mul"], PRECEDENCE["Atom"]
+
+
+class KernelPrinter(C99CodePrinter):
+    """C99 with products for powers; raises on anything that is not plain arithmetic."""
+
+    def _print_Symbol(self, expr):
+        return expr.name
+
+    def _print_Integer(self, expr):
+        return f"{int(expr)}.0"
+
+    def _print_Rational(self, expr):
+        return f"{int(expr.p)}.0/{int(expr.q)}.0"
+
+    def _print_Add(self, expr):
+        text = ""
+        for term in self._as_ordered_terms(expr):
+            negative = term.as_coeff_Mul()[0].is_negative
+            body = self.parenthesize(-term if negative else term, _ADD)
+            text += (" - " if negative else " + ") + body if text else ("-" if negative else "") + body
+        return text
+
+    def _print_Pow(self, expr):
+        base, exponent = expr.base, expr.exp
+        if exponent == sp.Rational(1, 2):
+            return f"FU_SQRT({self._print(base)})"
+        if exponent.is_Integer and exponent > 1:
+            factor = self.parenthesize(base, _ATOM, strict=True)
+            return "*".join([factor] * int(exponent))
+        if exponent.is_Rational and exponent < 0:
+            below = sp.Pow(base, -exponent, evaluate=False) if exponent != -1 else base
+            text = self.parenthesize(below, _ATOM, strict=True) if exponent == -1 else f"({self._print(below)})"
+            return f"1.0/{text}"
+        raise ValueError(f"power {exponent} of {base} has no kernel form")
+
+    def _print_Mul(self, expr):
+        coefficient, rest = expr.as_coeff_Mul()
+        if coefficient.is_negative:
+            return "-" + self.parenthesize(-expr, _MUL)
+        above, below = [], []
+        for arg in expr.as_ordered_factors():
+            if arg.is_Pow and arg.exp.is_Rational and arg.exp < 0:
+                below.append(sp.Pow(arg.base, -arg.exp))
+            else:
+                above.append(arg)
+        text = "*".join(self.parenthesize(a, _MUL) for a in above) or "1.0"
+        if below:
+            denominator = "*".join(self.parenthesize(b, _MUL) for b in below)
+            text += f"/({denominator})" if len(below) > 1 or "*" in denominator else f"/{denominator}"
+        return text
+
+    def emptyPrinter(self, expr):  # noqa: N802  (SymPy's name)
+        """Refuse what the kernels must not contain."""
+        raise ValueError(f"{type(expr).__name__} has no kernel form: {expr}")
+
+
+_PRINTER = KernelPrinter({"order": "lex"})
+
+
+def c_expression(expr: sp.Expr) -> str:
+    """One C expression."""
+    return _PRINTER.doprint(expr)

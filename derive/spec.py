@@ -1,0 +1,94 @@
+"""What a spec is: an element's basis and nodal conditions, and what follows from them.
+
+The shape functions are solved from the nodal conditions (eq 1-2), never typed in.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import sympy as sp
+
+from funicular.derive.stages import Program
+
+x, y, z, l = sp.symbols("x y z l", positive=True)
+COORDINATES = {"x": x, "y": y, "z": z}
+
+
+@dataclass(frozen=True)
+class Element:
+    """r(x, y, z) = sum_k N_k d_k (eq 2): monomials, nodes, and which vectors the nodes carry.
+
+    `director` names the nodal vector from which the tangent frame takes its normal (eq 16).
+    """
+
+    name: str
+    dim: int
+    basis: tuple[sp.Expr, ...]
+    nodal_vectors: tuple[str, ...]
+    director: str
+    doc: str
+    source: str
+    nodes: tuple[sp.Expr, ...] = (sp.S.Zero, l)
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Names of the nodal vectors over all nodes: r_1, r_x1, ... r_2, ..."""
+        return tuple(f"{v}{'' if '_' in v else '_'}{i + 1}" for i in range(len(self.nodes))
+                     for v in self.nodal_vectors)
+
+    @property
+    def is_position(self) -> list[bool]:
+        """For each nodal vector over all nodes, whether it is a position (and not a slope)."""
+        return [v == "r" for _ in self.nodes for v in self.nodal_vectors]
+
+    @property
+    def n_vectors(self) -> int:
+        """Nodal vectors of the element, over all nodes."""
+        return len(self.nodes) * len(self.nodal_vectors)
+
+    @property
+    def n_coordinates(self) -> int:
+        """Length of e (eq 1)."""
+        return self.dim * self.n_vectors
+
+    def nodal_conditions(self, functions) -> sp.Matrix:
+        """Value of each nodal functional (row: r, r_x, ... at a node) on each function (column)."""
+        rows = []
+        for node in self.nodes:
+            for vector in self.nodal_vectors:
+                by = [COORDINATES[c] for c in vector.partition("_")[2]]
+                rows.append([sp.diff(f, *by).subs({x: node, y: 0, z: 0}) if by
+                             else f.subs({x: node, y: 0, z: 0}) for f in functions])
+        return sp.Matrix(rows)
+
+    @cached_property
+    def shape_functions(self) -> tuple[sp.Expr, ...]:
+        """N_k(x, y, z; l), from N_k(d_j) = delta_kj on the span of the basis.
+
+        Raises ValueError where the nodal conditions do not fix the basis.
+        """
+        basis = [sp.sympify(b) for b in self.basis]
+        conditions = self.nodal_conditions(basis)
+        if conditions.shape[0] != conditions.shape[1] or conditions.det() == 0:
+            raise ValueError(f"{self.name}: {conditions.shape[0]} nodal conditions do not fix "
+                             f"{len(basis)} basis functions")
+        return tuple((sp.Matrix([basis]) * conditions.inv()).applyfunc(sp.expand))
+
+
+@dataclass(frozen=True)
+class Family:
+    """The kernels of one generated file.
+
+    `modules` are the modules whose text decides the file (its hash is the spec hash). Families of one `role` have
+    kernels of the same signatures; the engine reaches them through a table, each with its `facts` (integers).
+    """
+
+    name: str
+    doc: str
+    build: Callable[[], list[Program]]
+    modules: tuple[str, ...]
+    role: str = ""
+    facts: dict[str, int] = field(default_factory=dict)

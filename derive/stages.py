@@ -1,0 +1,193 @@
+"""Staged programs: what stands between a symbolic derivation and a C function.
+
+A `Program` is one kernel: inputs, then named stages of scalar definitions (each may use the inputs and every
+earlier definition), then outputs. Enters: SymPy expressions. Leaves: the same, ordered and named, for
+`printer` (text), `verify` (50 digits) and the operation counts.
+
+Differentiation goes through the stages by the chain rule and never expands them: a `Derivation` is fixed by
+its value on the inputs (or on a cut of intermediate symbols) and adds its own definitions to the program.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import sympy as sp
+
+AXES = "xyz"
+
+
+@dataclass(frozen=True)
+class Argument:
+    """An input or output: C name, shape (() for a scalar), unit and meaning."""
+
+    name: str
+    shape: tuple[int, ...]
+    unit: str
+    doc: str
+
+    @property
+    def size(self) -> int:
+        """Number of scalars."""
+        return int(np.prod(self.shape, dtype=int))
+
+
+@dataclass
+class Stage:
+    """A titled run of definitions, in order."""
+
+    title: str
+    definitions: list[tuple[sp.Symbol, sp.Expr]] = field(default_factory=list)
+
+
+class Program:
+    """One kernel under construction; see the module docstring."""
+
+    def __init__(self, name: str, doc: str, source: str):
+        self.name, self.doc, self.source = name, doc, source
+        self.inputs: list[Argument] = []
+        self.symbols: dict[str, np.ndarray] = {}
+        self.stages: list[Stage] = []
+        self.outputs: list[Argument] = []
+        self.values: dict[str, np.ndarray] = {}
+        self.definition: dict[sp.Symbol, sp.Expr] = {}
+        self._taken: set[str] = set()
+
+    def input(self, name: str, shape: Sequence[int] | int, unit: str, doc: str) -> np.ndarray:
+        """Declare an input; returns its symbols in the given shape (a bare symbol for shape ())."""
+        shape = (shape,) if isinstance(shape, int) else tuple(shape)
+        argument = Argument(name, shape, unit, doc)
+        flat = [sp.Symbol(name)] if shape == () else [sp.Symbol(f"{name}[{i}]") for i in range(argument.size)]
+        self.inputs.append(argument)
+        self.symbols[name] = np.array(flat, dtype=object).reshape(shape)
+        self._taken.add(name)
+        return flat[0] if shape == () else self.symbols[name]
+
+    def stage(self, title: str) -> None:
+        """Open a stage; the definitions that follow belong to it."""
+        self.stages.append(Stage(title))
+
+    def define(self, name: str, expr: sp.Expr) -> sp.Expr:
+        """Give an expression a name. Numbers and bare symbols pass through: a name would say nothing more."""
+        expr = sp.sympify(expr)
+        if expr.is_Number or expr.is_Symbol:
+            return expr
+        unique, n = name, 2
+        while unique in self._taken:
+            unique, n = f"{name}_{n}", n + 1
+        self._taken.add(unique)
+        symbol = sp.Symbol(unique)
+        self.stages[-1].definitions.append((symbol, expr))
+        self.definition[symbol] = expr
+        return symbol
+
+    def vector(self, name: str, components: Iterable[sp.Expr]) -> np.ndarray:
+        """Define a vector component by component: name_x, name_y, name_z."""
+        return np.array([self.define(f"{name}_{axis}", c) for axis, c in zip(AXES, components, strict=False)])
+
+    def output(self, name: str, value, unit: str, doc: str) -> None:
+        """Declare an output and its expressions (array_like; a scalar becomes shape (1,))."""
+        if name in self._taken:
+            raise ValueError(f"{self.name}: the output name {name} is taken by an input or a definition")
+        value = np.atleast_1d(np.array(value, dtype=object))
+        self.outputs.append(Argument(name, value.shape, unit, doc))
+        self.values[name] = np.array([sp.sympify(v) for v in value.ravel()], dtype=object).reshape(value.shape)
+        self._taken.add(name)
+
+    def operations(self) -> dict[str, int]:
+        """Arithmetic operations of one call: additions, multiplications, divisions, square roots."""
+        exprs = [e for s in self.stages for _, e in s.definitions]
+        exprs += [e for v in self.values.values() for e in v.ravel()]
+        count = dict.fromkeys(("add", "mul", "div", "sqrt"), 0)
+        for expr in exprs:
+            _count(expr, count)
+        return count
+
+    def prune(self) -> Program:
+        """Drop definitions that no output needs; empty stages go with them."""
+        needed = {s for v in self.values.values() for e in v.ravel() for s in e.free_symbols}
+        for stage in reversed(self.stages):
+            kept = []
+            for symbol, expr in reversed(stage.definitions):
+                if symbol in needed:
+                    needed |= expr.free_symbols
+                    kept.append((symbol, expr))
+            stage.definitions = kept[::-1]
+        self.stages = [s for s in self.stages if s.definitions]
+        return self
+
+
+def _count(expr: sp.Expr, count: dict[str, int]) -> None:
+    if expr.is_Atom:
+        return
+    if expr.is_Add:
+        count["add"] += len(expr.args) - 1
+    elif expr.is_Mul:
+        factors = [a for a in expr.args if a is not sp.S.NegativeOne]
+        below = [a for a in factors if a.is_Pow and a.exp.is_Rational and a.exp < 0]
+        count["div"] += bool(below)
+        count["mul"] += max(len(factors) - len(below) - 1, 0) + max(len(below) - 1, 0)
+    if expr.is_Pow:
+        exponent = abs(expr.exp)
+        if exponent == sp.Rational(1, 2):
+            count["sqrt"] += 1
+        elif exponent.is_Integer:
+            count["mul"] += int(exponent) - 1
+        else:
+            raise ValueError(f"a power {expr.exp} has no cheap form in C: stage it")
+    for arg in expr.args:
+        _count(arg, count)
+
+
+class Derivation:
+    """A first-order differential operator on a program, fixed by its values on some of its symbols.
+
+    `on` gives its value there (an input, or a definition taken as independent: a cut); every other definition
+    follows by the chain rule, once, under the name `<tag>_<name>`.
+    """
+
+    def __init__(self, program: Program, tag: str, on: Mapping[sp.Symbol, sp.Expr]):
+        self.program, self.tag = program, tag
+        self.known: dict[sp.Symbol, sp.Expr] = {s: sp.sympify(v) for s, v in on.items()}
+
+    def __call__(self, expr: sp.Expr) -> sp.Expr:
+        """The derivative of an expression, in terms of the program's symbols."""
+        expr = sp.sympify(expr)
+        total = sp.S.Zero
+        for symbol in sorted(expr.free_symbols, key=lambda s: s.name):
+            rate = self._of_symbol(symbol)
+            if rate != 0:
+                total += sp.diff(expr, symbol) * rate
+        return total
+
+    def _of_symbol(self, symbol: sp.Symbol) -> sp.Expr:
+        if symbol not in self.known:
+            definition = self.program.definition.get(symbol)
+            rate = sp.S.Zero if definition is None else self._of_definition(symbol, definition)
+            self.known[symbol] = self.program.define(f"{self.tag}_{symbol.name}", rate)
+        return self.known[symbol]
+
+    def _of_definition(self, symbol: sp.Symbol, definition: sp.Expr) -> sp.Expr:
+        # roots and reciprocals reuse their own value: no second root, no power -3/2
+        if definition.is_Pow and definition.exp == sp.Rational(1, 2):
+            return self(definition.base) / (2 * symbol)
+        if definition.is_Pow and definition.exp == -1:
+            return -(symbol**2) * self(definition.base)
+        return self(definition)
+
+    def array(self, values: np.ndarray) -> np.ndarray:
+        """Apply to every entry."""
+        return np.vectorize(self, otypes=[object])(values)
+
+
+def jacobian(program: Program, values: np.ndarray, wrt: Sequence[sp.Symbol]) -> np.ndarray:
+    """Partial derivatives of `values` (n,) by the symbols `wrt` (m,) taken as independent -> (n, m)."""
+    columns = [Derivation(program, f"d_{_plain(s)}", {s: 1, **{o: 0 for o in wrt if o != s}}).array(values)
+               for s in wrt]
+    return np.stack(columns, axis=-1)
+
+
+def _plain(symbol: sp.Symbol) -> str:
+    return symbol.name.replace("[", "").replace("]", "")
