@@ -7,11 +7,10 @@ import json
 from importlib import resources
 from pathlib import Path
 
-from rich.console import Console
-from rich.progress import Progress
-
 from funicular.derive import emit
 from funicular.derive.families import families
+from rich.console import Console
+from rich.progress import Progress
 
 MANIFEST = "manifest.json"
 GENERATED_SUFFIXES = {".c", ".h", ".pyx", ".py", ".json"}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import sympy as sp
-
 from funicular.derive import moments
 from funicular.derive.gram import Gram
 from funicular.derive.spec import Element, l, x, y, z

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from importlib import metadata, resources
 
 import jinja2
-
 from funicular.derive.printer import c_expression
 from funicular.derive.spec import Family
 from funicular.derive.stages import Argument, Program

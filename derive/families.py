@@ -17,7 +17,8 @@ def _element(element: Element) -> Family:
     return Family(element.name, element.doc, partial(element_kernels.build, element),
                   (f"elements.{element.name}", "element_kernels", "gram", "moments", *SHARED),
                   role="element",
-                  facts={"nodes": len(element.nodes), "vectors": len(element.nodal_vectors), "dim": element.dim})
+                  facts={"nodes": len(element.nodes), "vectors": len(element.nodal_vectors), "dim": element.dim},
+                  element=element)
 
 
 def _slide(element: Element) -> Family:
@@ -25,12 +26,14 @@ def _slide(element: Element) -> Family:
                   f"sliding joint of a {rigid.NAME} rider on a {element.name} cable",
                   partial(slide.build, element),
                   ("joints.slide", f"elements.{element.name}", f"bodies.{rigid.NAME}", "frames", *SHARED),
-                  role="slide", facts={"coordinates": element.n_coordinates + rigid.N_VELOCITY})
+                  role="slide", facts={"coordinates": element.n_coordinates + rigid.N_VELOCITY},
+                  element=element, rider=rigid.NAME)
 
 
 def families() -> dict[str, Family]:
     """Every family by name: elements, bodies, and the slide for each pair of them."""
     every = [*map(_element, ELEMENTS.values()),
-             Family(rigid.NAME, "rigid body", rigid.build, (f"bodies.{rigid.NAME}", "frames", *SHARED)),
+             Family(rigid.NAME, "rigid body", rigid.build, (f"bodies.{rigid.NAME}", "frames", *SHARED),
+                    rider=rigid.NAME),
              *map(_slide, ELEMENTS.values())]
     return {f.name: f for f in every}

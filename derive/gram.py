@@ -18,7 +18,6 @@ from functools import cached_property
 
 import numpy as np
 import sympy as sp
-
 from funicular.derive import moments
 from funicular.derive.spec import Element, l, x, y, z
 from funicular.derive.stages import Program

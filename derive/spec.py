@@ -10,7 +10,6 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import sympy as sp
-
 from funicular.derive.stages import Program
 
 x, y, z, l = sp.symbols("x y z l", positive=True)
@@ -43,6 +42,11 @@ class Element:
     def is_position(self) -> list[bool]:
         """For each nodal vector over all nodes, whether it is a position (and not a slope)."""
         return [v == "r" for _ in self.nodes for v in self.nodal_vectors]
+
+    @cached_property
+    def node_ratios(self) -> tuple[sp.Rational, ...]:
+        """Places of the nodes in lengths l."""
+        return tuple(sp.sympify(node) / l for node in self.nodes)
 
     @property
     def n_vectors(self) -> int:
@@ -84,6 +88,7 @@ class Family:
 
     `modules` are the modules whose text decides the file (its hash is the spec hash). Families of one `role` have
     kernels of the same signatures; the engine reaches them through a table, each with its `facts` (integers).
+    `element` and `rider` (the name of a body) are what the kernels are about: verification samples their states.
     """
 
     name: str
@@ -92,3 +97,5 @@ class Family:
     modules: tuple[str, ...]
     role: str = ""
     facts: dict[str, int] = field(default_factory=dict)
+    element: Element | None = None
+    rider: str | None = None

@@ -57,6 +57,8 @@ class Program:
 
     def input(self, name: str, shape: Sequence[int] | int, unit: str, doc: str) -> np.ndarray:
         """Declare an input; returns its symbols in the given shape (a bare symbol for shape ())."""
+        if name in self._taken:
+            raise ValueError(f"{self.name}: the input name {name} is taken by an earlier input or definition")
         shape = (shape,) if isinstance(shape, int) else tuple(shape)
         argument = Argument(name, shape, unit, doc)
         flat = [sp.Symbol(name)] if shape == () else [sp.Symbol(f"{name}[{i}]") for i in range(argument.size)]

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import numpy as np
 import sympy as sp
-
 from funicular.derive.frames import cross
 from funicular.derive.stages import Derivation, Program
 

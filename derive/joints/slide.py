@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import numpy as np
 import sympy as sp
-
 from funicular.derive.bodies import rigid
 from funicular.derive.frames import tangent_frame
 from funicular.derive.spec import Element, l, x, y, z
@@ -29,8 +28,7 @@ class Slide:
         self.by_rider = rider.tangents(program, self.b)
         self.rider = rider
         program.stage("centreline at s and rider's point (eq 19)")
-        w = program.define("w", 1 / self.length)
-        self.xi = program.define("xi", self.x * w)
+        self.xi = program.define("xi", self.x * program.define("inv_l", 1 / self.length))
         # from the first node and from the rider's origin: no digits are lost far from the global origin
         self.r = self._on_axis("r", element.shape_functions, self.e - self._first_position())
         arm = rider.arm(program, self.b, self.u)

@@ -1,0 +1,73 @@
+"""Finite motions of riders and the frame of a curve, in any kind of number: the paths of verification.
+
+A planar or modal rider joins by an entry in RIDERS with the same four members.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from funicular.derive.bodies import rigid
+
+
+def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Vector product in any kind of number."""
+    return np.array([a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(3)])
+
+
+def quaternion_product(p: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """Hamilton's product p o q, scalar first."""
+    return np.concatenate([[p[0] * q[0] - p[1:].dot(q[1:])], p[0] * q[1:] + q[0] * p[1:] + cross(p[1:], q[1:])])
+
+
+def turned(q: np.ndarray, vector: np.ndarray) -> np.ndarray:
+    """Body to global axes: q o (0, vector) o q*."""
+    conjugate = np.concatenate([q[:1], -q[1:]])
+    return quaternion_product(quaternion_product(q, np.concatenate([[0 * q[0]], vector])), conjugate)[1:]
+
+
+def exponential(numbers, theta: np.ndarray) -> np.ndarray:
+    """Quaternion of the finite rotation vector theta."""
+    square = theta.dot(theta) / 4
+    if square == 0:
+        return np.concatenate([[1 + square], theta / 2])
+    half = numbers.sqrt(square)
+    return np.concatenate([[numbers.cos(half)], numbers.sin(half) / half * theta / 2])
+
+
+class Rigid:
+    """bodies/rigid.py: b = (R, quaternion), velocities (R', body-axis omega)."""
+
+    n_velocity = rigid.N_VELOCITY
+    rotations = slice(3, 6)
+
+    @staticmethod
+    def sample(random: np.random.Generator, near: np.ndarray) -> dict[str, np.ndarray]:
+        """An attitude, a point and velocities, the point not far from `near` and off it."""
+        q = random.normal(size=4)
+        q /= np.linalg.norm(q)
+        u = random.normal(size=3) / 3
+        R = near - turned(q, u) + random.normal(size=3) / 4
+        return {"b": np.concatenate([R, q]), "u": u, "w": random.normal(size=6), "wdot": random.normal(size=6)}
+
+    @staticmethod
+    def point(b: np.ndarray, u: np.ndarray) -> np.ndarray:
+        """The rider's point in global axes."""
+        return b[:3] + turned(b[3:], u)
+
+    @staticmethod
+    def moved(numbers, b: np.ndarray, motion: np.ndarray) -> np.ndarray:
+        """Configuration after the translation motion[:3] and the rotation vector motion[3:] in body axes."""
+        return np.concatenate([b[:3] + motion[:3], quaternion_product(b[3:], exponential(numbers, motion[3:]))])
+
+
+RIDERS = {rigid.NAME: Rigid}
+
+
+def frame(numbers, tangent: np.ndarray, director: np.ndarray) -> np.ndarray:
+    """Tangent frame by Gram-Schmidt: i along the tangent, j in the plane of tangent and director, k = i x j."""
+    i = tangent / numbers.sqrt(tangent.dot(tangent))
+    if len(tangent) == 2:
+        return np.stack([i, np.array([-i[1], i[0]])], axis=1)
+    j = director - i.dot(director) * i
+    j = j / numbers.sqrt(j.dot(j))
+    return np.stack([i, j, cross(i, j)], axis=1)

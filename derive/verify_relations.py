@@ -1,0 +1,116 @@
+"""What every output of every kernel is the derivative of: by role of the family, for any element and any rider."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from funicular.derive import verify_reference as reference
+from funicular.derive.spec import Element, Family
+from funicular.derive.verify_methods import Relation
+from funicular.derive.verify_motion import RIDERS, cross, turned
+
+
+def relations(family: Family) -> list[Relation]:
+    """The relations of a family's kernels."""
+    from funicular.derive.verify_slide import slide
+
+    table: dict[str, Callable[[Family], list[Relation]]] = {"element": element, "slide": slide, "rigid": rigid}
+    return table[family.role or family.name](family)
+
+
+def unit(like: np.ndarray, j: int) -> np.ndarray:
+    """Zeros with a one at entry j."""
+    zeros = np.zeros(like.size, dtype=int)
+    zeros[j] = 1
+    return zeros.reshape(like.shape)
+
+
+def from_kernel(kernel: str, output: str, **directions: Callable) -> Callable:
+    """A path: the output of a kernel with some inputs moved by t times directions[name](state, j)."""
+    def path(k, s, t, j):
+        return k(kernel, s, **{name: s[name] + t * d(s, j) for name, d in directions.items()})[output]
+    return path
+
+
+def entry(name: str) -> Callable:
+    """Direction: entry j of an input."""
+    return lambda s, j: unit(s[name], j)
+
+
+def element(family: Family) -> list[Relation]:
+    """eq 2-9."""
+    spec: Element = family.element
+    n = spec.n_coordinates
+
+    def inertia(k, s, t, j):
+        return np.asarray(s["m"]).dot(s["a"])
+
+    def energy_of_constants(k, s):
+        return k("energy", s, A=k("stiffness", s)["A"])["U"]
+
+    def root(function):
+        return lambda k, s, t, j: function(spec, s)
+
+    force_by_both = from_kernel("damping_force", "f", e=entry("e"), v=lambda s, j: s["rate"] * unit(s["v"], j))
+    return [
+        Relation("mass", "m", "∫ ρ N N' dV by quadrature", 0, root(reference.mass)),
+        Relation("gravity", "Q", "∫ ρ N g dV by quadrature", 0, root(reference.gravity)),
+        Relation("inertia_force", "f", "(m ⊗ I) a", 0, inertia),
+        Relation("stiffness", "A", "energy from A against ∫ W dV by quadrature", 0, root(reference.energy),
+                 of=energy_of_constants),
+        Relation("energy", "U", "∫ W dV by quadrature", 0, root(reference.energy)),
+        Relation("elastic_force", "f", "dU/de", 1, from_kernel("energy", "U", e=entry("e")), n),
+        Relation("elastic_tangent", "K", "df/de", 1, from_kernel("elastic_force", "f", e=entry("e")), n),
+        Relation("damping_force", "f", "d(P/2)/dv", 1, _half(from_kernel("dissipation", "P", v=entry("v"))), n),
+        Relation("damping_tangent", "K", "df/de + rate df/dv", 1, force_by_both, n),
+        Relation("dissipation", "P", "∫ τ E' : D : E' dV by quadrature", 0, root(reference.dissipation)),
+        Relation("position", "N", "nodal conditions solved at 50 digits", 0,
+                 lambda k, s, t, j: reference.Shape(spec, s["l"].item())(s["at"])),
+        Relation("position", "r", "Σ N d", 0,
+                 lambda k, s, t, j: reference.Shape(spec, s["l"].item())(s["at"]).dot(s["e"])),
+    ]
+
+
+def _half(path: Callable) -> Callable:
+    return lambda k, s, t, j: path(k, s, t, j) / 2
+
+
+def rigid(family: Family) -> list[Relation]:
+    """Rigid body: points along finite motions, and Newton-Euler from momentum."""
+    rider = RIDERS[family.name]
+    n = rider.n_velocity
+
+    def point(k, s, motion):
+        return rider.point(rider.moved(k, s["b"], motion), s["u"])
+
+    def momentum(k, s, t, j):
+        """In the axes of t = 0: mass velocity, A J omega."""
+        velocity = s["w"] + t * s["a"]
+        turn = rider.moved(k, np.concatenate([s["b"][:3], k.array([1, 0, 0, 0])]), t * s["w"])[3:]
+        return np.concatenate([s["mass"] * velocity[:3], turned(turn, s["J"].dot(velocity[3:]))])
+
+    def kinetic_energy(k, s, t, j):
+        """Of point masses with the same inertia: J = sum m (p.p I - p p')."""
+        spread = (s["J"].trace() / 2) * np.eye(3, dtype=int) - s["J"]
+        return sum(s["mass"] * s["w"][i] ** 2 for i in range(3)) / 2 + _spinning(spread, s["w"][3:])
+
+    return [
+        Relation("point", "p", "R + q u q*", 0, lambda k, s, t, j: rider.point(s["b"], s["u"])),
+        Relation("point", "p_q", "dp by translation and rotation about body axes", 1,
+                 lambda k, s, t, j: point(k, s, t * unit(s["w"], j)), n),
+        Relation("point", "v", "dp/dt", 1, lambda k, s, t, j: point(k, s, t * s["w"])),
+        Relation("point", "bias", "d²p/dt² at constant velocities", 2, lambda k, s, t, j: point(k, s, t * s["w"])),
+        Relation("inertia_force", "f", "rate of momentum", 1, momentum),
+        Relation("inertia_tangent", "M", "df/da", 1, from_kernel("inertia_force", "f", a=entry("a")), n),
+        Relation("inertia_tangent", "D", "df/dw", 1, from_kernel("inertia_force", "f", w=entry("w")), n),
+        Relation("kinetic_energy", "T", "Σ ½ m v² of point masses", 0, kinetic_energy),
+    ]
+
+
+def _spinning(spread: np.ndarray, omega: np.ndarray):
+    """Kinetic energy of rotation, from S = sum m p p': each column p of a root of S moves with omega x p."""
+    columns = np.stack([cross(omega, c) for c in spread.T], axis=1)  # omega~ S, and T = -1/2 tr(omega~ omega~ S)
+    return -sum(cross(omega, columns[:, i])[i] for i in range(3)) / 2
+
+

@@ -1,0 +1,105 @@
+"""Sample inputs of the kernels: ordinary states with finite rotation and strain, the same on every machine.
+
+Sizes are stout and of order one, so that no term hides below the rounding of another.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from funicular.derive.spec import Element, Family
+from funicular.derive.verify_motion import RIDERS, exponential
+from funicular.derive.verify_numbers import Numbers
+
+SEEDS = (20050401, 20050705)  # days on which the paper was received and accepted
+LENGTH, HEIGHT, WIDTH = 0.7, 0.31, 0.23
+
+
+def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
+    """States of a family: values by argument name, with `rectangle` and the second rates that only paths use.
+
+    Constants that one kernel makes for another (m, A) come from the 50-digit programs: a fault in the compiled one
+    then shows up there and nowhere else.
+    """
+    found = []
+    for seed in SEEDS:
+        random = np.random.default_rng(seed)
+        state: dict[str, np.ndarray] = {}
+        if family.element:
+            state |= element_state(family.element, random)
+        if family.rider:
+            near = state["e"][0] if "e" in state else random.normal(size=3)
+            state |= RIDERS[family.rider].sample(random, near)
+            state |= {"mass": np.float64(1.7), "J": _inertia(random), "a": random.normal(size=len(state["w"]))}
+        state["f"] = random.normal(size=family.element.dim if family.element else 3)
+        if family.role == "element":
+            state |= _constants(family, exact, state, random)
+        found.append(state)
+    return found
+
+
+def section(height: float = HEIGHT, width: float = WIDTH) -> np.ndarray:
+    """Moments of a rectangle, in the order of the kernels' argument."""
+    powers = ((0, 0), (2, 0), (0, 2), (4, 0), (2, 2), (0, 4))
+    return np.array([height ** (a + 1) / 2**a / (a + 1) * width ** (b + 1) / 2**b / (b + 1) for a, b in powers])
+
+
+def reference(element: Element, l: float) -> np.ndarray:
+    """Nodal vectors of the straight undeformed element along x."""
+    rows = []
+    for ratio in element.node_ratios:
+        for vector in element.nodal_vectors:
+            slope = vector.partition("_")[2]
+            row = np.zeros(3)
+            if not slope:
+                row[0] = float(ratio) * l
+            elif len(slope) == 1:
+                row["xyz".index(slope)] = 1.0
+            rows.append(row[: element.dim])
+    return np.array(rows)
+
+
+def rotation(random: np.random.Generator, dim: int, angle: float | None = None) -> np.ndarray:
+    """A rotation matrix: by a random vector, or by an angle about a random axis."""
+    if dim == 2:
+        turn = random.normal() if angle is None else angle
+        return np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    vector = random.normal(size=3)
+    vector *= 1.0 if angle is None else angle / np.linalg.norm(vector)
+    q = exponential(np, vector)
+    v = np.array([[0, -q[3], q[2]], [q[3], 0, -q[1]], [-q[2], q[1], 0]])
+    return np.eye(3) + 2 * (q[0] * v + v @ v)
+
+
+def element_state(element: Element, random: np.random.Generator) -> dict[str, np.ndarray]:
+    """A bent, stretched, sheared and turned element with its rates, and the data of the section and the law."""
+    dim, n = element.dim, element.n_vectors
+    e = reference(element, LENGTH) @ rotation(random, dim).T
+    per_node = len(element.nodal_vectors)
+    for k in range(len(element.nodes)):
+        e[k * per_node : (k + 1) * per_node] @= rotation(random, dim, angle=0.4).T
+    e += random.normal(size=(n, dim)) * 0.15
+    e[element.is_position] += random.normal(size=dim)
+    return {
+        "l": np.float64(LENGTH), "rectangle": np.array([HEIGHT, WIDTH]), "section": section(), "e": e,
+        "v": random.normal(size=(n, dim)), "vdot": random.normal(size=(n, dim)),
+        "x": np.float64(LENGTH * random.uniform(0.2, 0.8)), "density": np.float64(2.9), "g": random.normal(size=dim),
+        "tau": np.float64(0.37), "rate": np.float64(2.3),
+        "at": np.array([0.3 * LENGTH, 0.4 * HEIGHT, -0.3 * WIDTH]),
+    }
+
+
+def _constants(family: Family, exact: Numbers, state: dict, random: np.random.Generator) -> dict[str, np.ndarray]:
+    dim = family.element.dim
+    pairs = dim * (dim - 1) // 2
+    D = np.concatenate([random.uniform(40, 60, dim), random.uniform(5, 15, pairs), random.uniform(10, 20, pairs)])
+    made = {"D": D, "a": random.normal(size=(family.element.n_vectors, dim))}
+    s = exact.state(state | made)
+    for kernel, output in (("stiffness", "A"), ("mass", "m")):
+        if kernel in exact.programs:
+            made[output] = exact(kernel, s)[output].astype(float)
+    return made
+
+
+def _inertia(random: np.random.Generator) -> np.ndarray:
+    root = random.normal(size=(3, 3))
+    return root @ root.T + np.eye(3)

@@ -1,0 +1,46 @@
+"""funicular: very flexible cables and the bodies that slide on them. SI units everywhere."""
+
+from typing import Any
+
+from funicular.errors import (
+    ConvergenceError,
+    EndOfCableError,
+    FunicularError,
+    FunicularWarning,
+    ResultFileError,
+    SceneError,
+    UnknownResultError,
+)
+from funicular.materials import Material
+from funicular.results import Run, load_run
+from funicular.scene import Scene
+from funicular.scene_file import bundled_scenes, load_scene
+from funicular.sections import Circle, Rectangle, Tube
+
+__all__ = [
+    "Circle",
+    "ConvergenceError",
+    "EndOfCableError",
+    "FunicularError",
+    "FunicularWarning",
+    "Material",
+    "Rectangle",
+    "ResultFileError",
+    "Run",
+    "Scene",
+    "SceneError",
+    "Tube",
+    "UnknownResultError",
+    "__version__",
+    "bundled_scenes",
+    "load_run",
+    "load_scene",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "__version__":  # the metadata take a tenth of the time of the whole import
+        from importlib.metadata import version
+
+        return version("funicular")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

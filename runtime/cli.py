@@ -1,0 +1,143 @@
+"""The command line. Each command imports what it needs itself, so that all of them start at once."""
+
+from __future__ import annotations
+
+import sys
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from funicular.results import Run
+
+app = typer.Typer(
+    help="Very flexible cables and whatever slides along them.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+EXIT_INTERRUPTED = 130
+Names = Annotated[list[str] | None, typer.Argument(metavar="[NAME]...", help="only these; all if none is given")]
+
+
+@contextmanager
+def _told_without_traceback() -> Iterator[None]:
+    """Errors and warnings of funicular become a line on stderr each; an error ends the command with 1."""
+    from funicular.errors import FunicularError, FunicularWarning
+
+    def tell(message, category, *place) -> None:
+        if not issubclass(category, FunicularWarning):
+            return show(message, category, *place)
+        print(f"note: {message}", file=sys.stderr)
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("always", FunicularWarning)
+        show, warnings.showwarning = warnings.showwarning, tell
+        try:
+            yield
+        except FunicularError as error:
+            print(f"error: {error}", file=sys.stderr)
+            raise typer.Exit(1) from None
+        except KeyboardInterrupt:
+            print("interrupted", file=sys.stderr)
+            raise typer.Exit(EXIT_INTERRUPTED) from None
+
+
+@app.command()
+def run(
+    scene: Annotated[str, typer.Argument(metavar="SCENE", help="a scene file, or the name of a bundled scene")],
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", help="netCDF file to write (default: SCENE.nc, here)")
+    ] = None,
+    plot: Annotated[bool, typer.Option("--plot", help="draw pictures next to the netCDF file")] = False,
+    plot_dir: Annotated[Path | None, typer.Option(help="draw pictures in this directory")] = None,
+    duration: Annotated[float | None, typer.Option(help="s, instead of the scene's")] = None,
+    tol: Annotated[float | None, typer.Option(help="error aimed at, instead of the scene's")] = None,
+    step: Annotated[float | None, typer.Option(help="fixed step in s, instead of the scene's")] = None,
+) -> None:
+    """Simulate a scene and write its results.
+
+    What was computed is written also when the run stops early. Exit code: 1 for an error, 130 after Ctrl-C.
+    """
+    from funicular.errors import ConvergenceError, EndOfCableError
+    from funicular.results import check_writable
+    from funicular.scene_file import load_scene
+
+    with _told_without_traceback():
+        described = load_scene(scene)
+        path = Path(output or described.run_settings.get("save") or f"{Path(scene).stem}.nc")
+        pictures = plot_dir or (path.parent if plot else None)
+        if pictures is not None:
+            check_writable(_existing(pictures) / "picture.png")
+        stopped = None
+        try:
+            result = described.run(duration, tol=tol, step=step, save=path)
+        except (EndOfCableError, ConvergenceError) as error:
+            result, stopped = error.run, error
+        _report(result, path, pictures)
+        if stopped is not None:
+            raise stopped
+    if result.status == "interrupted":
+        raise typer.Exit(EXIT_INTERRUPTED)
+
+
+def _existing(directory: Path) -> Path:
+    """The nearest directory above, itself included, that exists: the rest is made when it is needed."""
+    return next((d for d in (directory, *directory.parents) if d.exists()), directory)
+
+
+def _report(run: Run, path: Path, pictures: Path | None) -> None:
+    from rich import box
+    from rich.console import Console
+    from rich.markup import escape
+    from rich.table import Table
+
+    rows = [*run.summary_rows(), ("results", str(path))]
+    if pictures is not None:
+        from funicular.plot import save_plots
+
+        written = save_plots(run, pictures, f"{path.stem}-")
+        rows.append(("pictures", "\n".join(map(str, written))))
+    table = Table(box=box.SIMPLE, show_header=False)
+    table.add_column(style="bold")
+    table.add_column(overflow="fold")
+    for heading, text in rows:
+        table.add_row(heading, escape(text))
+    Console().print(table)
+
+
+@app.command()
+def scenes() -> None:
+    """List the bundled scenes."""
+    from funicular.scene_file import bundled_scenes
+
+    for name, path in bundled_scenes().items():
+        print(f"{name}\t{path}")
+
+
+@app.command()
+def derive(
+    names: Names = None,
+    check: Annotated[bool, typer.Option("--check", help="write nothing; fail if the files differ")] = False,
+) -> None:
+    """Derive the equations and write generated/, or compare it with them."""
+    from funicular.derive.drift import main
+
+    raise typer.Exit(main(names or [], check))
+
+
+@app.command()
+def verify(names: Names = None) -> None:
+    """Check the derivatives and invariances of the generated kernels."""
+    from funicular.derive.verify import main
+
+    raise typer.Exit(main(names or []))
+
+
+if __name__ == "__main__":
+    app()

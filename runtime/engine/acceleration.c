@@ -1,0 +1,177 @@
+/* Eq 38: accelerations and multipliers of a state, from M, H, W; and what else needs M and H. */
+#include "engine.h"
+
+/* Layout of one joint's terms in the work space; n = coordinates of element and rider. */
+typedef struct {
+    double *C, *C_q, *C_s, *G, *s_rate, *Q_d, *H, *W, *s_bias;
+} terms_view;
+
+static terms_view view(const fu_accelerator *work, int joint)
+{
+    double *p = work->terms + (long)joint * FU_JOINT_TERMS;
+    const int n = FU_MAX_COORDINATES;
+    terms_view t = {p, p + 3, p + 3 + 3 * n, p + 6 + 3 * n, p + 6 + 4 * n, p + 7 + 4 * n, p + 10 + 4 * n,
+                    p + 10 + 6 * n, p + 12 + 6 * n};
+    return t;
+}
+
+/* dof of a joint's k-th coordinate: element first, then rider */
+static int joint_dof(const fu_model *model, const fu_joint *joint, int element, int k)
+{
+    const fu_cable *cable = &model->cables[joint->cable];
+    return k < cable->coordinates ? cable->first + element * cable->per_node + k
+                                  : model->rigids[joint->rider].dof + k - cable->coordinates;
+}
+
+static void evaluate(const fu_model *model, const fu_state *state, fu_accelerator *work)
+{
+    for (int j = 0; j < model->n_joints; ++j) {
+        const fu_joint *joint = &model->joints[j];
+        const fu_cable *cable = &model->cables[joint->cable];
+        const fu_rigid *rider = &model->rigids[joint->rider];
+        const int element = state->element[j], at = cable->first + element * cable->per_node;
+        const terms_view t = view(work, j);
+        joint->kernel->terms(cable->length, state->s[j] - fu_element_start(model, j, element), state->q + at,
+                             state->q + rider->configuration, joint->u, state->v + at, state->v + rider->dof, t.C,
+                             t.C_q, t.C_s, t.G, t.s_rate, t.Q_d, t.H, t.W, t.s_bias);
+    }
+}
+
+/* Factor the band of M once: it is constant. */
+int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
+{
+    fu_system_clear(&work->mass);
+    for (int i = 0; i < model->n_dof; ++i) work->work[i] = 0.0;
+    fu_dynamic_matrix(model, work->work, work->work, 1.0, 0.0, 0.0, &work->mass);
+    return fu_system_factor_band(&work->mass, model->lapack);
+}
+
+/* Border of [M H'; H 0] at a state whose terms are evaluated. */
+static int factor_border(const fu_model *model, const fu_state *state, fu_accelerator *work)
+{
+    fu_system *s = &work->mass;
+    double M[36], D[36];
+    const double rest[6] = {0};
+    for (int i = 0; i < s->n * s->m; ++i) s->B[i] = s->C[i] = 0.0;
+    for (int i = 0; i < s->m * s->m; ++i) s->D[i] = 0.0;
+    for (int b = 0; b < model->n_rigids; ++b) {
+        const fu_rigid *body = &model->rigids[b];
+        rigid_inertia_tangent(body->mass, body->J, rest, M, D);
+        for (int i = 0; i < 6; ++i)
+            for (int j = 0; j < 6; ++j)
+                fu_system_add(s, model->place[body->dof + i], model->place[body->dof + j], M[6 * i + j]);
+    }
+    for (int j = 0; j < model->n_joints; ++j) {
+        const fu_joint *joint = &model->joints[j];
+        const terms_view t = view(work, j);
+        const int n = joint->kernel->coordinates;
+        for (int c = 0; c < 2; ++c)
+            for (int k = 0; k < n; ++k) {
+                const int row = model->n_band + model->n_border_dof + 2 * j + c;
+                const int place = model->place[joint_dof(model, joint, state->element[j], k)];
+                /* rows in kg, so that the border is of one scale */
+                fu_system_add(s, row, place, joint->mass * t.H[c * n + k]);
+                fu_system_add(s, place, row, joint->mass * t.H[c * n + k]);
+            }
+    }
+    return fu_system_factor_border(s, model->lapack);
+}
+
+/* Solve [M H'; H 0] with forces on the dofs and right sides of the joints; multipliers are scaled back. */
+static void solve(const fu_model *model, fu_accelerator *work, const double *force, double *solution)
+{
+    double *x = work->rhs, *lambda = x + model->n_band + model->n_border_dof;
+    for (int i = 0; i < model->n_dof; ++i)
+        if (model->place[i] >= 0) x[model->place[i]] = force[i];
+    for (int j = 0; j < model->n_joints; ++j)
+        for (int c = 0; c < 2; ++c) lambda[2 * j + c] *= model->joints[j].mass;
+    fu_system_solve(&work->mass, model->lapack, x);
+    for (int i = 0; i < model->n_dof; ++i) solution[i] = model->place[i] >= 0 ? x[model->place[i]] : 0.0;
+    for (int j = 0; j < model->n_joints; ++j)
+        for (int c = 0; c < 2; ++c) lambda[2 * j + c] *= model->joints[j].mass;
+}
+
+/* Eq 38. `joints` and `reaction` (forces on the fixed dofs, zero elsewhere) may be null. */
+int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerator *work, double *acceleration,
+                     fu_joint_output *joints, double *reaction)
+{
+    double *lambda = work->rhs + model->n_band + model->n_border_dof;
+    evaluate(model, state, work);
+    const int info = factor_border(model, state, work);
+    if (info) return info;
+    for (int i = 0; i < model->n_dof; ++i) work->force[i] = 0.0;
+    fu_internal_forces(model, state->q, state->v, work->force);
+    fu_external_forces(model, work->force);
+    for (int i = 0; i < model->n_dof; ++i) work->work[i] = -work->force[i];
+    for (int j = 0; j < model->n_joints; ++j)
+        for (int c = 0; c < 2; ++c) lambda[2 * j + c] = view(work, j).W[c];
+    solve(model, work, work->work, acceleration);
+    if (joints)
+        for (int j = 0; j < model->n_joints; ++j) {
+            const fu_joint *joint = &model->joints[j];
+            const terms_view t = view(work, j);
+            const int n = joint->kernel->coordinates, rider = n - 6;
+            fu_joint_output *out = &joints[j];
+            out->s_rate = t.s_rate[0];
+            out->s_acceleration = t.s_bias[0];
+            for (int k = 0; k < n; ++k)
+                out->s_acceleration += t.G[k] * acceleration[joint_dof(model, joint, state->element[j], k)];
+            for (int c = 0; c < 2; ++c) out->multiplier[c] = lambda[2 * j + c];
+            for (int d = 0; d < 3; ++d) {
+                out->residual[d] = t.C[d];
+                out->force[d] = -(t.H[rider + d] * lambda[2 * j] + t.H[n + rider + d] * lambda[2 * j + 1]);
+            }
+        }
+    if (reaction) {
+        fu_mass_times(model, acceleration, work->work);
+        for (int i = 0; i < model->n_dof; ++i) reaction[i] = work->work[i] + work->force[i];
+        for (int j = 0; j < model->n_joints; ++j)
+            for (int k = 0; k < model->joints[j].kernel->coordinates; ++k) {
+                const int n = model->joints[j].kernel->coordinates;
+                const terms_view t = view(work, j);
+                reaction[joint_dof(model, &model->joints[j], state->element[j], k)] +=
+                    t.H[k] * lambda[2 * j] + t.H[n + k] * lambda[2 * j + 1];
+            }
+        for (int i = 0; i < model->n_dof; ++i)
+            if (model->place[i] >= 0) reaction[i] = 0.0;
+    }
+    return 0;
+}
+
+/* change = the smallest (in the mass norm) change of v that makes H v = 0 */
+int fu_project_velocities(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change)
+{
+    double *lambda = work->rhs + model->n_band + model->n_border_dof;
+    evaluate(model, state, work);
+    const int info = factor_border(model, state, work);
+    if (info) return info;
+    for (int i = 0; i < model->n_dof; ++i) work->work[i] = 0.0;
+    for (int j = 0; j < model->n_joints; ++j) {
+        const fu_joint *joint = &model->joints[j];
+        const terms_view t = view(work, j);
+        const int n = joint->kernel->coordinates;
+        for (int c = 0; c < 2; ++c) {
+            lambda[2 * j + c] = 0.0;
+            for (int k = 0; k < n; ++k)
+                lambda[2 * j + c] -= t.H[c * n + k] * state->v[joint_dof(model, joint, state->element[j], k)];
+        }
+    }
+    solve(model, work, work->work, change);
+    return 0;
+}
+
+/* Newton for C_l(s) = 0 (eq 21) on one element's curve; 0 when it converged. */
+int fu_find_arc_length(const fu_model *model, const double *q, int j, int element, double *s)
+{
+    const fu_joint *joint = &model->joints[j];
+    const fu_cable *cable = &model->cables[joint->cable];
+    const double start = fu_element_start(model, j, element);
+    double C[3], C_s[3], step, A_t[9];
+    for (int i = 0; i < 50; ++i) {
+        joint->kernel->constraint(cable->length, *s - start, q + cable->first + element * cable->per_node,
+                                  q + model->rigids[joint->rider].configuration, joint->u, C, C_s, &step, A_t);
+        *s += step;
+        if (fabs(step) <= 1e-15 * (cable->length + fabs(*s))) return 0;
+    }
+    return fabs(step) <= 1e-12 * cable->length ? 0 : 1;
+}

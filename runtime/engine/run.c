@@ -1,0 +1,268 @@
+/* The time loop: steps that end on output times, error control, slides that cross element boundaries. */
+#include "engine.h"
+
+#include <string.h>
+
+#define SMALLEST_STEP 1e-12 /* of the duration */
+
+/* largest distance that a node or a body's centre has moved, m */
+static double motion(const fu_model *model, const double *from, const double *to)
+{
+    double largest = 0.0;
+    for (int c = 0; c < model->n_cables; ++c) {
+        const fu_cable *cable = &model->cables[c];
+        for (int k = 0, at = cable->first; k <= cable->n_elements; ++k, at += cable->per_node) {
+            double square = 0.0;
+            for (int d = 0; d < cable->kernel->dim; ++d)
+                square += (to[at + d] - from[at + d]) * (to[at + d] - from[at + d]);
+            if (square > largest) largest = square;
+        }
+    }
+    for (int b = 0; b < model->n_rigids; ++b) {
+        const int at = model->rigids[b].configuration;
+        double square = 0.0;
+        for (int d = 0; d < 3; ++d) square += (to[at + d] - from[at + d]) * (to[at + d] - from[at + d]);
+        if (square > largest) largest = square;
+    }
+    return sqrt(largest);
+}
+
+static int record_row(fu_run *run)
+{
+    const double begin = fu_clock();
+    const fu_model *model = run->model;
+    const fu_state *now = &run->now;
+    fu_record *r = &run->record;
+    const long row = r->n;
+    fu_joint_output *joints = (fu_joint_output *)(r->joint + row * model->n_joints * FU_JOINT_OUTPUTS);
+    r->time[row] = now->t;
+    memcpy(r->q + row * model->n_q, now->q, sizeof(double) * (size_t)model->n_q);
+    memcpy(r->v + row * model->n_dof, now->v, sizeof(double) * (size_t)model->n_dof);
+    memcpy(r->s + row * model->n_joints, now->s, sizeof(double) * (size_t)model->n_joints);
+    const int info = fu_accelerations(model, now, &run->accelerator, r->acceleration + row * model->n_dof, joints,
+                                      r->reaction + row * model->n_dof);
+    r->kinetic[row] = fu_kinetic_energy(model, now->v);
+    r->elastic[row] = fu_elastic_energy(model, now->q);
+    r->potential[row] = fu_potential_energy(model, now->q);
+    r->dissipated[row] = run->dissipated;
+    ++r->n;
+    run->statistics.time_output += fu_clock() - begin;
+    return info;
+}
+
+/* Consistent start: velocities on the joints, accelerations and forces from eq 38. */
+int fu_start(fu_run *run)
+{
+    const fu_model *model = run->model;
+    fu_state *now = &run->now;
+    fu_joint_output joint;
+    if (fu_accelerator_prepare(model, &run->accelerator)) return FU_SINGULAR;
+    if (fu_project_velocities(model, now, &run->accelerator, run->before)) return FU_SINGULAR;
+    for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->before[i];
+    memcpy(run->first, now->q, sizeof(double) * (size_t)model->n_q);
+    if (record_row(run)) return FU_SINGULAR;
+    memcpy(now->acceleration, run->record.acceleration, sizeof(double) * (size_t)model->n_dof);
+    memcpy(now->a, now->acceleration, sizeof(double) * (size_t)model->n_dof);
+    for (int j = 0; j < model->n_joints; ++j) {
+        memcpy(&joint, run->record.joint + j * FU_JOINT_OUTPUTS, sizeof joint);
+        run->s_slope[j] = joint.s_rate;
+        memcpy(now->f + 3 * j, joint.force, sizeof joint.force);
+    }
+    run->power = fu_dissipation(model, now->q, now->v);
+    /* tolerances are relative to the largest motion: until there is one, that of the first output step */
+    for (int i = 0; i < model->n_dof; ++i) {
+        const double t = run->output_step;
+        const double d = model->weight[i] * (fabs(now->v[i]) * t + 0.5 * fabs(now->acceleration[i]) * t * t);
+        if (d > run->motion) run->motion = d;
+    }
+    return FU_RUNNING;
+}
+
+static void accept(fu_run *run, double h)
+{
+    const fu_model *model = run->model;
+    for (int j = 0; j < model->n_joints; ++j) run->s_slope[j] = (run->next.s[j] - run->now.s[j]) / h;
+    const fu_state state = run->now;
+    run->next.t = run->now.t + h;
+    run->now = run->next;
+    run->next = state;
+    const double power = fu_dissipation(model, run->now.q, run->now.v);
+    run->dissipated += 0.5 * h * (run->power + power);
+    run->power = power;
+    const double moved = motion(model, run->first, run->now.q);
+    if (moved > run->motion) run->motion = moved;
+    fu_statistics *s = &run->statistics;
+    ++s->steps;
+    if (s->steps == 1 || h < s->h_min) s->h_min = h;
+    if (h > s->h_max) s->h_max = h;
+}
+
+/* how far s lies outside its element, negative inside */
+static double outside(const fu_run *run, const fu_state *state, int j, int *side)
+{
+    const double length = run->model->cables[run->model->joints[j].cable].length;
+    const double x = state->s[j] - fu_element_start(run->model, j, state->element[j]);
+    *side = x > 0.5 * length ? 1 : -1;
+    return *side > 0 ? x - length : -x;
+}
+
+static double boundary_tolerance(const fu_run *run, int j)
+{
+    return 1e-11 * run->model->cables[run->model->joints[j].cable].length;
+}
+
+/* the joint of `next` that is farthest outside its element, or -1 */
+static int crossed(const fu_run *run, int *side)
+{
+    int which = -1, at;
+    double worst = 0.0;
+    for (int j = 0; j < run->model->n_joints; ++j) {
+        const double d = outside(run, &run->next, j, &at) - boundary_tolerance(run, j);
+        if (d > worst) {
+            worst = d;
+            which = j;
+            *side = at;
+        }
+    }
+    return which;
+}
+
+/* Put a slide that stands on a boundary into the neighbour; accelerations and force jump with r_xx there. Returns
+ * FU_END_OF_CABLE where there is no neighbour. */
+static int enter(fu_run *run, int j, int side)
+{
+    const fu_model *model = run->model;
+    fu_state *now = &run->now;
+    const fu_cable *cable = &model->cables[model->joints[j].cable];
+    const int element = now->element[j] + side;
+    const int node = side > 0 ? element : element + 1;
+    if (element < 0 || element >= cable->n_elements) {
+        run->stopped_joint = j;
+        return FU_END_OF_CABLE;
+    }
+    fu_joint_output *joints = (fu_joint_output *)run->accelerator.joints;
+    if (fu_accelerations(model, now, &run->accelerator, run->before, joints, 0)) return FU_SINGULAR;
+    for (int k = 0; k < 3 * model->n_joints; ++k) now->f[k] -= joints[k / 3].force[k % 3];
+    now->element[j] = element;
+    now->s[j] = fu_element_start(model, j, node);
+    if (fu_accelerations(model, now, &run->accelerator, run->work, joints, 0)) return FU_SINGULAR;
+    for (int k = 0; k < 3 * model->n_joints; ++k) now->f[k] += joints[k / 3].force[k % 3];
+    for (int i = 0; i < model->n_dof; ++i) {
+        now->a[i] += run->work[i] - run->before[i];
+        now->acceleration[i] += run->work[i] - run->before[i];
+    }
+    run->factored = 0;
+    ++run->statistics.crossings;
+    return FU_RUNNING;
+}
+
+/* Shorten the step until the slide j ends it on the boundary (Illinois); returns the step, 0 on failure. */
+static double locate(fu_run *run, int j, int side, double h)
+{
+    const double target = fu_element_start(run->model, j, run->now.element[j] + (side > 0));
+    double low = 0.0, high = h;
+    double g_low = side * (run->now.s[j] - target), g_high = side * (run->next.s[j] - target);
+    int last = 0;
+    for (int i = 0; i < 60; ++i) {
+        const double middle = low + (high - low) * g_low / (g_low - g_high);
+        if (fu_step(run, middle)) return 0.0;
+        const double g = side * (run->next.s[j] - target);
+        if (fabs(g) <= boundary_tolerance(run, j)) return middle;
+        if (g > 0.0) {
+            high = middle;
+            g_high = g;
+            if (last > 0) g_low *= 0.5;
+            last = 1;
+        } else {
+            low = middle;
+            g_low = g;
+            if (last < 0) g_high *= 0.5;
+            last = -1;
+        }
+    }
+    return 0.0;
+}
+
+/* One accepted step towards `target`. */
+static int step_towards(fu_run *run, double target)
+{
+    const double smallest = SMALLEST_STEP * run->duration;
+    double want = run->fixed_step > 0.0 ? run->fixed_step : run->h;
+    int turned = 0;
+    for (;;) {
+        const double remaining = target - run->now.t;
+        const double pieces = ceil(remaining / want * (1.0 - 1e-9));
+        double h = pieces <= 1.0 ? remaining : remaining / pieces;
+        const double allowed = run->tol * run->motion * h / run->duration;
+        const double floor = 1e-15 * (1.0 + run->motion), aim = run->fixed_step > 0.0 ? run->last_error : allowed;
+        run->newton_tolerance = fmin(fmax(1e-3 * aim, floor), 1e-10);
+        if (h < smallest && remaining > smallest) return FU_NO_CONVERGENCE;
+        if (fu_step(run, h)) {
+            want = 0.5 * h;
+            ++run->statistics.rejected;
+            continue;
+        }
+        const double error = fu_step_error(run, h), ratio = error / allowed;
+        if (run->fixed_step <= 0.0 && ratio > 2.0) {
+            want = run->h = h * fmax(0.2, 0.8 / sqrt(ratio));
+            ++run->statistics.rejected;
+            continue;
+        }
+        int side = 0;
+        const int j = crossed(run, &side);
+        if (j >= 0 && turned < 2) {
+            int at;
+            if (outside(run, &run->now, j, &at) >= -boundary_tolerance(run, j) && at == side) {
+                /* it stands on this boundary already: change the element, not the time */
+                const int status = enter(run, j, side);
+                if (status) return status;
+                ++turned;
+                continue;
+            }
+            h = locate(run, j, side, h);
+            if (h == 0.0) {
+                want *= 0.5;
+                if (want < smallest) return FU_NO_CONVERGENCE;
+                continue;
+            }
+            int other_side = 0;
+            const int other = crossed(run, &other_side);
+            if (other >= 0) { /* another slide crossed before this one: the shorter step finds it */
+                want = h;
+                continue;
+            }
+            accept(run, h);
+            return enter(run, j, side);
+        }
+        accept(run, h);
+        run->statistics.error_sum += error;
+        run->last_error = error;
+        if (run->fixed_step <= 0.0) {
+            const double factor = fmin(2.0, 0.8 / sqrt(fmax(ratio, 1e-6)));
+            if (factor > 1.25) run->h = fmax(run->h, h * factor);
+            else if (factor < 0.9) run->h = h * factor;
+        }
+        return FU_RUNNING;
+    }
+}
+
+/* Go on for about so many seconds; the status tells whether there is more to do. */
+int fu_advance(fu_run *run, double seconds)
+{
+    const double until = fu_clock() + seconds;
+    while (run->now.t < run->duration) {
+        double target = run->record.n * run->output_step;
+        if (target > run->duration * (1.0 - 1e-12)) target = run->duration;
+        const int status = step_towards(run, target);
+        if (status) {
+            if (record_row(run)) return FU_SINGULAR;
+            return status;
+        }
+        if (fabs(run->now.t - target) <= 1e-12 * run->duration) {
+            run->now.t = target;
+            if (record_row(run)) return FU_SINGULAR;
+        }
+        if (fu_clock() > until) break;
+    }
+    return run->now.t < run->duration ? FU_RUNNING : FU_DONE;
+}

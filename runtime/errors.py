@@ -1,0 +1,67 @@
+"""What funicular raises and warns with: messages name the place, the cause and, where it helps, a remedy."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from funicular.results import Run
+
+
+class FunicularError(Exception):
+    """Base of all errors that funicular raises on purpose; the message is complete for a user."""
+
+    __str__ = Exception.__str__  # KeyError, a base of one subclass, would show its message in quotes
+
+
+class FunicularWarning(UserWarning):
+    """Something was adjusted or left unfinished; the same text stands in ``run.report["messages"]``."""
+
+
+class SceneError(FunicularError, ValueError):
+    """The scene cannot be simulated as it is described."""
+
+    def __init__(self, place: str, cause: str, remedy: str | None = None):
+        """place: what is wrong, such as ``cable "wire"``; cause: why; remedy: what to do, or None."""
+        super().__init__(f"{place}: {cause}" + (f"; {remedy}" if remedy else ""))
+        self.place, self.cause, self.remedy = place, cause, remedy
+
+    def inside(self, outer: str) -> SceneError:
+        """The same error seen from ``outer`` (a file, say)."""
+        return SceneError(f"{outer}: {self.place}", self.cause, self.remedy)
+
+
+class _StoppedError(FunicularError):
+    """A run that stopped early."""
+
+    def __init__(self, message: str, run: Run):
+        """run: the results up to then."""
+        super().__init__(message)
+        self.run = run
+
+
+class EndOfCableError(_StoppedError):
+    """A slide reached an end of its cable; ``run`` holds everything up to then."""
+
+
+class ConvergenceError(_StoppedError):
+    """The integrator found no acceptable step; ``run`` holds everything up to then."""
+
+
+class ResultFileError(FunicularError):
+    """A file of results cannot be written or read."""
+
+
+class UnknownResultError(FunicularError, KeyError):
+    """A run holds no result of that name."""
+
+
+def near(name: str, known: Iterable[str]) -> str:
+    """The remedy for a name that is not known: the nearest known one, or the list of them."""
+    known = list(known)
+    if matches := get_close_matches(str(name), known, n=1):
+        return f'did you mean "{matches[0]}"?'
+    return "known: " + ", ".join(known) if known else "there is none yet"

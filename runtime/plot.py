@@ -1,0 +1,236 @@
+"""Pictures of a run, as PNG files. Matplotlib is imported only here, and only when pictures are made."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from funicular.errors import ResultFileError
+from funicular.rotations import rotate
+
+if TYPE_CHECKING:
+    import os
+
+    from funicular.results import Run
+    from funicular.scene import Scene
+    from matplotlib.figure import Figure
+
+STYLE = {
+    "font.size": 10,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "grid.color": "0.9",
+    "grid.linewidth": 0.6,
+    "axes.axisbelow": True,
+    "axes.linewidth": 0.7,
+    "lines.linewidth": 1.4,
+    "legend.frameon": False,
+    "figure.constrained_layout.use": True,
+    "savefig.dpi": 160,
+}
+SNAPSHOTS = 11
+POINTS_PER_ELEMENT = 24
+
+
+class View(NamedTuple):
+    """The plane that is looked at: unit vectors across and up (3,), and their names."""
+
+    across: np.ndarray
+    up: np.ndarray
+    names: tuple[str, str]
+
+
+def save_plots(run: Run, directory: str | os.PathLike, prefix: str = "") -> list[Path]:
+    """Draw what the run holds: shape, acceleration, slide, energy.
+
+    The files are ``directory/<prefix><picture>.png``; pictures without anything to show are left out.
+    Returns their paths. Raises ResultFileError.
+    """
+    from matplotlib import rc_context
+
+    drawers = {"shape": draw_shape, "acceleration": draw_acceleration, "slide": draw_slide, "energy": draw_energy}
+    directory, written = Path(directory), []
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        for name, draw in drawers.items():
+            with rc_context(STYLE):
+                figure = draw(run)
+                if figure is not None:
+                    written.append(directory / f"{prefix}{name}.png")
+                    figure.savefig(written[-1])
+    except OSError as error:
+        raise ResultFileError(f"{directory}: the pictures cannot be written here: {error.strerror}") from error
+    return written
+
+
+def view_of(scene: Scene) -> View:
+    """The vertical plane of the first cable; y is up without gravity."""
+    gravity = np.array(scene.gravity)
+    up = -gravity / np.linalg.norm(gravity) if gravity.any() else np.array([0.0, 1.0, 0.0])
+    candidates = [np.subtract(cable.end, cable.start) for cable in scene.cables.values()]
+    candidates += list(np.eye(3))  # for vertical cables and for none
+    level = [c - np.dot(c, up) * up for c in candidates]
+    across = next(v for v, c in zip(level, candidates, strict=True) if np.linalg.norm(v) > 1e-6 * np.linalg.norm(c))
+    across = across / np.linalg.norm(across)
+    return View(across, up, (_axis_name(across), _axis_name(up)))
+
+
+def _axis_name(direction: np.ndarray) -> str:
+    for name, axis in zip("xyz", np.eye(3), strict=True):
+        if np.allclose(direction, axis):
+            return name
+    return "({:.3g}, {:.3g}, {:.3g})".format(*direction)
+
+
+def centreline(nodal_vectors: np.ndarray, node_s: np.ndarray) -> np.ndarray:
+    """Points (..., points, 3) of the centreline, cubic between nodes.
+
+    nodal_vectors: (..., nodes, vectors, 3) with r and r_x first; node_s: (nodes,) in m.
+    """
+    r, slope = nodal_vectors[..., 0, :], nodal_vectors[..., 1, :]
+    length = np.diff(node_s)[:, None, None]
+    t = np.linspace(0, 1, POINTS_PER_ELEMENT, endpoint=False)[:, None]
+    points = (
+        (1 + 2 * t) * (1 - t) ** 2 * r[..., :-1, None, :]
+        + t * (1 - t) ** 2 * length * slope[..., :-1, None, :]
+        + t**2 * (3 - 2 * t) * r[..., 1:, None, :]
+        - t**2 * (1 - t) * length * slope[..., 1:, None, :]
+    )
+    inner = points.reshape(*points.shape[:-3], -1, 3)
+    return np.concatenate([inner, r[..., -1:, :]], axis=-2)
+
+
+def rider_path(run: Run, slide: str) -> np.ndarray:
+    """(time, 3): where the rider's point of ``slide`` was, in m."""
+    joint = run.scene.slides[slide]
+    return run[f"{joint.body}.position"] + rotate(run[f"{joint.body}.orientation"], joint.at)
+
+
+def draw_shape(run: Run) -> Figure | None:
+    """The cables at a few times, coloured by time, with the riders and their paths; None without cables."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+    from matplotlib.figure import Figure
+
+    scene = run.scene
+    if not scene.cables:
+        return None
+    view = view_of(scene)
+    plane = np.array([view.across, view.up])
+    shown = np.unique(np.linspace(0, len(run.time) - 1, SNAPSHOTS).round().astype(int))
+    colour = ScalarMappable(Normalize(run.time[0], max(run.time[-1], run.time[0] + 1e-9)), "viridis")
+    figure = Figure(figsize=(8, 3.6))
+    axes = figure.add_subplot()
+    for name in scene.cables:
+        shapes = centreline(run[f"{name}.nodal_vectors"][shown], run.coords[f"{name}.node"].values) @ plane.T
+        for index, shape in zip(shown, shapes, strict=True):
+            axes.plot(*shape.T, color=colour.to_rgba(run.time[index]), zorder=2)
+    for number, name in enumerate(scene.slides):
+        path = rider_path(run, name) @ plane.T
+        axes.plot(
+            *path.T,
+            color="0.25",
+            linewidth=0.9,
+            linestyle=(0, (4, 2)),
+            zorder=3,
+            label=None if number else "path of the rider",
+        )
+        axes.scatter(
+            *path[shown].T,
+            c=colour.to_rgba(run.time[shown]),
+            s=42,
+            edgecolors="0.1",
+            linewidths=0.8,
+            zorder=4,
+            label=None if number else "rider",
+        )
+    if scene.pins:
+        pins = np.array([scene.cables[pin.cable].point(pin.s) for pin in scene.pins]) @ plane.T
+        axes.scatter(*pins.T, marker="^", s=60, color="0.1", zorder=5, label="pin")
+    _set_scales(axes, view)
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
+    figure.colorbar(colour, ax=axes, label="time / s", pad=0.02, fraction=0.04)
+    return figure
+
+
+def _set_scales(axes, view: View) -> None:
+    """Equal scales, or the upright one exaggerated by a round factor that its label tells."""
+    axes.margins(0.04, 0.12)
+    width, height = np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())
+    most = 0.42 * width / height  # the height of a picture that the page can take, over its width
+    exaggeration = max((f * 10**e for e in range(-1, 7) for f in (1, 2, 5) if f * 10**e <= most), default=0.1)
+    exaggeration = max(exaggeration, 1)
+    axes.set_aspect(exaggeration, adjustable="datalim")
+    note = f"  (stretched {exaggeration:g} : 1)" if exaggeration > 1 else ""
+    axes.set_xlabel(f"{view.names[0]} / m")
+    axes.set_ylabel(f"{view.names[1]} / m{note}")
+
+
+def draw_acceleration(run: Run) -> Figure | None:
+    """The riders' accelerations upwards over time, the paper's Fig. 5; None without a slide."""
+    from matplotlib.figure import Figure
+
+    riders = list(dict.fromkeys(slide.body for slide in run.scene.slides.values()))
+    if not riders:
+        return None
+    view = view_of(run.scene)
+    marker = "." if len(run.time) <= 200 else ""  # a coarse output should look like one
+    figure = Figure(figsize=(7, 3.4))
+    axes = figure.add_subplot()
+    for body in riders:
+        axes.plot(run.time, run[f"{body}.acceleration"] @ view.up, marker=marker, markersize=4, label=f"body {body}")
+    axes.set_xlabel("time / s")
+    axes.set_ylabel(f"{view.names[1]}-acceleration / (m/s²)")
+    axes.margins(x=0)
+    axes.legend(loc="best")
+    return figure
+
+
+def draw_slide(run: Run) -> Figure | None:
+    """Place and speed of the riders along their cables over time; None without a slide."""
+    from matplotlib.figure import Figure
+
+    slides = run.scene.slides
+    if not slides:
+        return None
+    figure = Figure(figsize=(7, 4.6))
+    place, speed = figure.subplots(2, sharex=True)
+    nodes = np.unique(np.concatenate([run.coords[f"{slide.along}.node"].values for slide in slides.values()]))
+    for s in nodes:
+        place.axhline(s, color="0.6", linewidth=0.7, linestyle=":")
+    place.plot([], [], color="0.6", linewidth=0.7, linestyle=":", label="nodes of the cable")
+    for name in slides:
+        place.plot(run.time, run[f"{name}.s"], label=f"slide {name}")
+        speed.plot(run.time, run[f"{name}.s_rate"])
+    place.grid(axis="y", visible=False)
+    place.set_ylabel("arc-length s / m")
+    place.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)
+    speed.set_ylabel("s rate / (m/s)")
+    speed.set_xlabel("time / s")
+    speed.margins(x=0)
+    return figure
+
+
+def draw_energy(run: Run) -> Figure:
+    """The changes of the energies since the start, and how well they cancel."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7, 4.8))
+    changes, error = figure.subplots(2, sharex=True, height_ratios=(2.2, 1))
+    for name in ("kinetic", "elastic", "potential", "dissipated"):
+        energy = run[f"energy.{name}"]
+        if name != "dissipated" or energy.any():
+            changes.plot(run.time, energy - energy[0], label=name)
+    changes.axhline(0, color="0.4", linewidth=0.7)
+    changes.set_ylabel("change of energy / J")
+    changes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)
+    error.plot(run.time, run.energy_balance().relative, color="0.2")
+    error.axhline(0, color="0.4", linewidth=0.7)
+    error.set_ylabel("sum of changes /\nenergy exchanged")
+    error.ticklabel_format(axis="y", style="sci", scilimits=(-2, 2), useMathText=True)
+    error.set_xlabel("time / s")
+    error.margins(x=0)
+    return figure

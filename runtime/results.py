@@ -1,0 +1,283 @@
+"""Results of a run: labelled arrays with units, and their files."""
+
+from __future__ import annotations
+
+import json
+import os
+from functools import cached_property
+from operator import methodcaller
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from funicular.errors import ResultFileError, UnknownResultError, near
+
+if TYPE_CHECKING:
+    import xarray
+    from funicular.scene import Scene
+    from funicular.settings import RunSettings
+
+FILE_FORMAT = 1
+"""Raised when a reader of older files could misread new ones."""
+
+
+class Variable(NamedTuple):
+    """An array with the names of its dimensions, its unit and what it is."""
+
+    dims: tuple[str, ...]
+    values: np.ndarray
+    units: str
+    long_name: str
+
+
+_XYZ, _TIME = ("time", "xyz"), ("time",)
+
+QUANTITIES = {
+    "bodies": {
+        "position": (_XYZ, "m", "position of the centre of mass"),
+        "orientation": (("time", "wxyz"), "1", "unit quaternion from body axes to the ground's"),
+        "velocity": (_XYZ, "m/s", "velocity of the centre of mass"),
+        "angular_velocity": (_XYZ, "rad/s", "angular velocity in body axes"),
+        "acceleration": (_XYZ, "m/s2", "acceleration of the centre of mass"),
+        "angular_acceleration": (_XYZ, "rad/s2", "angular acceleration in body axes"),
+    },
+    "slides": {
+        "s": (_TIME, "m", "undeformed arc-length of the rider's place"),
+        "s_rate": (_TIME, "m/s", "rate of s"),
+        "s_acceleration": (_TIME, "m/s2", "second rate of s"),
+        "force": (_XYZ, "N", "force on the rider"),
+        "multiplier": (("time", "normal"), "N", "multipliers of the two constraints across the cable"),
+        "residual": (_TIME, "m", "distance of the rider's point to the cable"),
+    },
+    "pins": {"force": (_XYZ, "N", "force on the cable")},
+}
+ENERGIES = {
+    "kinetic": "kinetic energy",
+    "elastic": "elastic energy",
+    "potential": "potential energy of gravity",
+    "dissipated": "energy lost to damping since the start",
+}
+
+
+class EnergyBalance(NamedTuple):
+    """residual (time,): kinetic + elastic + potential + dissipated, minus the same at the start, in J.
+
+    exchanged: the most energy that had changed its kind at any time, half the sum of the four changes, in J;
+    relative (time,): residual / exchanged, the residual itself if nothing was exchanged.
+    """
+
+    residual: np.ndarray
+    exchanged: float
+    relative: np.ndarray
+
+
+class Run:
+    """Results by name: ``run["A.position"]`` is a NumPy array (time, 3); `keys` lists the names."""
+
+    def __init__(self, variables: dict[str, Variable], coords: dict[str, Variable], report: dict, scene_toml: str):
+        """report: how the run went, status, message and messages among it; scene_toml: the scene as text."""
+        self.variables, self.coords = variables, coords
+        self.report, self.scene_toml = report, scene_toml
+
+    @classmethod
+    def from_recording(cls, recording, scene: Scene, settings: RunSettings) -> Run:
+        """Label what `funicular.model.simulate` recorded."""
+        variables = {}
+        coords = {
+            "time": Variable(_TIME, recording.time, "s", "time"),
+            "xyz": Variable(("xyz",), np.array(["x", "y", "z"]), "1", "axis"),
+        }
+        for name, cable in recording.cables.items():
+            node, vector = f"{name}.node", f"{name}.vector"
+            dims = ("time", node, vector, "xyz")
+            coords[node] = Variable((node,), cable["node_s"], "m", "undeformed arc-length of the node")
+            coords[vector] = Variable((vector,), np.array(cable["vector_names"]), "1", "nodal vector")
+            variables[f"{name}.nodal_vectors"] = Variable(
+                dims, cable["nodal_vectors"], "m (r), 1 (its gradients)", "nodal vectors"
+            )
+            variables[f"{name}.nodal_velocity"] = Variable(
+                dims, cable["nodal_velocity"], "m/s (r), 1/s (its gradients)", "rates of the nodal vectors"
+            )
+        for group, quantities in QUANTITIES.items():
+            for name, arrays in getattr(recording, group).items():
+                for quantity, values in arrays.items():
+                    dims, units, long_name = quantities[quantity]
+                    variables[f"{name}.{quantity}"] = Variable(dims, values, units, long_name)
+        for name, long_name in ENERGIES.items():
+            variables[f"energy.{name}"] = Variable(_TIME, recording.energy[name], "J", long_name)
+        report = {
+            **recording.report,
+            "status": recording.status,
+            "message": recording.message,
+            "messages": [*scene.messages, *recording.report.get("messages", [])],
+            "settings": settings.model_dump(),
+        }
+        return cls(variables, coords, report, scene.to_toml())
+
+    @property
+    def time(self) -> np.ndarray:
+        """(time,): the times of the results, in s."""
+        return self.coords["time"].values
+
+    @property
+    def status(self) -> str:
+        """``completed``, ``interrupted``, ``end_of_cable`` or ``no_convergence``."""
+        return self.report["status"]
+
+    @cached_property
+    def scene(self) -> Scene:
+        """The scene that was run, read back from its text."""
+        from funicular.scene_file import loads
+
+        return loads(self.scene_toml, "the scene of the run")
+
+    def keys(self) -> list[str]:
+        """The names of all results."""
+        return list(self.variables)
+
+    def __contains__(self, name: str) -> bool:
+        """Whether there is a result of that name."""
+        return name in self.variables
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """The array called ``name``, time first; units and dimensions stand in ``variables[name]``."""
+        if name == "time":
+            return self.time
+        if name not in self.variables:
+            raise UnknownResultError(f'the run has no result "{name}"; {near(name, self.variables)}')
+        return self.variables[name].values
+
+    def __repr__(self) -> str:
+        """Status, times and number of results."""
+        return (
+            f"<funicular.Run: {self.status}, {len(self.time)} times to {self.time[-1]:.6g} s, "
+            f"{len(self.keys())} results>"
+        )
+
+    @property
+    def dataset(self) -> xarray.Dataset:
+        """All of it as an xarray.Dataset, with units, long names, the report and the scene as attributes."""
+        import xarray
+
+        def labelled(variables: dict[str, Variable]) -> dict:
+            return {
+                name: (v.dims, v.values, {"units": v.units, "long_name": v.long_name}) for name, v in variables.items()
+            }
+
+        return xarray.Dataset(
+            labelled(self.variables),
+            labelled(self.coords),
+            {
+                "funicular_format": FILE_FORMAT,
+                "scene": self.scene_toml,
+                "report": json.dumps(self.report, default=methodcaller("tolist")),
+            },
+        )
+
+    def save(self, path: str | os.PathLike) -> None:
+        """Write a netCDF file that xarray opens; an older file stays until the new one is whole.
+
+        Raises ResultFileError.
+        """
+        check_writable(path)
+        path = Path(path)
+        part = path.with_name(f".{path.name}.{os.getpid()}.part")
+        try:
+            self.dataset.to_netcdf(part, engine="h5netcdf")
+            part.replace(path)
+        except OSError as error:
+            raise ResultFileError(f"{path}: the results could not be written: {error}") from error
+        finally:
+            part.unlink(missing_ok=True)
+
+    def energy_balance(self) -> EnergyBalance:
+        """How well the energy books close; see `EnergyBalance`."""
+        changes = np.array([self[f"energy.{name}"] - self[f"energy.{name}"][0] for name in ENERGIES])
+        residual = changes.sum(axis=0)
+        exchanged = float(np.abs(changes).sum(axis=0).max() / 2)
+        return EnergyBalance(residual, exchanged, residual / (exchanged or 1.0))
+
+    def summary_rows(self) -> list[tuple[str, str]]:
+        """What to tell about the run in short: pairs of a heading and a text."""
+        report, balance = self.report, self.energy_balance()
+        rows = [("status", f"{self.status} at t = {self.time[-1]:.6g} s, {len(self.time)} times")]
+        counts = [f"{report[key]} {text}" for key, text in _COUNTS.items() if key in report]
+        if counts:
+            rows.append(("steps", ", ".join(counts)))
+        if "wall_time" in report:
+            parts = report["wall_time"]
+            rows.append(
+                (
+                    "wall time",
+                    f"{sum(parts.values()):.3g} s: "
+                    + ", ".join(f"{part} {seconds:.3g}" for part, seconds in parts.items()),
+                )
+            )
+        rows.append(
+            (
+                "energy balance",
+                f"off by {np.abs(balance.residual).max():.2g} J at most, "
+                f"{np.abs(balance.relative).max():.2g} of the energy exchanged",
+            )
+        )
+        residuals = [np.max(self[key]) for key in self.keys() if key.endswith(".residual")]
+        if residuals:
+            rows.append(("joint residual", f"{max(residuals):.2g} m at most"))
+        return rows + [("note", message) for message in report["messages"]]
+
+    def summary(self) -> str:
+        """A few lines on how the run went."""
+        return "\n".join(f"{heading}: {text}" for heading, text in self.summary_rows())
+
+
+_COUNTS = {
+    "steps": "taken",
+    "rejected_steps": "rejected",
+    "newton_iterations": "Newton iterations",
+    "factorisations": "factorisations",
+}
+
+
+def check_writable(path: str | os.PathLike) -> None:
+    """Raises ResultFileError if a file cannot be written at ``path``; leaves nothing behind."""
+    path = Path(path)
+    if path.is_dir():
+        raise ResultFileError(f"{path}: the results cannot be written here: this is a directory; add a name")
+    if path.exists() and not os.access(path, os.W_OK):
+        raise ResultFileError(f"{path}: the results cannot be written here: the file is write-protected")
+    probe = path.with_name(f".{path.name}.{os.getpid()}.probe")
+    try:
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise ResultFileError(
+            f"{path}: the results cannot be written here: {error.strerror}; "
+            "give a path in a directory that exists and is yours to write to"
+        ) from None
+
+
+def load_run(path: str | os.PathLike) -> Run:
+    """Read the results that `Run.save` wrote. Raises ResultFileError, also for a damaged or foreign file."""
+    import xarray
+
+    path = Path(path)
+    if not path.is_file():
+        raise ResultFileError(f"{path}: there is no such file")
+    try:
+        dataset = xarray.load_dataset(path, engine="h5netcdf")
+    except (OSError, ValueError, KeyError, RuntimeError) as error:  # what h5py raises on damaged files
+        raise ResultFileError(f"{path}: is no netCDF file, or was cut short or damaged: {error}") from error
+    if "funicular_format" not in dataset.attrs:
+        raise ResultFileError(f"{path}: is a netCDF file, but not one that funicular wrote")
+    if dataset.attrs["funicular_format"] > FILE_FORMAT:
+        raise ResultFileError(f"{path}: was written by a newer funicular; update this one to read it")
+
+    def unlabelled(arrays) -> dict[str, Variable]:
+        return {name: Variable(a.dims, a.values, a.attrs["units"], a.attrs["long_name"]) for name, a in arrays.items()}
+
+    return Run(
+        unlabelled(dataset.data_vars),
+        unlabelled(dataset.coords),
+        json.loads(dataset.attrs["report"]),
+        dataset.attrs["scene"],
+    )

@@ -1,0 +1,138 @@
+"""Scenes as TOML files.
+
+Tables, with the names of the Python API: ``gravity``, ``[[cable]]``, ``[[pin]]``, ``[[rigid_body]]``,
+``[[slide]]``, ``[run]``. All checks are those of `funicular.parts`, `funicular.settings` and `Scene`.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from funicular.errors import SceneError, near
+from funicular.parts import Cable, Pin, RigidBody, Slide
+from funicular.scene import Scene
+from funicular.sections import Section
+from funicular.settings import RunSettings
+from funicular.validation import Part
+
+SCENES = Path(__file__).parent / "scenes"
+
+PARTS = {part.kind: part for part in (Cable, Pin, RigidBody, Slide)}
+"""In the order in which they can be added: a slide needs its cable and its body."""
+
+TABLES = ("gravity", *PARTS, "run")
+
+
+def bundled_scenes() -> dict[str, Path]:
+    """The scenes that come with the package, by name."""
+    return {path.stem: path for path in sorted(SCENES.glob("*.toml"))}
+
+
+def load_scene(path: str | os.PathLike) -> Scene:
+    """Read a scene file, or the bundled scene of that name; its [run] table becomes ``scene.run_settings``.
+
+    Raises SceneError.
+    """
+    file = Path(path)
+    if not file.is_file():
+        bundled = bundled_scenes()
+        if os.fspath(path) not in bundled:
+            raise SceneError(
+                os.fspath(path),
+                "there is no such scene file, nor a bundled scene of that name",
+                near(file.stem, bundled),
+            )
+        file = bundled[os.fspath(path)]
+    try:
+        text = file.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise SceneError(str(file), f"cannot be read as text: {error}") from None
+    return loads(text, str(file))
+
+
+def loads(text: str, origin: str) -> Scene:
+    """A scene from the text of a scene file; ``origin`` is what error messages call it. Raises SceneError."""
+    try:
+        tables = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:  # its text gives line and column
+        raise SceneError(origin, f"is not valid TOML: {error}") from None
+    for name in tables:
+        if name not in TABLES:
+            raise SceneError(origin, f'"{name}" is not known here', near(name, TABLES))
+    try:
+        scene = Scene(**{name: tables[name] for name in ("gravity",) if name in tables})
+        for kind, part in PARTS.items():
+            for index, table in enumerate(_array(tables, kind), start=1):
+                scene.add(_part(part, table, index))
+        if "run" in tables:
+            scene.run_settings = _run_settings(tables["run"])
+    except SceneError as error:
+        raise error.inside(origin) from None
+    return scene
+
+
+def _array(tables: dict, kind: str) -> list:
+    array = tables.get(kind, [])
+    if not isinstance(array, list) or not all(isinstance(table, dict) for table in array):
+        raise SceneError(f"[{kind}]", "must be an array of tables", f"write [[{kind}]], in two brackets")
+    return array
+
+
+def _part(part: type[Part], table: dict, index: int) -> Part:
+    try:
+        return part(**table)
+    except SceneError as error:
+        if isinstance(table.get("name"), str):
+            raise
+        raise SceneError(f"[[{part.kind}]] {index}", error.cause, error.remedy) from None
+
+
+def _run_settings(table: Any) -> dict:
+    """What a [run] table sets, checked."""
+    if not isinstance(table, dict):
+        raise SceneError("[run]", "must be a table")
+    return RunSettings(**table).model_dump(exclude_unset=True)
+
+
+def dumps(scene: Scene) -> str:
+    """The text of a scene file, such that `loads` makes the same scene of it."""
+    lines = [f"gravity = {_toml(scene.gravity)}"]
+    for kind, parts in (
+        ("cable", scene.cables.values()),
+        ("pin", scene.pins),
+        ("rigid_body", scene.bodies.values()),
+        ("slide", scene.slides.values()),
+    ):
+        for part in parts:
+            lines += ["", f"[[{kind}]]", *_lines(_table(part))]
+    if scene.run_settings:
+        lines += ["", "[run]", *_lines(scene.run_settings)]
+    return "\n".join(lines) + "\n"
+
+
+def _table(part: Part) -> dict:
+    """The fields of a part that are set, tables of parts among them."""
+    shape = {"shape": part.shape} if isinstance(part, Section) else {}
+    return shape | {
+        name: _table(value) if isinstance(value, Part) else value for name, value in part if value is not None
+    }
+
+
+def _lines(table: dict) -> list[str]:
+    return [f"{name} = {_toml(value)}" for name, value in table.items()]
+
+
+def _toml(value: Any) -> str:
+    match value:
+        case str():
+            return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+        case dict():
+            return "{" + ", ".join(_lines(value)) + "}"
+        case list() | tuple():
+            return "[" + ", ".join(map(_toml, value)) + "]"
+        case _:
+            return repr(value)

@@ -1,0 +1,74 @@
+"""The command line with the real engine, as a user starts it."""
+
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+from funicular import EndOfCableError, load_run, load_scene
+
+COMMAND = [sys.executable, "-m", "funicular.cli"]
+
+
+def funicular(*args: str, cwd) -> subprocess.CompletedProcess:
+    return subprocess.run([*COMMAND, *args], cwd=cwd, capture_output=True, text=True)
+
+
+def test_first_scene(tmp_path):
+    done = funicular("run", "paper51", "--plot", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    run = load_run(tmp_path / "paper51.nc")
+    np.testing.assert_allclose(run.time, np.linspace(0, 1, 101), atol=1e-12)
+    np.testing.assert_allclose(run["A.position"][-1], [1.321065114, -0.00445160328, 0], atol=1e-4)
+    assert len(list(tmp_path.glob("paper51-*.png"))) == 4
+
+
+def near_the_end():
+    """The body starts 0.1 m before the end and gets there after about 0.1 s."""
+    scene = load_scene("paper51")
+    text = scene.to_toml().replace("position = [0.25,", "position = [1.4,").replace("\ns = 0.25\n", "\ns = 1.4\n")
+    return text.replace("tol = 1e-05", "tol = 1e-3")
+
+
+def test_end_of_cable(tmp_path):
+    (tmp_path / "end.toml").write_text(near_the_end())
+    done = funicular("run", "end.toml", cwd=tmp_path)
+    assert done.returncode == 1
+    message = done.stderr.strip()
+    assert message.startswith("error: ") and "\n" not in message
+    assert '"trolley"' in message and '"wire"' in message and "end" in message
+    run = load_run(tmp_path / "end.nc")
+    assert run.status == "end_of_cable"
+    assert 0.05 < run.time[-1] < 0.15
+    assert np.all(run["trolley.s"] <= 1.5)
+    assert np.all(np.isfinite(run["A.position"]))
+    assert np.max(run["trolley.residual"]) < 1e-9
+
+
+def test_end_of_cable_in_python(tmp_path):
+    (tmp_path / "end.toml").write_text(near_the_end())
+    with pytest.raises(EndOfCableError) as stopped:
+        load_scene(tmp_path / "end.toml").run()
+    assert stopped.value.run["trolley.s"][-1] == pytest.approx(1.5, abs=0.011)  # an output step before it, at most
+
+
+def test_ctrl_c_keeps_what_was_computed(tmp_path):
+    long = [*COMMAND, "run", "paper51", "--step", "1e-7", "-o", "x.nc"]
+    process = subprocess.Popen(long, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
+    time.sleep(3)  # the start takes a fraction of a second, the whole run minutes
+    process.send_signal(signal.SIGINT)
+    _, told = process.communicate(timeout=30)
+    assert process.returncode == 130
+    assert told.startswith("note: ") and "Traceback" not in told
+    run = load_run(tmp_path / "x.nc")
+    assert run.status == "interrupted"
+    assert 0 < len(run.time) < 101
+
+
+def test_progress_reaches_the_caller():
+    seen = []
+    load_scene("paper51").run(step=5e-5, progress=seen.append)
+    assert seen == sorted(seen) and len(seen) > 1
+    assert 0 <= seen[0] and seen[-1] <= 1

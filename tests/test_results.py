@@ -1,0 +1,166 @@
+"""Results: names, labels, files, energy books. The recording is made by hand; no engine is needed."""
+
+import re
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import xarray
+from fake_recording import fake_recording
+from funicular import ResultFileError, UnknownResultError, load_run, load_scene
+from funicular.results import Run
+from funicular.settings import RunSettings
+from numpy.testing import assert_array_equal
+
+SHAPES = {
+    "A.position": (101, 3),
+    "A.orientation": (101, 4),
+    "A.acceleration": (101, 3),
+    "wire.nodal_vectors": (101, 4, 4, 3),
+    "wire.nodal_velocity": (101, 4, 4, 3),
+    "trolley.s": (101,),
+    "trolley.s_rate": (101,),
+    "trolley.force": (101, 3),
+    "trolley.multiplier": (101, 2),
+    "trolley.residual": (101,),
+    "wire@0.force": (101, 3),
+    "wire@1.5.force": (101, 3),
+    "energy.kinetic": (101,),
+    "energy.dissipated": (101,),
+    "time": (101,),
+}
+UNITS = {
+    "A.position": "m",
+    "A.velocity": "m/s",
+    "A.angular_velocity": "rad/s",
+    "A.acceleration": "m/s2",
+    "trolley.s": "m",
+    "trolley.force": "N",
+    "wire@0.force": "N",
+    "energy.elastic": "J",
+    "time": "s",
+}
+
+
+@pytest.fixture
+def recording():
+    return fake_recording(load_scene("paper51"))
+
+
+@pytest.fixture
+def run(recording):
+    return Run.from_recording(recording, load_scene("paper51"), RunSettings(duration=1.0, tol=1e-5))
+
+
+def test_names_and_shapes(run, recording):
+    assert {name: run[name].shape for name in SHAPES} == SHAPES
+    assert set(SHAPES) - {"time"} <= set(run.keys())
+    assert_array_equal(run["A.position"], recording.bodies["A"]["position"])
+    assert_array_equal(run.time, recording.time)
+    assert "A.position" in run and "B.position" not in run
+    assert repr(run) == "<funicular.Run: completed, 101 times to 1 s, 20 results>"
+
+
+def test_an_unknown_name(run):
+    with pytest.raises(UnknownResultError) as error:
+        run["A.positon"]
+    assert str(error.value) == 'the run has no result "A.positon"; did you mean "A.position"?'
+    assert isinstance(error.value, KeyError)
+
+
+def test_dataset_has_labels(run):
+    dataset = run.dataset
+    assert {name: dataset[name].attrs["units"] for name in UNITS} == UNITS
+    assert all(dataset[name].attrs["long_name"] for name in dataset.variables)
+    assert dataset["wire.nodal_vectors"].dims == ("time", "wire.node", "wire.vector", "xyz")
+    second_node = dataset["wire.nodal_vectors"].sel({"wire.node": 0.5, "wire.vector": "r", "xyz": "x"})
+    assert_array_equal(second_node, 0.5)
+
+
+def test_file_round_trip(run, tmp_path):
+    path = tmp_path / "x.nc"
+    run.save(path)
+    back = load_run(path)
+    assert back.keys() == run.keys()
+    for name in [*run.keys(), "time"]:
+        assert_array_equal(back[name], run[name], strict=True)
+    assert back.variables["A.position"].units == "m"
+    assert back.report == run.report | {"factorisations": 310}
+    assert back.report["settings"] == RunSettings(duration=1.0, tol=1e-5).model_dump()
+    assert vars(back.scene) == vars(load_scene("paper51"))
+    assert back.summary() == run.summary()
+    assert [p.name for p in tmp_path.iterdir()] == ["x.nc"]
+
+
+def test_xarray_opens_the_file_as_it_is(run, tmp_path):
+    run.save(tmp_path / "x.nc")
+    with xarray.open_dataset(tmp_path / "x.nc") as dataset:
+        assert dataset["time"].dtype == float  # units "s" must not become a time difference
+        assert dataset["A.position"].sel(time=0.5, xyz="x") == pytest.approx(0.75)
+        assert dataset["A.position"].units == "m"
+
+
+def test_a_failed_save_leaves_the_old_file(run, tmp_path, monkeypatch):
+    path = tmp_path / "x.nc"
+    path.write_text("old")
+
+    def disk_full(self, target, **options):
+        target.write_text("half")
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(xarray.Dataset, "to_netcdf", disk_full)
+    with pytest.raises(ResultFileError, match=r"the results could not be written: .*No space left on device"):
+        run.save(path)
+    assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("x.nc", "old")]
+
+
+def test_damaged_and_foreign_files(run, tmp_path):
+    path = tmp_path / "x.nc"
+    run.save(path)
+    whole = path.read_bytes()
+    for size in (0, 100, 4096, len(whole) // 2, len(whole) - 1):
+        path.write_bytes(whole[:size])
+        with pytest.raises(ResultFileError, match=rf"^{re.escape(str(path))}: is no netCDF file, or was cut short"):
+            load_run(path)
+    path.write_text("time,x\n0,1\n")
+    with pytest.raises(ResultFileError, match=rf"^{re.escape(str(path))}: is no netCDF file, or was cut short"):
+        load_run(path)
+    xarray.Dataset({"a": 1}).to_netcdf(path, engine="h5netcdf")
+    with pytest.raises(ResultFileError, match=r"x\.nc: is a netCDF file, but not one that funicular wrote$"):
+        load_run(path)
+    run.dataset.assign_attrs(funicular_format=99).to_netcdf(path, engine="h5netcdf")
+    with pytest.raises(ResultFileError, match=r"x\.nc: was written by a newer funicular; update this one to read it$"):
+        load_run(path)
+    with pytest.raises(ResultFileError, match=r"absent\.nc: there is no such file$"):
+        load_run(tmp_path / "absent.nc")
+
+
+def with_energy(**energy):
+    steady = dict.fromkeys(("kinetic", "elastic", "potential", "dissipated"), np.zeros(3))
+    variables = {f"energy.{name}": SimpleNamespace(values=np.array(e)) for name, e in (steady | energy).items()}
+    return Run(variables, {}, {}, "")
+
+
+def test_energy_balance():
+    balance = with_energy(kinetic=[1.0, 3.0, 0.5], potential=[5.0, 3.0, 5.0], dissipated=[0, 0, 0.4]).energy_balance()
+    np.testing.assert_allclose(balance.residual, [0, 0, -0.1], atol=1e-15)
+    assert balance.exchanged == 2.0  # the fall from 5 J to 3 J, once
+    np.testing.assert_allclose(balance.relative, [0, 0, -0.05], atol=1e-15)
+
+
+def test_energy_balance_of_a_body_at_rest():
+    balance = with_energy(potential=[5.0, 5.0, 5.0]).energy_balance()
+    assert balance.exchanged == 0
+    assert_array_equal(balance.relative, np.zeros(3))
+
+
+def test_summary(run):
+    lines = dict(line.split(": ", 1) for line in run.summary().splitlines())
+    assert lines == {
+        "status": "completed at t = 1 s, 101 times",
+        "steps": "1000 taken, 2 rejected, 2100 Newton iterations, 310 factorisations",
+        "wall time": "0.03 s: set-up 0.01, integration 0.02",
+        "energy balance": "off by 1e-06 J at most, 1.2e-06 of the energy exchanged",
+        "joint residual": "3e-13 m at most",
+        "note": "the start was made consistent",
+    }

@@ -1,0 +1,138 @@
+"""What a scene computes and keeps: sections, materials, geometry, the joints' starts."""
+
+import numpy as np
+import pytest
+from funicular import Circle, FunicularWarning, Material, Rectangle, Scene, Tube
+from numpy.testing import assert_allclose
+from scipy.integrate import dblquad
+
+SECTIONS = [
+    (Rectangle(height=0.03, width=0.07), lambda y: 0.035, 0.015),
+    (Circle(radius=0.02), lambda y: np.sqrt(0.02**2 - y**2), 0.02),
+]
+
+
+def quadrature(half_width, half_height):
+    powers = [(0, 0), (2, 0), (0, 2), (4, 0), (2, 2), (0, 4)]
+    return [
+        4 * dblquad(lambda z, y, p=p, q=q: y**p * z**q, 0, half_height, 0, half_width, epsabs=0, epsrel=1e-8)[0]
+        for p, q in powers
+    ]
+
+
+@pytest.mark.parametrize(("section", "half_width", "half_height"), SECTIONS, ids=lambda x: getattr(x, "shape", ""))
+def test_moments_agree_with_quadrature(section, half_width, half_height):
+    assert_allclose(section.moments(), quadrature(half_width, half_height), rtol=1e-7)
+    assert_allclose(
+        [section.area, section.second_moment_yy, section.second_moment_zz], section.moments()[:3], rtol=1e-15
+    )
+
+
+def test_a_tube_is_a_disc_less_a_disc():
+    tube = Tube(outer_radius=0.02, inner_radius=0.015)
+    radius, area = (0.02 + 0.015) / 2, np.pi * (0.02**2 - 0.015**2)
+    assert_allclose(tube.moments(), Circle(radius=0.02).moments() - Circle(radius=0.015).moments(), rtol=1e-14)
+    assert_allclose(tube.second_moment_yy, area * (0.02**2 + 0.015**2) / 4, rtol=1e-14)
+    assert radius**2 * area / 2 < tube.second_moment_yy < 1.03 * radius**2 * area / 2  # a thin ring's, nearly
+
+
+def test_material_from_either_constant():
+    by_poisson = Material(youngs_modulus=2e11, density=7850, poisson_ratio=0.3)
+    by_shear = Material(youngs_modulus=2e11, density=7850, shear_modulus=2e11 / 2.6)
+    both = Material(youngs_modulus=2e11, density=7850, poisson_ratio=0.3, shear_modulus=2e11 / 2.6)
+    lam, mu = 0.3 * 2e11 / (1.3 * 0.4), 2e11 / 2.6
+    expected = [lam + 2 * mu] * 3 + [lam] * 3 + [mu] * 3
+    for material in (by_poisson, by_shear, both):
+        assert_allclose(material.elasticity(), expected, rtol=1e-12)
+
+
+def test_elasticity_gives_the_uniaxial_stiffness_back():
+    D11, D22, D33, D12, D13, D23, *G = Material(youngs_modulus=3e6, density=1, poisson_ratio=0.45).elasticity()
+    stiffness = np.array([[D11, D12, D13], [D12, D22, D23], [D13, D23, D33]])
+    compliance = np.linalg.inv(stiffness)
+    assert_allclose(compliance[0], [1 / 3e6, -0.45 / 3e6, -0.45 / 3e6], rtol=1e-12)
+    assert_allclose(G, 3e6 / 2.9, rtol=1e-12)
+
+
+def test_table_1_has_no_coupling_at_all():
+    material = Material(youngs_modulus=0.4e9, density=4200, shear_modulus=0.2e9)
+    assert material.elasticity().tolist() == [0.4e9] * 3 + [0.0] * 3 + [0.2e9] * 3
+
+
+@pytest.fixture
+def scene():
+    scene = Scene()
+    scene.cable(
+        "wire",
+        start=(1, 2, 3),
+        end=(1, 2, 5),
+        elements=4,
+        section=Rectangle(height=0.01, width=0.02),
+        material=Material(youngs_modulus=1e9, density=1000, poisson_ratio=0.3),
+        up=(3, 0, 7),
+    )
+    return scene
+
+
+def test_geometry_of_a_cable(scene):
+    wire = scene.cables["wire"]
+    assert wire.length == 2
+    assert wire.node_s.tolist() == [0, 0.5, 1, 1.5, 2]
+    assert_allclose(wire.axes, [[0, 0, 1], [1, 0, 0], [0, 1, 0]], atol=1e-15)
+    assert_allclose(wire.point(0.5), [1, 2, 3.5])
+    assert wire.nodal_vectors.shape == (5, 4, 3)
+    assert_allclose(wire.nodal_vectors[1], [[1, 2, 3.5], [0, 0, 1], [1, 0, 0], [0, 1, 0]], atol=1e-15)
+    assert [wire.node_at(s) for s in (0, 1.5, 2, 1.4)] == [0, 3, 4, None]
+
+
+def test_the_ends_are_exact(scene):
+    odd = scene.cables["wire"].model_copy(update={"start": (0.1, 0.2, 0.3), "end": (1.7, -0.9, 0.7)})
+    assert tuple(odd.point(0.0)) == odd.start
+    assert tuple(odd.point(odd.length)) == odd.end
+
+
+def body(scene, **changes):
+    return scene.rigid_body("A", **{"mass": 1, "inertia": (1, 1, 1), "position": (1, 2, 4)} | changes)
+
+
+def test_a_slide_takes_names_or_parts_and_names_itself(scene):
+    slide = scene.slide(body(scene), along=scene.cables["wire"], s=1)
+    assert (slide.body, slide.along, slide.name) == ("A", "wire", "A_on_wire")
+    assert scene.pin(scene.cables["wire"], s=0.5).label == "wire@0.5"
+
+
+def test_the_rider_s_point_turns_with_the_body(scene):
+    quarter_about_x = (np.sqrt(0.5), np.sqrt(0.5), 0, 0)
+    rider = body(scene, position=(1, 2, 4 - 0.3), orientation=quarter_about_x)
+    assert_allclose(rider.point((0, 0.3, 0)), [1, 2, 4], atol=1e-15)
+    scene.slide(rider, along="wire", s=1, at=(0, 0.3, 0))
+    assert scene.messages == []
+
+
+def test_a_rider_slightly_off_is_moved_and_told(scene):
+    body(scene, position=(1, 2.0015, 4))
+    with pytest.warns(
+        FunicularWarning, match=r'slide "trolley": body "A" was moved by 0.0015 m onto cable "wire"'
+    ) as told:
+        scene.slide("A", along="wire", s=1, name="trolley")
+    assert_allclose(scene.bodies["A"].position, (1, 2, 4), rtol=1e-15)
+    assert scene.messages == [str(told[0].message)]
+    assert told[0].filename == __file__
+    scene.check()
+
+
+def test_an_orientation_is_normalised(scene):
+    rider = body(scene, orientation=(0.7071, 0, 0.7071, 0))
+    assert_allclose(rider.orientation, (np.sqrt(0.5), 0, np.sqrt(0.5), 0), rtol=1e-15)
+
+
+def test_inertia_from_moments_matrix_or_array(scene):
+    expected = ((1.0, 0.0, 0.0), (0.0, 2.0, 0.0), (0.0, 0.0, 2.5))
+    for given in ((1, 2, 2.5), np.diag([1, 2, 2.5]), np.array([1, 2, 2.5]), expected):
+        assert type(body(Scene(), inertia=given)).kind == "rigid_body"
+        assert body(Scene(), inertia=given).inertia == expected
+
+
+def test_numpy_scalars_are_numbers(scene):
+    rider = body(scene, mass=np.float32(2), position=np.array([1, 2, 4]))
+    assert (rider.mass, rider.position) == (2.0, (1.0, 2.0, 4.0))

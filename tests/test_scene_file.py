@@ -1,0 +1,149 @@
+"""Scenes as TOML: what is read, what is refused and where, and that nothing is lost on the way."""
+
+import re
+
+import pytest
+from funicular import Circle, Material, Scene, SceneError, Tube, bundled_scenes, load_scene
+from funicular.scene_file import loads
+
+CABLE = """
+[[cable]]
+name = "wire"
+start = [0, 0, 0]
+end = [1.5, 0, 0]
+elements = 3
+section = { shape = "rectangle", height = 0.05, width = 0.05 }
+material = { youngs_modulus = 0.4e9, shear_modulus = 0.2e9, density = 4200 }
+"""
+
+
+def refused(message: str):
+    return pytest.raises(SceneError, match="^" + re.escape(message) + "$")
+
+
+@pytest.mark.parametrize("name", list(bundled_scenes()))
+def test_bundled_scenes_are_whole(name):
+    load_scene(name).check()
+
+
+def test_paper51_is_table_1():
+    scene = load_scene("paper51")
+    wire, body = scene.cables["wire"], scene.bodies["A"]
+    assert (wire.length, wire.elements, wire.element, wire.material.density) == (1.5, 3, "beam24", 4200)
+    assert wire.material.lame() == (0.0, 0.2e9)
+    assert wire.section.area == pytest.approx(0.0025, rel=1e-15)
+    assert [pin.label for pin in scene.pins] == ["wire@0", "wire@1.5"]
+    assert (body.mass, body.position, body.velocity) == (1.0, (0.25, 0.0, 0.0), (1.0, 0.0, 0.0))
+    assert (scene.slides["trolley"].body, scene.slides["trolley"].s) == ("A", 0.25)
+    assert scene.gravity == (0.0, -9.81, 0.0)
+    assert scene.run_settings == {"duration": 1.0, "tol": 1e-5, "output_step": 0.01}
+
+
+def same(a: Scene, b: Scene) -> bool:
+    return vars(a) == vars(b)
+
+
+def test_round_trip_of_the_bundled_scene():
+    scene = load_scene("paper51")
+    assert same(loads(scene.to_toml(), "copy"), scene)
+
+
+def test_round_trip_of_everything_else():
+    scene = Scene(gravity=(1e-17, 0.1, 1e22))
+    rubber = Material(youngs_modulus=1 / 3, density=1.1e3, poisson_ratio=0.3, damping_time=1e-4)
+    common = {"start": (0, 0, 0), "end": (0, 0, -10 / 3), "material": rubber, "up": (1, 1, 0)}
+    scene.cable("Seil-ä", elements=7, section=Tube(outer_radius=0.02, inner_radius=0.01), **common)
+    scene.cable("b", elements=1, section=Circle(radius=0.1), **common)
+    scene.pin("b", s=10 / 3)
+    scene.rigid_body(
+        "A",
+        mass=0.1,
+        inertia=[[1, 0.1, 0], [0.1, 1, 0], [0, 0, 1]],
+        position=(0, 0.3, -1),
+        orientation=(0.6, 0.8, 0.0004, 0),
+        angular_velocity=(0, 1e-300, 2),
+    )
+    at = scene.bodies["A"].point((0, 0, 0))
+    scene.rigid_body("B", mass=1, inertia=(1, 1, 1), position=(0, 0, -1))
+    scene.slide("B", along="Seil-ä", s=1.0, name="trolley")
+    assert tuple(at) == (0, 0.3, -1)
+    assert same(loads(scene.to_toml(), "copy"), scene)
+
+
+def test_a_moved_rider_is_not_moved_again():
+    text = CABLE + '[[rigid_body]]\nname="A"\nmass=1\ninertia=[1,1,1]\nposition=[0.5,0.001,0]\n'
+    with pytest.warns(UserWarning, match="moved by 0.001 m"):
+        scene = loads(text + '[[slide]]\nbody="A"\nalong="wire"\ns=0.5\n', "x.toml")
+    assert loads(scene.to_toml(), "copy").messages == []
+
+
+def test_a_file_is_named_by_its_path(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text(CABLE.replace("height = 0.05", "height = -0.05"))
+    with refused(f'{path}: cable "wire": section.height must be positive, got -0.05 m'):
+        load_scene(path)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("[[cabel]]", 'x.toml: "cabel" is not known here; did you mean "cable"?'),
+        ("gravty = [0, 0, 0]", 'x.toml: "gravty" is not known here; did you mean "gravity"?'),
+        ("gravity = [0, nan, 0]", "x.toml: scene: gravity must be finite, got (0, nan, 0) m/s²"),
+        ("[cable]", "x.toml: [cable]: must be an array of tables; write [[cable]], in two brackets"),
+        ("[[cable]]", "x.toml: [[cable]] 1: name is missing"),
+        ('[[cable]]\nname = "wire"', 'x.toml: cable "wire": start is missing'),
+        (CABLE + "elemnts = 3", 'x.toml: cable "wire": "elemnts" is not known here; did you mean "elements"?'),
+        (
+            CABLE.replace("width =", "widht ="),
+            'x.toml: cable "wire": section "widht" is not known here; did you mean "width"?',
+        ),
+        (
+            CABLE.replace("density", "desnity"),
+            'x.toml: cable "wire": material "desnity" is not known here; did you mean "density"?',
+        ),
+        (
+            CABLE.replace('"rectangle"', '"rectangel"'),
+            'x.toml: cable "wire": section has the unknown shape "rectangel"; did you mean "rectangle"?',
+        ),
+        (CABLE.replace("= 3", '= "3"'), "x.toml: cable \"wire\": elements must be a whole number, 1 or more, got '3'"),
+        (CABLE * 2, 'x.toml: cable "wire": there is already a cable of that name; give each part its own name'),
+        (
+            CABLE + '[[pin]]\ncable = "wire"\ns = 0\n[[pin]]\ncable = "wire"\nt = 0',
+            'x.toml: [[pin]] 2: "t" is not known here; known: cable, s',
+        ),
+        (
+            CABLE + '[[pin]]\ncable = "wir"\ns = 0',
+            'x.toml: pin on "wir": there is no cable "wir"; did you mean "wire"?',
+        ),
+        ('[[rigid_body]]\nname = "A"', 'x.toml: rigid_body "A": mass is missing'),
+        ("[run]\ntol = 1e-3", "x.toml: run: duration is missing"),
+        ("[run]\nduration = -1", "x.toml: run: duration must be positive, got -1 s"),
+        ("[run]\nduration = 1\ntoll = 1e-3", 'x.toml: run: "toll" is not known here; did you mean "tol"?'),
+        ("run = 3", "x.toml: [run]: must be a table"),
+        (
+            'gravity = [0, -9.81, 0]\nname "wire"',
+            "x.toml: is not valid TOML: Expected '=' after a key in a key/value pair (at line 2, column 6)",
+        ),
+    ],
+)
+def test_refused(text, message):
+    with refused(message):
+        loads(text, "x.toml")
+
+
+def test_no_such_scene(tmp_path):
+    with refused('paper15: there is no such scene file, nor a bundled scene of that name; did you mean "paper51"?'):
+        load_scene("paper15")
+
+
+def test_a_binary_file(tmp_path):
+    path = tmp_path / "x.toml"
+    path.write_bytes(b"\x89HDF\r\n")
+    with pytest.raises(SceneError, match=rf"^{re.escape(str(path))}: cannot be read as text: .*0x89"):
+        load_scene(path)
+
+
+def test_text_is_never_run():
+    with refused('x.toml: rigid_body "A": mass must be a number, got \'__import__("os").getpid()\''):
+        loads('[[rigid_body]]\nname = "A"\nmass = \'__import__("os").getpid()\'', "x.toml")
