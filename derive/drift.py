@@ -8,7 +8,7 @@ from importlib import resources
 from pathlib import Path
 
 from funicular.derive import emit
-from funicular.derive.families import families
+from funicular.derive.families import families, named
 from rich.console import Console
 from rich.progress import Progress
 
@@ -24,31 +24,41 @@ def folder() -> Path:
 def generate(names: list[str] | None = None, show: bool = False) -> dict[str, str]:
     """Text of every generated file, or of the named families' and the common ones, by file name.
 
+    With names, the other families stand in the common files as the manifest records them: as their files are.
     Raises KeyError for an unknown family, naming the near ones.
     """
     every = families()
-    for name in names or []:
-        if name not in every:
-            near = difflib.get_close_matches(name, every, n=3) or sorted(every)
-            raise KeyError(f'no spec "{name}"; did you mean {", ".join(near)}?')
-    wanted = set(names or every)
+    wanted = named(names) if names else every
+    record = _record() if names else {}
     with Progress(disable=not show, console=Console(stderr=True), transient=True) as progress:
-        task = progress.add_task("derive", total=len(every) + len(wanted))
-        derived = []
-        for family in every.values():
-            progress.update(task, description=f"derive {family.name}")
-            derived.append(emit.derive(family))
-            progress.advance(task)
+        task = progress.add_task("derive", total=2 * len(wanted))
+        known = []
+        for name, family in every.items():
+            if name in wanted:
+                progress.update(task, description=f"derive {name}")
+                known.append(emit.derive(family))
+                progress.advance(task)
+            elif old := emit.recorded(family, record):
+                known.append(old)
         progress.update(task, description="print")
-        files = emit.render(derived, wanted, lambda _: progress.advance(task))
-    texts = {f"{n}.c": _current(f"{n}.c") for n in every if n not in wanted} | files
-    files[MANIFEST] = emit.manifest(derived, {k: v for k, v in texts.items() if v is not None})
+        files = emit.render(known, wanted, lambda _: progress.advance(task))
+    kept = {f"{d.family.name}.c": _current(f"{d.family.name}.c") for d in known if d.family.name not in wanted}
+    files[MANIFEST] = emit.manifest(known, {n: text for n, text in kept.items() if text is not None} | files)
     return files
 
 
 def _current(name: str) -> str | None:
+    """Text of a generated file with its own line ends, None where there is none."""
     path = folder() / name
-    return path.read_text(encoding="utf-8") if path.is_file() else None
+    return path.read_bytes().decode("utf-8", errors="replace") if path.is_file() else None
+
+
+def _record() -> dict:
+    """The manifest, empty where it is missing or broken."""
+    try:
+        return json.loads(_current(MANIFEST) or "{}")
+    except json.JSONDecodeError:
+        return {}
 
 
 def write(files: dict[str, str]) -> list[str]:
@@ -59,27 +69,28 @@ def write(files: dict[str, str]) -> list[str]:
     return changed
 
 
-def differences(files: dict[str, str], whole: bool) -> list[str]:
-    """What is wrong with generated/: a paragraph for each missing, stale, edited or (when whole) extra file."""
+def differences(files: dict[str, str]) -> list[str]:
+    """A paragraph for each generated file that is missing, stale or edited: kind, name, unified diff."""
     found = []
-    recorded = json.loads(_current(MANIFEST) or "{}").get("families", {})
+    recorded = _record().get("families", {})
     for name, text in sorted(files.items()):
         current = _current(name)
         if current is None:
             found.append(f"missing: generated/{name}")
-            continue
-        if current != text:
-            kind = "differs"
+        elif current != text:
             family = recorded.get(Path(name).stem)
-            if family and family["spec_hash"] not in text:
-                kind = "stale (its spec has changed)"
+            stale = name.endswith(".c") and family and family["spec_hash"] not in text
             diff = difflib.unified_diff(current.splitlines(), text.splitlines(), f"generated/{name}",
                                         f"derived/{name}", lineterm="", n=2)
-            found.append(f"{kind}: generated/{name}\n" + "\n".join(diff))
-    if whole:
-        found += [f"extra: generated/{p.name} (no spec makes it; delete it)" for p in sorted(folder().iterdir())
-                  if p.suffix in GENERATED_SUFFIXES and p.name not in files and not _is_built(p)]
+            found.append("\n".join([f"{'stale (its spec has changed)' if stale else 'differs'}: generated/{name}",
+                                    *(list(diff) or ["(in line ends only)"])]))
     return found
+
+
+def extra(files: dict[str, str]) -> list[str]:
+    """A line for each file in generated/ that no spec makes."""
+    return [f"extra: generated/{p.name} (no spec makes it: delete it)" for p in sorted(folder().iterdir())
+            if p.suffix in GENERATED_SUFFIXES and p.name not in files and not _is_built(p)]
 
 
 def _is_built(path: Path) -> bool:
@@ -93,19 +104,24 @@ def main(names: list[str], check: bool = False) -> int:
     err = Console(stderr=True, soft_wrap=True, highlight=False, markup=False)
     try:
         files = generate(names, show=err.is_terminal)
-    except KeyError as unknown:
-        err.print(f"funicular derive: {unknown.args[0]}")
+        if not check:
+            changed = write(files)
+    except (KeyError, OSError) as problem:
+        err.print(f"funicular derive: {problem.args[0] if isinstance(problem, KeyError) else problem}")
         return 1
+    unknown = [] if names else extra(files)
     if not check:
-        changed = write(files)
-        out.print(f"{len(files)} files, {len(changed)} written" + (": " + ", ".join(changed) if changed else ""))
+        out.print("\n".join([f"{len(files)} files, {len(changed)} written" + (": " if changed else "")
+                             + ", ".join(changed), *unknown]))
         return 0
-    found = differences(files, whole=not names)
-    for paragraph in found:
+    found = differences(files)
+    for paragraph in [*found, *unknown]:
         out.print(paragraph)
     if found:
         err.print(f"generated/ differs from the specs in {len(found)} files; `funicular derive"
                   f"{''.join(' ' + n for n in names)}` mends it")
-        return 1
-    out.print(f"generated/ agrees with the specs: {len(files)} files")
-    return 0
+    if unknown:
+        err.print(f"generated/ has {len(unknown)} files that no spec makes: delete them")
+    if not (found or unknown):
+        out.print(f"generated/ agrees with the specs: {len(files)} files")
+    return 1 if found or unknown else 0

@@ -6,6 +6,7 @@ import numpy as np
 import sympy as sp
 from funicular.derive import moments
 from funicular.derive.gram import Gram
+from funicular.derive.gram_tangent import tangent
 from funicular.derive.spec import Element, l, x, y, z
 from funicular.derive.stages import Program
 
@@ -151,7 +152,7 @@ def elastic_tangent(element: Element, gram: Gram) -> Program:
     p = _program(element, "elastic_tangent", "d2U/de2", "derivative of eq 8")
     w, A, c, G = _strain(p, element, gram)
     u = _stress(p, gram, A, G)
-    p.output("K", gram.tangent(p, c, c, A, u, w), "N/m, N, N m", "d2U/de2, symmetric")
+    p.output("K", tangent(gram, p, c, c, A, u, w), "N/m, N, N m", "d2U/de2, symmetric")
     return p
 
 
@@ -187,7 +188,7 @@ def damping_tangent(element: Element, gram: Gram) -> Program:
     u = gram.stress(p, A, dG, tau)
     p.stage("b = tau (dc/dt + rate c)")
     b = np.array([p.vector(f"b_{name}", tau * (dc[m] + rate * c[m])) for m, name in enumerate(gram.names)])
-    p.output("K", gram.tangent(p, c, b, A, u, w), "N/m, N, N m", "df/de + rate df/dv")
+    p.output("K", tangent(gram, p, c, b, A, u, w), "N/m, N, N m", "df/de + rate df/dv")
     return p
 
 

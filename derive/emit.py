@@ -8,11 +8,12 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
-from importlib import metadata, resources
+from dataclasses import dataclass, replace
+from importlib import metadata
 
 import jinja2
 from funicular.derive.printer import c_expression
+from funicular.derive.sources import deciding, spec_hash
 from funicular.derive.spec import Family
 from funicular.derive.stages import Argument, Program
 
@@ -20,26 +21,49 @@ TOOLS = ("sympy", "mpmath", "jinja2")
 
 
 @dataclass(frozen=True)
+class Recorded:
+    """What the manifest knows of a kernel: all that the files common to every family need of a Program."""
+
+    name: str
+    doc: str
+    source: str
+    inputs: list[Argument]
+    outputs: list[Argument]
+    count: dict[str, int]
+
+    def operations(self) -> dict[str, int]:
+        """Arithmetic operations of one call."""
+        return self.count
+
+
+@dataclass(frozen=True)
 class Derived:
-    """A family with its programs and the hash of the specs they came from."""
+    """A family with its programs, and the files that it came from with their hash."""
 
     family: Family
-    programs: list[Program]
+    programs: list[Program] | list[Recorded]
+    sources: list[str]
     spec_hash: str
 
 
 def derive(family: Family) -> Derived:
     """Run the derivation of one family."""
-    return Derived(family, [p.prune() for p in family.build()], spec_hash(family))
+    sources = list(deciding(family.modules))
+    return Derived(family, [p.prune() for p in family.build()], sources, spec_hash(sources))
 
 
-def spec_hash(family: Family) -> str:
-    """SHA-256 over the text of the modules that decide a family."""
-    digest = hashlib.sha256()
-    root = resources.files("funicular.derive")
-    for module in family.modules:
-        digest.update((root / (module.replace(".", "/") + ".py")).read_bytes())
-    return digest.hexdigest()[:16]
+def recorded(family: Family, manifest: dict) -> Derived | None:
+    """A family as the manifest has it, without a derivation; None where it has not."""
+    if family.name not in manifest.get("families", {}):
+        return None
+    entry = manifest["families"][family.name]
+    kernels = [Recorded(name, k["doc"], k["source"], _arguments(k["inputs"]), _arguments(k["outputs"]), k["operations"])
+               for name, k in manifest["kernels"].items() if k["family"] == family.name]
+    return Derived(replace(family, doc=entry["doc"]), kernels, entry["sources"], entry["spec_hash"])
+
+
+def _arguments(entries: list[dict]) -> list[Argument]:
+    return [Argument(e["name"], tuple(e["shape"]), e["unit"], e["doc"]) for e in entries]
 
 
 def render(every: list[Derived], wanted: Iterable[str], done: Callable[[str], None]) -> dict[str, str]:
@@ -77,16 +101,14 @@ def manifest(every: list[Derived], files: dict[str, str]) -> str:
                for d in every for p in d.programs}
     content = {"tools": {t: metadata.version(t) for t in TOOLS},
                "families": {d.family.name: {"doc": d.family.doc, "spec_hash": d.spec_hash,
-                                            "modules": list(d.family.modules)} for d in every},
+                                            "sources": d.sources} for d in every},
                "files": {name: hashlib.sha256(text.encode()).hexdigest() for name, text in sorted(files.items())},
                "kernels": kernels}
     return json.dumps(content, indent=1) + "\n"
 
 
-
-
-def signature(program: Program, name: str | None = None) -> str:
-    """C parameters, or a pointer member's when a name is given."""
+def signature(program: Program | Recorded) -> str:
+    """C parameters."""
     inputs = [f"fu_real {a.name}" if a.shape == () else f"const fu_real *{a.name}" for a in program.inputs]
     return ", ".join([*inputs, *(f"fu_real *{a.name}" for a in program.outputs)])
 
@@ -95,14 +117,14 @@ def _operations_text(program: Program) -> str:
     return ", ".join(f"{n} {name}" for name, n in program.operations().items() if n)
 
 
-def _suffix(derived: Derived, program: Program) -> str:
+def _suffix(derived: Derived, program: Program | Recorded) -> str:
     return program.name.removeprefix(derived.family.name + "_")
 
 
-def _member(derived: Derived, program: Program) -> str:
+def _member(derived: Derived, program: Program | Recorded) -> str:
     return f"void (*{_suffix(derived, program)})({signature(program)});"
 
 
-def _call(program: Program) -> str:
+def _call(program: Program | Recorded) -> str:
     inputs = [f"{a.name}_" if a.shape == () else f"&{a.name}_[0]" for a in program.inputs]
     return ", ".join([*inputs, *(f"&{a.name}__[0]" for a in program.outputs)])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import difflib
+from collections.abc import Iterable
 from functools import partial
 
 from funicular.derive import element_kernels
@@ -10,12 +12,10 @@ from funicular.derive.elements import ELEMENTS
 from funicular.derive.joints import slide
 from funicular.derive.spec import Element, Family
 
-SHARED = ("spec", "stages", "printer", "emit")
-
 
 def _element(element: Element) -> Family:
     return Family(element.name, element.doc, partial(element_kernels.build, element),
-                  (f"elements.{element.name}", "element_kernels", "gram", "moments", *SHARED),
+                  (f"elements.{element.name}", "element_kernels"),
                   role="element",
                   facts={"nodes": len(element.nodes), "vectors": len(element.nodal_vectors), "dim": element.dim},
                   element=element)
@@ -25,7 +25,7 @@ def _slide(element: Element) -> Family:
     return Family(f"slide_{element.name}_{rigid.NAME}",
                   f"sliding joint of a {rigid.NAME} rider on a {element.name} cable",
                   partial(slide.build, element),
-                  ("joints.slide", f"elements.{element.name}", f"bodies.{rigid.NAME}", "frames", *SHARED),
+                  ("joints.slide", f"elements.{element.name}", f"bodies.{rigid.NAME}"),
                   role="slide", facts={"coordinates": element.n_coordinates + rigid.N_VELOCITY},
                   element=element, rider=rigid.NAME)
 
@@ -33,7 +33,19 @@ def _slide(element: Element) -> Family:
 def families() -> dict[str, Family]:
     """Every family by name: elements, bodies, and the slide for each pair of them."""
     every = [*map(_element, ELEMENTS.values()),
-             Family(rigid.NAME, "rigid body", rigid.build, (f"bodies.{rigid.NAME}", "frames", *SHARED),
-                    rider=rigid.NAME),
+             Family(rigid.NAME, "rigid body", rigid.build, (f"bodies.{rigid.NAME}",), rider=rigid.NAME),
              *map(_slide, ELEMENTS.values())]
     return {f.name: f for f in every}
+
+
+def named(names: Iterable[str]) -> dict[str, Family]:
+    """The families of these names.
+
+    Raises KeyError for an unknown one, naming the near ones.
+    """
+    every = families()
+    for name in names:
+        if name not in every:
+            near = difflib.get_close_matches(name, every, n=3) or sorted(every)
+            raise KeyError(f'no spec "{name}"; did you mean {", ".join(near)}?')
+    return {name: every[name] for name in every if name in set(names)}

@@ -129,20 +129,20 @@ class Gram:
     def differences(self, program: Program, e: np.ndarray, w: sp.Expr, tag: str = "") -> np.ndarray:
         """Stage: nodal vectors e (n, dim) to strain vectors (m, dim), through chords (r_k - r_1) w, w = 1/l."""
         d = [program.vector(f"chord{tag}{k}" if v else "", (e[k] - e[0]) * w) if v else e[k]
-             for k, v in enumerate(self._is_position)]
+             for k, v in enumerate(self.element.is_position)]
         return np.array([
-            program.vector(f"{tag}{name}", sum(self._scaled[m][k] * d[k] for k in range(1, len(d))
-                                               if self._scaled[m][k] != 0))
+            program.vector(f"{tag}{name}", sum(self.scaled[m][k] * d[k] for k in range(1, len(d))
+                                               if self.scaled[m][k] != 0))
             for m, name in enumerate(self.names)])
 
     def gram(self, program: Program, c: np.ndarray) -> list[sp.Expr]:
         """Stage: G - G0 over the pairs."""
-        return [program.define(f"G_{self._pair(p)}", c[a].dot(c[b]) - self.reference[p])
+        return [program.define(f"G_{self.pair(p)}", c[a].dot(c[b]) - self.reference[p])
                 for p, (a, b) in enumerate(self.pairs)]
 
     def gram_rate(self, program: Program, c: np.ndarray, rate: np.ndarray) -> list[sp.Expr]:
         """Stage: dG/dt over the pairs."""
-        return [program.define(f"dG_{self._pair(p)}", c[a].dot(rate[b]) + rate[a].dot(c[b]))
+        return [program.define(f"dG_{self.pair(p)}", c[a].dot(rate[b]) + rate[a].dot(c[b]))
                 for p, (a, b) in enumerate(self.pairs)]
 
     def stress(self, program: Program, A: np.ndarray, strain: Sequence[sp.Expr],
@@ -155,7 +155,7 @@ class Gram:
                 if (p, q) in self.index:
                     k = self.index[p, q]
                     alike[k] = alike.get(k, sp.S.Zero) + strain[q]
-            u.append(program.define(f"u_{self._pair(p)}", scale * sum(A[k] * s for k, s in alike.items())))
+            u.append(program.define(f"u_{self.pair(p)}", scale * sum(A[k] * s for k, s in alike.items())))
         return u
 
     def by_vector(self, c: np.ndarray, p: int, m: int) -> np.ndarray | None:
@@ -174,108 +174,23 @@ class Gram:
     def nodal_forces(self, program: Program, f: np.ndarray, w: sp.Expr) -> np.ndarray:
         """Stage: forces on strain vectors to forces on nodal vectors, f_d = T' f_c."""
         nodal = []
-        for k, position in enumerate(self._is_position):
-            column = sum(self._scaled[m][k] * f[m] for m in range(len(f)) if self._scaled[m][k] != 0)
+        for k, position in enumerate(self.element.is_position):
+            column = sum(self.scaled[m][k] * f[m] for m in range(len(f)) if self.scaled[m][k] != 0)
             nodal.append(program.vector(f"f_{self.element.names[k]}", column * w if position else column))
-        nodal[0] = -sum(nodal[k] for k, position in enumerate(self._is_position) if position and k)
+        nodal[0] = -sum(nodal[k] for k, position in enumerate(self.element.is_position) if position and k)
         return np.array(nodal)
 
-    def tangent(self, program: Program, c: np.ndarray, b: np.ndarray, A: np.ndarray, u: Sequence[sp.Expr],
-                w: sp.Expr) -> np.ndarray:
-        """Stages: B(c)' A B(b) + u (x) I over nodal coordinates -> (n, n), B(c) = dG/dc.
-
-        With b = c this is the elastic tangent; with b = tau (dc/dt + rate c) that of the damping force.
-        """
-        n, dim, symmetric = len(self.names), self.element.dim, c is b
-        program.stage("A B: stress resultants per strain vector")
-        t = {}
-        for p in range(len(self.pairs)):
-            for m in range(n):
-                alike: dict[int, np.ndarray] = {}
-                for q in range(len(self.pairs)):
-                    g = self.by_vector(b, q, m)
-                    if g is not None and (p, q) in self.index:
-                        k = self.index[p, q]
-                        alike[k] = alike.get(k, 0) + g
-                if alike:
-                    t[p, m] = program.vector(f"t_{self._pair(p)}_{self.names[m]}",
-                                             sum(A[k] * v for k, v in alike.items()))
-        program.stage("B' A B + u (x) I: blocks over strain vectors")
-        block = np.zeros((n, n, dim, dim), dtype=object)
-        for m in range(n):
-            for k in range(m if symmetric else 0, n):
-                outer = np.zeros((dim, dim), dtype=object)
-                for p in range(len(self.pairs)):
-                    g = self.by_vector(c, p, m)
-                    if g is not None and (p, k) in t:
-                        outer = outer + np.outer(g, t[p, k])
-                p = self.pairs.index((min(m, k), max(m, k)))
-                outer = outer + np.eye(dim, dtype=int) * (2 * u[p] if m == k else u[p])
-                for i in range(dim):
-                    for j in range(dim):
-                        if symmetric and m == k and j < i:
-                            continue
-                        block[m, k, i, j] = program.define(
-                            f"K_{self.names[m]}_{self.names[k]}_{DIRECTIONS[i]}{DIRECTIONS[j]}", outer[i, j])
-                if symmetric:
-                    if m == k:
-                        for i in range(dim):
-                            for j in range(i):
-                                block[m, k, i, j] = block[m, k, j, i]
-                    block[k, m] = block[m, k].T
-        return self._nodal_tangent(program, block, w, symmetric)
-
-    def _nodal_tangent(self, program, block, w, symmetric):
-        """T' K T over nodal vectors; the first node's position is minus the sum of the others' columns."""
-        n, dim, count = len(self.names), self.element.dim, self.element.n_vectors
-        position = self._is_position
-        scale = [w if p else sp.S.One for p in position]
-        program.stage("over nodal vectors: K T")
-        right = np.zeros((n, count, dim, dim), dtype=object)
-        for a in range(n):
-            for k in range(1, count):
-                value = scale[k] * sum(self._scaled[m][k] * block[a, m] for m in range(n)
-                                       if self._scaled[m][k] != 0)
-                right[a, k] = _define_block(program, f"KT_{self.names[a]}_{self.element.names[k]}", value)
-        program.stage("over nodal vectors: T' K T")
-        K = np.zeros((count, count, dim, dim), dtype=object)
-        for j in range(1, count):
-            for k in range(j if symmetric else 1, count):
-                value = scale[j] * sum(self._scaled[m][j] * right[m, k] for m in range(n)
-                                       if self._scaled[m][j] != 0)
-                K[j, k] = _define_block(program, f"K_{self.element.names[j]}_{self.element.names[k]}", value)
-                if symmetric:
-                    if j == k:
-                        K[j, j] = np.triu(K[j, j]) + np.triu(K[j, j], 1).T
-                    K[k, j] = K[j, k].T
-        others = [k for k in range(1, count) if position[k]]
-        program.stage("the first position: rigid translation makes no force")
-        for k in range(1, count):
-            value = -sum(K[j, k] for j in others)
-            K[0, k] = _define_block(program, f"K_{self.element.names[0]}_{self.element.names[k]}", value)
-            K[k, 0] = K[0, k].T if symmetric else -sum(K[k, j] for j in others)
-        K[0, 0] = -sum(K[0, j] for j in others)
-        return K.transpose(0, 2, 1, 3).reshape(count * dim, count * dim)
-
     @cached_property
-    def _is_position(self) -> list[bool]:
-        return self.element.is_position
-
-    @cached_property
-    def _scaled(self) -> list[list[sp.Expr]]:
+    def scaled(self) -> list[list[sp.Expr]]:
         """T with positions measured in lengths l: plain rationals."""
-        scale = [l if p else 1 for p in self._is_position]
+        scale = [l if p else 1 for p in self.element.is_position]
         return [[sp.cancel(self.transform[m, k] * scale[k]) for k in range(self.element.n_vectors)]
                 for m in range(len(self.names))]
 
-    def _pair(self, p: int) -> str:
+    def pair(self, p: int) -> str:
+        """Name of a Gram pair."""
         a, b = self.pairs[p]
         return self.names[a] + self.names[b]
-
-
-def _define_block(program: Program, name: str, value: np.ndarray) -> np.ndarray:
-    return np.array([[program.define(f"{name}_{DIRECTIONS[i]}{DIRECTIONS[j]}", v) for j, v in enumerate(row)]
-                     for i, row in enumerate(value)], dtype=object)
 
 
 def _antiderivative(p):

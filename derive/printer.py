@@ -3,6 +3,7 @@
 Order is SymPy's canonical one, small integer powers become products, rationals become quotients of doubles
 that the compiler folds, and square roots go through FU_SQRT so that the same text serves double and complex.
 """
+# ruff: noqa: N802  (SymPy dispatches on these names)
 
 from __future__ import annotations
 
@@ -47,8 +48,7 @@ class KernelPrinter(C99CodePrinter):
         raise ValueError(f"power {exponent} of {base} has no kernel form")
 
     def _print_Mul(self, expr):
-        coefficient, rest = expr.as_coeff_Mul()
-        if coefficient.is_negative:
+        if expr.as_coeff_Mul()[0].is_negative:
             return "-" + self.parenthesize(-expr, _MUL)
         above, below = [], []
         for arg in expr.as_ordered_factors():
@@ -62,7 +62,7 @@ class KernelPrinter(C99CodePrinter):
             text += f"/({denominator})" if len(below) > 1 or "*" in denominator else f"/{denominator}"
         return text
 
-    def emptyPrinter(self, expr):  # noqa: N802  (SymPy's name)
+    def emptyPrinter(self, expr):
         """Refuse what the kernels must not contain."""
         raise ValueError(f"{type(expr).__name__} has no kernel form: {expr}")
 

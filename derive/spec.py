@@ -86,7 +86,7 @@ class Element:
 class Family:
     """The kernels of one generated file.
 
-    `modules` are the modules whose text decides the file (its hash is the spec hash). Families of one `role` have
+    `modules` are its specs: their text, and all that they import here, is in the spec hash. Families of one `role` have
     kernels of the same signatures; the engine reaches them through a table, each with its `facts` (integers).
     `element` and `rider` (the name of a body) are what the kernels are about: verification samples their states.
     """

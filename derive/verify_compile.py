@@ -62,7 +62,9 @@ class Library:
         """Wait for the compiler. Raises CompilerError with its first messages."""
         _, messages = self._process.communicate()
         if self._process.returncode:
-            raise CompilerError(f"generated/{self.family}.c does not compile:\n" + "\n".join(messages.splitlines()[:12]))
+            first = "\n".join(messages.splitlines()[:12])
+            raise CompilerError(f"generated/{self.family}.c does not compile; `funicular derive --check` says what "
+                                f"differs from the specs\n{first}")
         shared = ctypes.CDLL(str(self._path))
         self._functions = {name: getattr(shared, f"call_{name}") for name in self.programs}
         return self
@@ -73,7 +75,7 @@ class Library:
         arrays = [np.ascontiguousarray(v, dtype=self.dtype) for v in inputs]
         for argument, array in zip(program.inputs, arrays, strict=True):
             if array.size != argument.size:
-                raise ValueError(f"{name}: argument {argument.name} must have shape {argument.shape}, got {array.shape}")
+                raise ValueError(f"{name}: {argument.name} must have shape {argument.shape}, got {array.shape}")
         outputs = {a.name: np.full(a.shape, np.nan, dtype=self.dtype) for a in program.outputs}
         pointers = [a.ctypes.data for a in (*arrays, *outputs.values())]
         self._functions[name]((ctypes.c_void_p * len(pointers))(*pointers))

@@ -11,11 +11,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import mpmath
 import numpy as np
 from funicular.derive.verify_numbers import Numbers, State
 
+EPS = float(np.finfo(float).eps)
 METHODS = ("rounding", "50 digits", "complex step", "central")
 # What each method can give on outputs of order one (method, order of derivative): a few times the worst seen.
 CEILINGS = {
@@ -24,6 +26,7 @@ CEILINGS = {
     ("complex step", 1): 1e-13, ("complex step", 2): 1e-11,
     ("central", 1): 1e-10, ("central", 2): 1e-7,
 }
+VANISHING = 1e-20  # far below any output of a sample, far above differences at 50 digits of what is zero
 _FIRST = ((-2, 1 / 12), (-1, -8 / 12), (1, 8 / 12), (2, -1 / 12))
 _SECOND = ((-2, -1 / 12), (-1, 16 / 12), (0, -30 / 12), (1, 16 / 12), (2, -1 / 12))
 _STEPS = tuple(10.0**-k for k in np.arange(1.5, 5.1, 0.5))
@@ -63,9 +66,9 @@ class Finding:
     kernel: str
     relation: Relation
     errors: dict[str, float] = field(default_factory=dict)
-    entry: int = 0
+    samples: dict[str, list[tuple[int, float, float]]] = field(default_factory=dict)
+    shape: tuple[int, ...] | None = None  # of the output; None where the relation is about something made of it
     step: float | None = None
-    samples: dict[str, list[tuple]] = field(default_factory=dict)
 
     def ceiling(self, method: str) -> float:
         """The error that a method may show here."""
@@ -76,28 +79,38 @@ class Finding:
         """Methods whose error is above its ceiling, or not a number."""
         return [m for m, error in self.errors.items() if not error <= self.ceiling(m)]
 
+    @property
+    def worst_entry(self) -> int:
+        """Entry of the worst error by the first method that failed, else at 50 digits."""
+        return self.samples[(self.failed or ["50 digits"])[0]][0][0]
+
+    def place(self, entry: int) -> str:
+        """K[3, 17]."""
+        if self.shape is None:
+            return f"of {self.relation.output}"
+        return f"{self.relation.output}[{', '.join(str(int(i)) for i in np.unravel_index(entry, self.shape))}]"
+
     def take(self, method: str, analytic: np.ndarray, other: np.ndarray, scale: float) -> None:
-        """Compare, keep the worst and, on failure, the worst entries."""
+        """Compare; keep the worst error and the entries where it is worst."""
         difference = np.abs(analytic - other) / scale
-        worst = np.where(np.isfinite(difference), difference, np.inf)
-        error = float(worst.max())
+        difference = np.where(np.isfinite(difference), difference, np.inf)
+        error = float(difference.max())
         if error > self.errors.get(method, -1.0):
-            if error >= max(self.errors.values(), default=-1.0) or method == "50 digits":
-                self.entry = int(worst.argmax())
             self.errors[method] = error
-            order = np.argsort(-worst)[:5]
-            self.samples[method] = [(int(k), analytic[k], other[k]) for k in order if worst[k] > 0]
+            self.samples[method] = [(int(k), analytic[k], other[k]) for k in np.argsort(-difference)[:5]]
 
 
 def examine(kernel: str, relation: Relation, kinds: dict[str, Numbers], states: list[State]) -> Finding:
     """Try a relation by every method that its order allows."""
-    finding = Finding(kernel, relation)
+    shapes = {a.name: a.shape for a in kinds["exact"].programs[relation.kernel].outputs}
+    finding = Finding(kernel, relation, shape=None if relation.of else shapes[relation.output])
     for values in states:
         real, exact = kinds["real"], kinds["exact"]
         analytic = relation.value(real, real.state(values))
         s = exact.state(values)
         truth = _exact(relation, exact, s)
-        scale = max(float(np.abs(truth).max()), 1e-300)
+        scale = float(np.abs(truth).max())
+        scale = scale if scale > VANISHING else 1.0  # the samples are of order one
         finding.take("rounding", analytic, relation.value(exact, s).astype(float), scale)
         finding.take("50 digits", analytic, truth, scale)
         if relation.order:
@@ -135,6 +148,6 @@ def _central(relation: Relation, numbers: Numbers, values: State) -> tuple[np.nd
     weights = _FIRST if relation.order == 1 else _SECOND
     tried = [sum(w * relation.along(numbers, s, k * h) for k, w in weights).ravel() / h**relation.order
              for h in _STEPS]
-    change = [float(np.abs(a - b).max()) for a, b in zip(tried, tried[1:], strict=False)]
+    change = [float(np.abs(a - b).max()) for a, b in pairwise(tried)]
     best = int(np.argmin(change))
     return tried[best], _STEPS[best]

@@ -1,6 +1,6 @@
 """Finite motions of riders and the frame of a curve, in any kind of number: the paths of verification.
 
-A planar or modal rider joins by an entry in RIDERS with the same four members.
+A planar or modal rider joins by an entry in RIDERS with the same members.
 """
 
 from __future__ import annotations
@@ -50,6 +50,12 @@ class Rigid:
         return {"b": np.concatenate([R, q]), "u": u, "w": random.normal(size=6), "wdot": random.normal(size=6)}
 
     @staticmethod
+    def at_rest(point: np.ndarray) -> dict[str, np.ndarray]:
+        """Unturned, holding a point."""
+        u = np.array([0.0, 0.25, 0.125])
+        return {"b": np.concatenate([point - u, [1.0, 0.0, 0.0, 0.0]]), "u": u}
+
+    @staticmethod
     def point(b: np.ndarray, u: np.ndarray) -> np.ndarray:
         """The rider's point in global axes."""
         return b[:3] + turned(b[3:], u)
@@ -58,6 +64,19 @@ class Rigid:
     def moved(numbers, b: np.ndarray, motion: np.ndarray) -> np.ndarray:
         """Configuration after the translation motion[:3] and the rotation vector motion[3:] in body axes."""
         return np.concatenate([b[:3] + motion[:3], quaternion_product(b[3:], exponential(numbers, motion[3:]))])
+
+    @staticmethod
+    def frame(random: np.random.Generator) -> tuple:
+        """A turn of the global frame: its matrix, and what it makes of a configuration."""
+        p = exponential(np, random.normal(size=3))
+        Q = np.stack([turned(p, column) for column in np.eye(3)], axis=1)
+        return Q, lambda b: np.concatenate([Q @ b[:3], quaternion_product(p, b[3:])])
+
+    @staticmethod
+    def bracket(g: np.ndarray) -> np.ndarray:
+        """K - K' of second derivatives by rotations about body axes: (j, i) differs from (i, j) by g along j x i."""
+        units = np.eye(3)
+        return np.array([[g @ cross(units[j], units[i]) for j in range(3)] for i in range(3)])
 
 
 RIDERS = {rigid.NAME: Rigid}

@@ -41,7 +41,8 @@ class Shape:
     def __init__(self, element: Element, l):
         self.element, self.l = element, mp.mpf(l)
         self.powers = [sp.Poly(b, x, y, z).monoms()[0] for b in element.basis]
-        conditions = mp.matrix([[_monomial(p, by, (node, 0, 0)) for p in self.powers] for node, by in self._functionals()])
+        conditions = mp.matrix([[_monomial(p, by, (node, 0, 0)) for p in self.powers]
+                                for node, by in self._functionals()])
         self._coefficients = mp.inverse(conditions)
 
     def _functionals(self) -> Iterator[tuple]:

@@ -57,6 +57,7 @@ def element(family: Family) -> list[Relation]:
         Relation("mass", "m", "∫ ρ N N' dV by quadrature", 0, root(reference.mass)),
         Relation("gravity", "Q", "∫ ρ N g dV by quadrature", 0, root(reference.gravity)),
         Relation("inertia_force", "f", "(m ⊗ I) a", 0, inertia),
+        Relation("stiffness", "A", "integrals of strain products", 0, from_kernel("stiffness", "A")),
         Relation("stiffness", "A", "energy from A against ∫ W dV by quadrature", 0, root(reference.energy),
                  of=energy_of_constants),
         Relation("energy", "U", "∫ W dV by quadrature", 0, root(reference.energy)),

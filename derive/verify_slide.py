@@ -113,5 +113,6 @@ def slide(family: Family) -> list[Relation]:
         Relation("residual", "g", "d(f . phi) by (e, rider, s)", 1,
                  lagrangian(lambda k, s, **q: gap(k, s, **q).dot(s["f"])), n + 1),
         Relation("tangent", "J", "dphi by (e, rider, s)", 1, lagrangian(gap), n + 1),
-        Relation("tangent", "K", "dg by (e, rider, s)", 1, lagrangian(lambda k, s, **q: k("residual", s, **q)["g"]), n + 1),
+        Relation("tangent", "K", "dg by (e, rider, s)", 1,
+                 lagrangian(lambda k, s, **q: k("residual", s, **q)["g"]), n + 1),
     ]

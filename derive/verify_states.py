@@ -34,7 +34,20 @@ def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
         if family.role == "element":
             state |= _constants(family, exact, state, random)
         found.append(state)
-    return found
+    return [*found, found[0] | at_rest(family)]
+
+
+def at_rest(family: Family) -> dict[str, np.ndarray]:
+    """Straight, undeformed, on the joint at zero rotation: where square roots and inverses have their easy limits."""
+    state: dict[str, np.ndarray] = {}
+    if family.element:
+        state["e"] = reference(family.element, LENGTH)
+        state["x"] = np.float64(LENGTH / 2)
+    if family.rider:
+        origin = np.zeros(3)
+        origin[0] = LENGTH / 2
+        state |= RIDERS[family.rider].at_rest(origin)
+    return state
 
 
 def section(height: float = HEIGHT, width: float = WIDTH) -> np.ndarray:

@@ -34,7 +34,7 @@ cdef _array(value, shape, kernel, name):
 
 
 def beam24_mass(l, density, section):
-    """Mass matrix m of m = m (x) i (eq 4).
+    """mass matrix m of M = m (x) I (eq 4).
 
     l () [m]: length of the element
     density () [kg/m^3]: density
@@ -44,7 +44,7 @@ def beam24_mass(l, density, section):
     """
     cdef double l_ = l
     cdef double density_ = density
-    cdef double[::1] section_ = _array(section, (6,), "beam24_mass", "section")
+    cdef const double[::1] section_ = _array(section, (6,), "beam24_mass", "section")
     m_out = np.empty((8, 8))
     cdef double[::1] m__ = m_out.reshape(-1)
     with nogil:
@@ -53,7 +53,7 @@ def beam24_mass(l, density, section):
 
 
 def beam24_gravity(l, density, section, g):
-    """Generalised force of constant gravity (Q_e of eq 9).
+    """generalised force of constant gravity (Q_e of eq 9).
 
     l () [m]: length of the element
     density () [kg/m^3]: density
@@ -64,8 +64,8 @@ def beam24_gravity(l, density, section, g):
     """
     cdef double l_ = l
     cdef double density_ = density
-    cdef double[::1] section_ = _array(section, (6,), "beam24_gravity", "section")
-    cdef double[::1] g_ = _array(g, (3,), "beam24_gravity", "g")
+    cdef const double[::1] section_ = _array(section, (6,), "beam24_gravity", "section")
+    cdef const double[::1] g_ = _array(g, (3,), "beam24_gravity", "g")
     Q_out = np.empty((8, 3))
     cdef double[::1] Q__ = Q_out.reshape(-1)
     with nogil:
@@ -81,8 +81,8 @@ def beam24_inertia_force(m, a):
     Returns
     f (8, 3) [N, N m]: M a
     """
-    cdef double[::1] m_ = _array(m, (8, 8), "beam24_inertia_force", "m")
-    cdef double[::1] a_ = _array(a, (8, 3), "beam24_inertia_force", "a")
+    cdef const double[::1] m_ = _array(m, (8, 8), "beam24_inertia_force", "m")
+    cdef const double[::1] a_ = _array(a, (8, 3), "beam24_inertia_force", "a")
     f_out = np.empty((8, 3))
     cdef double[::1] f__ = f_out.reshape(-1)
     with nogil:
@@ -91,7 +91,7 @@ def beam24_inertia_force(m, a):
 
 
 def beam24_stiffness(l, section, D):
-    """Elastic constants a of u = 1/2 (g - g0)' a (g - g0) (eq 5-7; gram.py).
+    """elastic constants A of U = 1/2 (G - G0)' A (G - G0) (eq 5-7; gram.py).
 
     l () [m]: length of the element
     section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
@@ -100,8 +100,8 @@ def beam24_stiffness(l, section, D):
     A (61,) [N m]: different non-zero entries of A
     """
     cdef double l_ = l
-    cdef double[::1] section_ = _array(section, (6,), "beam24_stiffness", "section")
-    cdef double[::1] D_ = _array(D, (9,), "beam24_stiffness", "D")
+    cdef const double[::1] section_ = _array(section, (6,), "beam24_stiffness", "section")
+    cdef const double[::1] D_ = _array(D, (9,), "beam24_stiffness", "D")
     A_out = np.empty((61,))
     cdef double[::1] A__ = A_out.reshape(-1)
     with nogil:
@@ -110,7 +110,7 @@ def beam24_stiffness(l, section, D):
 
 
 def beam24_energy(l, e, A):
-    """Elastic energy (eq 7).
+    """elastic energy (eq 7).
 
     l () [m]: length of the element
     e (8, 3) [m, 1]: nodal vectors (eq 1)
@@ -119,8 +119,8 @@ def beam24_energy(l, e, A):
     U (1,) [J]: elastic energy
     """
     cdef double l_ = l
-    cdef double[::1] e_ = _array(e, (8, 3), "beam24_energy", "e")
-    cdef double[::1] A_ = _array(A, (61,), "beam24_energy", "A")
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_energy", "e")
+    cdef const double[::1] A_ = _array(A, (61,), "beam24_energy", "A")
     U_out = np.empty((1,))
     cdef double[::1] U__ = U_out.reshape(-1)
     with nogil:
@@ -129,7 +129,7 @@ def beam24_energy(l, e, A):
 
 
 def beam24_elastic_force(l, e, A):
-    """Du/de, minus the elastic force q_k (eq 8).
+    """dU/de, minus the elastic force Q_k (eq 8).
 
     l () [m]: length of the element
     e (8, 3) [m, 1]: nodal vectors (eq 1)
@@ -138,8 +138,8 @@ def beam24_elastic_force(l, e, A):
     f (8, 3) [N, N m]: dU/de
     """
     cdef double l_ = l
-    cdef double[::1] e_ = _array(e, (8, 3), "beam24_elastic_force", "e")
-    cdef double[::1] A_ = _array(A, (61,), "beam24_elastic_force", "A")
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_elastic_force", "e")
+    cdef const double[::1] A_ = _array(A, (61,), "beam24_elastic_force", "A")
     f_out = np.empty((8, 3))
     cdef double[::1] f__ = f_out.reshape(-1)
     with nogil:
@@ -148,7 +148,7 @@ def beam24_elastic_force(l, e, A):
 
 
 def beam24_elastic_tangent(l, e, A):
-    """D2u/de2 (derivative of eq 8).
+    """d2U/de2 (derivative of eq 8).
 
     l () [m]: length of the element
     e (8, 3) [m, 1]: nodal vectors (eq 1)
@@ -157,8 +157,8 @@ def beam24_elastic_tangent(l, e, A):
     K (24, 24) [N/m, N, N m]: d2U/de2, symmetric
     """
     cdef double l_ = l
-    cdef double[::1] e_ = _array(e, (8, 3), "beam24_elastic_tangent", "e")
-    cdef double[::1] A_ = _array(A, (61,), "beam24_elastic_tangent", "A")
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_elastic_tangent", "e")
+    cdef const double[::1] A_ = _array(A, (61,), "beam24_elastic_tangent", "A")
     K_out = np.empty((24, 24))
     cdef double[::1] K__ = K_out.reshape(-1)
     with nogil:
@@ -167,7 +167,7 @@ def beam24_elastic_tangent(l, e, A):
 
 
 def beam24_damping_force(l, e, v, A, tau):
-    """Minus the kelvin-voigt damping force q_d (Q_d of eq 9).
+    """minus the Kelvin-Voigt damping force Q_d (Q_d of eq 9).
 
     l () [m]: length of the element
     e (8, 3) [m, 1]: nodal vectors (eq 1)
@@ -178,9 +178,9 @@ def beam24_damping_force(l, e, v, A, tau):
     f (8, 3) [N, N m]: -Q_d
     """
     cdef double l_ = l
-    cdef double[::1] e_ = _array(e, (8, 3), "beam24_damping_force", "e")
-    cdef double[::1] v_ = _array(v, (8, 3), "beam24_damping_force", "v")
-    cdef double[::1] A_ = _array(A, (61,), "beam24_damping_force", "A")
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_damping_force", "e")
+    cdef const double[::1] v_ = _array(v, (8, 3), "beam24_damping_force", "v")
+    cdef const double[::1] A_ = _array(A, (61,), "beam24_damping_force", "A")
     cdef double tau_ = tau
     f_out = np.empty((8, 3))
     cdef double[::1] f__ = f_out.reshape(-1)
@@ -190,7 +190,7 @@ def beam24_damping_force(l, e, v, A, tau):
 
 
 def beam24_damping_tangent(l, e, v, A, tau, rate):
-    """Df/de + rate df/dv of the damping force f = -q_d (derivative of Q_d of eq 9).
+    """df/de + rate df/dv of the damping force f = -Q_d (derivative of Q_d of eq 9).
 
     l () [m]: length of the element
     e (8, 3) [m, 1]: nodal vectors (eq 1)
@@ -202,9 +202,9 @@ def beam24_damping_tangent(l, e, v, A, tau, rate):
     K (24, 24) [N/m, N, N m]: df/de + rate df/dv
     """
     cdef double l_ = l
-    cdef double[::1] e_ = _array(e, (8, 3), "beam24_damping_tangent", "e")
-    cdef double[::1] v_ = _array(v, (8, 3), "beam24_damping_tangent", "v")
-    cdef double[::1] A_ = _array(A, (61,), "beam24_damping_tangent", "A")
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_damping_tangent", "e")
+    cdef const double[::1] v_ = _array(v, (8, 3), "beam24_damping_tangent", "v")
+    cdef const double[::1] A_ = _array(A, (61,), "beam24_damping_tangent", "A")
     cdef double tau_ = tau
     cdef double rate_ = rate
     K_out = np.empty((24, 24))
@@ -215,7 +215,7 @@ def beam24_damping_tangent(l, e, v, A, tau, rate):
 
 
 def beam24_dissipation(l, e, v, A, tau):
-    """Power dissipated by the damping force (v . Q_d of eq 9).
+    """power dissipated by the damping force (v . Q_d of eq 9).
 
     l () [m]: length of the element
     e (8, 3) [m, 1]: nodal vectors (eq 1)
@@ -226,9 +226,9 @@ def beam24_dissipation(l, e, v, A, tau):
     P (1,) [W]: dissipated power, never negative
     """
     cdef double l_ = l
-    cdef double[::1] e_ = _array(e, (8, 3), "beam24_dissipation", "e")
-    cdef double[::1] v_ = _array(v, (8, 3), "beam24_dissipation", "v")
-    cdef double[::1] A_ = _array(A, (61,), "beam24_dissipation", "A")
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_dissipation", "e")
+    cdef const double[::1] v_ = _array(v, (8, 3), "beam24_dissipation", "v")
+    cdef const double[::1] A_ = _array(A, (61,), "beam24_dissipation", "A")
     cdef double tau_ = tau
     P_out = np.empty((1,))
     cdef double[::1] P__ = P_out.reshape(-1)
@@ -238,7 +238,7 @@ def beam24_dissipation(l, e, v, A, tau):
 
 
 def beam24_position(l, at, e):
-    """Shape functions and position of a point (eq 2).
+    """shape functions and position of a point (eq 2).
 
     l () [m]: length of the element
     at (3,) [m]: local coordinates x, y, z
@@ -248,8 +248,8 @@ def beam24_position(l, at, e):
     r (3,) [m]: position
     """
     cdef double l_ = l
-    cdef double[::1] at_ = _array(at, (3,), "beam24_position", "at")
-    cdef double[::1] e_ = _array(e, (8, 3), "beam24_position", "e")
+    cdef const double[::1] at_ = _array(at, (3,), "beam24_position", "at")
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_position", "e")
     N_out = np.empty((8,))
     cdef double[::1] N__ = N_out.reshape(-1)
     r_out = np.empty((3,))
@@ -260,7 +260,7 @@ def beam24_position(l, at, e):
 
 
 def rigid_point(b, u, w):
-    """Position, jacobian, velocity and acceleration bias of a point (paper eq 12 (q_r); Haug 1989, ch. 9).
+    """position, Jacobian, velocity and acceleration bias of a point (paper eq 12 (q_r); Haug 1989, ch. 9).
 
     b (7,) [m, 1]: position of the mass centre, unit quaternion w x y z
     u (3,) [m]: point in body axes from the mass centre
@@ -271,9 +271,9 @@ def rigid_point(b, u, w):
     v (3,) [m/s]: velocity
     bias (3,) [m/s^2]: acceleration at zero R'' and zero omega'
     """
-    cdef double[::1] b_ = _array(b, (7,), "rigid_point", "b")
-    cdef double[::1] u_ = _array(u, (3,), "rigid_point", "u")
-    cdef double[::1] w_ = _array(w, (6,), "rigid_point", "w")
+    cdef const double[::1] b_ = _array(b, (7,), "rigid_point", "b")
+    cdef const double[::1] u_ = _array(u, (3,), "rigid_point", "u")
+    cdef const double[::1] w_ = _array(w, (6,), "rigid_point", "w")
     p_out = np.empty((3,))
     cdef double[::1] p__ = p_out.reshape(-1)
     p_q_out = np.empty((3, 6))
@@ -288,7 +288,7 @@ def rigid_point(b, u, w):
 
 
 def rigid_inertia_force(mass, J, w, a):
-    """M r'' and j omega' + omega x j omega (M q'' of eq 12).
+    """m R'' and J omega' + omega x J omega (M q'' of eq 12).
 
     mass () [kg]: mass
     J (3, 3) [kg m^2]: inertia about the mass centre in body axes, symmetric
@@ -298,9 +298,9 @@ def rigid_inertia_force(mass, J, w, a):
     f (6,) [N, N m]: inertia force
     """
     cdef double mass_ = mass
-    cdef double[::1] J_ = _array(J, (3, 3), "rigid_inertia_force", "J")
-    cdef double[::1] w_ = _array(w, (6,), "rigid_inertia_force", "w")
-    cdef double[::1] a_ = _array(a, (6,), "rigid_inertia_force", "a")
+    cdef const double[::1] J_ = _array(J, (3, 3), "rigid_inertia_force", "J")
+    cdef const double[::1] w_ = _array(w, (6,), "rigid_inertia_force", "w")
+    cdef const double[::1] a_ = _array(a, (6,), "rigid_inertia_force", "a")
     f_out = np.empty((6,))
     cdef double[::1] f__ = f_out.reshape(-1)
     with nogil:
@@ -309,7 +309,7 @@ def rigid_inertia_force(mass, J, w, a):
 
 
 def rigid_inertia_tangent(mass, J, w):
-    """Mass matrix and derivative of the inertia force by velocity (derivative of M q'').
+    """mass matrix and derivative of the inertia force by velocity (derivative of M q'').
 
     mass () [kg]: mass
     J (3, 3) [kg m^2]: inertia about the mass centre in body axes, symmetric
@@ -319,8 +319,8 @@ def rigid_inertia_tangent(mass, J, w):
     D (6, 6) [kg m/s]: derivative of the inertia force by w
     """
     cdef double mass_ = mass
-    cdef double[::1] J_ = _array(J, (3, 3), "rigid_inertia_tangent", "J")
-    cdef double[::1] w_ = _array(w, (6,), "rigid_inertia_tangent", "w")
+    cdef const double[::1] J_ = _array(J, (3, 3), "rigid_inertia_tangent", "J")
+    cdef const double[::1] w_ = _array(w, (6,), "rigid_inertia_tangent", "w")
     M_out = np.empty((6, 6))
     cdef double[::1] M__ = M_out.reshape(-1)
     D_out = np.empty((6, 6))
@@ -331,7 +331,7 @@ def rigid_inertia_tangent(mass, J, w):
 
 
 def rigid_kinetic_energy(mass, J, w):
-    """Kinetic energy (eq 3 for a rigid body).
+    """kinetic energy (eq 3 for a rigid body).
 
     mass () [kg]: mass
     J (3, 3) [kg m^2]: inertia about the mass centre in body axes, symmetric
@@ -340,8 +340,8 @@ def rigid_kinetic_energy(mass, J, w):
     T (1,) [J]: kinetic energy
     """
     cdef double mass_ = mass
-    cdef double[::1] J_ = _array(J, (3, 3), "rigid_kinetic_energy", "J")
-    cdef double[::1] w_ = _array(w, (6,), "rigid_kinetic_energy", "w")
+    cdef const double[::1] J_ = _array(J, (3, 3), "rigid_kinetic_energy", "J")
+    cdef const double[::1] w_ = _array(w, (6,), "rigid_kinetic_energy", "w")
     T_out = np.empty((1,))
     cdef double[::1] T__ = T_out.reshape(-1)
     with nogil:
@@ -350,7 +350,7 @@ def rigid_kinetic_energy(mass, J, w):
 
 
 def slide_beam24_rigid_constraint(l, x, e, b, u):
-    """C, c_s and the newton step for s (eq 19-22).
+    """C, C_s and the Newton step for s (eq 19-22).
 
     l () [m]: length of the element that holds s
     x () [m]: arc-length s from the element's first node
@@ -365,9 +365,9 @@ def slide_beam24_rigid_constraint(l, x, e, b, u):
     """
     cdef double l_ = l
     cdef double x_ = x
-    cdef double[::1] e_ = _array(e, (8, 3), "slide_beam24_rigid_constraint", "e")
-    cdef double[::1] b_ = _array(b, (7,), "slide_beam24_rigid_constraint", "b")
-    cdef double[::1] u_ = _array(u, (3,), "slide_beam24_rigid_constraint", "u")
+    cdef const double[::1] e_ = _array(e, (8, 3), "slide_beam24_rigid_constraint", "e")
+    cdef const double[::1] b_ = _array(b, (7,), "slide_beam24_rigid_constraint", "b")
+    cdef const double[::1] u_ = _array(u, (3,), "slide_beam24_rigid_constraint", "u")
     C_out = np.empty((3,))
     cdef double[::1] C__ = C_out.reshape(-1)
     C_s_out = np.empty((3,))
@@ -382,7 +382,7 @@ def slide_beam24_rigid_constraint(l, x, e, b, u):
 
 
 def slide_beam24_rigid_terms(l, x, e, b, u, v, w):
-    """Terms of the equations of motion with the slide (eq 20-37).
+    """terms of the equations of motion with the slide (eq 20-37).
 
     l () [m]: length of the element that holds s
     x () [m]: arc-length s from the element's first node
@@ -404,11 +404,11 @@ def slide_beam24_rigid_terms(l, x, e, b, u, v, w):
     """
     cdef double l_ = l
     cdef double x_ = x
-    cdef double[::1] e_ = _array(e, (8, 3), "slide_beam24_rigid_terms", "e")
-    cdef double[::1] b_ = _array(b, (7,), "slide_beam24_rigid_terms", "b")
-    cdef double[::1] u_ = _array(u, (3,), "slide_beam24_rigid_terms", "u")
-    cdef double[::1] v_ = _array(v, (8, 3), "slide_beam24_rigid_terms", "v")
-    cdef double[::1] w_ = _array(w, (6,), "slide_beam24_rigid_terms", "w")
+    cdef const double[::1] e_ = _array(e, (8, 3), "slide_beam24_rigid_terms", "e")
+    cdef const double[::1] b_ = _array(b, (7,), "slide_beam24_rigid_terms", "b")
+    cdef const double[::1] u_ = _array(u, (3,), "slide_beam24_rigid_terms", "u")
+    cdef const double[::1] v_ = _array(v, (8, 3), "slide_beam24_rigid_terms", "v")
+    cdef const double[::1] w_ = _array(w, (6,), "slide_beam24_rigid_terms", "w")
     C_out = np.empty((3,))
     cdef double[::1] C__ = C_out.reshape(-1)
     C_q_out = np.empty((3, 30))
@@ -433,7 +433,7 @@ def slide_beam24_rigid_terms(l, x, e, b, u, v, w):
 
 
 def slide_beam24_rigid_residual(l, x, e, b, u, f):
-    """Phi and the gradient of f . phi by (e, rider, s) (eq 19, 28-30).
+    """phi and the gradient of f . phi by (e, rider, s) (eq 19, 28-30).
 
     l () [m]: length of the element that holds s
     x () [m]: arc-length s from the element's first node
@@ -447,10 +447,10 @@ def slide_beam24_rigid_residual(l, x, e, b, u, f):
     """
     cdef double l_ = l
     cdef double x_ = x
-    cdef double[::1] e_ = _array(e, (8, 3), "slide_beam24_rigid_residual", "e")
-    cdef double[::1] b_ = _array(b, (7,), "slide_beam24_rigid_residual", "b")
-    cdef double[::1] u_ = _array(u, (3,), "slide_beam24_rigid_residual", "u")
-    cdef double[::1] f_ = _array(f, (3,), "slide_beam24_rigid_residual", "f")
+    cdef const double[::1] e_ = _array(e, (8, 3), "slide_beam24_rigid_residual", "e")
+    cdef const double[::1] b_ = _array(b, (7,), "slide_beam24_rigid_residual", "b")
+    cdef const double[::1] u_ = _array(u, (3,), "slide_beam24_rigid_residual", "u")
+    cdef const double[::1] f_ = _array(f, (3,), "slide_beam24_rigid_residual", "f")
     phi_out = np.empty((3,))
     cdef double[::1] phi__ = phi_out.reshape(-1)
     g_out = np.empty((31,))
@@ -461,7 +461,7 @@ def slide_beam24_rigid_residual(l, x, e, b, u, f):
 
 
 def slide_beam24_rigid_tangent(l, x, e, b, u, f):
-    """Derivatives of phi and of the gradient of f . phi (eq 19, 28-30).
+    """derivatives of phi and of the gradient of f . phi (eq 19, 28-30).
 
     l () [m]: length of the element that holds s
     x () [m]: arc-length s from the element's first node
@@ -475,10 +475,10 @@ def slide_beam24_rigid_tangent(l, x, e, b, u, f):
     """
     cdef double l_ = l
     cdef double x_ = x
-    cdef double[::1] e_ = _array(e, (8, 3), "slide_beam24_rigid_tangent", "e")
-    cdef double[::1] b_ = _array(b, (7,), "slide_beam24_rigid_tangent", "b")
-    cdef double[::1] u_ = _array(u, (3,), "slide_beam24_rigid_tangent", "u")
-    cdef double[::1] f_ = _array(f, (3,), "slide_beam24_rigid_tangent", "f")
+    cdef const double[::1] e_ = _array(e, (8, 3), "slide_beam24_rigid_tangent", "e")
+    cdef const double[::1] b_ = _array(b, (7,), "slide_beam24_rigid_tangent", "b")
+    cdef const double[::1] u_ = _array(u, (3,), "slide_beam24_rigid_tangent", "u")
+    cdef const double[::1] f_ = _array(f, (3,), "slide_beam24_rigid_tangent", "f")
     J_out = np.empty((3, 31))
     cdef double[::1] J__ = J_out.reshape(-1)
     K_out = np.empty((31, 31))

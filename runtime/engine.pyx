@@ -118,8 +118,8 @@ cdef extern from "engine.h" nogil:
         double *before
         double *first
         double *s_slope
-        double h, h_factored, contraction, motion
-        int factored, stopped_joint
+        double h, h_factored, contraction, motion, extent
+        int factored, stopped_joint, rest_start
     int fu_find_arc_length(const fu_model *model, const double *q, int joint, int element, double *s)
     int fu_start(fu_run *run)
     int fu_advance(fu_run *run, double seconds)
@@ -263,11 +263,14 @@ cdef class Engine:
             raise ValueError("no foot point found")
         return s
 
-    def start(self, *, duration, output_step, tol, step, scheme, first_step):
-        """Allocate the output rows and compute the consistent start; returns the change of velocities."""
+    def start(self, *, duration, output_step, tol, step, scheme, first_step, rest_start=False):
+        """Allocate the output rows and compute the consistent start.
+
+        Returns a status where that failed, else None, and the change of velocities that the joints asked for.
+        """
         run = &self.run
         run.duration, run.output_step, run.tol = duration, output_step, tol
-        run.fixed_step, run.h = step, first_step
+        run.fixed_step, run.h, run.rest_start = step, first_step, rest_start
         run.scheme.alpha_m, run.scheme.alpha_f, run.scheme.beta, run.scheme.gamma = scheme
         rows = int(np.ceil(duration / output_step * (1 - 1e-12))) + 2
         m = &self.model

@@ -320,7 +320,8 @@ def _message(model: Model, engine, status: str, settings: RunSettings) -> str:
         case "end_of_cable":
             joint = model.joints[engine.stopped_joint]
             cable = model.cables[joint.cable]
-            end = "end" if engine.rows()["s"][-1, engine.stopped_joint] > 0.5 * cable.length else "start"
+            middle = 0.5 * cable.n_elements * cable.length
+            end = "end" if engine.rows()["s"][-1, engine.stopped_joint] > middle else "start"
             return (
                 f'slide "{joint.name}": ran off the {end} of cable "{cable.name}" at {when}; '
                 "what was computed up to there is kept"

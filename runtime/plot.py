@@ -25,6 +25,7 @@ STYLE = {
     "grid.linewidth": 0.6,
     "axes.axisbelow": True,
     "axes.linewidth": 0.7,
+    "axes.xmargin": 0,
     "lines.linewidth": 1.4,
     "legend.frameon": False,
     "figure.constrained_layout.use": True,
@@ -184,7 +185,6 @@ def draw_acceleration(run: Run) -> Figure | None:
         axes.plot(run.time, run[f"{body}.acceleration"] @ view.up, marker=marker, markersize=4, label=f"body {body}")
     axes.set_xlabel("time / s")
     axes.set_ylabel(f"{view.names[1]}-acceleration / (m/s²)")
-    axes.margins(x=0)
     axes.legend(loc="best")
     return figure
 
@@ -210,7 +210,6 @@ def draw_slide(run: Run) -> Figure | None:
     place.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)
     speed.set_ylabel("s rate / (m/s)")
     speed.set_xlabel("time / s")
-    speed.margins(x=0)
     return figure
 
 
@@ -232,5 +231,4 @@ def draw_energy(run: Run) -> Figure:
     error.set_ylabel("sum of changes /\nenergy exchanged")
     error.ticklabel_format(axis="y", style="sci", scilimits=(-2, 2), useMathText=True)
     error.set_xlabel("time / s")
-    error.margins(x=0)
     return figure

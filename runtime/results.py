@@ -204,15 +204,10 @@ class Run:
         counts = [f"{report[key]} {text}" for key, text in _COUNTS.items() if key in report]
         if counts:
             rows.append(("steps", ", ".join(counts)))
-        if "wall_time" in report:
-            parts = report["wall_time"]
-            rows.append(
-                (
-                    "wall time",
-                    f"{sum(parts.values()):.3g} s: "
-                    + ", ".join(f"{part} {seconds:.3g}" for part, seconds in parts.items()),
-                )
-            )
+        if "time_s" in report:
+            parts = dict(report["time_s"])
+            total = parts.pop("total")
+            rows.append(("wall time", f"{total:.3g} s: " + ", ".join(f"{p} {s:.2g}" for p, s in parts.items())))
         rows.append(
             (
                 "energy balance",

@@ -69,7 +69,7 @@ def fake_recording(scene: Scene, status: str = "completed", message: str = "", d
             "dissipated": dissipated,
         },
         report={
-            "wall_time": {"set-up": 0.01, "integration": 0.02},
+            "time_s": {"set_up": 0.01, "total": 0.03, "solve": 0.015},
             "steps": 1000,
             "rejected_steps": 2,
             "newton_iterations": 2100,

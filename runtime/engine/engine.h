@@ -163,8 +163,10 @@ typedef struct {
     double *psi, *force, *work, *before;      /* n_dof */
     double *first;                            /* n_q: the configuration at the start */
     double *s_slope;                          /* per joint: predicts ds/dt */
-    double h, h_factored, contraction, motion, dissipated, power, newton_tolerance, last_error;
+    double h, h_factored, contraction, motion, extent, dissipated, power, last_error;
+    double newton_tolerance, round_off; /* of increments, m: where Newton may stop, and where it cannot go on */
     int factored, stopped_joint;
+    int rest_start; /* for order.py only: start the scheme from zero accelerations */
 } fu_run;
 
 int fu_step(fu_run *run, double h);

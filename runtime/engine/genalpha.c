@@ -16,7 +16,7 @@
 #include <time.h>
 
 #define MOST_ITERATIONS 12
-#define TOO_MANY_ITERATIONS 4 /* a step that took more than these has the matrix made anew for the next */
+#define TOO_MANY_ITERATIONS 3 /* a step that took more than these has the matrix made anew for the next */
 
 double fu_clock(void)
 {
@@ -196,12 +196,11 @@ static int iterate(fu_run *run, double h)
         ++run->statistics.newton_iterations;
         if (!(size < 1e30)) return 1;
         if (i > 0) {
-            /* round-off ends the contraction before divergence does */
             const double ratio = size / last;
-            if (ratio >= 1.0 && size > 100.0 * run->newton_tolerance) return 1;
+            if (ratio >= 1.0 && size > 100.0 * run->round_off) return 1;
             run->contraction = ratio < 1e-3 ? 1e-3 : ratio > 0.9 ? 0.9 : ratio;
         }
-        if (size * run->contraction / (1.0 - run->contraction) <= run->newton_tolerance) {
+        if (size * run->contraction / (1.0 - run->contraction) <= run->newton_tolerance || size <= run->round_off) {
             kinematics(run, h);
             if (i + 1 > TOO_MANY_ITERATIONS) run->factored = 0;
             return 0;

@@ -50,7 +50,8 @@ static int record_row(fu_run *run)
     return info;
 }
 
-/* Consistent start: velocities on the joints, accelerations and forces from eq 38. */
+/* Consistent start: velocities on the joints, accelerations and forces from eq 38. Starting the scheme from zero
+ * accelerations instead makes every error fall with the first power of the step (tests/benchmarks/order.py). */
 int fu_start(fu_run *run)
 {
     const fu_model *model = run->model;
@@ -59,9 +60,11 @@ int fu_start(fu_run *run)
     if (fu_accelerator_prepare(model, &run->accelerator)) return FU_SINGULAR;
     if (fu_project_velocities(model, now, &run->accelerator, run->before)) return FU_SINGULAR;
     for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->before[i];
+    for (int i = 0; i < model->n_q; ++i) run->extent = fmax(run->extent, fabs(now->q[i]));
     memcpy(run->first, now->q, sizeof(double) * (size_t)model->n_q);
     if (record_row(run)) return FU_SINGULAR;
     memcpy(now->acceleration, run->record.acceleration, sizeof(double) * (size_t)model->n_dof);
+    if (run->rest_start) memset(now->acceleration, 0, sizeof(double) * (size_t)model->n_dof);
     memcpy(now->a, now->acceleration, sizeof(double) * (size_t)model->n_dof);
     for (int j = 0; j < model->n_joints; ++j) {
         memcpy(&joint, run->record.joint + j * FU_JOINT_OUTPUTS, sizeof joint);
@@ -194,8 +197,11 @@ static int step_towards(fu_run *run, double target)
         const double pieces = ceil(remaining / want * (1.0 - 1e-9));
         double h = pieces <= 1.0 ? remaining : remaining / pieces;
         const double allowed = run->tol * run->motion * h / run->duration;
-        const double floor = 1e-15 * (1.0 + run->motion), aim = run->fixed_step > 0.0 ? run->last_error : allowed;
-        run->newton_tolerance = fmin(fmax(1e-3 * aim, floor), 1e-10);
+        /* what Newton leaves has the same sign step after step and acts like a force: it counts (T/h)^2 times in
+         * positions, the local error T/h times */
+        run->newton_tolerance = fmin(1e-2 * h / run->duration * (run->fixed_step > 0.0 ? run->last_error : allowed),
+                                     1e-12 * run->extent); /* keeps the joints' residual small at any tol */
+        run->round_off = 4e-16 * run->extent;
         if (h < smallest && remaining > smallest) return FU_NO_CONVERGENCE;
         if (fu_step(run, h)) {
             want = 0.5 * h;
@@ -239,8 +245,9 @@ static int step_towards(fu_run *run, double target)
         run->last_error = error;
         if (run->fixed_step <= 0.0) {
             const double factor = fmin(2.0, 0.8 / sqrt(fmax(ratio, 1e-6)));
-            if (factor > 1.25) run->h = fmax(run->h, h * factor);
-            else if (factor < 0.9) run->h = h * factor;
+            /* small changes are not worth a new factorisation */
+            if (factor > 1.4) run->h = fmax(run->h, h * factor);
+            else if (factor < 0.8) run->h = h * factor;
         }
         return FU_RUNNING;
     }

@@ -1,0 +1,60 @@
+"""Which files decide a family's text, and their hash: the specs, all that they import here, and what prints them."""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+from collections.abc import Iterable, Iterator
+from functools import cache
+from importlib import resources
+
+PACKAGE = "funicular.derive"
+PRINTING = ("printer", "emit")
+TEMPLATE = "templates/family.c.jinja"
+
+
+def deciding(roots: Iterable[str]) -> tuple[str, ...]:
+    """Files that decide a family whose specs are the modules `roots`, in order of first mention."""
+    found: dict[str, None] = {}
+    waiting = [*roots, *PRINTING]
+    while waiting:
+        module = waiting.pop(0)
+        if module not in found:
+            found[module] = None
+            waiting[:0] = _imports(module)
+    return (*(_file(m) for m in found), TEMPLATE)
+
+
+def spec_hash(files: Iterable[str]) -> str:
+    """SHA-256 over the files' text, shortened."""
+    digest = hashlib.sha256()
+    for file in files:
+        digest.update(_read(file))
+    return digest.hexdigest()[:16]
+
+
+@cache
+def _imports(module: str) -> tuple[str, ...]:
+    return tuple(m for node in ast.walk(ast.parse(_read(_file(module)))) for m in _named(node))
+
+
+def _named(node: ast.AST) -> Iterator[str]:
+    """Modules of this package that an import statement names."""
+    if isinstance(node, ast.ImportFrom) and node.module == PACKAGE:
+        yield from (a.name for a in node.names)
+    elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith(PACKAGE + "."):
+        inner = node.module.removeprefix(PACKAGE + ".")
+        submodules = [f"{inner}.{a.name}" for a in node.names if _exists(f"{inner}.{a.name}")]
+        yield from submodules or [inner]
+
+
+def _exists(module: str) -> bool:
+    return (resources.files(PACKAGE) / _file(module)).is_file()
+
+
+def _file(module: str) -> str:
+    return module.replace(".", "/") + ".py"
+
+
+def _read(file: str) -> bytes:
+    return (resources.files(PACKAGE) / file).read_bytes()

@@ -1,0 +1,101 @@
+"""`funicular verify`: every derivative in the generated C, tried by independent methods, and the invariances.
+
+The files of generated/ are compiled as they stand: a sign changed by hand shows at once. Relations are in
+verify_relations.py and verify_slide.py, methods and their ceilings in verify_methods.py; families come from the
+list in families.py, so a new element or rider is covered by being there.
+"""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import mpmath
+import numpy as np
+from funicular.derive import emit, verify_numbers
+from funicular.derive.drift import folder
+from funicular.derive.families import families, named
+from funicular.derive.spec import Family
+from funicular.derive.stages import Program
+from funicular.derive.verify_compile import CompilerError, Library
+from funicular.derive.verify_exact import DIGITS
+from funicular.derive.verify_invariances import invariances
+from funicular.derive.verify_methods import Finding, examine
+from funicular.derive.verify_relations import relations
+from funicular.derive.verify_report import Report
+from funicular.derive.verify_states import states
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A family with its programs, on its way through the compiler."""
+
+    family: Family
+    programs: list[Program]
+    libraries: dict[str, Library]
+
+    def kinds(self) -> dict[str, verify_numbers.Numbers]:
+        """The three evaluators; waits for the compiler."""
+        name = self.family.name
+        return {"exact": verify_numbers.exact(name, self.programs),
+                "real": verify_numbers.real(name, self.programs, self.libraries["real"].load()),
+                "complex": verify_numbers.complex_(name, self.programs, self.libraries["complex"].load())}
+
+
+def prepare(family: Family, generated: Path, work: Path) -> Subject:
+    """Derive a family and start compiling its generated file."""
+    programs = emit.derive(family).programs
+    libraries = {kind: Library(family.name, programs, generated, work, dtype)
+                 for kind, dtype in (("real", float), ("complex", complex))}
+    return Subject(family, programs, libraries)
+
+
+def uncovered(family: Family, programs: list[Program]) -> list[str]:
+    """Outputs that no relation is about."""
+    known = {(f"{family.name}_{r.kernel}", r.output) for r in relations(family)}
+    return [f"{p.name}: {a.name}" for p in programs for a in p.outputs if (p.name, a.name) not in known]
+
+
+def verify(subject: Subject) -> Iterator[Finding | tuple[str, float, float]]:
+    """Findings of a family's relations, then its invariances, each the worst over the sample states."""
+    kinds = subject.kinds()
+    samples = states(subject.family, kinds["exact"])
+    for relation in relations(subject.family):
+        yield examine(f"{subject.family.name}_{relation.kernel}", relation, kinds, samples)
+    real = kinds["real"]
+    worst: dict[str, tuple[float, float]] = {}
+    for text, error, ceiling in invariances(subject.family, real, [real.state(s) for s in samples]):
+        error = error if np.isfinite(error) else np.inf
+        if text not in worst or error > worst[text][0]:
+            worst[text] = error, ceiling
+    yield from ((text, *value) for text, value in worst.items())
+
+
+def main(names: list[str], generated: Path | None = None) -> int:
+    """The command; returns its exit code. `generated` is the folder of the C files, this installation's by default."""
+    start = time.perf_counter()
+    try:
+        wanted = named(names) if names else families()
+        failures = _run(list(wanted.values()), generated or folder())
+    except (KeyError, CompilerError) as problem:
+        print(f"funicular verify: {problem.args[0]}", file=sys.stderr)
+        return 1
+    print(f"{'all agree' if not failures else f'{failures} failures'}, {time.perf_counter() - start:.0f} s")
+    return 1 if failures else 0
+
+
+def _run(wanted: list[Family], generated: Path) -> int:
+    report = Report()
+    with tempfile.TemporaryDirectory(prefix="funicular-verify-") as work, mpmath.workdps(DIGITS):
+        with report.progress(len(wanted)) as progress:
+            subjects = [prepare(family, generated, Path(work)) for family in wanted]
+            for subject in subjects:
+                report.missing(uncovered(subject.family, subject.programs))
+                for item in verify(subject):
+                    report.add(subject.family.name, item)
+                progress()
+    return report.show()
