@@ -62,9 +62,11 @@ class KernelPrinter(C99CodePrinter):
             text += f"/({denominator})" if len(below) > 1 or "*" in denominator else f"/{denominator}"
         return text
 
-    def emptyPrinter(self, expr):
-        """Refuse what the kernels must not contain."""
-        raise ValueError(f"{type(expr).__name__} has no kernel form: {expr}")
+    def _print(self, expr, **kwargs):
+        # SymPy's printer knows sines and constants; the kernels must not
+        if not isinstance(expr, (sp.Symbol, sp.Rational, sp.Add, sp.Mul, sp.Pow)):
+            raise ValueError(f"{type(expr).__name__} has no kernel form: {expr}")
+        return super()._print(expr, **kwargs)
 
 
 _PRINTER = KernelPrinter({"order": "lex"})

@@ -120,7 +120,7 @@ cdef extern from "engine.h" nogil:
         double *s_slope
         double h, h_factored, contraction, motion, extent
         int factored, stopped_joint, rest_start
-    int fu_find_arc_length(const fu_model *model, const double *q, int joint, int element, double *s)
+    void fu_linearise(fu_run *run, double h, const double *change)
     int fu_start(fu_run *run)
     int fu_advance(fu_run *run, double seconds)
 
@@ -256,12 +256,29 @@ cdef class Engine:
         run.work, run.before = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         run.first, run.s_slope = self._doubles(np.zeros(model.n_q)), self._doubles(np.zeros(n_joints))
 
-    def find_arc_length(self, int joint, int element, double s, q):
-        """s on the curve of an element where a slide's C_l vanishes (eq 21); ValueError where Newton fails."""
-        cdef double[::1] at = np.ascontiguousarray(q, dtype=float)
-        if fu_find_arc_length(&self.model, &at[0], joint, element, &s):
-            raise ValueError("no foot point found")
-        return s
+    def linearise(self, double h, change):
+        """Residual and Newton matrix of a step h after moving its prediction by `change`; for tests.
+
+        change (unknowns,): psi of the free dofs, then s and the scaled force of each slide.
+        Returns (unknowns,) and (unknowns, unknowns), d residual/d change.
+        """
+        cdef double[::1] moved = np.ascontiguousarray(change, dtype=float)
+        cdef fu_system *system = &self.run.newton
+        cdef int i, j, n = system.n, width = system.width, m = system.m
+        cdef int total = n + m, rows = 3 * width + 1
+        if moved.shape[0] != total:
+            raise ValueError(f"change must have {total} entries")
+        fu_linearise(&self.run, h, &moved[0])
+        matrix = np.zeros((total, total))
+        for j in range(n):
+            for i in range(max(0, j - width), min(n, j + width + 1)):
+                matrix[i, j] = system.K[j * rows + 2 * width + i - j]
+        for j in range(m):
+            for i in range(n):
+                matrix[i, n + j], matrix[n + j, i] = system.B[j * n + i], system.C[j * n + i]
+            for i in range(m):
+                matrix[n + i, n + j] = system.D[j * m + i]
+        return -np.array([self.run.rhs[i] for i in range(total)]), matrix
 
     def start(self, *, duration, output_step, tol, step, scheme, first_step, rest_start=False):
         """Allocate the output rows and compute the consistent start.

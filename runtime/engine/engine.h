@@ -170,6 +170,7 @@ typedef struct {
 } fu_run;
 
 int fu_step(fu_run *run, double h);
+void fu_linearise(fu_run *run, double h, const double *change);
 double fu_step_error(fu_run *run, double h);
 double fu_clock(void);
 

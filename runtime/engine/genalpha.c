@@ -103,10 +103,10 @@ static void turn_columns(double *rows, int n_rows, int n_columns, int first, con
     }
 }
 
-/* the Newton matrix at `next`, factored */
-static int factor(fu_run *run, double h)
+/* the Newton matrix at `next`: derivative of the scaled residual by the unknowns */
+static void newton_matrix(fu_run *run, double h)
 {
-    const double begin = fu_clock(), scale = sigma(&run->scheme, h);
+    const double scale = sigma(&run->scheme, h);
     const fu_model *model = run->model;
     const fu_state *next = &run->next;
     fu_system *system = &run->newton;
@@ -134,8 +134,14 @@ static int factor(fu_run *run, double h)
                 if (K[i * n + k] != 0.0) fu_system_add(system, place[i], place[k], scale * K[i * n + k]);
         }
     }
-    int info = fu_system_factor_band(system, model->lapack);
-    if (!info) info = fu_system_factor_border(system, model->lapack);
+}
+
+static int factor(fu_run *run, double h)
+{
+    const double begin = fu_clock();
+    newton_matrix(run, h);
+    int info = fu_system_factor_band(&run->newton, run->model->lapack);
+    if (!info) info = fu_system_factor_border(&run->newton, run->model->lapack);
     run->factored = !info;
     run->h_factored = h;
     ++run->statistics.factorisations;
@@ -208,6 +214,20 @@ static int iterate(fu_run *run, double h)
         last = size;
     }
     return 1;
+}
+
+/* For tests of the matrix: the residual after moving the predicted step by `change` (unknowns), in run->rhs with
+ * its sign turned, and the unfactored matrix there in run->newton. */
+void fu_linearise(fu_run *run, double h, const double *change)
+{
+    predict(run, h);
+    for (int i = 0; i < run->model->n_band + run->model->n_border_dof + 4 * run->model->n_joints; ++i)
+        run->rhs[i] = change[i];
+    apply(run, h);
+    kinematics(run, h);
+    newton_matrix(run, h);
+    residual(run, h);
+    run->factored = 0;
 }
 
 /* One step of size h from `now` to `next`; 0 when the Newton iteration converged. */

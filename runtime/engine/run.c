@@ -57,6 +57,8 @@ int fu_start(fu_run *run)
     const fu_model *model = run->model;
     fu_state *now = &run->now;
     fu_joint_output joint;
+    for (int j = 0; j < model->n_joints; ++j)
+        if (fu_find_arc_length(model, now->q, j, now->element[j], &now->s[j])) return FU_SINGULAR;
     if (fu_accelerator_prepare(model, &run->accelerator)) return FU_SINGULAR;
     if (fu_project_velocities(model, now, &run->accelerator, run->before)) return FU_SINGULAR;
     for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->before[i];

@@ -1,0 +1,160 @@
+"""`funicular verify` passes on what is checked in, and fails by name on what somebody broke."""
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from funicular.derive import drift, verify
+from funicular.derive.families import families
+from funicular.derive.stages import Argument
+from funicular.derive.verify_compile import CompilerError, compiler
+from funicular.derive.verify_methods import CEILINGS, METHODS, Relation, examine
+
+
+@pytest.fixture
+def generated(tmp_path) -> Path:
+    """A copy of the generated C, to break."""
+    for file in drift.folder().glob("*.[ch]"):
+        shutil.copy(file, tmp_path)
+    return tmp_path
+
+
+def broken(folder: Path, file: str, old: str, new: str) -> None:
+    text = (folder / file).read_text()
+    assert text.count(old) == 1, f"{old!r} stands {text.count(old)} times in {file}"
+    (folder / file).write_text(text.replace(old, new))
+
+
+def body(folder: Path, file: str, kernel: str) -> str:
+    """Text of one kernel."""
+    text = (folder / file).read_text()
+    start = text.index(f"void {kernel}(")
+    return text[start : text.index("\n}\n", start)]
+
+
+def break_output(folder: Path, file: str, kernel: str, entry: str) -> None:
+    """Change the sign of one output."""
+    old = body(folder, file, kernel)
+    (line,) = [row for row in old.splitlines() if row.strip().startswith(f"{entry} = ")]
+    value = line.partition(" = ")[2].rstrip(";")
+    new = old.replace(line, f"    {entry} = -({value});")
+    (folder / file).write_text((folder / file).read_text().replace(old, new))
+
+
+def test_what_is_checked_in_passes(capsys):
+    assert verify.main([]) == 0
+    out = capsys.readouterr().out
+    for family in families().values():
+        assert family.name in out
+    assert "FAIL" not in out
+    assert all(method in out for method in METHODS)
+
+
+@pytest.mark.parametrize(("family", "kernel", "entry"), [
+    ("rigid", "rigid_point", "bias[1]"),
+    ("rigid", "rigid_point", "p_q[4]"),
+    ("rigid", "rigid_inertia_force", "f[5]"),
+    ("rigid", "rigid_kinetic_energy", "T[0]"),
+])
+def test_a_sign_changed_in_an_output_is_found_and_named(generated, capsys, family, kernel, entry):
+    break_output(generated, f"{family}.c", kernel, entry)
+    assert verify.main([family], generated) == 1
+    out = capsys.readouterr().out
+    name, _, index = entry.partition("[")
+    flat = int(index.rstrip("]"))
+    program = next(p for p in families()[family].build() if p.name == kernel)
+    place = np.unravel_index(flat, program.values[name].shape)
+    assert f"{kernel}: {name} is not" in out
+    assert f"{name}[{', '.join(map(str, place))}]" in out
+    assert "analytic" in out and "difference" in out
+
+
+def test_signs_changed_inside_an_element_are_found(generated, capsys):
+    tangent = body(generated, "beam24.c", "beam24_elastic_tangent")
+    row = next(line for line in tangent.splitlines() if line.strip().startswith("const fu_real K_t0_t1_xy"))
+    assert " + " in row
+    text = (generated / "beam24.c").read_text()
+    changed = tangent.replace(row, row.replace(" + ", " - ", 1))
+    (generated / "beam24.c").write_text(text.replace(tangent, changed))
+    break_output(generated, "beam24.c", "beam24_stiffness", "A[17]")
+    break_output(generated, "beam24.c", "beam24_mass", "m[5]")
+    assert verify.main(["beam24"], generated) == 1
+    out = capsys.readouterr().out
+    assert "beam24_elastic_tangent: K is not df/de" in out
+    assert "A[17]" in out
+    assert "m[0, 5]" in out
+    assert "beam24: mass symmetric" in out
+    assert "beam24_elastic_force: f is not" not in out, "a fault shows in its own kernel and nowhere else"
+    assert "beam24_energy: U is not" not in out
+
+
+def test_signs_changed_inside_the_slide_are_found(generated, capsys):
+    file, kernel = "slide_beam24_rigid.c", "slide_beam24_rigid_terms"
+    for entry in ("W[1]", "s_bias[0]", "H[7]"):
+        break_output(generated, file, kernel, entry)
+    assert verify.main(["slide_beam24_rigid"], generated) == 1
+    out = capsys.readouterr().out
+    for output in ("W", "s_bias", "H"):
+        assert f"{kernel}: {output} is not" in out
+    assert f"{kernel}: Q_d is not" not in out
+    assert "H null on motions that keep the joint" in out
+
+
+def test_an_output_left_unwritten_is_found(generated, capsys):
+    line = next(row for row in body(generated, "rigid.c", "rigid_point").splitlines() if " bias[2] = " in row)
+    broken(generated, "rigid.c", line + "\n", "")
+    assert verify.main(["rigid"], generated) == 1
+    assert "rigid_point: bias is not" in capsys.readouterr().out
+
+
+def test_what_does_not_compile_is_told_with_the_compilers_words(generated, capsys):
+    broken(generated, "rigid.c", "const fu_real A1_x =", "const fu_real A1_x +=")
+    assert verify.main(["rigid"], generated) == 1
+    err = capsys.readouterr().err
+    assert "generated/rigid.c does not compile" in err
+    assert "funicular derive --check" in err
+
+
+def test_no_compiler_is_told(monkeypatch, capsys):
+    monkeypatch.setattr("shutil.which", lambda name: None)
+    with pytest.raises(CompilerError):
+        compiler()
+    assert verify.main(["rigid"]) == 1
+    assert "no C compiler found" in capsys.readouterr().err
+
+
+def test_an_unknown_name_gets_the_near_ones(capsys):
+    assert verify.main(["rigd"]) == 1
+    assert 'no spec "rigd"; did you mean rigid' in capsys.readouterr().err
+
+
+def test_every_output_has_a_relation_and_a_new_one_is_missed():
+    for family in families().values():
+        programs = family.build()
+        assert verify.uncovered(family, programs) == []
+    programs[0].outputs.append(Argument("news", (3,), "m", "not verified yet"))
+    assert verify.uncovered(family, programs) == [f"{programs[0].name}: news"]
+
+
+def test_each_method_finds_a_derivative_that_is_slightly_wrong(generated, tmp_path):
+    """A path whose derivative is off by three ceilings fails by that method; a right one passes by all."""
+    import mpmath
+
+    family = families()["rigid"]
+    with mpmath.workdps(50):
+        kinds = verify.prepare(family, generated, tmp_path).kinds()
+        state = {"mass": np.float64(2.0), "w": np.arange(1.0, 7.0), "J": np.diag([1.0, 2.0, 3.0])}
+
+        def energy(k, s, t, j, off=0.0):
+            w = s["w"].copy()
+            w[0] = w[0] + t * (1 + off)
+            return k("kinetic_energy", s, w=w)["T"]
+
+        momentum = {"kernel": "kinetic_energy", "output": "T", "text": "m v", "order": 1,
+                    "of": lambda k, s: s["mass"] * s["w"][0]}
+        assert examine("T", Relation(path=energy, **momentum), kinds, [state]).failed == []
+        for method in ("50 digits", "complex step", "central"):
+            off = 3 * CEILINGS[method, 1]
+            found = examine("T", Relation(path=lambda k, s, t, j: energy(k, s, t, j, off), **momentum), kinds, [state])
+            assert method in found.failed
