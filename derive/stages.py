@@ -174,7 +174,8 @@ class Derivation:
     def _of_definition(self, symbol: sp.Symbol, definition: sp.Expr) -> sp.Expr:
         # roots and reciprocals reuse their own value: no second root, no power -3/2
         if definition.is_Pow and definition.exp == sp.Rational(1, 2):
-            return self(definition.base) / (2 * symbol)
+            # half of each term: the twos of a sum of squares go
+            return sp.Add(*(term / 2 for term in sp.Add.make_args(self(definition.base)))) / symbol
         if definition.is_Pow and definition.exp == -1:
             return -(symbol**2) * self(definition.base)
         return self(definition)

@@ -9,9 +9,8 @@ from collections.abc import Iterator
 
 import numpy as np
 from funicular.derive.spec import Family, x, y, z
-from funicular.derive.verify_methods import EPS
 from funicular.derive.verify_motion import turned
-from funicular.derive.verify_numbers import Numbers, State
+from funicular.derive.verify_numbers import EPS, Numbers, State
 from funicular.derive.verify_states import reference, rotation
 
 Invariance = tuple[str, float, float]
@@ -59,7 +58,8 @@ def _shape_and_mass(family: Family, k: Numbers, s: State) -> Iterator[Invariance
     m = k("mass", s)["m"]
     yield "mass total is ρ A l", abs(at_nodes.dot(m).dot(at_nodes) / total - 1), 8 * EPS
     yield "mass symmetric", relative(m - m.T, m), 0.0
-    yield "mass positive definite (least eigenvalue below zero)", max(-float(np.linalg.eigvalsh(m)[0]), 0.0), 0.0
+    least = float(np.linalg.eigvalsh(m)[0]) if np.isfinite(m).all() else -np.inf
+    yield "mass positive definite (least eigenvalue below zero)", max(-least, 0.0), 0.0
     Q = k("gravity", s)["Q"]
     yield "gravity total is ρ A l g", relative(at_nodes.dot(Q) - total * s["g"], total * s["g"]), 8 * EPS
 

@@ -14,15 +14,18 @@ import mpmath
 import numpy as np
 from funicular.derive.stages import Program
 
+EPS = float(np.finfo(float).eps)
 State = Mapping[str, np.ndarray]
 
 
 class Numbers:
     """Kernels of one family in one kind of number; kernels go by their name without the family's."""
 
-    def __init__(self, family: str, programs: list[Program], call: Callable, functions, convert: Callable):
+    def __init__(self, family: str, programs: list[Program], call: Callable, functions, convert: Callable,
+                 eps: float = EPS):
         self.programs = {p.name.removeprefix(f"{family}_"): p for p in programs}
         self._call, self._convert = call, convert
+        self.eps = eps
         self.sqrt, self.sin, self.cos = functions.sqrt, functions.sin, functions.cos
 
     def state(self, values: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
@@ -55,4 +58,5 @@ def exact(family: str, programs: list[Program]) -> Numbers:
 
     kernels = {p.name: ExactProgram(p) for p in programs}
     convert = np.vectorize(mpmath.mpf, otypes=[object])
-    return Numbers(family, programs, lambda name, inputs: kernels[name](inputs), mpmath.mp, convert)
+    return Numbers(family, programs, lambda name, inputs: kernels[name](inputs), mpmath.mp, convert,
+                   eps=float(mpmath.mp.eps))

@@ -7,9 +7,12 @@ from contextlib import contextmanager
 
 import numpy as np
 from funicular.derive.verify_methods import METHODS, Finding
+from rich import box
 from rich.console import Console
 from rich.progress import Progress
 from rich.table import Table
+
+WIDE = 175  # columns that the whole table takes
 
 
 class Report:
@@ -19,10 +22,9 @@ class Report:
         self.findings: list[Finding] = []
         self.invariances: list[tuple[str, str, float, float]] = []
         self.uncovered: list[str] = []
-        # piped output keeps whole lines
         self.out = Console(highlight=False, markup=False)
         if not self.out.is_terminal:
-            self.out = Console(highlight=False, markup=False, width=180)
+            self.out = Console(highlight=False, markup=False, width=WIDE)  # piped lines stay whole
 
     @contextmanager
     def progress(self, total: int) -> Iterator[Callable[[], None]]:
@@ -58,28 +60,31 @@ class Report:
         return len(failed) + len(self.uncovered) + len(broken)
 
     def _derivatives(self) -> Table:
-        table = Table(title="Every output against what it is: worst error, relative to its largest entry",
-                      title_justify="left")
-        for name in ("kernel", "output", "is", *METHODS, "step", "worst at", ""):
-            table.add_column(name, justify="right" if name in (*METHODS, "step") else "left", no_wrap=True)
+        wide = self.out.width >= WIDE
+        table = _table("Every output against what it is: worst error, relative to its largest entry",
+                       left=["kernel", "output", "is"] if wide else ["kernel", "output"],
+                       right=[*METHODS, "step"], last=["worst at"])
         last = ""
         for f in self.findings:
+            about = [f.relation.output, f.relation.text] if wide else [f.relation.output]
             errors = [f"{f.errors[m]:.1e}" if m in f.errors else "-" for m in METHODS]
-            table.add_row("" if f.kernel == last else f.kernel, f.relation.output, f.relation.text, *errors,
-                          f"{f.step:.0e}" if f.step else "-", f.place(f.worst_entry), "FAIL" if f.failed else "ok",
+            table.add_row(_verdict(not f.failed), "" if f.kernel == last else f.kernel, *about, *errors,
+                          f"{f.step:.0e}" if f.step else "-", f.place(f.worst_entry),
                           style="red" if f.failed else None)
             last = f.kernel
+        worst = [max((f.errors[m] for f in self.findings if m in f.errors), default=0.0) for m in METHODS]
+        table.add_section()
+        table.add_row("", "worst", *[""] * (2 if wide else 1), *(f"{w:.1e}" for w in worst))
         return table
 
     def _invariances(self) -> Table:
-        table = Table(title="Invariances: worst error, relative to the sample's scale", title_justify="left")
-        for name in ("family", "invariance", "error", "may be", ""):
-            table.add_column(name, justify="right" if name in ("error", "may be") else "left", no_wrap=True)
+        table = _table("Invariances: worst error, relative to the sample's scale", left=["family", "invariance"],
+                       right=["error", "may be"], last=[])
         last = ""
         for family, text, error, ceiling in self.invariances:
             ok = error <= ceiling
-            table.add_row("" if family == last else family, text, f"{error:.1e}", f"{ceiling:.1e}",
-                          "ok" if ok else "FAIL", style=None if ok else "red")
+            table.add_row(_verdict(ok), "" if family == last else family, text, f"{error:.1e}", f"{ceiling:.1e}",
+                          style=None if ok else "red")
             last = family
         return table
 
@@ -91,3 +96,17 @@ class Report:
             for entry, analytic, other in finding.samples[method]:
                 analytic, other = float(np.real(analytic)), float(np.real(other))
                 self.out.print(f"    {finding.place(entry):14}{analytic:25.16g}{other:25.16g}{analytic - other:12.2g}")
+
+
+def _table(title: str, left: list[str], right: list[str], last: list[str]) -> Table:
+    table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD)
+    table.add_column("", min_width=4, no_wrap=True)
+    for name in [*left, *right, *last]:
+        # a narrow terminal shortens names, never figures
+        table.add_column(name, justify="right" if name in right else "left", no_wrap=True,
+                         min_width=8 if name in right else None)
+    return table
+
+
+def _verdict(ok: bool) -> str:
+    return "ok" if ok else "FAIL"

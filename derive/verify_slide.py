@@ -45,9 +45,12 @@ def slide(family: Family) -> list[Relation]:
         """s on C_l(q, s) = level, by default that of the state."""
         level = k("constraint", s)["C"][0] if level is None else level
         x = s["x"]
-        for _ in range(9):
+        for _ in range(12):
             now = k("constraint", s, x=x, **q)
-            x = x - (now["C"][0] - level) / now["C_s"][0]
+            step = (now["C"][0] - level) / now["C_s"][0]
+            x = x - step
+            if abs(step) ** 2 < k.eps / 100:  # what is left is of the order of the square
+                break
         return x
 
     def constraint(k, s, x=None, **q):

@@ -7,9 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 from funicular.derive.spec import Family
 from funicular.derive.verify_invariances import FAR, Invariance, quantised, relative
-from funicular.derive.verify_methods import EPS
 from funicular.derive.verify_motion import RIDERS
-from funicular.derive.verify_numbers import Numbers, State
+from funicular.derive.verify_numbers import EPS, Numbers, State
 
 _OUTPUTS = ("C", "C_s", "s_rate", "Q_d", "W", "s_bias")
 

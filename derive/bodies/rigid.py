@@ -1,7 +1,8 @@
 """Rigid body: position R and unit quaternion; velocities R' and body-axis angular velocity (6 coordinates).
 
 A change of configuration is a translation and a rotation about body axes, R + dR, A exp(dtheta~): no constraint
-on the quaternion and no singular attitude. Derivatives by these six are derivations on the seven numbers.
+on the quaternion and no singular attitude. Derivatives by these six are derivations on R and the nine entries of
+A, through which alone everything depends on the quaternion: dA = A dtheta~ is two products an entry.
 """
 
 from __future__ import annotations
@@ -37,20 +38,21 @@ def rotation(q: np.ndarray) -> np.ndarray:
     return np.eye(3, dtype=int) + 2 * (w * skew + skew.dot(skew))
 
 
-def quaternion_rate(q: np.ndarray, omega: np.ndarray) -> np.ndarray:
-    """dq/dt = 1/2 q o (0, omega), omega in body axes."""
-    return np.concatenate([[-q[1:].dot(omega)], q[0] * omega + cross(q[1:], omega)]) / 2
+def axes(program: Program, b: np.ndarray) -> np.ndarray:
+    """Stage: A."""
+    return np.array([program.vector(f"A{i + 1}", row) for i, row in enumerate(rotation(b[3:]))])
 
 
-def rate(b: np.ndarray, w: np.ndarray) -> dict[sp.Symbol, sp.Expr]:
-    """Value on b of the derivation along the velocity w."""
-    return dict(zip(b, np.concatenate([w[:3], quaternion_rate(b[3:], w[3:])]), strict=True))
+def rate(b: np.ndarray, A: np.ndarray, w: np.ndarray) -> dict[sp.Symbol, sp.Expr]:
+    """Value on R and A of the derivation along the velocity w: R' and A omega~."""
+    turning = np.array([cross(row, w[3:]) for row in A])
+    return dict(zip([*b[:3], *A.ravel()], [*w[:3], *turning.ravel()], strict=True))
 
 
-def tangents(program: Program, b: np.ndarray) -> list[Derivation]:
+def tangents(program: Program, b: np.ndarray, A: np.ndarray) -> list[Derivation]:
     """The six derivations: three translations, three rotations about body axes."""
     units = np.eye(N_VELOCITY, dtype=int)
-    return [Derivation(program, f"d_{name}", rate(b, units[k]))
+    return [Derivation(program, f"d_{name}", rate(b, A, units[k]))
             for k, name in enumerate(("X", "Y", "Z", "th1", "th2", "th3"))]
 
 
@@ -59,9 +61,8 @@ def origin(b: np.ndarray) -> np.ndarray:
     return b[:3]
 
 
-def arm(program: Program, b: np.ndarray, u: np.ndarray) -> np.ndarray:
+def arm(program: Program, A: np.ndarray, u: np.ndarray) -> np.ndarray:
     """Stage: A u, the point from the origin."""
-    A = np.array([program.vector(f"A{i + 1}", row) for i, row in enumerate(rotation(b[3:]))])
     return program.vector("arm", A.dot(u))
 
 
@@ -74,10 +75,11 @@ def _point() -> Program:
     p = Program("rigid_point", "position, Jacobian, velocity and acceleration bias of a point", SOURCE)
     b, u, w = configuration(p), attachment(p), velocity(p)
     p.stage("position")
-    at = p.vector("p", origin(b) + arm(p, b, u))
+    A = axes(p, b)
+    at = p.vector("p", origin(b) + arm(p, A, u))
     p.stage("derivatives")
-    p_q = np.stack([d.array(at) for d in tangents(p, b)], axis=1)
-    along = Derivation(p, "dt", rate(b, w))
+    p_q = np.stack([d.array(at) for d in tangents(p, b, A)], axis=1)
+    along = Derivation(p, "dt", rate(b, A, w))
     speed = along.array(at)
     p.output("p", at, "m", "position R + A u")
     p.output("p_q", p_q, "1, m", "derivatives by translation and rotation about body axes")

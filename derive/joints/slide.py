@@ -25,13 +25,14 @@ class Slide:
         self.b, self.u = rider.configuration(program), rider.attachment(program)
         self.by_s = Derivation(program, "ds", {self.x: 1})
         self.by_e = [Derivation(program, f"de{k}", {symbol: 1}) for k, symbol in enumerate(self.e.ravel())]
-        self.by_rider = rider.tangents(program, self.b)
         self.rider = rider
         program.stage("centreline at s and rider's point (eq 19)")
+        self.axes = rider.axes(program, self.b)
+        self.by_rider = rider.tangents(program, self.b, self.axes)
         self.xi = program.define("xi", self.x * program.define("inv_l", 1 / self.length))
         # from the first node and from the rider's origin: no digits are lost far from the global origin
         self.r = self._on_axis("r", element.shape_functions, self.e - self._first_position())
-        arm = rider.arm(program, self.b, self.u)
+        arm = rider.arm(program, self.axes, self.u)
         gap = program.vector("gap", self.e[0] - rider.origin(self.b))
         self.r_p = program.vector("r_p", gap + (self.r - arm))
 
@@ -105,7 +106,8 @@ def _terms(name: str, element: Element) -> Program:
     velocities = np.concatenate([v.ravel(), w])
     s_rate = p.define("sdot", G.dot(velocities))
     p.stage("Q_d: second derivative along the motion (eq 33)")
-    motion = dict(zip(slide.e.ravel(), v.ravel(), strict=True)) | {slide.x: s_rate} | slide.rider.rate(slide.b, w)
+    motion = dict(zip(slide.e.ravel(), v.ravel(), strict=True)) | {slide.x: s_rate}
+    motion |= slide.rider.rate(slide.b, slide.axes, w)
     # velocities are held: the derivation knows s_rate as a constant, not as the function of q that it is
     along = Derivation(p, "dt", motion | {s_rate: 0})
     Q_d = np.array([p.define(f"Q_d{k}", c) for k, c in zip(("l", "m1", "m2"), along.array(along.array(C)),
@@ -131,7 +133,7 @@ def _lagrangian(p: Program, element: Element):
 
     The integrator carries s and the whole force f on the joint as unknowns instead of C_M and two multipliers:
     f . r_x = 0, the s-entry of the gradient, is eq 30's statement that the force along the tangent is nil. Same
-    solutions, no frame in the Newton matrix, and that matrix stays symmetric.
+    solutions and no frame in the Newton matrix, which is symmetric but for the rider's rotations (their bracket).
     """
     slide = Slide(p, element)
     f = p.input("f", 3, "N", "force of the joint on the rider")
