@@ -83,8 +83,8 @@ def render(every: list[Derived], wanted: Iterable[str], done: Callable[[str], No
     for derived in every:
         if derived.family.role:
             roles.setdefault(derived.family.role, []).append(derived)
-    common = {"every": every, "roles": roles, "signature": signature, "member": _member,
-              "suffix": _suffix, "call": _call}
+    tables = {role: (members, _shared(members)) for role, members in roles.items()}
+    common = {"every": every, "tables": tables, "signature": signature, "call": _call}
     for name in ("kernels.h", "registry.c", "kernels.pyx"):
         files[name] = environment.get_template(f"{name}.jinja").render(**common)
     files["__init__.py"] = environment.get_template("__init__.py.jinja").render(**common)
@@ -117,12 +117,10 @@ def _operations_text(program: Program) -> str:
     return ", ".join(f"{n} {name}" for name, n in program.operations().items() if n)
 
 
-def _suffix(derived: Derived, program: Program | Recorded) -> str:
-    return program.name.removeprefix(derived.family.name + "_")
-
-
-def _member(derived: Derived, program: Program | Recorded) -> str:
-    return f"void (*{_suffix(derived, program)})({signature(program)});"
+def _shared(members: list[Derived]) -> dict[str, str]:
+    """Kernels by suffix, with their parameters, that all families of a role have with the same parameters."""
+    each = [{p.name.removeprefix(d.family.name + "_"): signature(p) for p in d.programs} for d in members]
+    return {name: text for name, text in each[0].items() if all(other.get(name) == text for other in each)}
 
 
 def _call(program: Program | Recorded) -> str:

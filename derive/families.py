@@ -6,7 +6,7 @@ import difflib
 from collections.abc import Iterable
 from functools import partial
 
-from funicular.derive import element_kernels
+from funicular.derive import element_kernels, law_kernels
 from funicular.derive.bodies import rigid
 from funicular.derive.elements import ELEMENTS
 from funicular.derive.joints import slide
@@ -21,6 +21,12 @@ def _element(element: Element) -> Family:
                   element=element)
 
 
+def _law(element: Element, law: str) -> Family:
+    return Family(f"{element.name}_{law}", f"elastic law {law} on {element.name}",
+                  partial(law_kernels.build, element, law), (f"elements.{element.name}", "law_kernels"),
+                  role="law", element=element, law=law)
+
+
 def _slide(element: Element) -> Family:
     return Family(f"slide_{element.name}_{rigid.NAME}",
                   f"sliding joint of a {rigid.NAME} rider on a {element.name} cable",
@@ -31,10 +37,11 @@ def _slide(element: Element) -> Family:
 
 
 def families() -> dict[str, Family]:
-    """Every family by name: elements, bodies, and the slide for each pair of them."""
+    """Every family by name: elements, their laws, bodies, and the slide for each pair of element and rider."""
     every = [*map(_element, ELEMENTS.values()),
+             *(_law(element, law) for element in ELEMENTS.values() for law in element.laws),
              Family(rigid.NAME, "rigid body", rigid.build, (f"bodies.{rigid.NAME}",), rider=rigid.NAME),
-             *map(_slide, ELEMENTS.values())]
+             *(_slide(element) for element in ELEMENTS.values() if element.dim == rigid.DIM)]
     return {f.name: f for f in every}
 
 

@@ -1,14 +1,13 @@
-"""Elastic energy in Gram products of strain vectors (eq 5-8), for any element whose energy is St. Venant-Kirchhoff.
+"""Gram products of strain vectors: what any elastic energy that does not see rigid motion is a function of (eq 5-8).
 
 r is linear in the nodal vectors, so r = sum_m c_m psi_m in any other basis psi of the same span. With psi_0 = 1
 and the others built on Legendre polynomials along the axis, the gradient F needs the *strain vectors* c_m,
-m > 0, only: combinations of slopes and of differences of positions. The Green strain E = (F'F - I)/2 is linear
-in their Gram products G_mn = c_m . c_n, hence
+m > 0, only: combinations of slopes and of differences of positions. The energy is a function of their Gram products
+G_mn = c_m . c_n; a law (laws/) gives u = dU/dG and A = d2U/dG2, and then
 
-    U = 1/2 (G - G0)' A (G - G0),  u = A (G - G0),  f_m = sum_n u_mn dG_mn/dc_m,
+    f_m = sum_n u_mn dG_mn/dc_m,   K = B' A B + u (x) I,   B = dG/dc.
 
-with A constant, integrated exactly, and sparse, because Legendre polynomials are orthogonal (beam24: 114 entries
-of 784; in nodal slopes 228). G0 belongs to the straight reference of length l, whose strain vectors are unit axes.
+G0 belongs to the straight reference of length l, whose strain vectors are unit axes; G - G0 is what is staged.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ DIRECTIONS = "xyz"
 
 
 class Gram:
-    """Strain vectors, Gram pairs and the constant form A of an element."""
+    """Strain vectors and Gram pairs of an element, and the stages that lead from and to its nodal vectors."""
 
     def __init__(self, element: Element):
         self.element = element
@@ -69,63 +68,6 @@ class Gram:
         axis = {name: i for i, name in enumerate(("t0", "y0", "z0")[: self.element.dim])}
         return [int(a == b and self.names[a] in axis) for a, b in self.pairs]
 
-    @cached_property
-    def strain(self) -> dict[tuple[int, int], list]:
-        """E_ij = 1/2 sum_pairs strain[ij][p] (G - G0)_p, in the ring."""
-        g, d = self.gradient, range(self.element.dim)
-        return {(i, j): [g[a][i] * g[b][j] + (g[b][i] * g[a][j] if a != b else 0) for a, b in self.pairs]
-                for i in d for j in d if i <= j}
-
-    @cached_property
-    def elasticity(self) -> dict[tuple, int]:
-        """Index into the argument D of the law S_ij = D E, by (ij, kl); orthotropic, axes x, y, z."""
-        normal = [(i, i) for i in range(self.element.dim)]
-        shear = [ij for ij in self.strain if ij[0] != ij[1]]
-        off = [(a, b) for k, a in enumerate(normal) for b in normal[k + 1:]]
-        order = [(a, a) for a in normal] + off + [(s, s) for s in shear]
-        law = {}
-        for k, (a, b) in enumerate(order):
-            law[a, b] = law[b, a] = k
-        return law
-
-    @cached_property
-    def form(self) -> dict[tuple[int, int], dict]:
-        """A over pairs (p, q): {(elastic constant, section moment, power of l): rational}, zeros left out.
-
-        Shear enters as gamma = 2 E, so W = 1/2 sum D E_ii E_jj + 1/2 sum G gamma^2.
-        """
-        products: dict = {}
-        form = {}
-        for p in range(len(self.pairs)):
-            for q in range(p, len(self.pairs)):
-                entry: dict = {}
-                for (ij, kl), k in self.elasticity.items():
-                    if not (self.strain[ij][p] and self.strain[kl][q]):
-                        continue
-                    integrand = self.strain[ij][p] * self.strain[kl][q]
-                    if integrand not in products:
-                        products[integrand] = moments.over_element(integrand)
-                    weight = sp.QQ(1, 4) if ij[0] == ij[1] else sp.QQ(1)
-                    for (m, power), value in products[integrand].items():
-                        entry[k, m, power] = entry.get((k, m, power), 0) + weight * value
-                entry = {k: v for k, v in sorted(entry.items()) if v}
-                if entry:
-                    form[p, q] = form[q, p] = entry
-        return form
-
-    @cached_property
-    def constants(self) -> list[tuple]:
-        """The different entries of A, in order of first use: the argument A of the kernels."""
-        return list(dict.fromkeys(tuple(e.items()) for e in self.form.values()))
-
-    @cached_property
-    def index(self) -> dict[tuple[int, int], int]:
-        """Index into `constants` of each non-zero entry of A."""
-        place = {c: k for k, c in enumerate(self.constants)}
-        return {pq: place[tuple(e.items())] for pq, e in self.form.items()}
-
-    # --- stages that the kernels share -------------------------------------------------------------------
-
     def differences(self, program: Program, e: np.ndarray, w: sp.Expr, tag: str = "") -> np.ndarray:
         """Stage: nodal vectors e (n, dim) to strain vectors (m, dim), through chords (r_k - r_1) w, w = 1/l."""
         d = [program.vector(f"chord{tag}{k}" if v else "", (e[k] - e[0]) * w) if v else e[k]
@@ -144,19 +86,6 @@ class Gram:
         """Stage: dG/dt over the pairs."""
         return [program.define(f"dG_{self.pair(p)}", c[a].dot(rate[b]) + rate[a].dot(c[b]))
                 for p, (a, b) in enumerate(self.pairs)]
-
-    def stress(self, program: Program, A: np.ndarray, strain: Sequence[sp.Expr],
-               scale: sp.Expr = sp.S.One) -> list[sp.Expr]:
-        """Stage: u = scale A strain, the work-conjugates of the Gram products."""
-        u = []
-        for p in range(len(self.pairs)):
-            alike: dict[int, sp.Expr] = {}
-            for q in range(len(self.pairs)):
-                if (p, q) in self.index:
-                    k = self.index[p, q]
-                    alike[k] = alike.get(k, sp.S.Zero) + strain[q]
-            u.append(program.define(f"u_{self.pair(p)}", scale * sum(A[k] * s for k, s in alike.items())))
-        return u
 
     def by_vector(self, c: np.ndarray, p: int, m: int) -> np.ndarray | None:
         """dG_p/dc_m, a vector, or None where it is zero."""

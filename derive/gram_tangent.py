@@ -1,18 +1,20 @@
-"""Second derivatives of the elastic energy and of its damping, staged over the Gram products of gram.py."""
+"""Second derivatives of elastic energies and damping forces, staged over strain vectors, then over nodal vectors."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import sympy as sp
 from funicular.derive.gram import DIRECTIONS, Gram
 from funicular.derive.stages import Program
 
+Moduli = Mapping[tuple[int, int], sp.Expr]
 
-def tangent(gram: Gram, program: Program, c: np.ndarray, b: np.ndarray, A: np.ndarray, u: Sequence[sp.Expr],
-            w: sp.Expr) -> np.ndarray:
-    """Stages: B(c)' A B(b) + u (x) I over nodal coordinates -> (n, n), B(c) = dG/dc.
+
+def blocks(gram: Gram, program: Program, c: np.ndarray, b: np.ndarray, moduli: Moduli,
+           u: Sequence[sp.Expr]) -> np.ndarray:
+    """Stages: B(c)' A B(b) + u (x) I over strain vectors -> (n, n, dim, dim), B(c) = dG/dc, A by its non-zero entries.
 
     With b = c this is the elastic tangent; with b = tau (dc/dt + rate c) that of the damping force.
     """
@@ -21,15 +23,13 @@ def tangent(gram: Gram, program: Program, c: np.ndarray, b: np.ndarray, A: np.nd
     t = {}
     for p in range(len(gram.pairs)):
         for m in range(n):
-            alike: dict[int, np.ndarray] = {}
+            alike: dict[sp.Expr, np.ndarray] = {}
             for q in range(len(gram.pairs)):
                 g = gram.by_vector(b, q, m)
-                if g is not None and (p, q) in gram.index:
-                    k = gram.index[p, q]
-                    alike[k] = alike.get(k, 0) + g
+                if g is not None and (p, q) in moduli:
+                    alike[moduli[p, q]] = alike.get(moduli[p, q], 0) + g
             if alike:
-                t[p, m] = program.vector(f"t_{gram.pair(p)}_{gram.names[m]}",
-                                         sum(A[k] * v for k, v in alike.items()))
+                t[p, m] = program.vector(f"t_{gram.pair(p)}_{gram.names[m]}", sum(k * v for k, v in alike.items()))
     program.stage("B' A B + u (x) I: blocks over strain vectors")
     block = np.zeros((n, n, dim, dim), dtype=object)
     for m in range(n):
@@ -53,11 +53,11 @@ def tangent(gram: Gram, program: Program, c: np.ndarray, b: np.ndarray, A: np.nd
                         for j in range(i):
                             block[m, k, i, j] = block[m, k, j, i]
                 block[k, m] = block[m, k].T
-    return _nodal_tangent(gram, program, block, w, symmetric)
+    return block
 
 
-def _nodal_tangent(gram: Gram, program, block, w, symmetric):
-    """T' K T over nodal vectors; the first node's position is minus the sum of the others' columns."""
+def nodal_tangent(gram: Gram, program: Program, block: np.ndarray, w: sp.Expr, symmetric: bool) -> np.ndarray:
+    """Stages: T' K T over nodal coordinates -> (n, n); the first position is minus the sum of the others."""
     n, dim, count = len(gram.names), gram.element.dim, gram.element.n_vectors
     position = gram.element.is_position
     scale = [w if p else sp.S.One for p in position]

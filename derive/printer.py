@@ -26,6 +26,9 @@ class KernelPrinter(C99CodePrinter):
     def _print_Rational(self, expr):
         return f"{int(expr.p)}.0/{int(expr.q)}.0"
 
+    def _print_Float(self, expr):
+        return repr(float(expr))
+
     def _print_Add(self, expr):
         text = ""
         for term in self._as_ordered_terms(expr):
@@ -64,7 +67,7 @@ class KernelPrinter(C99CodePrinter):
 
     def _print(self, expr, **kwargs):
         # SymPy's printer knows sines and constants; the kernels must not
-        if not isinstance(expr, (sp.Symbol, sp.Rational, sp.Add, sp.Mul, sp.Pow)):
+        if not isinstance(expr, (sp.Symbol, sp.Rational, sp.Float, sp.Add, sp.Mul, sp.Pow)):
             raise ValueError(f"{type(expr).__name__} has no kernel form: {expr}")
         return super()._print(expr, **kwargs)
 

@@ -53,7 +53,9 @@ def _exists(module: str) -> bool:
 
 
 def _file(module: str) -> str:
-    return module.replace(".", "/") + ".py"
+    path = module.replace(".", "/")
+    package = f"{path}/__init__.py"
+    return package if (resources.files(PACKAGE) / package).is_file() else f"{path}.py"
 
 
 def _read(file: str) -> bytes:

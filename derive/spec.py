@@ -14,13 +14,15 @@ from funicular.derive.stages import Program
 
 x, y, z, l = sp.symbols("x y z l", positive=True)
 COORDINATES = {"x": x, "y": y, "z": z}
+CABLE_LAWS = ("green_exact", "green_linear", "engineering_exact", "engineering_linear")
 
 
 @dataclass(frozen=True)
 class Element:
     """r(x, y, z) = sum_k N_k d_k (eq 2): monomials, nodes, and which vectors the nodes carry.
 
-    `director` names the nodal vector from which the tangent frame takes its normal (eq 16).
+    `director` names the nodal vector from which the tangent frame takes its normal (eq 16); empty where there is
+    none. `laws` names the energies (laws/) that it comes with.
     """
 
     name: str
@@ -28,6 +30,7 @@ class Element:
     basis: tuple[sp.Expr, ...]
     nodal_vectors: tuple[str, ...]
     director: str
+    laws: tuple[str, ...]
     doc: str
     source: str
     nodes: tuple[sp.Expr, ...] = (sp.S.Zero, l)
@@ -88,7 +91,8 @@ class Family:
 
     `modules` are its specs: their text, and all that they import here, is in the spec hash. Families of one `role` have
     kernels of the same signatures; the engine reaches them through a table, each with its `facts` (integers).
-    `element` and `rider` (the name of a body) are what the kernels are about: verification samples their states.
+    `element`, `law` (a name in laws/) and `rider` (the name of a body) are what the kernels are about: verification
+    samples their states.
     """
 
     name: str
@@ -98,4 +102,5 @@ class Family:
     role: str = ""
     facts: dict[str, int] = field(default_factory=dict)
     element: Element | None = None
+    law: str | None = None
     rider: str | None = None

@@ -71,8 +71,11 @@ class Program:
         """Open a stage; the definitions that follow belong to it."""
         self.stages.append(Stage(title))
 
-    def define(self, name: str, expr: sp.Expr) -> sp.Expr:
-        """Give an expression a name. Numbers and bare symbols pass through: a name would say nothing more."""
+    def define(self, name: str, expr: sp.Expr, moves_as: sp.Symbol | None = None) -> sp.Expr:
+        """Give an expression a name. Numbers and bare symbols pass through: a name would say nothing more.
+
+        `moves_as` is a symbol that differs from this one by a constant: derivatives are taken of that one instead.
+        """
         expr = sp.sympify(expr)
         if expr.is_Number or expr.is_Symbol:
             return expr
@@ -82,7 +85,7 @@ class Program:
         self._taken.add(unique)
         symbol = sp.Symbol(unique)
         self.stages[-1].definitions.append((symbol, expr))
-        self.definition[symbol] = expr
+        self.definition[symbol] = expr if moves_as is None else moves_as
         return symbol
 
     def vector(self, name: str, components: Iterable[sp.Expr]) -> np.ndarray:
@@ -106,6 +109,12 @@ class Program:
         for expr in exprs:
             _count(expr, count)
         return count
+
+    def unused(self) -> list[str]:
+        """Names of the inputs that nothing depends on."""
+        used = {s for stage in self.stages for _, e in stage.definitions for s in e.free_symbols}
+        used |= {s for v in self.values.values() for e in v.ravel() for s in e.free_symbols}
+        return [a.name for a in self.inputs if used.isdisjoint(np.atleast_1d(self.symbols[a.name]).ravel())]
 
     def prune(self) -> Program:
         """Drop definitions that no output needs; empty stages go with them."""

@@ -20,6 +20,8 @@ def source(expr: sp.Expr) -> str:
         return str(int(expr)) if expr >= 0 else f"({int(expr)})"
     if expr.is_Rational:
         return f"q({int(expr.p)}, {int(expr.q)})"
+    if expr.is_Float:
+        return f"number({float(expr)!r})"
     if expr.is_Add:
         return "(" + " + ".join(source(a) for a in expr.args) + ")"
     if expr.is_Mul:
@@ -44,7 +46,7 @@ class ExactProgram:
         results = (f"[{', '.join(source(e) for e in self.program.values[a.name].ravel())}]"
                    for a in self.program.outputs)
         lines.append(f"    return [{', '.join(results)}]")
-        space = {"sqrt": mpmath.mp.sqrt, "q": lambda p, q: mpmath.mpf(p) / q}
+        space = {"sqrt": mpmath.mp.sqrt, "q": lambda p, q: mpmath.mpf(p) / q, "number": mpmath.mpf}
         exec(compile("\n".join(lines), f"<{self.program.name} at {DIGITS} digits>", "exec"), space)
         return space["kernel"]
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from funicular.derive.spec import Family, x, y, z
+from funicular.derive.spec import Element, Family, x, y, z
 from funicular.derive.verify_motion import turned
 from funicular.derive.verify_numbers import EPS, Numbers, State
 from funicular.derive.verify_states import reference, rotation
@@ -21,7 +21,7 @@ def invariances(family: Family, k: Numbers, states: list[State]) -> Iterator[Inv
     """The invariances of a family; the worst of each over its states is up to the caller."""
     from funicular.derive.verify_slide_invariances import slide
 
-    table = {"element": element, "slide": slide, "rigid": rigid}
+    table = {"element": element, "law": law, "slide": slide, "rigid": rigid}
     for s in states:
         yield from table[family.role or family.name](family, k, s)
 
@@ -37,8 +37,12 @@ def relative(value, scale) -> float:
 
 
 def element(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
-    """Partition of unity, totals, and rigid motion in every kernel."""
+    """Partition of unity and totals."""
     yield from _shape_and_mass(family, k, s)
+
+
+def law(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
+    """Rigid motion in every kernel."""
     yield from _rigid_motion(family, k, s)
     yield from _deformed(family, k, s)
     yield from _damping(family, k, s)
@@ -67,7 +71,7 @@ def _shape_and_mass(family: Family, k: Numbers, s: State) -> Iterator[Invariance
 def _rigid_motion(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
     """Moved without strain: coordinates of size c hold chords, in lengths, to eps (1 + |c|/l)."""
     spec, random = family.element, np.random.default_rng(1)
-    stiff = np.max(np.abs(s["A"]))
+    stiff = _stiffness(family, s)
     for far, where in ((0.0, ""), (1e4, " at 10⁴ lengths")):
         chord = EPS * (1 + far)
         for _ in range(3):
@@ -77,6 +81,14 @@ def _rigid_motion(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
             U, f = k("energy", s, e=e)["U"], k("elastic_force", s, e=e)["f"]
             yield f"rigid motion stores no energy{where}", relative(U, stiff), 50 * chord**2
             yield f"rigid motion makes no force{where}", relative(f, stiff / s["l"]), 20 * chord
+
+
+def _stiffness(family: Family, s: State) -> float:
+    """Energy of a strain of order one."""
+    if family.law == "continuum":
+        return float(np.max(np.abs(s["A"])))
+    EA, EI = s["A"]
+    return float(max(EA * s["l"], EI / s["l"]))
 
 
 def _moment(e: np.ndarray, f: np.ndarray, positions: np.ndarray) -> np.ndarray:
@@ -94,7 +106,7 @@ def _deformed(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
     f, K = k("elastic_force", s, e=e)["f"], k("elastic_tangent", s, e=e)["K"]
     for at, where in ((e, ""), (away, " at 10⁴ lengths")):
         force = k("elastic_force", s, e=at)["f"]
-        scale = max(np.max(np.abs(f)), np.max(np.abs(s["A"])) / s["l"])
+        scale = max(np.max(np.abs(f)), _stiffness(family, s) / s["l"])
         yield f"no net force{where}", relative(positions @ force, scale), 8 * EPS
         yield f"no net moment{where}", relative(_moment(at, force, positions), scale * s["l"]), 64 * EPS
     yield "force, tangent: same digits at 10⁴ lengths", max(
@@ -122,19 +134,38 @@ def _spins(dim: int) -> list[np.ndarray]:
 def _damping(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
     spec = family.element
     positions = np.array(spec.is_position, dtype=float)
-    scale = s["tau"] * np.max(np.abs(s["A"])) / s["l"]
+    scale = s["tau"] * _stiffness(family, s) / s["l"]
     relative_e = s["e"] - np.outer(positions, s["e"][0])
+    f = k("damping_force", s)["f"]
+    scale_f = max(scale, np.max(np.abs(f)))
+    yield "damping: no net force", relative(positions @ f, scale_f), 64 * EPS
+    twisted = spec.dim == 3 and family.law != "continuum"
     for spin in _spins(spec.dim):
         v = relative_e @ spin.T + np.outer(positions, s["g"])
-        out = k("damping_force", s, v=v)["f"], k("dissipation", s, v=v)["P"]
-        yield "rigid velocity is not damped", max(relative(out[0], scale), relative(out[1], scale)), 64 * EPS
-    f = k("damping_force", s)["f"]
-    scale = max(scale, np.max(np.abs(f)))
-    yield "damping: no net force or moment", max(
-        relative(positions @ f, scale), relative(_moment(s["e"], f, positions), scale)), 64 * EPS
+        f_rigid, P = k("damping_force", s, v=v)["f"], k("dissipation", s, v=v)["P"]
+        if twisted:
+            left = float(P[0]) - _spun(spec, s, spin)
+            yield "rigid velocity is damped by the spin about the tangent alone", relative(left, scale), 64 * EPS
+        else:
+            yield "rigid velocity is not damped", max(relative(f_rigid, scale), relative(P, scale)), 64 * EPS
+    if not twisted:
+        yield "damping: no net moment", relative(_moment(s["e"], f, positions), scale_f), 64 * EPS
     P = float(k("dissipation", s)["P"][0])
     mismatch = abs(P - np.sum(s["v"] * f)) / P if P > 0 else np.inf
     yield "damping takes energy out: P = v . f > 0", mismatch, 32 * EPS
+
+
+def _spun(spec: Element, s: State, spin: np.ndarray) -> float:
+    """Power on a bent cable whose sections do not follow its turn about the tangent i: EI tau (w.i)^2 |i x r''|^2."""
+    from funicular.derive.verify_reference import Shape
+
+    omega = np.array([spin[2, 1], spin[0, 2], spin[1, 0]])
+    shape, half, total = Shape(spec, s["l"].item()), float(s["l"]) / 2, 0.0
+    for t, weight in zip(*np.polynomial.legendre.leggauss(max(p[0] for p in shape.powers) - 1), strict=True):
+        r_x, r_xx = (shape((half * (1 + t), 0, 0), by).astype(float) @ s["e"] for by in ((1, 0, 0), (2, 0, 0)))
+        i = r_x / np.linalg.norm(r_x)
+        total += weight * half * (omega @ i) ** 2 * np.sum(np.cross(i, r_xx) ** 2)
+    return float(s["tau"] * s["A"][1]) * total
 
 
 def rigid(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:

@@ -2,15 +2,16 @@
 
 rounding       the output in C against the same expression at 50 digits
 50 digits      the output in C against differences at 50 digits of what it is the derivative of
-complex step   ... against Im F(ih)/h, h = 1e-30, in C; second derivatives by Cauchy's integral on a circle
-central        ... against five-point central differences in C, the step by a study that does not see the output
+complex step   ... against Im F(ih)/h, h = 1e-30, in C; second derivatives by Cauchy's integral on a circle, its radius
+               by a study that does not see the output
+central        ... against five-point central differences in C, the step by such a study
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import mpmath
@@ -29,7 +30,7 @@ VANISHING = 1e-20  # far below any output of a sample, far above differences at 
 _FIRST = ((-2, 1 / 12), (-1, -8 / 12), (1, 8 / 12), (2, -1 / 12))
 _SECOND = ((-2, -1 / 12), (-1, 16 / 12), (0, -30 / 12), (1, 16 / 12), (2, -1 / 12))
 _STEPS = tuple(10.0**-k for k in np.arange(1.5, 5.1, 0.5))
-_RADIUS, _ON_CIRCLE = 0.03, 24
+_RADII, _ON_CIRCLE = (0.03, 0.01, 0.003, 0.001), 24
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class Relation:
     output: str
     text: str
     order: int
-    path: Callable[[Numbers, State, object, int], object]
+    path: Callable[[Numbers, State, object, int], object] | None
     n: int = 1
     of: Callable[[Numbers, State], object] | None = None
 
@@ -77,6 +78,10 @@ class Finding:
     def failed(self) -> list[str]:
         """Methods whose error is above its ceiling, or not a number."""
         return [m for m, error in self.errors.items() if not error <= self.ceiling(m)]
+
+    def plain(self) -> Finding:
+        """The same without the functions, which do not pass between processes."""
+        return replace(self, relation=replace(self.relation, path=None, of=None))
 
     @property
     def worst_entry(self) -> int:
@@ -134,11 +139,10 @@ def _complex(relation: Relation, numbers: Numbers, values: State) -> np.ndarray:
     s = numbers.state(values)
     if relation.order == 1:
         return (relation.along(numbers, s, 1e-30j).imag / 1e-30).ravel()
-    total = 0
-    for k in range(_ON_CIRCLE):
-        turn = np.exp(2j * math.pi * k / _ON_CIRCLE)
-        total = total + relation.along(numbers, s, _RADIUS * turn) / turn**2
-    return (2 * total.real / _ON_CIRCLE / _RADIUS**2).ravel()
+    turns = [np.exp(2j * math.pi * k / _ON_CIRCLE) for k in range(_ON_CIRCLE)]
+    tried = [2 * sum(relation.along(numbers, s, radius * turn) / turn**2 for turn in turns).real.ravel()
+             / _ON_CIRCLE / radius**2 for radius in _RADII]
+    return tried[_least_change(tried)]
 
 
 def _central(relation: Relation, numbers: Numbers, values: State) -> tuple[np.ndarray, float]:
@@ -147,6 +151,10 @@ def _central(relation: Relation, numbers: Numbers, values: State) -> tuple[np.nd
     weights = _FIRST if relation.order == 1 else _SECOND
     tried = [sum(w * relation.along(numbers, s, k * h) for k, w in weights).ravel() / h**relation.order
              for h in _STEPS]
-    change = [float(np.abs(a - b).max()) for a, b in pairwise(tried)]
-    best = int(np.argmin(change))
+    best = _least_change(tried)
     return tried[best], _STEPS[best]
+
+
+def _least_change(tried: list[np.ndarray]) -> int:
+    """Which of a sequence changes least to the next."""
+    return int(np.argmin([float(np.abs(a - b).max()) for a, b in pairwise(tried)]))

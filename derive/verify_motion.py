@@ -46,7 +46,7 @@ class Rigid:
         q = random.normal(size=4)
         q /= np.linalg.norm(q)
         u = random.normal(size=3) / 3
-        R = near - turned(q, u) + random.normal(size=3) / 4
+        R = near - turned(q, u) + random.normal(size=3) / 8  # far below radii of curvature: no fold of s(q)
         return {"b": np.concatenate([R, q]), "u": u, "w": random.normal(size=6), "wdot": random.normal(size=6)}
 
     @staticmethod

@@ -81,37 +81,6 @@ def _monomial(powers, by, at):
     return value
 
 
-def law(D, E: np.ndarray):
-    """Strain energy density of the orthotropic law: 1/2 sum D_ij E_ii E_jj + 1/2 sum G (2 E_ij)^2."""
-    dim = len(E)
-    off = [(i, j) for i in range(dim) for j in range(i + 1, dim)]
-    normal, cross, shear = D[:dim], D[dim : dim + len(off)], D[dim + len(off) :]
-    total = sum(normal[i] * E[i, i] ** 2 for i in range(dim)) / 2
-    total += sum(d * E[i, i] * E[j, j] for d, (i, j) in zip(cross, off, strict=True))
-    return total + 2 * sum(g * E[i, j] ** 2 for g, (i, j) in zip(shear, off, strict=True))
-
-
-def energy(element: Element, s):
-    """eq 5-7 by quadrature."""
-    shape = Shape(element, s["l"].item())
-    total = mp.mpf(0)
-    for at, weight in shape.points(*s["rectangle"]):
-        F = s["e"].T.dot(shape.gradient(at))
-        total += weight * law(s["D"], (F.T.dot(F) - np.eye(element.dim, dtype=int)) / 2)
-    return total
-
-
-def dissipation(element: Element, s):
-    """Power of the viscous stress tau D dE/dt by quadrature."""
-    shape = Shape(element, s["l"].item())
-    total = mp.mpf(0)
-    for at, weight in shape.points(*s["rectangle"]):
-        N = shape.gradient(at)
-        F, rate = s["e"].T.dot(N), s["v"].T.dot(N)
-        total += weight * 2 * law(s["D"], (F.T.dot(rate) + rate.T.dot(F)) / 2)
-    return s["tau"].item() * total
-
-
 def mass(element: Element, s) -> np.ndarray:
     """eq 4 by quadrature."""
     shape = Shape(element, s["l"].item())

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+from funicular.derive import verify_laws
 from funicular.derive import verify_reference as reference
 from funicular.derive.spec import Element, Family
 from funicular.derive.verify_methods import Relation
@@ -15,7 +16,8 @@ def relations(family: Family) -> list[Relation]:
     """The relations of a family's kernels."""
     from funicular.derive.verify_slide import slide
 
-    table: dict[str, Callable[[Family], list[Relation]]] = {"element": element, "slide": slide, "rigid": rigid}
+    table: dict[str, Callable[[Family], list[Relation]]] = {"element": element, "law": law, "slide": slide,
+                                                               "rigid": rigid}
     return table[family.role or family.name](family)
 
 
@@ -38,38 +40,47 @@ def entry(name: str) -> Callable:
     return lambda s, j: unit(s[name], j)
 
 
+def root(function: Callable, *about) -> Callable:
+    """A path of order 0: function(*about, state), which shares nothing with the derivation."""
+    return lambda k, s, t, j: function(*about, s)
+
+
 def element(family: Family) -> list[Relation]:
-    """eq 2-9."""
+    """eq 2-4."""
+    spec: Element = family.element
+
+    def shape(s):
+        return reference.Shape(spec, s["l"].item())(s["at"])
+
+    return [
+        Relation("mass", "m", "∫ ρ N N' dV by quadrature", 0, root(reference.mass, spec)),
+        Relation("gravity", "Q", "∫ ρ N g dV by quadrature", 0, root(reference.gravity, spec)),
+        Relation("inertia_force", "f", "(m ⊗ I) a", 0, root(lambda s: np.asarray(s["m"]).dot(s["a"]))),
+        Relation("position", "N", "nodal conditions solved at 50 digits", 0, root(shape)),
+        Relation("position", "r", "Σ N d", 0, root(lambda s: shape(s).dot(s["e"]))),
+    ]
+
+
+def law(family: Family) -> list[Relation]:
+    """eq 5-9."""
     spec: Element = family.element
     n = spec.n_coordinates
-
-    def inertia(k, s, t, j):
-        return np.asarray(s["m"]).dot(s["a"])
 
     def energy_of_constants(k, s):
         return k("energy", s, A=k("stiffness", s)["A"])["U"]
 
-    def root(function):
-        return lambda k, s, t, j: function(spec, s)
-
+    energy, power = (root(f, spec, family.law) for f in (verify_laws.energy, verify_laws.dissipation))
     force_by_both = from_kernel("damping_force", "f", e=entry("e"), v=lambda s, j: s["rate"] * unit(s["v"], j))
     return [
-        Relation("mass", "m", "∫ ρ N N' dV by quadrature", 0, root(reference.mass)),
-        Relation("gravity", "Q", "∫ ρ N g dV by quadrature", 0, root(reference.gravity)),
-        Relation("inertia_force", "f", "(m ⊗ I) a", 0, inertia),
-        Relation("stiffness", "A", "integrals of strain products", 0, from_kernel("stiffness", "A")),
-        Relation("stiffness", "A", "energy from A against ∫ W dV by quadrature", 0, root(reference.energy),
+        Relation("stiffness", "A", "the law's constants at 50 digits", 0, from_kernel("stiffness", "A")),
+        Relation("stiffness", "A", "energy from A against its integral by quadrature", 0, energy,
                  of=energy_of_constants),
-        Relation("energy", "U", "∫ W dV by quadrature", 0, root(reference.energy)),
+        Relation("energy", "U", "the law's integral by quadrature", 0, energy),
         Relation("elastic_force", "f", "dU/de", 1, from_kernel("energy", "U", e=entry("e")), n),
         Relation("elastic_tangent", "K", "df/de", 1, from_kernel("elastic_force", "f", e=entry("e")), n),
         Relation("damping_force", "f", "d(P/2)/dv", 1, _half(from_kernel("dissipation", "P", v=entry("v"))), n),
         Relation("damping_tangent", "K", "df/de + rate df/dv", 1, force_by_both, n),
-        Relation("dissipation", "P", "∫ τ E' : D : E' dV by quadrature", 0, root(reference.dissipation)),
-        Relation("position", "N", "nodal conditions solved at 50 digits", 0,
-                 lambda k, s, t, j: reference.Shape(spec, s["l"].item())(s["at"])),
-        Relation("position", "r", "Σ N d", 0,
-                 lambda k, s, t, j: reference.Shape(spec, s["l"].item())(s["at"]).dot(s["e"])),
+        Relation("dissipation", "P", "the law's integral by quadrature", 0, power),
     ]
 
 

@@ -19,8 +19,9 @@ class Curve:
 
     def __init__(self, element, s):
         shape, at = reference.Shape(element, s["l"].item()), (s["x"].item(), 0, 0)
+        self.point, self.tangent = (shape(at, d).dot(s["e"]) for d in ((0, 0, 0), (1, 0, 0)))
         by = tuple(element.director.partition("_")[2].count(c) for c in "xyz")
-        self.point, self.tangent, self.director = (shape(at, d).dot(s["e"]) for d in ((0, 0, 0), (1, 0, 0), by))
+        self.director = shape(at, by).dot(s["e"]) if element.director else s["director"]
 
 
 def slide(family: Family) -> list[Relation]:

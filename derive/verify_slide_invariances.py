@@ -46,6 +46,8 @@ def _kept(family: Family, k: Numbers, s: State, n_e: int) -> Iterator[Invariance
     free = np.zeros(n)
     free[n_e : n_e + len(gap)] = along
     yield "the rider is free along the tangent", relative(out["H"] @ free, along), 16 * EPS
+    H = k("terms", {**on, "director": s["director"][[1, 2, 0]] - s["director"]})["H"]
+    yield "H'H is the same for any director", relative(H.T @ H - out["H"].T @ out["H"], H.T @ H), 64 * EPS
 
 
 def _frame(family: Family, k: Numbers, s: State, out: dict, n_e: int) -> Iterator[Invariance]:
@@ -55,6 +57,7 @@ def _frame(family: Family, k: Numbers, s: State, out: dict, n_e: int) -> Iterato
     Q, turn = rider.frame(np.random.default_rng(3))
     turned = {**s, "e": s["e"] @ Q.T, "v": s["v"] @ Q.T, "b": turn(s["b"]), "w": s["w"].copy()}
     turned["w"][: element.dim] = Q @ s["w"][: element.dim]
+    turned["director"] = Q @ s["director"]
     new = k("terms", turned)
     yield "turned scene: same C, s_rate, Q_d, W", max(
         relative(new[name] - out[name], max(relative(out[name], 1), 1.0)) for name in _OUTPUTS), 256 * EPS

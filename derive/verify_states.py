@@ -6,9 +6,11 @@ Sizes are stout and of order one, so that no term hides below the rounding of an
 from __future__ import annotations
 
 import numpy as np
-from funicular.derive.spec import Element, Family
+import sympy as sp
+from funicular.derive.spec import Element, Family, x
 from funicular.derive.verify_motion import RIDERS, exponential
 from funicular.derive.verify_numbers import Numbers
+from funicular.derive.verify_reference import Shape
 
 SEEDS = (20050401, 20050705)  # days on which the paper was received and accepted
 LENGTH, HEIGHT, WIDTH = 0.7, 0.31, 0.23
@@ -27,11 +29,13 @@ def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
         if family.element:
             state |= element_state(family.element, random)
         if family.rider:
-            near = state["e"][0] if "e" in state else random.normal(size=3)
+            near = _on_axis(family.element, state) if family.element else random.normal(size=3)
             state |= RIDERS[family.rider].sample(random, near)
             state |= {"mass": np.float64(1.7), "J": _inertia(random), "a": random.normal(size=len(state["w"]))}
+        if family.element and family.rider:
+            state["director"] = director(family.element, state, random)
         state["f"] = random.normal(size=family.element.dim if family.element else 3)
-        if family.role == "element":
+        if family.role in ("element", "law"):
             state |= _constants(family, exact, state, random)
         found.append(state)
     return [*found, found[0] | at_rest(family)]
@@ -47,7 +51,21 @@ def at_rest(family: Family) -> dict[str, np.ndarray]:
         origin = np.zeros(3)
         origin[0] = LENGTH / 2
         state |= RIDERS[family.rider].at_rest(origin)
+        state["director"] = np.array([0.0, 1.0, 0.0])
     return state
+
+
+def director(element: Element, state: dict[str, np.ndarray], random: np.random.Generator) -> np.ndarray:
+    """A direction off the tangent, neither of unit length nor normal to it."""
+    tangent = _on_axis(element, state, 1)
+    tangent /= np.linalg.norm(tangent)
+    normal = np.linalg.qr(np.stack([tangent, *random.normal(size=(2, 3))], axis=1))[0][:, 1]
+    return 0.6 * tangent + 1.3 * normal
+
+
+def _on_axis(element: Element, state: dict[str, np.ndarray], order: int = 0) -> np.ndarray:
+    """Point of the centreline at the state's x, or a derivative there."""
+    return Shape(element, state["l"])((state["x"], 0, 0), (order, 0, 0)).astype(float) @ state["e"]
 
 
 def section(height: float = HEIGHT, width: float = WIDTH) -> np.ndarray:
@@ -86,11 +104,12 @@ def rotation(random: np.random.Generator, dim: int, angle: float | None = None) 
 def element_state(element: Element, random: np.random.Generator) -> dict[str, np.ndarray]:
     """A bent, stretched, sheared and turned element with its rates, and the data of the section and the law."""
     dim, n = element.dim, element.n_vectors
+    mild = 3 / max(int(sp.degree(b, x)) for b in element.basis)  # curvatures of the same size for any degree
     e = reference(element, LENGTH) @ rotation(random, dim).T
     per_node = len(element.nodal_vectors)
     for k in range(len(element.nodes)):
-        e[k * per_node : (k + 1) * per_node] @= rotation(random, dim, angle=0.4).T
-    e += random.normal(size=(n, dim)) * 0.15
+        e[k * per_node : (k + 1) * per_node] @= rotation(random, dim, angle=0.4 * mild).T
+    e += random.normal(size=(n, dim)) * 0.15 * mild**2
     e[element.is_position] += random.normal(size=dim)
     return {
         "l": np.float64(LENGTH), "rectangle": np.array([HEIGHT, WIDTH]), "section": section(), "e": e,
@@ -105,7 +124,7 @@ def _constants(family: Family, exact: Numbers, state: dict, random: np.random.Ge
     dim = family.element.dim
     pairs = dim * (dim - 1) // 2
     D = np.concatenate([random.uniform(40, 60, dim), random.uniform(5, 15, pairs), random.uniform(10, 20, pairs)])
-    made = {"D": D, "a": random.normal(size=(family.element.n_vectors, dim))}
+    made = {"D": D, "youngs_modulus": np.float64(53.0), "a": random.normal(size=(family.element.n_vectors, dim))}
     s = exact.state(state | made)
     for kernel, output in (("stiffness", "A"), ("mass", "m")):
         if kernel in exact.programs:

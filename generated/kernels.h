@@ -20,14 +20,139 @@ typedef double fu_real;
 void beam24_mass(fu_real l, fu_real density, const fu_real *section, fu_real *m);
 void beam24_gravity(fu_real l, fu_real density, const fu_real *section, const fu_real *g, fu_real *Q);
 void beam24_inertia_force(const fu_real *m, const fu_real *a, fu_real *f);
-void beam24_stiffness(fu_real l, const fu_real *section, const fu_real *D, fu_real *A);
-void beam24_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
-void beam24_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
-void beam24_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
-void beam24_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
-void beam24_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
-void beam24_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 void beam24_position(fu_real l, const fu_real *at, const fu_real *e, fu_real *N, fu_real *r);
+
+/* cable12: spatial ANCF cable, cubic, axial and bending stiffness */
+void cable12_mass(fu_real l, fu_real density, const fu_real *section, fu_real *m);
+void cable12_gravity(fu_real l, fu_real density, const fu_real *section, const fu_real *g, fu_real *Q);
+void cable12_inertia_force(const fu_real *m, const fu_real *a, fu_real *f);
+void cable12_position(fu_real l, const fu_real *at, const fu_real *e, fu_real *N, fu_real *r);
+
+/* cable18: spatial cable, quintic: a slide crosses its nodes without a jump of acceleration */
+void cable18_mass(fu_real l, fu_real density, const fu_real *section, fu_real *m);
+void cable18_gravity(fu_real l, fu_real density, const fu_real *section, const fu_real *g, fu_real *Q);
+void cable18_inertia_force(const fu_real *m, const fu_real *a, fu_real *f);
+void cable18_position(fu_real l, const fu_real *at, const fu_real *e, fu_real *N, fu_real *r);
+
+/* beam12p: fully parameterised planar ANCF beam, shear deformable */
+void beam12p_mass(fu_real l, fu_real density, const fu_real *section, fu_real *m);
+void beam12p_gravity(fu_real l, fu_real density, const fu_real *section, const fu_real *g, fu_real *Q);
+void beam12p_inertia_force(const fu_real *m, const fu_real *a, fu_real *f);
+void beam12p_position(fu_real l, const fu_real *at, const fu_real *e, fu_real *N, fu_real *r);
+
+/* cable8p: planar ANCF cable, cubic, axial and bending stiffness */
+void cable8p_mass(fu_real l, fu_real density, const fu_real *section, fu_real *m);
+void cable8p_gravity(fu_real l, fu_real density, const fu_real *section, const fu_real *g, fu_real *Q);
+void cable8p_inertia_force(const fu_real *m, const fu_real *a, fu_real *f);
+void cable8p_position(fu_real l, const fu_real *at, const fu_real *e, fu_real *N, fu_real *r);
+
+/* beam24_continuum: elastic law continuum on beam24 */
+void beam24_continuum_stiffness(fu_real l, const fu_real *section, const fu_real *D, fu_real *A);
+void beam24_continuum_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void beam24_continuum_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void beam24_continuum_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void beam24_continuum_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
+void beam24_continuum_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
+void beam24_continuum_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+
+/* cable12_green_exact: elastic law green_exact on cable12 */
+void cable12_green_exact_stiffness(fu_real youngs_modulus, const fu_real *section, fu_real *A);
+void cable12_green_exact_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void cable12_green_exact_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void cable12_green_exact_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable12_green_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
+void cable12_green_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
+void cable12_green_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+
+/* cable12_green_linear: elastic law green_linear on cable12 */
+void cable12_green_linear_stiffness(fu_real youngs_modulus, const fu_real *section, fu_real *A);
+void cable12_green_linear_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void cable12_green_linear_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void cable12_green_linear_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable12_green_linear_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
+void cable12_green_linear_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
+void cable12_green_linear_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+
+/* cable12_engineering_exact: elastic law engineering_exact on cable12 */
+void cable12_engineering_exact_stiffness(fu_real youngs_modulus, const fu_real *section, fu_real *A);
+void cable12_engineering_exact_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void cable12_engineering_exact_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void cable12_engineering_exact_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable12_engineering_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
+void cable12_engineering_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
+void cable12_engineering_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+
+/* cable12_engineering_linear: elastic law engineering_linear on cable12 */
+void cable12_engineering_linear_stiffness(fu_real youngs_modulus, const fu_real *section, fu_real *A);
+void cable12_engineering_linear_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void cable12_engineering_linear_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void cable12_engineering_linear_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable12_engineering_linear_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
+void cable12_engineering_linear_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
+void cable12_engineering_linear_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+
+/* cable18_green_exact: elastic law green_exact on cable18 */
+void cable18_green_exact_stiffness(fu_real youngs_modulus, const fu_real *section, fu_real *A);
+void cable18_green_exact_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void cable18_green_exact_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void cable18_green_exact_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable18_green_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
+void cable18_green_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
+void cable18_green_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+
+/* cable18_engineering_exact: elastic law engineering_exact on cable18 */
+void cable18_engineering_exact_stiffness(fu_real youngs_modulus, const fu_real *section, fu_real *A);
+void cable18_engineering_exact_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void cable18_engineering_exact_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void cable18_engineering_exact_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable18_engineering_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
+void cable18_engineering_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
+void cable18_engineering_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+
+/* beam12p_continuum: elastic law continuum on beam12p */
+void beam12p_continuum_stiffness(fu_real l, const fu_real *section, const fu_real *D, fu_real *A);
+void beam12p_continuum_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void beam12p_continuum_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void beam12p_continuum_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void beam12p_continuum_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
+void beam12p_continuum_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
+void beam12p_continuum_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+
+/* cable8p_green_exact: elastic law green_exact on cable8p */
+void cable8p_green_exact_stiffness(fu_real youngs_modulus, const fu_real *section, fu_real *A);
+void cable8p_green_exact_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void cable8p_green_exact_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void cable8p_green_exact_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable8p_green_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
+void cable8p_green_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
+void cable8p_green_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+
+/* cable8p_green_linear: elastic law green_linear on cable8p */
+void cable8p_green_linear_stiffness(fu_real youngs_modulus, const fu_real *section, fu_real *A);
+void cable8p_green_linear_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void cable8p_green_linear_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void cable8p_green_linear_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable8p_green_linear_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
+void cable8p_green_linear_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
+void cable8p_green_linear_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+
+/* cable8p_engineering_exact: elastic law engineering_exact on cable8p */
+void cable8p_engineering_exact_stiffness(fu_real youngs_modulus, const fu_real *section, fu_real *A);
+void cable8p_engineering_exact_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void cable8p_engineering_exact_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void cable8p_engineering_exact_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable8p_engineering_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
+void cable8p_engineering_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
+void cable8p_engineering_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+
+/* cable8p_engineering_linear: elastic law engineering_linear on cable8p */
+void cable8p_engineering_linear_stiffness(fu_real youngs_modulus, const fu_real *section, fu_real *A);
+void cable8p_engineering_linear_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void cable8p_engineering_linear_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void cable8p_engineering_linear_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable8p_engineering_linear_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
+void cable8p_engineering_linear_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
+void cable8p_engineering_linear_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 
 /* rigid: rigid body */
 void rigid_point(const fu_real *b, const fu_real *u, const fu_real *w, fu_real *p, fu_real *p_q, fu_real *v, fu_real *bias);
@@ -36,10 +161,22 @@ void rigid_inertia_tangent(fu_real mass, const fu_real *J, const fu_real *w, fu_
 void rigid_kinetic_energy(fu_real mass, const fu_real *J, const fu_real *w, fu_real *T);
 
 /* slide_beam24_rigid: sliding joint of a rigid rider on a beam24 cable */
-void slide_beam24_rigid_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
-void slide_beam24_rigid_terms(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *v, const fu_real *w, fu_real *C, fu_real *C_q, fu_real *C_s, fu_real *G, fu_real *s_rate, fu_real *Q_d, fu_real *H, fu_real *W, fu_real *s_bias);
+void slide_beam24_rigid_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
+void slide_beam24_rigid_terms(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *v, const fu_real *w, const fu_real *director, fu_real *C, fu_real *C_q, fu_real *C_s, fu_real *G, fu_real *s_rate, fu_real *Q_d, fu_real *H, fu_real *W, fu_real *s_bias);
 void slide_beam24_rigid_residual(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *phi, fu_real *g);
 void slide_beam24_rigid_tangent(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *J, fu_real *K);
+
+/* slide_cable12_rigid: sliding joint of a rigid rider on a cable12 cable */
+void slide_cable12_rigid_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
+void slide_cable12_rigid_terms(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *v, const fu_real *w, const fu_real *director, fu_real *C, fu_real *C_q, fu_real *C_s, fu_real *G, fu_real *s_rate, fu_real *Q_d, fu_real *H, fu_real *W, fu_real *s_bias);
+void slide_cable12_rigid_residual(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *phi, fu_real *g);
+void slide_cable12_rigid_tangent(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *J, fu_real *K);
+
+/* slide_cable18_rigid: sliding joint of a rigid rider on a cable18 cable */
+void slide_cable18_rigid_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
+void slide_cable18_rigid_terms(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *v, const fu_real *w, const fu_real *director, fu_real *C, fu_real *C_q, fu_real *C_s, fu_real *G, fu_real *s_rate, fu_real *Q_d, fu_real *H, fu_real *W, fu_real *s_bias);
+void slide_cable18_rigid_residual(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *phi, fu_real *g);
+void slide_cable18_rigid_tangent(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *J, fu_real *K);
 
 /* What the engine needs of a element. */
 typedef struct {
@@ -50,28 +187,39 @@ typedef struct {
     void (*mass)(fu_real l, fu_real density, const fu_real *section, fu_real *m);
     void (*gravity)(fu_real l, fu_real density, const fu_real *section, const fu_real *g, fu_real *Q);
     void (*inertia_force)(const fu_real *m, const fu_real *a, fu_real *f);
-    void (*stiffness)(fu_real l, const fu_real *section, const fu_real *D, fu_real *A);
+    void (*position)(fu_real l, const fu_real *at, const fu_real *e, fu_real *N, fu_real *r);
+} fu_element;
+
+/* What the engine needs of a law. */
+typedef struct {
+    const char *name;
     void (*energy)(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
     void (*elastic_force)(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
     void (*elastic_tangent)(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
     void (*damping_force)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
     void (*damping_tangent)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
     void (*dissipation)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
-    void (*position)(fu_real l, const fu_real *at, const fu_real *e, fu_real *N, fu_real *r);
-} fu_element;
-extern const fu_element fu_elements[];
-extern const int fu_n_elements;
+} fu_law;
 
 /* What the engine needs of a slide. */
 typedef struct {
     const char *name;
     int coordinates;
-    void (*constraint)(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
-    void (*terms)(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *v, const fu_real *w, fu_real *C, fu_real *C_q, fu_real *C_s, fu_real *G, fu_real *s_rate, fu_real *Q_d, fu_real *H, fu_real *W, fu_real *s_bias);
+    void (*constraint)(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
+    void (*terms)(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *v, const fu_real *w, const fu_real *director, fu_real *C, fu_real *C_q, fu_real *C_s, fu_real *G, fu_real *s_rate, fu_real *Q_d, fu_real *H, fu_real *W, fu_real *s_bias);
     void (*residual)(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *phi, fu_real *g);
     void (*tangent)(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *J, fu_real *K);
 } fu_slide;
-extern const fu_slide fu_slides[];
-extern const int fu_n_slides;
+
+/* Every table, one entry a family. */
+typedef struct {
+    int n_elements;
+    const fu_element *elements;
+    int n_laws;
+    const fu_law *laws;
+    int n_slides;
+    const fu_slide *slides;
+} fu_tables;
+extern const fu_tables fu_all;
 
 #endif

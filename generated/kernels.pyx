@@ -4,26 +4,136 @@
 
 import numpy as np
 
+from cpython.pycapsule cimport PyCapsule_New
+
 cdef extern from "kernels.h" nogil:
+    ctypedef struct fu_tables:
+        pass
+    const fu_tables fu_all
     void c_beam24_mass "beam24_mass"(double l, double density, const double *section, double *m)
     void c_beam24_gravity "beam24_gravity"(double l, double density, const double *section, const double *g, double *Q)
     void c_beam24_inertia_force "beam24_inertia_force"(const double *m, const double *a, double *f)
-    void c_beam24_stiffness "beam24_stiffness"(double l, const double *section, const double *D, double *A)
-    void c_beam24_energy "beam24_energy"(double l, const double *e, const double *A, double *U)
-    void c_beam24_elastic_force "beam24_elastic_force"(double l, const double *e, const double *A, double *f)
-    void c_beam24_elastic_tangent "beam24_elastic_tangent"(double l, const double *e, const double *A, double *K)
-    void c_beam24_damping_force "beam24_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
-    void c_beam24_damping_tangent "beam24_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
-    void c_beam24_dissipation "beam24_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
     void c_beam24_position "beam24_position"(double l, const double *at, const double *e, double *N, double *r)
+    void c_cable12_mass "cable12_mass"(double l, double density, const double *section, double *m)
+    void c_cable12_gravity "cable12_gravity"(double l, double density, const double *section, const double *g, double *Q)
+    void c_cable12_inertia_force "cable12_inertia_force"(const double *m, const double *a, double *f)
+    void c_cable12_position "cable12_position"(double l, const double *at, const double *e, double *N, double *r)
+    void c_cable18_mass "cable18_mass"(double l, double density, const double *section, double *m)
+    void c_cable18_gravity "cable18_gravity"(double l, double density, const double *section, const double *g, double *Q)
+    void c_cable18_inertia_force "cable18_inertia_force"(const double *m, const double *a, double *f)
+    void c_cable18_position "cable18_position"(double l, const double *at, const double *e, double *N, double *r)
+    void c_beam12p_mass "beam12p_mass"(double l, double density, const double *section, double *m)
+    void c_beam12p_gravity "beam12p_gravity"(double l, double density, const double *section, const double *g, double *Q)
+    void c_beam12p_inertia_force "beam12p_inertia_force"(const double *m, const double *a, double *f)
+    void c_beam12p_position "beam12p_position"(double l, const double *at, const double *e, double *N, double *r)
+    void c_cable8p_mass "cable8p_mass"(double l, double density, const double *section, double *m)
+    void c_cable8p_gravity "cable8p_gravity"(double l, double density, const double *section, const double *g, double *Q)
+    void c_cable8p_inertia_force "cable8p_inertia_force"(const double *m, const double *a, double *f)
+    void c_cable8p_position "cable8p_position"(double l, const double *at, const double *e, double *N, double *r)
+    void c_beam24_continuum_stiffness "beam24_continuum_stiffness"(double l, const double *section, const double *D, double *A)
+    void c_beam24_continuum_energy "beam24_continuum_energy"(double l, const double *e, const double *A, double *U)
+    void c_beam24_continuum_elastic_force "beam24_continuum_elastic_force"(double l, const double *e, const double *A, double *f)
+    void c_beam24_continuum_elastic_tangent "beam24_continuum_elastic_tangent"(double l, const double *e, const double *A, double *K)
+    void c_beam24_continuum_damping_force "beam24_continuum_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
+    void c_beam24_continuum_damping_tangent "beam24_continuum_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
+    void c_beam24_continuum_dissipation "beam24_continuum_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable12_green_exact_stiffness "cable12_green_exact_stiffness"(double youngs_modulus, const double *section, double *A)
+    void c_cable12_green_exact_energy "cable12_green_exact_energy"(double l, const double *e, const double *A, double *U)
+    void c_cable12_green_exact_elastic_force "cable12_green_exact_elastic_force"(double l, const double *e, const double *A, double *f)
+    void c_cable12_green_exact_elastic_tangent "cable12_green_exact_elastic_tangent"(double l, const double *e, const double *A, double *K)
+    void c_cable12_green_exact_damping_force "cable12_green_exact_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
+    void c_cable12_green_exact_damping_tangent "cable12_green_exact_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
+    void c_cable12_green_exact_dissipation "cable12_green_exact_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable12_green_linear_stiffness "cable12_green_linear_stiffness"(double youngs_modulus, const double *section, double *A)
+    void c_cable12_green_linear_energy "cable12_green_linear_energy"(double l, const double *e, const double *A, double *U)
+    void c_cable12_green_linear_elastic_force "cable12_green_linear_elastic_force"(double l, const double *e, const double *A, double *f)
+    void c_cable12_green_linear_elastic_tangent "cable12_green_linear_elastic_tangent"(double l, const double *e, const double *A, double *K)
+    void c_cable12_green_linear_damping_force "cable12_green_linear_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
+    void c_cable12_green_linear_damping_tangent "cable12_green_linear_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
+    void c_cable12_green_linear_dissipation "cable12_green_linear_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable12_engineering_exact_stiffness "cable12_engineering_exact_stiffness"(double youngs_modulus, const double *section, double *A)
+    void c_cable12_engineering_exact_energy "cable12_engineering_exact_energy"(double l, const double *e, const double *A, double *U)
+    void c_cable12_engineering_exact_elastic_force "cable12_engineering_exact_elastic_force"(double l, const double *e, const double *A, double *f)
+    void c_cable12_engineering_exact_elastic_tangent "cable12_engineering_exact_elastic_tangent"(double l, const double *e, const double *A, double *K)
+    void c_cable12_engineering_exact_damping_force "cable12_engineering_exact_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
+    void c_cable12_engineering_exact_damping_tangent "cable12_engineering_exact_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
+    void c_cable12_engineering_exact_dissipation "cable12_engineering_exact_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable12_engineering_linear_stiffness "cable12_engineering_linear_stiffness"(double youngs_modulus, const double *section, double *A)
+    void c_cable12_engineering_linear_energy "cable12_engineering_linear_energy"(double l, const double *e, const double *A, double *U)
+    void c_cable12_engineering_linear_elastic_force "cable12_engineering_linear_elastic_force"(double l, const double *e, const double *A, double *f)
+    void c_cable12_engineering_linear_elastic_tangent "cable12_engineering_linear_elastic_tangent"(double l, const double *e, const double *A, double *K)
+    void c_cable12_engineering_linear_damping_force "cable12_engineering_linear_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
+    void c_cable12_engineering_linear_damping_tangent "cable12_engineering_linear_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
+    void c_cable12_engineering_linear_dissipation "cable12_engineering_linear_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable18_green_exact_stiffness "cable18_green_exact_stiffness"(double youngs_modulus, const double *section, double *A)
+    void c_cable18_green_exact_energy "cable18_green_exact_energy"(double l, const double *e, const double *A, double *U)
+    void c_cable18_green_exact_elastic_force "cable18_green_exact_elastic_force"(double l, const double *e, const double *A, double *f)
+    void c_cable18_green_exact_elastic_tangent "cable18_green_exact_elastic_tangent"(double l, const double *e, const double *A, double *K)
+    void c_cable18_green_exact_damping_force "cable18_green_exact_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
+    void c_cable18_green_exact_damping_tangent "cable18_green_exact_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
+    void c_cable18_green_exact_dissipation "cable18_green_exact_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable18_engineering_exact_stiffness "cable18_engineering_exact_stiffness"(double youngs_modulus, const double *section, double *A)
+    void c_cable18_engineering_exact_energy "cable18_engineering_exact_energy"(double l, const double *e, const double *A, double *U)
+    void c_cable18_engineering_exact_elastic_force "cable18_engineering_exact_elastic_force"(double l, const double *e, const double *A, double *f)
+    void c_cable18_engineering_exact_elastic_tangent "cable18_engineering_exact_elastic_tangent"(double l, const double *e, const double *A, double *K)
+    void c_cable18_engineering_exact_damping_force "cable18_engineering_exact_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
+    void c_cable18_engineering_exact_damping_tangent "cable18_engineering_exact_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
+    void c_cable18_engineering_exact_dissipation "cable18_engineering_exact_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_beam12p_continuum_stiffness "beam12p_continuum_stiffness"(double l, const double *section, const double *D, double *A)
+    void c_beam12p_continuum_energy "beam12p_continuum_energy"(double l, const double *e, const double *A, double *U)
+    void c_beam12p_continuum_elastic_force "beam12p_continuum_elastic_force"(double l, const double *e, const double *A, double *f)
+    void c_beam12p_continuum_elastic_tangent "beam12p_continuum_elastic_tangent"(double l, const double *e, const double *A, double *K)
+    void c_beam12p_continuum_damping_force "beam12p_continuum_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
+    void c_beam12p_continuum_damping_tangent "beam12p_continuum_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
+    void c_beam12p_continuum_dissipation "beam12p_continuum_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable8p_green_exact_stiffness "cable8p_green_exact_stiffness"(double youngs_modulus, const double *section, double *A)
+    void c_cable8p_green_exact_energy "cable8p_green_exact_energy"(double l, const double *e, const double *A, double *U)
+    void c_cable8p_green_exact_elastic_force "cable8p_green_exact_elastic_force"(double l, const double *e, const double *A, double *f)
+    void c_cable8p_green_exact_elastic_tangent "cable8p_green_exact_elastic_tangent"(double l, const double *e, const double *A, double *K)
+    void c_cable8p_green_exact_damping_force "cable8p_green_exact_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
+    void c_cable8p_green_exact_damping_tangent "cable8p_green_exact_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
+    void c_cable8p_green_exact_dissipation "cable8p_green_exact_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable8p_green_linear_stiffness "cable8p_green_linear_stiffness"(double youngs_modulus, const double *section, double *A)
+    void c_cable8p_green_linear_energy "cable8p_green_linear_energy"(double l, const double *e, const double *A, double *U)
+    void c_cable8p_green_linear_elastic_force "cable8p_green_linear_elastic_force"(double l, const double *e, const double *A, double *f)
+    void c_cable8p_green_linear_elastic_tangent "cable8p_green_linear_elastic_tangent"(double l, const double *e, const double *A, double *K)
+    void c_cable8p_green_linear_damping_force "cable8p_green_linear_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
+    void c_cable8p_green_linear_damping_tangent "cable8p_green_linear_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
+    void c_cable8p_green_linear_dissipation "cable8p_green_linear_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable8p_engineering_exact_stiffness "cable8p_engineering_exact_stiffness"(double youngs_modulus, const double *section, double *A)
+    void c_cable8p_engineering_exact_energy "cable8p_engineering_exact_energy"(double l, const double *e, const double *A, double *U)
+    void c_cable8p_engineering_exact_elastic_force "cable8p_engineering_exact_elastic_force"(double l, const double *e, const double *A, double *f)
+    void c_cable8p_engineering_exact_elastic_tangent "cable8p_engineering_exact_elastic_tangent"(double l, const double *e, const double *A, double *K)
+    void c_cable8p_engineering_exact_damping_force "cable8p_engineering_exact_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
+    void c_cable8p_engineering_exact_damping_tangent "cable8p_engineering_exact_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
+    void c_cable8p_engineering_exact_dissipation "cable8p_engineering_exact_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable8p_engineering_linear_stiffness "cable8p_engineering_linear_stiffness"(double youngs_modulus, const double *section, double *A)
+    void c_cable8p_engineering_linear_energy "cable8p_engineering_linear_energy"(double l, const double *e, const double *A, double *U)
+    void c_cable8p_engineering_linear_elastic_force "cable8p_engineering_linear_elastic_force"(double l, const double *e, const double *A, double *f)
+    void c_cable8p_engineering_linear_elastic_tangent "cable8p_engineering_linear_elastic_tangent"(double l, const double *e, const double *A, double *K)
+    void c_cable8p_engineering_linear_damping_force "cable8p_engineering_linear_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
+    void c_cable8p_engineering_linear_damping_tangent "cable8p_engineering_linear_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
+    void c_cable8p_engineering_linear_dissipation "cable8p_engineering_linear_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
     void c_rigid_point "rigid_point"(const double *b, const double *u, const double *w, double *p, double *p_q, double *v, double *bias)
     void c_rigid_inertia_force "rigid_inertia_force"(double mass, const double *J, const double *w, const double *a, double *f)
     void c_rigid_inertia_tangent "rigid_inertia_tangent"(double mass, const double *J, const double *w, double *M, double *D)
     void c_rigid_kinetic_energy "rigid_kinetic_energy"(double mass, const double *J, const double *w, double *T)
-    void c_slide_beam24_rigid_constraint "slide_beam24_rigid_constraint"(double l, double x, const double *e, const double *b, const double *u, double *C, double *C_s, double *s_step, double *A_t)
-    void c_slide_beam24_rigid_terms "slide_beam24_rigid_terms"(double l, double x, const double *e, const double *b, const double *u, const double *v, const double *w, double *C, double *C_q, double *C_s, double *G, double *s_rate, double *Q_d, double *H, double *W, double *s_bias)
+    void c_slide_beam24_rigid_constraint "slide_beam24_rigid_constraint"(double l, double x, const double *e, const double *b, const double *u, const double *director, double *C, double *C_s, double *s_step, double *A_t)
+    void c_slide_beam24_rigid_terms "slide_beam24_rigid_terms"(double l, double x, const double *e, const double *b, const double *u, const double *v, const double *w, const double *director, double *C, double *C_q, double *C_s, double *G, double *s_rate, double *Q_d, double *H, double *W, double *s_bias)
     void c_slide_beam24_rigid_residual "slide_beam24_rigid_residual"(double l, double x, const double *e, const double *b, const double *u, const double *f, double *phi, double *g)
     void c_slide_beam24_rigid_tangent "slide_beam24_rigid_tangent"(double l, double x, const double *e, const double *b, const double *u, const double *f, double *J, double *K)
+    void c_slide_cable12_rigid_constraint "slide_cable12_rigid_constraint"(double l, double x, const double *e, const double *b, const double *u, const double *director, double *C, double *C_s, double *s_step, double *A_t)
+    void c_slide_cable12_rigid_terms "slide_cable12_rigid_terms"(double l, double x, const double *e, const double *b, const double *u, const double *v, const double *w, const double *director, double *C, double *C_q, double *C_s, double *G, double *s_rate, double *Q_d, double *H, double *W, double *s_bias)
+    void c_slide_cable12_rigid_residual "slide_cable12_rigid_residual"(double l, double x, const double *e, const double *b, const double *u, const double *f, double *phi, double *g)
+    void c_slide_cable12_rigid_tangent "slide_cable12_rigid_tangent"(double l, double x, const double *e, const double *b, const double *u, const double *f, double *J, double *K)
+    void c_slide_cable18_rigid_constraint "slide_cable18_rigid_constraint"(double l, double x, const double *e, const double *b, const double *u, const double *director, double *C, double *C_s, double *s_step, double *A_t)
+    void c_slide_cable18_rigid_terms "slide_cable18_rigid_terms"(double l, double x, const double *e, const double *b, const double *u, const double *v, const double *w, const double *director, double *C, double *C_q, double *C_s, double *G, double *s_rate, double *Q_d, double *H, double *W, double *s_bias)
+    void c_slide_cable18_rigid_residual "slide_cable18_rigid_residual"(double l, double x, const double *e, const double *b, const double *u, const double *f, double *phi, double *g)
+    void c_slide_cable18_rigid_tangent "slide_cable18_rigid_tangent"(double l, double x, const double *e, const double *b, const double *u, const double *f, double *J, double *K)
+
+
+tables = PyCapsule_New(<void *>&fu_all, "funicular.generated.kernels.tables", NULL)
+"""The engine's way to the kernels: a pointer to fu_all of kernels.h."""
 
 
 cdef _array(value, shape, kernel, name):
@@ -90,153 +200,6 @@ def beam24_inertia_force(m, a):
     return f_out
 
 
-def beam24_stiffness(l, section, D):
-    """elastic constants A of U = 1/2 (G - G0)' A (G - G0) (eq 5-7; gram.py).
-
-    l () [m]: length of the element
-    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
-    D (9,) [Pa]: orthotropic law, axes x, y, z: D11 D22 D33 D12 D13 D23 G12 G13 G23
-    Returns
-    A (61,) [N m]: different non-zero entries of A
-    """
-    cdef double l_ = l
-    cdef const double[::1] section_ = _array(section, (6,), "beam24_stiffness", "section")
-    cdef const double[::1] D_ = _array(D, (9,), "beam24_stiffness", "D")
-    A_out = np.empty((61,))
-    cdef double[::1] A__ = A_out.reshape(-1)
-    with nogil:
-        c_beam24_stiffness(l_, &section_[0], &D_[0], &A__[0])
-    return A_out
-
-
-def beam24_energy(l, e, A):
-    """elastic energy (eq 7).
-
-    l () [m]: length of the element
-    e (8, 3) [m, 1]: nodal vectors (eq 1)
-    A (61,) [N m]: elastic constants from beam24_stiffness
-    Returns
-    U (1,) [J]: elastic energy
-    """
-    cdef double l_ = l
-    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_energy", "e")
-    cdef const double[::1] A_ = _array(A, (61,), "beam24_energy", "A")
-    U_out = np.empty((1,))
-    cdef double[::1] U__ = U_out.reshape(-1)
-    with nogil:
-        c_beam24_energy(l_, &e_[0], &A_[0], &U__[0])
-    return U_out
-
-
-def beam24_elastic_force(l, e, A):
-    """dU/de, minus the elastic force Q_k (eq 8).
-
-    l () [m]: length of the element
-    e (8, 3) [m, 1]: nodal vectors (eq 1)
-    A (61,) [N m]: elastic constants from beam24_stiffness
-    Returns
-    f (8, 3) [N, N m]: dU/de
-    """
-    cdef double l_ = l
-    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_elastic_force", "e")
-    cdef const double[::1] A_ = _array(A, (61,), "beam24_elastic_force", "A")
-    f_out = np.empty((8, 3))
-    cdef double[::1] f__ = f_out.reshape(-1)
-    with nogil:
-        c_beam24_elastic_force(l_, &e_[0], &A_[0], &f__[0])
-    return f_out
-
-
-def beam24_elastic_tangent(l, e, A):
-    """d2U/de2 (derivative of eq 8).
-
-    l () [m]: length of the element
-    e (8, 3) [m, 1]: nodal vectors (eq 1)
-    A (61,) [N m]: elastic constants from beam24_stiffness
-    Returns
-    K (24, 24) [N/m, N, N m]: d2U/de2, symmetric
-    """
-    cdef double l_ = l
-    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_elastic_tangent", "e")
-    cdef const double[::1] A_ = _array(A, (61,), "beam24_elastic_tangent", "A")
-    K_out = np.empty((24, 24))
-    cdef double[::1] K__ = K_out.reshape(-1)
-    with nogil:
-        c_beam24_elastic_tangent(l_, &e_[0], &A_[0], &K__[0])
-    return K_out
-
-
-def beam24_damping_force(l, e, v, A, tau):
-    """minus the Kelvin-Voigt damping force Q_d (Q_d of eq 9).
-
-    l () [m]: length of the element
-    e (8, 3) [m, 1]: nodal vectors (eq 1)
-    v (8, 3) [m/s, 1/s]: rates of the nodal vectors
-    A (61,) [N m]: elastic constants from beam24_stiffness
-    tau () [s]: retardation time of the Kelvin-Voigt law
-    Returns
-    f (8, 3) [N, N m]: -Q_d
-    """
-    cdef double l_ = l
-    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_damping_force", "e")
-    cdef const double[::1] v_ = _array(v, (8, 3), "beam24_damping_force", "v")
-    cdef const double[::1] A_ = _array(A, (61,), "beam24_damping_force", "A")
-    cdef double tau_ = tau
-    f_out = np.empty((8, 3))
-    cdef double[::1] f__ = f_out.reshape(-1)
-    with nogil:
-        c_beam24_damping_force(l_, &e_[0], &v_[0], &A_[0], tau_, &f__[0])
-    return f_out
-
-
-def beam24_damping_tangent(l, e, v, A, tau, rate):
-    """df/de + rate df/dv of the damping force f = -Q_d (derivative of Q_d of eq 9).
-
-    l () [m]: length of the element
-    e (8, 3) [m, 1]: nodal vectors (eq 1)
-    v (8, 3) [m/s, 1/s]: rates of the nodal vectors
-    A (61,) [N m]: elastic constants from beam24_stiffness
-    tau () [s]: retardation time of the Kelvin-Voigt law
-    rate () [1/s]: dv/de of the integrator
-    Returns
-    K (24, 24) [N/m, N, N m]: df/de + rate df/dv
-    """
-    cdef double l_ = l
-    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_damping_tangent", "e")
-    cdef const double[::1] v_ = _array(v, (8, 3), "beam24_damping_tangent", "v")
-    cdef const double[::1] A_ = _array(A, (61,), "beam24_damping_tangent", "A")
-    cdef double tau_ = tau
-    cdef double rate_ = rate
-    K_out = np.empty((24, 24))
-    cdef double[::1] K__ = K_out.reshape(-1)
-    with nogil:
-        c_beam24_damping_tangent(l_, &e_[0], &v_[0], &A_[0], tau_, rate_, &K__[0])
-    return K_out
-
-
-def beam24_dissipation(l, e, v, A, tau):
-    """power dissipated by the damping force (v . Q_d of eq 9).
-
-    l () [m]: length of the element
-    e (8, 3) [m, 1]: nodal vectors (eq 1)
-    v (8, 3) [m/s, 1/s]: rates of the nodal vectors
-    A (61,) [N m]: elastic constants from beam24_stiffness
-    tau () [s]: retardation time of the Kelvin-Voigt law
-    Returns
-    P (1,) [W]: dissipated power, never negative
-    """
-    cdef double l_ = l
-    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_dissipation", "e")
-    cdef const double[::1] v_ = _array(v, (8, 3), "beam24_dissipation", "v")
-    cdef const double[::1] A_ = _array(A, (61,), "beam24_dissipation", "A")
-    cdef double tau_ = tau
-    P_out = np.empty((1,))
-    cdef double[::1] P__ = P_out.reshape(-1)
-    with nogil:
-        c_beam24_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
-    return P_out
-
-
 def beam24_position(l, at, e):
     """shape functions and position of a point (eq 2).
 
@@ -257,6 +220,2066 @@ def beam24_position(l, at, e):
     with nogil:
         c_beam24_position(l_, &at_[0], &e_[0], &N__[0], &r__[0])
     return N_out, r_out
+
+
+def cable12_mass(l, density, section):
+    """mass matrix m of M = m (x) I (eq 4).
+
+    l () [m]: length of the element
+    density () [kg/m^3]: density
+    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    Returns
+    m (4, 4) [kg, kg m, kg m^2]: mass matrix over nodal vectors, symmetric
+    """
+    cdef double l_ = l
+    cdef double density_ = density
+    cdef const double[::1] section_ = _array(section, (6,), "cable12_mass", "section")
+    m_out = np.empty((4, 4))
+    cdef double[::1] m__ = m_out.reshape(-1)
+    with nogil:
+        c_cable12_mass(l_, density_, &section_[0], &m__[0])
+    return m_out
+
+
+def cable12_gravity(l, density, section, g):
+    """generalised force of constant gravity (Q_e of eq 9).
+
+    l () [m]: length of the element
+    density () [kg/m^3]: density
+    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    g (3,) [m/s^2]: gravity
+    Returns
+    Q (4, 3) [N, N m]: generalised force on the nodal vectors
+    """
+    cdef double l_ = l
+    cdef double density_ = density
+    cdef const double[::1] section_ = _array(section, (6,), "cable12_gravity", "section")
+    cdef const double[::1] g_ = _array(g, (3,), "cable12_gravity", "g")
+    Q_out = np.empty((4, 3))
+    cdef double[::1] Q__ = Q_out.reshape(-1)
+    with nogil:
+        c_cable12_gravity(l_, density_, &section_[0], &g_[0], &Q__[0])
+    return Q_out
+
+
+def cable12_inertia_force(m, a):
+    """M a (M e'' of eq 9).
+
+    m (4, 4) [kg, kg m, kg m^2]: mass matrix from cable12_mass
+    a (4, 3) [m/s^2, 1/s^2]: accelerations of the nodal vectors
+    Returns
+    f (4, 3) [N, N m]: M a
+    """
+    cdef const double[::1] m_ = _array(m, (4, 4), "cable12_inertia_force", "m")
+    cdef const double[::1] a_ = _array(a, (4, 3), "cable12_inertia_force", "a")
+    f_out = np.empty((4, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_cable12_inertia_force(&m_[0], &a_[0], &f__[0])
+    return f_out
+
+
+def cable12_position(l, at, e):
+    """shape functions and position of a point (eq 2).
+
+    l () [m]: length of the element
+    at (3,) [m]: local coordinates x, y, z
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    Returns
+    N (4,) [1, m]: shape functions
+    r (3,) [m]: position
+    """
+    cdef double l_ = l
+    cdef const double[::1] at_ = _array(at, (3,), "cable12_position", "at")
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_position", "e")
+    N_out = np.empty((4,))
+    cdef double[::1] N__ = N_out.reshape(-1)
+    r_out = np.empty((3,))
+    cdef double[::1] r__ = r_out.reshape(-1)
+    with nogil:
+        c_cable12_position(l_, &at_[0], &e_[0], &N__[0], &r__[0])
+    return N_out, r_out
+
+
+def cable18_mass(l, density, section):
+    """mass matrix m of M = m (x) I (eq 4).
+
+    l () [m]: length of the element
+    density () [kg/m^3]: density
+    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    Returns
+    m (6, 6) [kg, kg m, kg m^2]: mass matrix over nodal vectors, symmetric
+    """
+    cdef double l_ = l
+    cdef double density_ = density
+    cdef const double[::1] section_ = _array(section, (6,), "cable18_mass", "section")
+    m_out = np.empty((6, 6))
+    cdef double[::1] m__ = m_out.reshape(-1)
+    with nogil:
+        c_cable18_mass(l_, density_, &section_[0], &m__[0])
+    return m_out
+
+
+def cable18_gravity(l, density, section, g):
+    """generalised force of constant gravity (Q_e of eq 9).
+
+    l () [m]: length of the element
+    density () [kg/m^3]: density
+    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    g (3,) [m/s^2]: gravity
+    Returns
+    Q (6, 3) [N, N m]: generalised force on the nodal vectors
+    """
+    cdef double l_ = l
+    cdef double density_ = density
+    cdef const double[::1] section_ = _array(section, (6,), "cable18_gravity", "section")
+    cdef const double[::1] g_ = _array(g, (3,), "cable18_gravity", "g")
+    Q_out = np.empty((6, 3))
+    cdef double[::1] Q__ = Q_out.reshape(-1)
+    with nogil:
+        c_cable18_gravity(l_, density_, &section_[0], &g_[0], &Q__[0])
+    return Q_out
+
+
+def cable18_inertia_force(m, a):
+    """M a (M e'' of eq 9).
+
+    m (6, 6) [kg, kg m, kg m^2]: mass matrix from cable18_mass
+    a (6, 3) [m/s^2, 1/s^2]: accelerations of the nodal vectors
+    Returns
+    f (6, 3) [N, N m]: M a
+    """
+    cdef const double[::1] m_ = _array(m, (6, 6), "cable18_inertia_force", "m")
+    cdef const double[::1] a_ = _array(a, (6, 3), "cable18_inertia_force", "a")
+    f_out = np.empty((6, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_cable18_inertia_force(&m_[0], &a_[0], &f__[0])
+    return f_out
+
+
+def cable18_position(l, at, e):
+    """shape functions and position of a point (eq 2).
+
+    l () [m]: length of the element
+    at (3,) [m]: local coordinates x, y, z
+    e (6, 3) [m, 1]: nodal vectors (eq 1)
+    Returns
+    N (6,) [1, m]: shape functions
+    r (3,) [m]: position
+    """
+    cdef double l_ = l
+    cdef const double[::1] at_ = _array(at, (3,), "cable18_position", "at")
+    cdef const double[::1] e_ = _array(e, (6, 3), "cable18_position", "e")
+    N_out = np.empty((6,))
+    cdef double[::1] N__ = N_out.reshape(-1)
+    r_out = np.empty((3,))
+    cdef double[::1] r__ = r_out.reshape(-1)
+    with nogil:
+        c_cable18_position(l_, &at_[0], &e_[0], &N__[0], &r__[0])
+    return N_out, r_out
+
+
+def beam12p_mass(l, density, section):
+    """mass matrix m of M = m (x) I (eq 4).
+
+    l () [m]: length of the element
+    density () [kg/m^3]: density
+    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    Returns
+    m (6, 6) [kg, kg m, kg m^2]: mass matrix over nodal vectors, symmetric
+    """
+    cdef double l_ = l
+    cdef double density_ = density
+    cdef const double[::1] section_ = _array(section, (6,), "beam12p_mass", "section")
+    m_out = np.empty((6, 6))
+    cdef double[::1] m__ = m_out.reshape(-1)
+    with nogil:
+        c_beam12p_mass(l_, density_, &section_[0], &m__[0])
+    return m_out
+
+
+def beam12p_gravity(l, density, section, g):
+    """generalised force of constant gravity (Q_e of eq 9).
+
+    l () [m]: length of the element
+    density () [kg/m^3]: density
+    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    g (2,) [m/s^2]: gravity
+    Returns
+    Q (6, 2) [N, N m]: generalised force on the nodal vectors
+    """
+    cdef double l_ = l
+    cdef double density_ = density
+    cdef const double[::1] section_ = _array(section, (6,), "beam12p_gravity", "section")
+    cdef const double[::1] g_ = _array(g, (2,), "beam12p_gravity", "g")
+    Q_out = np.empty((6, 2))
+    cdef double[::1] Q__ = Q_out.reshape(-1)
+    with nogil:
+        c_beam12p_gravity(l_, density_, &section_[0], &g_[0], &Q__[0])
+    return Q_out
+
+
+def beam12p_inertia_force(m, a):
+    """M a (M e'' of eq 9).
+
+    m (6, 6) [kg, kg m, kg m^2]: mass matrix from beam12p_mass
+    a (6, 2) [m/s^2, 1/s^2]: accelerations of the nodal vectors
+    Returns
+    f (6, 2) [N, N m]: M a
+    """
+    cdef const double[::1] m_ = _array(m, (6, 6), "beam12p_inertia_force", "m")
+    cdef const double[::1] a_ = _array(a, (6, 2), "beam12p_inertia_force", "a")
+    f_out = np.empty((6, 2))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_beam12p_inertia_force(&m_[0], &a_[0], &f__[0])
+    return f_out
+
+
+def beam12p_position(l, at, e):
+    """shape functions and position of a point (eq 2).
+
+    l () [m]: length of the element
+    at (3,) [m]: local coordinates x, y, z
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    Returns
+    N (6,) [1, m]: shape functions
+    r (2,) [m]: position
+    """
+    cdef double l_ = l
+    cdef const double[::1] at_ = _array(at, (3,), "beam12p_position", "at")
+    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_position", "e")
+    N_out = np.empty((6,))
+    cdef double[::1] N__ = N_out.reshape(-1)
+    r_out = np.empty((2,))
+    cdef double[::1] r__ = r_out.reshape(-1)
+    with nogil:
+        c_beam12p_position(l_, &at_[0], &e_[0], &N__[0], &r__[0])
+    return N_out, r_out
+
+
+def cable8p_mass(l, density, section):
+    """mass matrix m of M = m (x) I (eq 4).
+
+    l () [m]: length of the element
+    density () [kg/m^3]: density
+    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    Returns
+    m (4, 4) [kg, kg m, kg m^2]: mass matrix over nodal vectors, symmetric
+    """
+    cdef double l_ = l
+    cdef double density_ = density
+    cdef const double[::1] section_ = _array(section, (6,), "cable8p_mass", "section")
+    m_out = np.empty((4, 4))
+    cdef double[::1] m__ = m_out.reshape(-1)
+    with nogil:
+        c_cable8p_mass(l_, density_, &section_[0], &m__[0])
+    return m_out
+
+
+def cable8p_gravity(l, density, section, g):
+    """generalised force of constant gravity (Q_e of eq 9).
+
+    l () [m]: length of the element
+    density () [kg/m^3]: density
+    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    g (2,) [m/s^2]: gravity
+    Returns
+    Q (4, 2) [N, N m]: generalised force on the nodal vectors
+    """
+    cdef double l_ = l
+    cdef double density_ = density
+    cdef const double[::1] section_ = _array(section, (6,), "cable8p_gravity", "section")
+    cdef const double[::1] g_ = _array(g, (2,), "cable8p_gravity", "g")
+    Q_out = np.empty((4, 2))
+    cdef double[::1] Q__ = Q_out.reshape(-1)
+    with nogil:
+        c_cable8p_gravity(l_, density_, &section_[0], &g_[0], &Q__[0])
+    return Q_out
+
+
+def cable8p_inertia_force(m, a):
+    """M a (M e'' of eq 9).
+
+    m (4, 4) [kg, kg m, kg m^2]: mass matrix from cable8p_mass
+    a (4, 2) [m/s^2, 1/s^2]: accelerations of the nodal vectors
+    Returns
+    f (4, 2) [N, N m]: M a
+    """
+    cdef const double[::1] m_ = _array(m, (4, 4), "cable8p_inertia_force", "m")
+    cdef const double[::1] a_ = _array(a, (4, 2), "cable8p_inertia_force", "a")
+    f_out = np.empty((4, 2))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_cable8p_inertia_force(&m_[0], &a_[0], &f__[0])
+    return f_out
+
+
+def cable8p_position(l, at, e):
+    """shape functions and position of a point (eq 2).
+
+    l () [m]: length of the element
+    at (3,) [m]: local coordinates x, y, z
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    Returns
+    N (4,) [1, m]: shape functions
+    r (2,) [m]: position
+    """
+    cdef double l_ = l
+    cdef const double[::1] at_ = _array(at, (3,), "cable8p_position", "at")
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_position", "e")
+    N_out = np.empty((4,))
+    cdef double[::1] N__ = N_out.reshape(-1)
+    r_out = np.empty((2,))
+    cdef double[::1] r__ = r_out.reshape(-1)
+    with nogil:
+        c_cable8p_position(l_, &at_[0], &e_[0], &N__[0], &r__[0])
+    return N_out, r_out
+
+
+def beam24_continuum_stiffness(l, section, D):
+    """constants of the law (eq 7; eq 5-8).
+
+    l () [m]: length of the element
+    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    D (9,) [Pa]: orthotropic law, axes x, y, z: D11 D22 D33 D12 D13 D23 G12 G13 G23
+    Returns
+    A (61,) [N m]: different non-zero entries of A
+    """
+    cdef double l_ = l
+    cdef const double[::1] section_ = _array(section, (6,), "beam24_continuum_stiffness", "section")
+    cdef const double[::1] D_ = _array(D, (9,), "beam24_continuum_stiffness", "D")
+    A_out = np.empty((61,))
+    cdef double[::1] A__ = A_out.reshape(-1)
+    with nogil:
+        c_beam24_continuum_stiffness(l_, &section_[0], &D_[0], &A__[0])
+    return A_out
+
+
+def beam24_continuum_energy(l, e, A):
+    """elastic energy (eq 7; eq 5-8).
+
+    l () [m]: length of the element
+    e (8, 3) [m, 1]: nodal vectors (eq 1)
+    A (61,) [N m]: elastic constants from beam24_continuum_stiffness
+    Returns
+    U (1,) [J]: elastic energy
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_continuum_energy", "e")
+    cdef const double[::1] A_ = _array(A, (61,), "beam24_continuum_energy", "A")
+    U_out = np.empty((1,))
+    cdef double[::1] U__ = U_out.reshape(-1)
+    with nogil:
+        c_beam24_continuum_energy(l_, &e_[0], &A_[0], &U__[0])
+    return U_out
+
+
+def beam24_continuum_elastic_force(l, e, A):
+    """dU/de, minus the elastic force Q_k (eq 8; eq 5-8).
+
+    l () [m]: length of the element
+    e (8, 3) [m, 1]: nodal vectors (eq 1)
+    A (61,) [N m]: elastic constants from beam24_continuum_stiffness
+    Returns
+    f (8, 3) [N, N m]: dU/de
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_continuum_elastic_force", "e")
+    cdef const double[::1] A_ = _array(A, (61,), "beam24_continuum_elastic_force", "A")
+    f_out = np.empty((8, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_beam24_continuum_elastic_force(l_, &e_[0], &A_[0], &f__[0])
+    return f_out
+
+
+def beam24_continuum_elastic_tangent(l, e, A):
+    """d2U/de2 (derivative of eq 8; eq 5-8).
+
+    l () [m]: length of the element
+    e (8, 3) [m, 1]: nodal vectors (eq 1)
+    A (61,) [N m]: elastic constants from beam24_continuum_stiffness
+    Returns
+    K (24, 24) [N/m, N, N m]: d2U/de2, symmetric
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_continuum_elastic_tangent", "e")
+    cdef const double[::1] A_ = _array(A, (61,), "beam24_continuum_elastic_tangent", "A")
+    K_out = np.empty((24, 24))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_beam24_continuum_elastic_tangent(l_, &e_[0], &A_[0], &K__[0])
+    return K_out
+
+
+def beam24_continuum_damping_force(l, e, v, A, tau):
+    """minus the Kelvin-Voigt damping force Q_d (Q_d of eq 9; eq 5-8).
+
+    l () [m]: length of the element
+    e (8, 3) [m, 1]: nodal vectors (eq 1)
+    v (8, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (61,) [N m]: elastic constants from beam24_continuum_stiffness
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    f (8, 3) [N, N m]: -Q_d
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_continuum_damping_force", "e")
+    cdef const double[::1] v_ = _array(v, (8, 3), "beam24_continuum_damping_force", "v")
+    cdef const double[::1] A_ = _array(A, (61,), "beam24_continuum_damping_force", "A")
+    cdef double tau_ = tau
+    f_out = np.empty((8, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_beam24_continuum_damping_force(l_, &e_[0], &v_[0], &A_[0], tau_, &f__[0])
+    return f_out
+
+
+def beam24_continuum_damping_tangent(l, e, v, A, tau, rate):
+    """df/de + rate df/dv of the damping force f = -Q_d (derivative of Q_d of eq 9; eq 5-8).
+
+    l () [m]: length of the element
+    e (8, 3) [m, 1]: nodal vectors (eq 1)
+    v (8, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (61,) [N m]: elastic constants from beam24_continuum_stiffness
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    rate () [1/s]: dv/de of the integrator
+    Returns
+    K (24, 24) [N/m, N, N m]: df/de + rate df/dv
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_continuum_damping_tangent", "e")
+    cdef const double[::1] v_ = _array(v, (8, 3), "beam24_continuum_damping_tangent", "v")
+    cdef const double[::1] A_ = _array(A, (61,), "beam24_continuum_damping_tangent", "A")
+    cdef double tau_ = tau
+    cdef double rate_ = rate
+    K_out = np.empty((24, 24))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_beam24_continuum_damping_tangent(l_, &e_[0], &v_[0], &A_[0], tau_, rate_, &K__[0])
+    return K_out
+
+
+def beam24_continuum_dissipation(l, e, v, A, tau):
+    """power dissipated by the damping force (v . Q_d of eq 9; eq 5-8).
+
+    l () [m]: length of the element
+    e (8, 3) [m, 1]: nodal vectors (eq 1)
+    v (8, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (61,) [N m]: elastic constants from beam24_continuum_stiffness
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    P (1,) [W]: dissipated power, never negative
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_continuum_dissipation", "e")
+    cdef const double[::1] v_ = _array(v, (8, 3), "beam24_continuum_dissipation", "v")
+    cdef const double[::1] A_ = _array(A, (61,), "beam24_continuum_dissipation", "A")
+    cdef double tau_ = tau
+    P_out = np.empty((1,))
+    cdef double[::1] P__ = P_out.reshape(-1)
+    with nogil:
+        c_beam24_continuum_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
+    return P_out
+
+
+def cable12_green_exact_stiffness(youngs_modulus, section):
+    """constants of the law (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    youngs_modulus () [Pa]: Young's modulus
+    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    Returns
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    """
+    cdef double youngs_modulus_ = youngs_modulus
+    cdef const double[::1] section_ = _array(section, (6,), "cable12_green_exact_stiffness", "section")
+    A_out = np.empty((2,))
+    cdef double[::1] A__ = A_out.reshape(-1)
+    with nogil:
+        c_cable12_green_exact_stiffness(youngs_modulus_, &section_[0], &A__[0])
+    return A_out
+
+
+def cable12_green_exact_energy(l, e, A):
+    """elastic energy (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    U (1,) [J]: elastic energy
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_green_exact_energy", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable12_green_exact_energy", "A")
+    U_out = np.empty((1,))
+    cdef double[::1] U__ = U_out.reshape(-1)
+    with nogil:
+        c_cable12_green_exact_energy(l_, &e_[0], &A_[0], &U__[0])
+    return U_out
+
+
+def cable12_green_exact_elastic_force(l, e, A):
+    """dU/de, minus the elastic force Q_k (eq 8; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    f (4, 3) [N, N m]: dU/de
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_green_exact_elastic_force", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable12_green_exact_elastic_force", "A")
+    f_out = np.empty((4, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_cable12_green_exact_elastic_force(l_, &e_[0], &A_[0], &f__[0])
+    return f_out
+
+
+def cable12_green_exact_elastic_tangent(l, e, A):
+    """d2U/de2 (derivative of eq 8; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    K (12, 12) [N/m, N, N m]: d2U/de2, symmetric
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_green_exact_elastic_tangent", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable12_green_exact_elastic_tangent", "A")
+    K_out = np.empty((12, 12))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable12_green_exact_elastic_tangent(l_, &e_[0], &A_[0], &K__[0])
+    return K_out
+
+
+def cable12_green_exact_damping_force(l, e, v, A, tau):
+    """minus the Kelvin-Voigt damping force Q_d (Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    v (4, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    f (4, 3) [N, N m]: -Q_d
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_green_exact_damping_force", "e")
+    cdef const double[::1] v_ = _array(v, (4, 3), "cable12_green_exact_damping_force", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable12_green_exact_damping_force", "A")
+    cdef double tau_ = tau
+    f_out = np.empty((4, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_cable12_green_exact_damping_force(l_, &e_[0], &v_[0], &A_[0], tau_, &f__[0])
+    return f_out
+
+
+def cable12_green_exact_damping_tangent(l, e, v, A, tau, rate):
+    """df/de + rate df/dv of the damping force f = -Q_d (derivative of Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    v (4, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    rate () [1/s]: dv/de of the integrator
+    Returns
+    K (12, 12) [N/m, N, N m]: df/de + rate df/dv
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_green_exact_damping_tangent", "e")
+    cdef const double[::1] v_ = _array(v, (4, 3), "cable12_green_exact_damping_tangent", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable12_green_exact_damping_tangent", "A")
+    cdef double tau_ = tau
+    cdef double rate_ = rate
+    K_out = np.empty((12, 12))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable12_green_exact_damping_tangent(l_, &e_[0], &v_[0], &A_[0], tau_, rate_, &K__[0])
+    return K_out
+
+
+def cable12_green_exact_dissipation(l, e, v, A, tau):
+    """power dissipated by the damping force (v . Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    v (4, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    P (1,) [W]: dissipated power, never negative
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_green_exact_dissipation", "e")
+    cdef const double[::1] v_ = _array(v, (4, 3), "cable12_green_exact_dissipation", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable12_green_exact_dissipation", "A")
+    cdef double tau_ = tau
+    P_out = np.empty((1,))
+    cdef double[::1] P__ = P_out.reshape(-1)
+    with nogil:
+        c_cable12_green_exact_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
+    return P_out
+
+
+def cable12_green_linear_stiffness(youngs_modulus, section):
+    """constants of the law (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    youngs_modulus () [Pa]: Young's modulus
+    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    Returns
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    """
+    cdef double youngs_modulus_ = youngs_modulus
+    cdef const double[::1] section_ = _array(section, (6,), "cable12_green_linear_stiffness", "section")
+    A_out = np.empty((2,))
+    cdef double[::1] A__ = A_out.reshape(-1)
+    with nogil:
+        c_cable12_green_linear_stiffness(youngs_modulus_, &section_[0], &A__[0])
+    return A_out
+
+
+def cable12_green_linear_energy(l, e, A):
+    """elastic energy (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    U (1,) [J]: elastic energy
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_green_linear_energy", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable12_green_linear_energy", "A")
+    U_out = np.empty((1,))
+    cdef double[::1] U__ = U_out.reshape(-1)
+    with nogil:
+        c_cable12_green_linear_energy(l_, &e_[0], &A_[0], &U__[0])
+    return U_out
+
+
+def cable12_green_linear_elastic_force(l, e, A):
+    """dU/de, minus the elastic force Q_k (eq 8; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    f (4, 3) [N, N m]: dU/de
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_green_linear_elastic_force", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable12_green_linear_elastic_force", "A")
+    f_out = np.empty((4, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_cable12_green_linear_elastic_force(l_, &e_[0], &A_[0], &f__[0])
+    return f_out
+
+
+def cable12_green_linear_elastic_tangent(l, e, A):
+    """d2U/de2 (derivative of eq 8; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    K (12, 12) [N/m, N, N m]: d2U/de2, symmetric
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_green_linear_elastic_tangent", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable12_green_linear_elastic_tangent", "A")
+    K_out = np.empty((12, 12))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable12_green_linear_elastic_tangent(l_, &e_[0], &A_[0], &K__[0])
+    return K_out
+
+
+def cable12_green_linear_damping_force(l, e, v, A, tau):
+    """minus the Kelvin-Voigt damping force Q_d (Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    v (4, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    f (4, 3) [N, N m]: -Q_d
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_green_linear_damping_force", "e")
+    cdef const double[::1] v_ = _array(v, (4, 3), "cable12_green_linear_damping_force", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable12_green_linear_damping_force", "A")
+    cdef double tau_ = tau
+    f_out = np.empty((4, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_cable12_green_linear_damping_force(l_, &e_[0], &v_[0], &A_[0], tau_, &f__[0])
+    return f_out
+
+
+def cable12_green_linear_damping_tangent(l, e, v, A, tau, rate):
+    """df/de + rate df/dv of the damping force f = -Q_d (derivative of Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    v (4, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    rate () [1/s]: dv/de of the integrator
+    Returns
+    K (12, 12) [N/m, N, N m]: df/de + rate df/dv
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_green_linear_damping_tangent", "e")
+    cdef const double[::1] v_ = _array(v, (4, 3), "cable12_green_linear_damping_tangent", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable12_green_linear_damping_tangent", "A")
+    cdef double tau_ = tau
+    cdef double rate_ = rate
+    K_out = np.empty((12, 12))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable12_green_linear_damping_tangent(l_, &e_[0], &v_[0], &A_[0], tau_, rate_, &K__[0])
+    return K_out
+
+
+def cable12_green_linear_dissipation(l, e, v, A, tau):
+    """power dissipated by the damping force (v . Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    v (4, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    P (1,) [W]: dissipated power, never negative
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_green_linear_dissipation", "e")
+    cdef const double[::1] v_ = _array(v, (4, 3), "cable12_green_linear_dissipation", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable12_green_linear_dissipation", "A")
+    cdef double tau_ = tau
+    P_out = np.empty((1,))
+    cdef double[::1] P__ = P_out.reshape(-1)
+    with nogil:
+        c_cable12_green_linear_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
+    return P_out
+
+
+def cable12_engineering_exact_stiffness(youngs_modulus, section):
+    """constants of the law (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    youngs_modulus () [Pa]: Young's modulus
+    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    Returns
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    """
+    cdef double youngs_modulus_ = youngs_modulus
+    cdef const double[::1] section_ = _array(section, (6,), "cable12_engineering_exact_stiffness", "section")
+    A_out = np.empty((2,))
+    cdef double[::1] A__ = A_out.reshape(-1)
+    with nogil:
+        c_cable12_engineering_exact_stiffness(youngs_modulus_, &section_[0], &A__[0])
+    return A_out
+
+
+def cable12_engineering_exact_energy(l, e, A):
+    """elastic energy (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    U (1,) [J]: elastic energy
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_engineering_exact_energy", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable12_engineering_exact_energy", "A")
+    U_out = np.empty((1,))
+    cdef double[::1] U__ = U_out.reshape(-1)
+    with nogil:
+        c_cable12_engineering_exact_energy(l_, &e_[0], &A_[0], &U__[0])
+    return U_out
+
+
+def cable12_engineering_exact_elastic_force(l, e, A):
+    """dU/de, minus the elastic force Q_k (eq 8; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    f (4, 3) [N, N m]: dU/de
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_engineering_exact_elastic_force", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable12_engineering_exact_elastic_force", "A")
+    f_out = np.empty((4, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_cable12_engineering_exact_elastic_force(l_, &e_[0], &A_[0], &f__[0])
+    return f_out
+
+
+def cable12_engineering_exact_elastic_tangent(l, e, A):
+    """d2U/de2 (derivative of eq 8; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    K (12, 12) [N/m, N, N m]: d2U/de2, symmetric
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_engineering_exact_elastic_tangent", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable12_engineering_exact_elastic_tangent", "A")
+    K_out = np.empty((12, 12))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable12_engineering_exact_elastic_tangent(l_, &e_[0], &A_[0], &K__[0])
+    return K_out
+
+
+def cable12_engineering_exact_damping_force(l, e, v, A, tau):
+    """minus the Kelvin-Voigt damping force Q_d (Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    v (4, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    f (4, 3) [N, N m]: -Q_d
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_engineering_exact_damping_force", "e")
+    cdef const double[::1] v_ = _array(v, (4, 3), "cable12_engineering_exact_damping_force", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable12_engineering_exact_damping_force", "A")
+    cdef double tau_ = tau
+    f_out = np.empty((4, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_cable12_engineering_exact_damping_force(l_, &e_[0], &v_[0], &A_[0], tau_, &f__[0])
+    return f_out
+
+
+def cable12_engineering_exact_damping_tangent(l, e, v, A, tau, rate):
+    """df/de + rate df/dv of the damping force f = -Q_d (derivative of Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    v (4, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    rate () [1/s]: dv/de of the integrator
+    Returns
+    K (12, 12) [N/m, N, N m]: df/de + rate df/dv
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_engineering_exact_damping_tangent", "e")
+    cdef const double[::1] v_ = _array(v, (4, 3), "cable12_engineering_exact_damping_tangent", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable12_engineering_exact_damping_tangent", "A")
+    cdef double tau_ = tau
+    cdef double rate_ = rate
+    K_out = np.empty((12, 12))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable12_engineering_exact_damping_tangent(l_, &e_[0], &v_[0], &A_[0], tau_, rate_, &K__[0])
+    return K_out
+
+
+def cable12_engineering_exact_dissipation(l, e, v, A, tau):
+    """power dissipated by the damping force (v . Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    v (4, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    P (1,) [W]: dissipated power, never negative
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_engineering_exact_dissipation", "e")
+    cdef const double[::1] v_ = _array(v, (4, 3), "cable12_engineering_exact_dissipation", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable12_engineering_exact_dissipation", "A")
+    cdef double tau_ = tau
+    P_out = np.empty((1,))
+    cdef double[::1] P__ = P_out.reshape(-1)
+    with nogil:
+        c_cable12_engineering_exact_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
+    return P_out
+
+
+def cable12_engineering_linear_stiffness(youngs_modulus, section):
+    """constants of the law (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    youngs_modulus () [Pa]: Young's modulus
+    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    Returns
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    """
+    cdef double youngs_modulus_ = youngs_modulus
+    cdef const double[::1] section_ = _array(section, (6,), "cable12_engineering_linear_stiffness", "section")
+    A_out = np.empty((2,))
+    cdef double[::1] A__ = A_out.reshape(-1)
+    with nogil:
+        c_cable12_engineering_linear_stiffness(youngs_modulus_, &section_[0], &A__[0])
+    return A_out
+
+
+def cable12_engineering_linear_energy(l, e, A):
+    """elastic energy (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    U (1,) [J]: elastic energy
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_engineering_linear_energy", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable12_engineering_linear_energy", "A")
+    U_out = np.empty((1,))
+    cdef double[::1] U__ = U_out.reshape(-1)
+    with nogil:
+        c_cable12_engineering_linear_energy(l_, &e_[0], &A_[0], &U__[0])
+    return U_out
+
+
+def cable12_engineering_linear_elastic_force(l, e, A):
+    """dU/de, minus the elastic force Q_k (eq 8; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    f (4, 3) [N, N m]: dU/de
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_engineering_linear_elastic_force", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable12_engineering_linear_elastic_force", "A")
+    f_out = np.empty((4, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_cable12_engineering_linear_elastic_force(l_, &e_[0], &A_[0], &f__[0])
+    return f_out
+
+
+def cable12_engineering_linear_elastic_tangent(l, e, A):
+    """d2U/de2 (derivative of eq 8; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    K (12, 12) [N/m, N, N m]: d2U/de2, symmetric
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_engineering_linear_elastic_tangent", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable12_engineering_linear_elastic_tangent", "A")
+    K_out = np.empty((12, 12))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable12_engineering_linear_elastic_tangent(l_, &e_[0], &A_[0], &K__[0])
+    return K_out
+
+
+def cable12_engineering_linear_damping_force(l, e, v, A, tau):
+    """minus the Kelvin-Voigt damping force Q_d (Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    v (4, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    f (4, 3) [N, N m]: -Q_d
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_engineering_linear_damping_force", "e")
+    cdef const double[::1] v_ = _array(v, (4, 3), "cable12_engineering_linear_damping_force", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable12_engineering_linear_damping_force", "A")
+    cdef double tau_ = tau
+    f_out = np.empty((4, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_cable12_engineering_linear_damping_force(l_, &e_[0], &v_[0], &A_[0], tau_, &f__[0])
+    return f_out
+
+
+def cable12_engineering_linear_damping_tangent(l, e, v, A, tau, rate):
+    """df/de + rate df/dv of the damping force f = -Q_d (derivative of Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    v (4, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    rate () [1/s]: dv/de of the integrator
+    Returns
+    K (12, 12) [N/m, N, N m]: df/de + rate df/dv
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_engineering_linear_damping_tangent", "e")
+    cdef const double[::1] v_ = _array(v, (4, 3), "cable12_engineering_linear_damping_tangent", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable12_engineering_linear_damping_tangent", "A")
+    cdef double tau_ = tau
+    cdef double rate_ = rate
+    K_out = np.empty((12, 12))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable12_engineering_linear_damping_tangent(l_, &e_[0], &v_[0], &A_[0], tau_, rate_, &K__[0])
+    return K_out
+
+
+def cable12_engineering_linear_dissipation(l, e, v, A, tau):
+    """power dissipated by the damping force (v . Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    v (4, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    P (1,) [W]: dissipated power, never negative
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_engineering_linear_dissipation", "e")
+    cdef const double[::1] v_ = _array(v, (4, 3), "cable12_engineering_linear_dissipation", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable12_engineering_linear_dissipation", "A")
+    cdef double tau_ = tau
+    P_out = np.empty((1,))
+    cdef double[::1] P__ = P_out.reshape(-1)
+    with nogil:
+        c_cable12_engineering_linear_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
+    return P_out
+
+
+def cable18_green_exact_stiffness(youngs_modulus, section):
+    """constants of the law (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    youngs_modulus () [Pa]: Young's modulus
+    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    Returns
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    """
+    cdef double youngs_modulus_ = youngs_modulus
+    cdef const double[::1] section_ = _array(section, (6,), "cable18_green_exact_stiffness", "section")
+    A_out = np.empty((2,))
+    cdef double[::1] A__ = A_out.reshape(-1)
+    with nogil:
+        c_cable18_green_exact_stiffness(youngs_modulus_, &section_[0], &A__[0])
+    return A_out
+
+
+def cable18_green_exact_energy(l, e, A):
+    """elastic energy (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (6, 3) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    U (1,) [J]: elastic energy
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 3), "cable18_green_exact_energy", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable18_green_exact_energy", "A")
+    U_out = np.empty((1,))
+    cdef double[::1] U__ = U_out.reshape(-1)
+    with nogil:
+        c_cable18_green_exact_energy(l_, &e_[0], &A_[0], &U__[0])
+    return U_out
+
+
+def cable18_green_exact_elastic_force(l, e, A):
+    """dU/de, minus the elastic force Q_k (eq 8; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (6, 3) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    f (6, 3) [N, N m]: dU/de
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 3), "cable18_green_exact_elastic_force", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable18_green_exact_elastic_force", "A")
+    f_out = np.empty((6, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_cable18_green_exact_elastic_force(l_, &e_[0], &A_[0], &f__[0])
+    return f_out
+
+
+def cable18_green_exact_elastic_tangent(l, e, A):
+    """d2U/de2 (derivative of eq 8; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (6, 3) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    K (18, 18) [N/m, N, N m]: d2U/de2, symmetric
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 3), "cable18_green_exact_elastic_tangent", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable18_green_exact_elastic_tangent", "A")
+    K_out = np.empty((18, 18))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable18_green_exact_elastic_tangent(l_, &e_[0], &A_[0], &K__[0])
+    return K_out
+
+
+def cable18_green_exact_damping_force(l, e, v, A, tau):
+    """minus the Kelvin-Voigt damping force Q_d (Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (6, 3) [m, 1]: nodal vectors (eq 1)
+    v (6, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    f (6, 3) [N, N m]: -Q_d
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 3), "cable18_green_exact_damping_force", "e")
+    cdef const double[::1] v_ = _array(v, (6, 3), "cable18_green_exact_damping_force", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable18_green_exact_damping_force", "A")
+    cdef double tau_ = tau
+    f_out = np.empty((6, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_cable18_green_exact_damping_force(l_, &e_[0], &v_[0], &A_[0], tau_, &f__[0])
+    return f_out
+
+
+def cable18_green_exact_damping_tangent(l, e, v, A, tau, rate):
+    """df/de + rate df/dv of the damping force f = -Q_d (derivative of Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (6, 3) [m, 1]: nodal vectors (eq 1)
+    v (6, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    rate () [1/s]: dv/de of the integrator
+    Returns
+    K (18, 18) [N/m, N, N m]: df/de + rate df/dv
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 3), "cable18_green_exact_damping_tangent", "e")
+    cdef const double[::1] v_ = _array(v, (6, 3), "cable18_green_exact_damping_tangent", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable18_green_exact_damping_tangent", "A")
+    cdef double tau_ = tau
+    cdef double rate_ = rate
+    K_out = np.empty((18, 18))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable18_green_exact_damping_tangent(l_, &e_[0], &v_[0], &A_[0], tau_, rate_, &K__[0])
+    return K_out
+
+
+def cable18_green_exact_dissipation(l, e, v, A, tau):
+    """power dissipated by the damping force (v . Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (6, 3) [m, 1]: nodal vectors (eq 1)
+    v (6, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    P (1,) [W]: dissipated power, never negative
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 3), "cable18_green_exact_dissipation", "e")
+    cdef const double[::1] v_ = _array(v, (6, 3), "cable18_green_exact_dissipation", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable18_green_exact_dissipation", "A")
+    cdef double tau_ = tau
+    P_out = np.empty((1,))
+    cdef double[::1] P__ = P_out.reshape(-1)
+    with nogil:
+        c_cable18_green_exact_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
+    return P_out
+
+
+def cable18_engineering_exact_stiffness(youngs_modulus, section):
+    """constants of the law (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    youngs_modulus () [Pa]: Young's modulus
+    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    Returns
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    """
+    cdef double youngs_modulus_ = youngs_modulus
+    cdef const double[::1] section_ = _array(section, (6,), "cable18_engineering_exact_stiffness", "section")
+    A_out = np.empty((2,))
+    cdef double[::1] A__ = A_out.reshape(-1)
+    with nogil:
+        c_cable18_engineering_exact_stiffness(youngs_modulus_, &section_[0], &A__[0])
+    return A_out
+
+
+def cable18_engineering_exact_energy(l, e, A):
+    """elastic energy (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (6, 3) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    U (1,) [J]: elastic energy
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 3), "cable18_engineering_exact_energy", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable18_engineering_exact_energy", "A")
+    U_out = np.empty((1,))
+    cdef double[::1] U__ = U_out.reshape(-1)
+    with nogil:
+        c_cable18_engineering_exact_energy(l_, &e_[0], &A_[0], &U__[0])
+    return U_out
+
+
+def cable18_engineering_exact_elastic_force(l, e, A):
+    """dU/de, minus the elastic force Q_k (eq 8; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (6, 3) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    f (6, 3) [N, N m]: dU/de
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 3), "cable18_engineering_exact_elastic_force", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable18_engineering_exact_elastic_force", "A")
+    f_out = np.empty((6, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_cable18_engineering_exact_elastic_force(l_, &e_[0], &A_[0], &f__[0])
+    return f_out
+
+
+def cable18_engineering_exact_elastic_tangent(l, e, A):
+    """d2U/de2 (derivative of eq 8; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (6, 3) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    K (18, 18) [N/m, N, N m]: d2U/de2, symmetric
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 3), "cable18_engineering_exact_elastic_tangent", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable18_engineering_exact_elastic_tangent", "A")
+    K_out = np.empty((18, 18))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable18_engineering_exact_elastic_tangent(l_, &e_[0], &A_[0], &K__[0])
+    return K_out
+
+
+def cable18_engineering_exact_damping_force(l, e, v, A, tau):
+    """minus the Kelvin-Voigt damping force Q_d (Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (6, 3) [m, 1]: nodal vectors (eq 1)
+    v (6, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    f (6, 3) [N, N m]: -Q_d
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 3), "cable18_engineering_exact_damping_force", "e")
+    cdef const double[::1] v_ = _array(v, (6, 3), "cable18_engineering_exact_damping_force", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable18_engineering_exact_damping_force", "A")
+    cdef double tau_ = tau
+    f_out = np.empty((6, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_cable18_engineering_exact_damping_force(l_, &e_[0], &v_[0], &A_[0], tau_, &f__[0])
+    return f_out
+
+
+def cable18_engineering_exact_damping_tangent(l, e, v, A, tau, rate):
+    """df/de + rate df/dv of the damping force f = -Q_d (derivative of Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (6, 3) [m, 1]: nodal vectors (eq 1)
+    v (6, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    rate () [1/s]: dv/de of the integrator
+    Returns
+    K (18, 18) [N/m, N, N m]: df/de + rate df/dv
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 3), "cable18_engineering_exact_damping_tangent", "e")
+    cdef const double[::1] v_ = _array(v, (6, 3), "cable18_engineering_exact_damping_tangent", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable18_engineering_exact_damping_tangent", "A")
+    cdef double tau_ = tau
+    cdef double rate_ = rate
+    K_out = np.empty((18, 18))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable18_engineering_exact_damping_tangent(l_, &e_[0], &v_[0], &A_[0], tau_, rate_, &K__[0])
+    return K_out
+
+
+def cable18_engineering_exact_dissipation(l, e, v, A, tau):
+    """power dissipated by the damping force (v . Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (6, 3) [m, 1]: nodal vectors (eq 1)
+    v (6, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    P (1,) [W]: dissipated power, never negative
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 3), "cable18_engineering_exact_dissipation", "e")
+    cdef const double[::1] v_ = _array(v, (6, 3), "cable18_engineering_exact_dissipation", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable18_engineering_exact_dissipation", "A")
+    cdef double tau_ = tau
+    P_out = np.empty((1,))
+    cdef double[::1] P__ = P_out.reshape(-1)
+    with nogil:
+        c_cable18_engineering_exact_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
+    return P_out
+
+
+def beam12p_continuum_stiffness(l, section, D):
+    """constants of the law (eq 7; eq 5-8).
+
+    l () [m]: length of the element
+    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    D (4,) [Pa]: orthotropic law, axes x, y, z: D11 D22 D12 G12
+    Returns
+    A (31,) [N m]: different non-zero entries of A
+    """
+    cdef double l_ = l
+    cdef const double[::1] section_ = _array(section, (6,), "beam12p_continuum_stiffness", "section")
+    cdef const double[::1] D_ = _array(D, (4,), "beam12p_continuum_stiffness", "D")
+    A_out = np.empty((31,))
+    cdef double[::1] A__ = A_out.reshape(-1)
+    with nogil:
+        c_beam12p_continuum_stiffness(l_, &section_[0], &D_[0], &A__[0])
+    return A_out
+
+
+def beam12p_continuum_energy(l, e, A):
+    """elastic energy (eq 7; eq 5-8).
+
+    l () [m]: length of the element
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    A (31,) [N m]: elastic constants from beam12p_continuum_stiffness
+    Returns
+    U (1,) [J]: elastic energy
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_continuum_energy", "e")
+    cdef const double[::1] A_ = _array(A, (31,), "beam12p_continuum_energy", "A")
+    U_out = np.empty((1,))
+    cdef double[::1] U__ = U_out.reshape(-1)
+    with nogil:
+        c_beam12p_continuum_energy(l_, &e_[0], &A_[0], &U__[0])
+    return U_out
+
+
+def beam12p_continuum_elastic_force(l, e, A):
+    """dU/de, minus the elastic force Q_k (eq 8; eq 5-8).
+
+    l () [m]: length of the element
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    A (31,) [N m]: elastic constants from beam12p_continuum_stiffness
+    Returns
+    f (6, 2) [N, N m]: dU/de
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_continuum_elastic_force", "e")
+    cdef const double[::1] A_ = _array(A, (31,), "beam12p_continuum_elastic_force", "A")
+    f_out = np.empty((6, 2))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_beam12p_continuum_elastic_force(l_, &e_[0], &A_[0], &f__[0])
+    return f_out
+
+
+def beam12p_continuum_elastic_tangent(l, e, A):
+    """d2U/de2 (derivative of eq 8; eq 5-8).
+
+    l () [m]: length of the element
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    A (31,) [N m]: elastic constants from beam12p_continuum_stiffness
+    Returns
+    K (12, 12) [N/m, N, N m]: d2U/de2, symmetric
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_continuum_elastic_tangent", "e")
+    cdef const double[::1] A_ = _array(A, (31,), "beam12p_continuum_elastic_tangent", "A")
+    K_out = np.empty((12, 12))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_beam12p_continuum_elastic_tangent(l_, &e_[0], &A_[0], &K__[0])
+    return K_out
+
+
+def beam12p_continuum_damping_force(l, e, v, A, tau):
+    """minus the Kelvin-Voigt damping force Q_d (Q_d of eq 9; eq 5-8).
+
+    l () [m]: length of the element
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    v (6, 2) [m/s, 1/s]: rates of the nodal vectors
+    A (31,) [N m]: elastic constants from beam12p_continuum_stiffness
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    f (6, 2) [N, N m]: -Q_d
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_continuum_damping_force", "e")
+    cdef const double[::1] v_ = _array(v, (6, 2), "beam12p_continuum_damping_force", "v")
+    cdef const double[::1] A_ = _array(A, (31,), "beam12p_continuum_damping_force", "A")
+    cdef double tau_ = tau
+    f_out = np.empty((6, 2))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_beam12p_continuum_damping_force(l_, &e_[0], &v_[0], &A_[0], tau_, &f__[0])
+    return f_out
+
+
+def beam12p_continuum_damping_tangent(l, e, v, A, tau, rate):
+    """df/de + rate df/dv of the damping force f = -Q_d (derivative of Q_d of eq 9; eq 5-8).
+
+    l () [m]: length of the element
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    v (6, 2) [m/s, 1/s]: rates of the nodal vectors
+    A (31,) [N m]: elastic constants from beam12p_continuum_stiffness
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    rate () [1/s]: dv/de of the integrator
+    Returns
+    K (12, 12) [N/m, N, N m]: df/de + rate df/dv
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_continuum_damping_tangent", "e")
+    cdef const double[::1] v_ = _array(v, (6, 2), "beam12p_continuum_damping_tangent", "v")
+    cdef const double[::1] A_ = _array(A, (31,), "beam12p_continuum_damping_tangent", "A")
+    cdef double tau_ = tau
+    cdef double rate_ = rate
+    K_out = np.empty((12, 12))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_beam12p_continuum_damping_tangent(l_, &e_[0], &v_[0], &A_[0], tau_, rate_, &K__[0])
+    return K_out
+
+
+def beam12p_continuum_dissipation(l, e, v, A, tau):
+    """power dissipated by the damping force (v . Q_d of eq 9; eq 5-8).
+
+    l () [m]: length of the element
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    v (6, 2) [m/s, 1/s]: rates of the nodal vectors
+    A (31,) [N m]: elastic constants from beam12p_continuum_stiffness
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    P (1,) [W]: dissipated power, never negative
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_continuum_dissipation", "e")
+    cdef const double[::1] v_ = _array(v, (6, 2), "beam12p_continuum_dissipation", "v")
+    cdef const double[::1] A_ = _array(A, (31,), "beam12p_continuum_dissipation", "A")
+    cdef double tau_ = tau
+    P_out = np.empty((1,))
+    cdef double[::1] P__ = P_out.reshape(-1)
+    with nogil:
+        c_beam12p_continuum_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
+    return P_out
+
+
+def cable8p_green_exact_stiffness(youngs_modulus, section):
+    """constants of the law (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    youngs_modulus () [Pa]: Young's modulus
+    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    Returns
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    """
+    cdef double youngs_modulus_ = youngs_modulus
+    cdef const double[::1] section_ = _array(section, (6,), "cable8p_green_exact_stiffness", "section")
+    A_out = np.empty((2,))
+    cdef double[::1] A__ = A_out.reshape(-1)
+    with nogil:
+        c_cable8p_green_exact_stiffness(youngs_modulus_, &section_[0], &A__[0])
+    return A_out
+
+
+def cable8p_green_exact_energy(l, e, A):
+    """elastic energy (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    U (1,) [J]: elastic energy
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_green_exact_energy", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable8p_green_exact_energy", "A")
+    U_out = np.empty((1,))
+    cdef double[::1] U__ = U_out.reshape(-1)
+    with nogil:
+        c_cable8p_green_exact_energy(l_, &e_[0], &A_[0], &U__[0])
+    return U_out
+
+
+def cable8p_green_exact_elastic_force(l, e, A):
+    """dU/de, minus the elastic force Q_k (eq 8; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    f (4, 2) [N, N m]: dU/de
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_green_exact_elastic_force", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable8p_green_exact_elastic_force", "A")
+    f_out = np.empty((4, 2))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_cable8p_green_exact_elastic_force(l_, &e_[0], &A_[0], &f__[0])
+    return f_out
+
+
+def cable8p_green_exact_elastic_tangent(l, e, A):
+    """d2U/de2 (derivative of eq 8; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    K (8, 8) [N/m, N, N m]: d2U/de2, symmetric
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_green_exact_elastic_tangent", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable8p_green_exact_elastic_tangent", "A")
+    K_out = np.empty((8, 8))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable8p_green_exact_elastic_tangent(l_, &e_[0], &A_[0], &K__[0])
+    return K_out
+
+
+def cable8p_green_exact_damping_force(l, e, v, A, tau):
+    """minus the Kelvin-Voigt damping force Q_d (Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    v (4, 2) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    f (4, 2) [N, N m]: -Q_d
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_green_exact_damping_force", "e")
+    cdef const double[::1] v_ = _array(v, (4, 2), "cable8p_green_exact_damping_force", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable8p_green_exact_damping_force", "A")
+    cdef double tau_ = tau
+    f_out = np.empty((4, 2))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_cable8p_green_exact_damping_force(l_, &e_[0], &v_[0], &A_[0], tau_, &f__[0])
+    return f_out
+
+
+def cable8p_green_exact_damping_tangent(l, e, v, A, tau, rate):
+    """df/de + rate df/dv of the damping force f = -Q_d (derivative of Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    v (4, 2) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    rate () [1/s]: dv/de of the integrator
+    Returns
+    K (8, 8) [N/m, N, N m]: df/de + rate df/dv
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_green_exact_damping_tangent", "e")
+    cdef const double[::1] v_ = _array(v, (4, 2), "cable8p_green_exact_damping_tangent", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable8p_green_exact_damping_tangent", "A")
+    cdef double tau_ = tau
+    cdef double rate_ = rate
+    K_out = np.empty((8, 8))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable8p_green_exact_damping_tangent(l_, &e_[0], &v_[0], &A_[0], tau_, rate_, &K__[0])
+    return K_out
+
+
+def cable8p_green_exact_dissipation(l, e, v, A, tau):
+    """power dissipated by the damping force (v . Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    v (4, 2) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    P (1,) [W]: dissipated power, never negative
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_green_exact_dissipation", "e")
+    cdef const double[::1] v_ = _array(v, (4, 2), "cable8p_green_exact_dissipation", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable8p_green_exact_dissipation", "A")
+    cdef double tau_ = tau
+    P_out = np.empty((1,))
+    cdef double[::1] P__ = P_out.reshape(-1)
+    with nogil:
+        c_cable8p_green_exact_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
+    return P_out
+
+
+def cable8p_green_linear_stiffness(youngs_modulus, section):
+    """constants of the law (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    youngs_modulus () [Pa]: Young's modulus
+    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    Returns
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    """
+    cdef double youngs_modulus_ = youngs_modulus
+    cdef const double[::1] section_ = _array(section, (6,), "cable8p_green_linear_stiffness", "section")
+    A_out = np.empty((2,))
+    cdef double[::1] A__ = A_out.reshape(-1)
+    with nogil:
+        c_cable8p_green_linear_stiffness(youngs_modulus_, &section_[0], &A__[0])
+    return A_out
+
+
+def cable8p_green_linear_energy(l, e, A):
+    """elastic energy (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    U (1,) [J]: elastic energy
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_green_linear_energy", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable8p_green_linear_energy", "A")
+    U_out = np.empty((1,))
+    cdef double[::1] U__ = U_out.reshape(-1)
+    with nogil:
+        c_cable8p_green_linear_energy(l_, &e_[0], &A_[0], &U__[0])
+    return U_out
+
+
+def cable8p_green_linear_elastic_force(l, e, A):
+    """dU/de, minus the elastic force Q_k (eq 8; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    f (4, 2) [N, N m]: dU/de
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_green_linear_elastic_force", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable8p_green_linear_elastic_force", "A")
+    f_out = np.empty((4, 2))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_cable8p_green_linear_elastic_force(l_, &e_[0], &A_[0], &f__[0])
+    return f_out
+
+
+def cable8p_green_linear_elastic_tangent(l, e, A):
+    """d2U/de2 (derivative of eq 8; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    K (8, 8) [N/m, N, N m]: d2U/de2, symmetric
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_green_linear_elastic_tangent", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable8p_green_linear_elastic_tangent", "A")
+    K_out = np.empty((8, 8))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable8p_green_linear_elastic_tangent(l_, &e_[0], &A_[0], &K__[0])
+    return K_out
+
+
+def cable8p_green_linear_damping_force(l, e, v, A, tau):
+    """minus the Kelvin-Voigt damping force Q_d (Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    v (4, 2) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    f (4, 2) [N, N m]: -Q_d
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_green_linear_damping_force", "e")
+    cdef const double[::1] v_ = _array(v, (4, 2), "cable8p_green_linear_damping_force", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable8p_green_linear_damping_force", "A")
+    cdef double tau_ = tau
+    f_out = np.empty((4, 2))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_cable8p_green_linear_damping_force(l_, &e_[0], &v_[0], &A_[0], tau_, &f__[0])
+    return f_out
+
+
+def cable8p_green_linear_damping_tangent(l, e, v, A, tau, rate):
+    """df/de + rate df/dv of the damping force f = -Q_d (derivative of Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    v (4, 2) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    rate () [1/s]: dv/de of the integrator
+    Returns
+    K (8, 8) [N/m, N, N m]: df/de + rate df/dv
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_green_linear_damping_tangent", "e")
+    cdef const double[::1] v_ = _array(v, (4, 2), "cable8p_green_linear_damping_tangent", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable8p_green_linear_damping_tangent", "A")
+    cdef double tau_ = tau
+    cdef double rate_ = rate
+    K_out = np.empty((8, 8))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable8p_green_linear_damping_tangent(l_, &e_[0], &v_[0], &A_[0], tau_, rate_, &K__[0])
+    return K_out
+
+
+def cable8p_green_linear_dissipation(l, e, v, A, tau):
+    """power dissipated by the damping force (v . Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    v (4, 2) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    P (1,) [W]: dissipated power, never negative
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_green_linear_dissipation", "e")
+    cdef const double[::1] v_ = _array(v, (4, 2), "cable8p_green_linear_dissipation", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable8p_green_linear_dissipation", "A")
+    cdef double tau_ = tau
+    P_out = np.empty((1,))
+    cdef double[::1] P__ = P_out.reshape(-1)
+    with nogil:
+        c_cable8p_green_linear_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
+    return P_out
+
+
+def cable8p_engineering_exact_stiffness(youngs_modulus, section):
+    """constants of the law (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    youngs_modulus () [Pa]: Young's modulus
+    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    Returns
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    """
+    cdef double youngs_modulus_ = youngs_modulus
+    cdef const double[::1] section_ = _array(section, (6,), "cable8p_engineering_exact_stiffness", "section")
+    A_out = np.empty((2,))
+    cdef double[::1] A__ = A_out.reshape(-1)
+    with nogil:
+        c_cable8p_engineering_exact_stiffness(youngs_modulus_, &section_[0], &A__[0])
+    return A_out
+
+
+def cable8p_engineering_exact_energy(l, e, A):
+    """elastic energy (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    U (1,) [J]: elastic energy
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_engineering_exact_energy", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable8p_engineering_exact_energy", "A")
+    U_out = np.empty((1,))
+    cdef double[::1] U__ = U_out.reshape(-1)
+    with nogil:
+        c_cable8p_engineering_exact_energy(l_, &e_[0], &A_[0], &U__[0])
+    return U_out
+
+
+def cable8p_engineering_exact_elastic_force(l, e, A):
+    """dU/de, minus the elastic force Q_k (eq 8; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    f (4, 2) [N, N m]: dU/de
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_engineering_exact_elastic_force", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable8p_engineering_exact_elastic_force", "A")
+    f_out = np.empty((4, 2))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_cable8p_engineering_exact_elastic_force(l_, &e_[0], &A_[0], &f__[0])
+    return f_out
+
+
+def cable8p_engineering_exact_elastic_tangent(l, e, A):
+    """d2U/de2 (derivative of eq 8; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    K (8, 8) [N/m, N, N m]: d2U/de2, symmetric
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_engineering_exact_elastic_tangent", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable8p_engineering_exact_elastic_tangent", "A")
+    K_out = np.empty((8, 8))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable8p_engineering_exact_elastic_tangent(l_, &e_[0], &A_[0], &K__[0])
+    return K_out
+
+
+def cable8p_engineering_exact_damping_force(l, e, v, A, tau):
+    """minus the Kelvin-Voigt damping force Q_d (Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    v (4, 2) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    f (4, 2) [N, N m]: -Q_d
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_engineering_exact_damping_force", "e")
+    cdef const double[::1] v_ = _array(v, (4, 2), "cable8p_engineering_exact_damping_force", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable8p_engineering_exact_damping_force", "A")
+    cdef double tau_ = tau
+    f_out = np.empty((4, 2))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_cable8p_engineering_exact_damping_force(l_, &e_[0], &v_[0], &A_[0], tau_, &f__[0])
+    return f_out
+
+
+def cable8p_engineering_exact_damping_tangent(l, e, v, A, tau, rate):
+    """df/de + rate df/dv of the damping force f = -Q_d (derivative of Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    v (4, 2) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    rate () [1/s]: dv/de of the integrator
+    Returns
+    K (8, 8) [N/m, N, N m]: df/de + rate df/dv
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_engineering_exact_damping_tangent", "e")
+    cdef const double[::1] v_ = _array(v, (4, 2), "cable8p_engineering_exact_damping_tangent", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable8p_engineering_exact_damping_tangent", "A")
+    cdef double tau_ = tau
+    cdef double rate_ = rate
+    K_out = np.empty((8, 8))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable8p_engineering_exact_damping_tangent(l_, &e_[0], &v_[0], &A_[0], tau_, rate_, &K__[0])
+    return K_out
+
+
+def cable8p_engineering_exact_dissipation(l, e, v, A, tau):
+    """power dissipated by the damping force (v . Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    v (4, 2) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    P (1,) [W]: dissipated power, never negative
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_engineering_exact_dissipation", "e")
+    cdef const double[::1] v_ = _array(v, (4, 2), "cable8p_engineering_exact_dissipation", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable8p_engineering_exact_dissipation", "A")
+    cdef double tau_ = tau
+    P_out = np.empty((1,))
+    cdef double[::1] P__ = P_out.reshape(-1)
+    with nogil:
+        c_cable8p_engineering_exact_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
+    return P_out
+
+
+def cable8p_engineering_linear_stiffness(youngs_modulus, section):
+    """constants of the law (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    youngs_modulus () [Pa]: Young's modulus
+    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    Returns
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    """
+    cdef double youngs_modulus_ = youngs_modulus
+    cdef const double[::1] section_ = _array(section, (6,), "cable8p_engineering_linear_stiffness", "section")
+    A_out = np.empty((2,))
+    cdef double[::1] A__ = A_out.reshape(-1)
+    with nogil:
+        c_cable8p_engineering_linear_stiffness(youngs_modulus_, &section_[0], &A__[0])
+    return A_out
+
+
+def cable8p_engineering_linear_energy(l, e, A):
+    """elastic energy (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    U (1,) [J]: elastic energy
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_engineering_linear_energy", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable8p_engineering_linear_energy", "A")
+    U_out = np.empty((1,))
+    cdef double[::1] U__ = U_out.reshape(-1)
+    with nogil:
+        c_cable8p_engineering_linear_energy(l_, &e_[0], &A_[0], &U__[0])
+    return U_out
+
+
+def cable8p_engineering_linear_elastic_force(l, e, A):
+    """dU/de, minus the elastic force Q_k (eq 8; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    f (4, 2) [N, N m]: dU/de
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_engineering_linear_elastic_force", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable8p_engineering_linear_elastic_force", "A")
+    f_out = np.empty((4, 2))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_cable8p_engineering_linear_elastic_force(l_, &e_[0], &A_[0], &f__[0])
+    return f_out
+
+
+def cable8p_engineering_linear_elastic_tangent(l, e, A):
+    """d2U/de2 (derivative of eq 8; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    K (8, 8) [N/m, N, N m]: d2U/de2, symmetric
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_engineering_linear_elastic_tangent", "e")
+    cdef const double[::1] A_ = _array(A, (2,), "cable8p_engineering_linear_elastic_tangent", "A")
+    K_out = np.empty((8, 8))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable8p_engineering_linear_elastic_tangent(l_, &e_[0], &A_[0], &K__[0])
+    return K_out
+
+
+def cable8p_engineering_linear_damping_force(l, e, v, A, tau):
+    """minus the Kelvin-Voigt damping force Q_d (Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    v (4, 2) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    f (4, 2) [N, N m]: -Q_d
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_engineering_linear_damping_force", "e")
+    cdef const double[::1] v_ = _array(v, (4, 2), "cable8p_engineering_linear_damping_force", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable8p_engineering_linear_damping_force", "A")
+    cdef double tau_ = tau
+    f_out = np.empty((4, 2))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_cable8p_engineering_linear_damping_force(l_, &e_[0], &v_[0], &A_[0], tau_, &f__[0])
+    return f_out
+
+
+def cable8p_engineering_linear_damping_tangent(l, e, v, A, tau, rate):
+    """df/de + rate df/dv of the damping force f = -Q_d (derivative of Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    v (4, 2) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    rate () [1/s]: dv/de of the integrator
+    Returns
+    K (8, 8) [N/m, N, N m]: df/de + rate df/dv
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_engineering_linear_damping_tangent", "e")
+    cdef const double[::1] v_ = _array(v, (4, 2), "cable8p_engineering_linear_damping_tangent", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable8p_engineering_linear_damping_tangent", "A")
+    cdef double tau_ = tau
+    cdef double rate_ = rate
+    K_out = np.empty((8, 8))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable8p_engineering_linear_damping_tangent(l_, &e_[0], &v_[0], &A_[0], tau_, rate_, &K__[0])
+    return K_out
+
+
+def cable8p_engineering_linear_dissipation(l, e, v, A, tau):
+    """power dissipated by the damping force (v . Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    v (4, 2) [m/s, 1/s]: rates of the nodal vectors
+    A (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    P (1,) [W]: dissipated power, never negative
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_engineering_linear_dissipation", "e")
+    cdef const double[::1] v_ = _array(v, (4, 2), "cable8p_engineering_linear_dissipation", "v")
+    cdef const double[::1] A_ = _array(A, (2,), "cable8p_engineering_linear_dissipation", "A")
+    cdef double tau_ = tau
+    P_out = np.empty((1,))
+    cdef double[::1] P__ = P_out.reshape(-1)
+    with nogil:
+        c_cable8p_engineering_linear_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
+    return P_out
 
 
 def rigid_point(b, u, w):
@@ -349,7 +2372,7 @@ def rigid_kinetic_energy(mass, J, w):
     return T_out
 
 
-def slide_beam24_rigid_constraint(l, x, e, b, u):
+def slide_beam24_rigid_constraint(l, x, e, b, u, director):
     """C, C_s and the Newton step for s (eq 19-22).
 
     l () [m]: length of the element that holds s
@@ -357,6 +2380,7 @@ def slide_beam24_rigid_constraint(l, x, e, b, u):
     e (8, 3) [m, 1]: nodal vectors of that element
     b (7,) [m, 1]: position of the mass centre, unit quaternion w x y z
     u (3,) [m]: point in body axes from the mass centre
+    director (3,) [1]: a direction off the tangent; used where an element has none
     Returns
     C (3,) [m]: constraint in the tangent frame: C_l, C_m1, C_m2
     C_s (3,) [1]: derivative of C by s
@@ -368,6 +2392,7 @@ def slide_beam24_rigid_constraint(l, x, e, b, u):
     cdef const double[::1] e_ = _array(e, (8, 3), "slide_beam24_rigid_constraint", "e")
     cdef const double[::1] b_ = _array(b, (7,), "slide_beam24_rigid_constraint", "b")
     cdef const double[::1] u_ = _array(u, (3,), "slide_beam24_rigid_constraint", "u")
+    cdef const double[::1] director_ = _array(director, (3,), "slide_beam24_rigid_constraint", "director")
     C_out = np.empty((3,))
     cdef double[::1] C__ = C_out.reshape(-1)
     C_s_out = np.empty((3,))
@@ -377,11 +2402,11 @@ def slide_beam24_rigid_constraint(l, x, e, b, u):
     A_t_out = np.empty((3, 3))
     cdef double[::1] A_t__ = A_t_out.reshape(-1)
     with nogil:
-        c_slide_beam24_rigid_constraint(l_, x_, &e_[0], &b_[0], &u_[0], &C__[0], &C_s__[0], &s_step__[0], &A_t__[0])
+        c_slide_beam24_rigid_constraint(l_, x_, &e_[0], &b_[0], &u_[0], &director_[0], &C__[0], &C_s__[0], &s_step__[0], &A_t__[0])
     return C_out, C_s_out, s_step_out, A_t_out
 
 
-def slide_beam24_rigid_terms(l, x, e, b, u, v, w):
+def slide_beam24_rigid_terms(l, x, e, b, u, v, w, director):
     """terms of the equations of motion with the slide (eq 20-37).
 
     l () [m]: length of the element that holds s
@@ -391,6 +2416,7 @@ def slide_beam24_rigid_terms(l, x, e, b, u, v, w):
     u (3,) [m]: point in body axes from the mass centre
     v (8, 3) [m/s, 1/s]: rates of the nodal vectors
     w (6,) [m/s, rad/s]: velocity of the mass centre, body-axis angular velocity
+    director (3,) [1]: a direction off the tangent; used where an element has none
     Returns
     C (3,) [m]: constraint in the tangent frame: C_l, C_m1, C_m2
     C_q (3, 30) [1, m]: derivatives of C by the nodal vectors, then the rider
@@ -409,6 +2435,7 @@ def slide_beam24_rigid_terms(l, x, e, b, u, v, w):
     cdef const double[::1] u_ = _array(u, (3,), "slide_beam24_rigid_terms", "u")
     cdef const double[::1] v_ = _array(v, (8, 3), "slide_beam24_rigid_terms", "v")
     cdef const double[::1] w_ = _array(w, (6,), "slide_beam24_rigid_terms", "w")
+    cdef const double[::1] director_ = _array(director, (3,), "slide_beam24_rigid_terms", "director")
     C_out = np.empty((3,))
     cdef double[::1] C__ = C_out.reshape(-1)
     C_q_out = np.empty((3, 30))
@@ -428,7 +2455,7 @@ def slide_beam24_rigid_terms(l, x, e, b, u, v, w):
     s_bias_out = np.empty((1,))
     cdef double[::1] s_bias__ = s_bias_out.reshape(-1)
     with nogil:
-        c_slide_beam24_rigid_terms(l_, x_, &e_[0], &b_[0], &u_[0], &v_[0], &w_[0], &C__[0], &C_q__[0], &C_s__[0], &G__[0], &s_rate__[0], &Q_d__[0], &H__[0], &W__[0], &s_bias__[0])
+        c_slide_beam24_rigid_terms(l_, x_, &e_[0], &b_[0], &u_[0], &v_[0], &w_[0], &director_[0], &C__[0], &C_q__[0], &C_s__[0], &G__[0], &s_rate__[0], &Q_d__[0], &H__[0], &W__[0], &s_bias__[0])
     return C_out, C_q_out, C_s_out, G_out, s_rate_out, Q_d_out, H_out, W_out, s_bias_out
 
 
@@ -485,4 +2512,290 @@ def slide_beam24_rigid_tangent(l, x, e, b, u, f):
     cdef double[::1] K__ = K_out.reshape(-1)
     with nogil:
         c_slide_beam24_rigid_tangent(l_, x_, &e_[0], &b_[0], &u_[0], &f_[0], &J__[0], &K__[0])
+    return J_out, K_out
+
+
+def slide_cable12_rigid_constraint(l, x, e, b, u, director):
+    """C, C_s and the Newton step for s (eq 19-22).
+
+    l () [m]: length of the element that holds s
+    x () [m]: arc-length s from the element's first node
+    e (4, 3) [m, 1]: nodal vectors of that element
+    b (7,) [m, 1]: position of the mass centre, unit quaternion w x y z
+    u (3,) [m]: point in body axes from the mass centre
+    director (3,) [1]: a direction off the tangent; used where an element has none
+    Returns
+    C (3,) [m]: constraint in the tangent frame: C_l, C_m1, C_m2
+    C_s (3,) [1]: derivative of C by s
+    s_step (1,) [m]: Newton step of C_l(s) = 0
+    A_t (3, 3) [1]: tangent frame, columns i j k (eq 18)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 3), "slide_cable12_rigid_constraint", "e")
+    cdef const double[::1] b_ = _array(b, (7,), "slide_cable12_rigid_constraint", "b")
+    cdef const double[::1] u_ = _array(u, (3,), "slide_cable12_rigid_constraint", "u")
+    cdef const double[::1] director_ = _array(director, (3,), "slide_cable12_rigid_constraint", "director")
+    C_out = np.empty((3,))
+    cdef double[::1] C__ = C_out.reshape(-1)
+    C_s_out = np.empty((3,))
+    cdef double[::1] C_s__ = C_s_out.reshape(-1)
+    s_step_out = np.empty((1,))
+    cdef double[::1] s_step__ = s_step_out.reshape(-1)
+    A_t_out = np.empty((3, 3))
+    cdef double[::1] A_t__ = A_t_out.reshape(-1)
+    with nogil:
+        c_slide_cable12_rigid_constraint(l_, x_, &e_[0], &b_[0], &u_[0], &director_[0], &C__[0], &C_s__[0], &s_step__[0], &A_t__[0])
+    return C_out, C_s_out, s_step_out, A_t_out
+
+
+def slide_cable12_rigid_terms(l, x, e, b, u, v, w, director):
+    """terms of the equations of motion with the slide (eq 20-37).
+
+    l () [m]: length of the element that holds s
+    x () [m]: arc-length s from the element's first node
+    e (4, 3) [m, 1]: nodal vectors of that element
+    b (7,) [m, 1]: position of the mass centre, unit quaternion w x y z
+    u (3,) [m]: point in body axes from the mass centre
+    v (4, 3) [m/s, 1/s]: rates of the nodal vectors
+    w (6,) [m/s, rad/s]: velocity of the mass centre, body-axis angular velocity
+    director (3,) [1]: a direction off the tangent; used where an element has none
+    Returns
+    C (3,) [m]: constraint in the tangent frame: C_l, C_m1, C_m2
+    C_q (3, 18) [1, m]: derivatives of C by the nodal vectors, then the rider
+    C_s (3,) [1]: derivative of C by s
+    G (18,) [1, m]: ds = G dq (eq 24)
+    s_rate (1,) [m/s]: rate of s (eq 25)
+    Q_d (3,) [m/s^2]: second derivative of C at zero accelerations (eq 33)
+    H (2, 18) [1, m]: Jacobian of the two constraints that stay (eq 31)
+    W (2,) [m/s^2]: H q'' = W (eq 36-37)
+    s_bias (1,) [m/s^2]: s'' - G q'' (eq 34, sign mended)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 3), "slide_cable12_rigid_terms", "e")
+    cdef const double[::1] b_ = _array(b, (7,), "slide_cable12_rigid_terms", "b")
+    cdef const double[::1] u_ = _array(u, (3,), "slide_cable12_rigid_terms", "u")
+    cdef const double[::1] v_ = _array(v, (4, 3), "slide_cable12_rigid_terms", "v")
+    cdef const double[::1] w_ = _array(w, (6,), "slide_cable12_rigid_terms", "w")
+    cdef const double[::1] director_ = _array(director, (3,), "slide_cable12_rigid_terms", "director")
+    C_out = np.empty((3,))
+    cdef double[::1] C__ = C_out.reshape(-1)
+    C_q_out = np.empty((3, 18))
+    cdef double[::1] C_q__ = C_q_out.reshape(-1)
+    C_s_out = np.empty((3,))
+    cdef double[::1] C_s__ = C_s_out.reshape(-1)
+    G_out = np.empty((18,))
+    cdef double[::1] G__ = G_out.reshape(-1)
+    s_rate_out = np.empty((1,))
+    cdef double[::1] s_rate__ = s_rate_out.reshape(-1)
+    Q_d_out = np.empty((3,))
+    cdef double[::1] Q_d__ = Q_d_out.reshape(-1)
+    H_out = np.empty((2, 18))
+    cdef double[::1] H__ = H_out.reshape(-1)
+    W_out = np.empty((2,))
+    cdef double[::1] W__ = W_out.reshape(-1)
+    s_bias_out = np.empty((1,))
+    cdef double[::1] s_bias__ = s_bias_out.reshape(-1)
+    with nogil:
+        c_slide_cable12_rigid_terms(l_, x_, &e_[0], &b_[0], &u_[0], &v_[0], &w_[0], &director_[0], &C__[0], &C_q__[0], &C_s__[0], &G__[0], &s_rate__[0], &Q_d__[0], &H__[0], &W__[0], &s_bias__[0])
+    return C_out, C_q_out, C_s_out, G_out, s_rate_out, Q_d_out, H_out, W_out, s_bias_out
+
+
+def slide_cable12_rigid_residual(l, x, e, b, u, f):
+    """phi and the gradient of f . phi by (e, rider, s) (eq 19, 28-30).
+
+    l () [m]: length of the element that holds s
+    x () [m]: arc-length s from the element's first node
+    e (4, 3) [m, 1]: nodal vectors of that element
+    b (7,) [m, 1]: position of the mass centre, unit quaternion w x y z
+    u (3,) [m]: point in body axes from the mass centre
+    f (3,) [N]: force of the joint on the rider
+    Returns
+    phi (3,) [m]: r(s) - p
+    g (19,) [N, N m]: gradient of f . phi
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 3), "slide_cable12_rigid_residual", "e")
+    cdef const double[::1] b_ = _array(b, (7,), "slide_cable12_rigid_residual", "b")
+    cdef const double[::1] u_ = _array(u, (3,), "slide_cable12_rigid_residual", "u")
+    cdef const double[::1] f_ = _array(f, (3,), "slide_cable12_rigid_residual", "f")
+    phi_out = np.empty((3,))
+    cdef double[::1] phi__ = phi_out.reshape(-1)
+    g_out = np.empty((19,))
+    cdef double[::1] g__ = g_out.reshape(-1)
+    with nogil:
+        c_slide_cable12_rigid_residual(l_, x_, &e_[0], &b_[0], &u_[0], &f_[0], &phi__[0], &g__[0])
+    return phi_out, g_out
+
+
+def slide_cable12_rigid_tangent(l, x, e, b, u, f):
+    """derivatives of phi and of the gradient of f . phi (eq 19, 28-30).
+
+    l () [m]: length of the element that holds s
+    x () [m]: arc-length s from the element's first node
+    e (4, 3) [m, 1]: nodal vectors of that element
+    b (7,) [m, 1]: position of the mass centre, unit quaternion w x y z
+    u (3,) [m]: point in body axes from the mass centre
+    f (3,) [N]: force of the joint on the rider
+    Returns
+    J (3, 19) [1, m]: derivatives of phi by (e, rider, s)
+    K (19, 19) [N/m, N, N m]: derivatives of g by (e, rider, s)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 3), "slide_cable12_rigid_tangent", "e")
+    cdef const double[::1] b_ = _array(b, (7,), "slide_cable12_rigid_tangent", "b")
+    cdef const double[::1] u_ = _array(u, (3,), "slide_cable12_rigid_tangent", "u")
+    cdef const double[::1] f_ = _array(f, (3,), "slide_cable12_rigid_tangent", "f")
+    J_out = np.empty((3, 19))
+    cdef double[::1] J__ = J_out.reshape(-1)
+    K_out = np.empty((19, 19))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_slide_cable12_rigid_tangent(l_, x_, &e_[0], &b_[0], &u_[0], &f_[0], &J__[0], &K__[0])
+    return J_out, K_out
+
+
+def slide_cable18_rigid_constraint(l, x, e, b, u, director):
+    """C, C_s and the Newton step for s (eq 19-22).
+
+    l () [m]: length of the element that holds s
+    x () [m]: arc-length s from the element's first node
+    e (6, 3) [m, 1]: nodal vectors of that element
+    b (7,) [m, 1]: position of the mass centre, unit quaternion w x y z
+    u (3,) [m]: point in body axes from the mass centre
+    director (3,) [1]: a direction off the tangent; used where an element has none
+    Returns
+    C (3,) [m]: constraint in the tangent frame: C_l, C_m1, C_m2
+    C_s (3,) [1]: derivative of C by s
+    s_step (1,) [m]: Newton step of C_l(s) = 0
+    A_t (3, 3) [1]: tangent frame, columns i j k (eq 18)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (6, 3), "slide_cable18_rigid_constraint", "e")
+    cdef const double[::1] b_ = _array(b, (7,), "slide_cable18_rigid_constraint", "b")
+    cdef const double[::1] u_ = _array(u, (3,), "slide_cable18_rigid_constraint", "u")
+    cdef const double[::1] director_ = _array(director, (3,), "slide_cable18_rigid_constraint", "director")
+    C_out = np.empty((3,))
+    cdef double[::1] C__ = C_out.reshape(-1)
+    C_s_out = np.empty((3,))
+    cdef double[::1] C_s__ = C_s_out.reshape(-1)
+    s_step_out = np.empty((1,))
+    cdef double[::1] s_step__ = s_step_out.reshape(-1)
+    A_t_out = np.empty((3, 3))
+    cdef double[::1] A_t__ = A_t_out.reshape(-1)
+    with nogil:
+        c_slide_cable18_rigid_constraint(l_, x_, &e_[0], &b_[0], &u_[0], &director_[0], &C__[0], &C_s__[0], &s_step__[0], &A_t__[0])
+    return C_out, C_s_out, s_step_out, A_t_out
+
+
+def slide_cable18_rigid_terms(l, x, e, b, u, v, w, director):
+    """terms of the equations of motion with the slide (eq 20-37).
+
+    l () [m]: length of the element that holds s
+    x () [m]: arc-length s from the element's first node
+    e (6, 3) [m, 1]: nodal vectors of that element
+    b (7,) [m, 1]: position of the mass centre, unit quaternion w x y z
+    u (3,) [m]: point in body axes from the mass centre
+    v (6, 3) [m/s, 1/s]: rates of the nodal vectors
+    w (6,) [m/s, rad/s]: velocity of the mass centre, body-axis angular velocity
+    director (3,) [1]: a direction off the tangent; used where an element has none
+    Returns
+    C (3,) [m]: constraint in the tangent frame: C_l, C_m1, C_m2
+    C_q (3, 24) [1, m]: derivatives of C by the nodal vectors, then the rider
+    C_s (3,) [1]: derivative of C by s
+    G (24,) [1, m]: ds = G dq (eq 24)
+    s_rate (1,) [m/s]: rate of s (eq 25)
+    Q_d (3,) [m/s^2]: second derivative of C at zero accelerations (eq 33)
+    H (2, 24) [1, m]: Jacobian of the two constraints that stay (eq 31)
+    W (2,) [m/s^2]: H q'' = W (eq 36-37)
+    s_bias (1,) [m/s^2]: s'' - G q'' (eq 34, sign mended)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (6, 3), "slide_cable18_rigid_terms", "e")
+    cdef const double[::1] b_ = _array(b, (7,), "slide_cable18_rigid_terms", "b")
+    cdef const double[::1] u_ = _array(u, (3,), "slide_cable18_rigid_terms", "u")
+    cdef const double[::1] v_ = _array(v, (6, 3), "slide_cable18_rigid_terms", "v")
+    cdef const double[::1] w_ = _array(w, (6,), "slide_cable18_rigid_terms", "w")
+    cdef const double[::1] director_ = _array(director, (3,), "slide_cable18_rigid_terms", "director")
+    C_out = np.empty((3,))
+    cdef double[::1] C__ = C_out.reshape(-1)
+    C_q_out = np.empty((3, 24))
+    cdef double[::1] C_q__ = C_q_out.reshape(-1)
+    C_s_out = np.empty((3,))
+    cdef double[::1] C_s__ = C_s_out.reshape(-1)
+    G_out = np.empty((24,))
+    cdef double[::1] G__ = G_out.reshape(-1)
+    s_rate_out = np.empty((1,))
+    cdef double[::1] s_rate__ = s_rate_out.reshape(-1)
+    Q_d_out = np.empty((3,))
+    cdef double[::1] Q_d__ = Q_d_out.reshape(-1)
+    H_out = np.empty((2, 24))
+    cdef double[::1] H__ = H_out.reshape(-1)
+    W_out = np.empty((2,))
+    cdef double[::1] W__ = W_out.reshape(-1)
+    s_bias_out = np.empty((1,))
+    cdef double[::1] s_bias__ = s_bias_out.reshape(-1)
+    with nogil:
+        c_slide_cable18_rigid_terms(l_, x_, &e_[0], &b_[0], &u_[0], &v_[0], &w_[0], &director_[0], &C__[0], &C_q__[0], &C_s__[0], &G__[0], &s_rate__[0], &Q_d__[0], &H__[0], &W__[0], &s_bias__[0])
+    return C_out, C_q_out, C_s_out, G_out, s_rate_out, Q_d_out, H_out, W_out, s_bias_out
+
+
+def slide_cable18_rigid_residual(l, x, e, b, u, f):
+    """phi and the gradient of f . phi by (e, rider, s) (eq 19, 28-30).
+
+    l () [m]: length of the element that holds s
+    x () [m]: arc-length s from the element's first node
+    e (6, 3) [m, 1]: nodal vectors of that element
+    b (7,) [m, 1]: position of the mass centre, unit quaternion w x y z
+    u (3,) [m]: point in body axes from the mass centre
+    f (3,) [N]: force of the joint on the rider
+    Returns
+    phi (3,) [m]: r(s) - p
+    g (25,) [N, N m]: gradient of f . phi
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (6, 3), "slide_cable18_rigid_residual", "e")
+    cdef const double[::1] b_ = _array(b, (7,), "slide_cable18_rigid_residual", "b")
+    cdef const double[::1] u_ = _array(u, (3,), "slide_cable18_rigid_residual", "u")
+    cdef const double[::1] f_ = _array(f, (3,), "slide_cable18_rigid_residual", "f")
+    phi_out = np.empty((3,))
+    cdef double[::1] phi__ = phi_out.reshape(-1)
+    g_out = np.empty((25,))
+    cdef double[::1] g__ = g_out.reshape(-1)
+    with nogil:
+        c_slide_cable18_rigid_residual(l_, x_, &e_[0], &b_[0], &u_[0], &f_[0], &phi__[0], &g__[0])
+    return phi_out, g_out
+
+
+def slide_cable18_rigid_tangent(l, x, e, b, u, f):
+    """derivatives of phi and of the gradient of f . phi (eq 19, 28-30).
+
+    l () [m]: length of the element that holds s
+    x () [m]: arc-length s from the element's first node
+    e (6, 3) [m, 1]: nodal vectors of that element
+    b (7,) [m, 1]: position of the mass centre, unit quaternion w x y z
+    u (3,) [m]: point in body axes from the mass centre
+    f (3,) [N]: force of the joint on the rider
+    Returns
+    J (3, 25) [1, m]: derivatives of phi by (e, rider, s)
+    K (25, 25) [N/m, N, N m]: derivatives of g by (e, rider, s)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (6, 3), "slide_cable18_rigid_tangent", "e")
+    cdef const double[::1] b_ = _array(b, (7,), "slide_cable18_rigid_tangent", "b")
+    cdef const double[::1] u_ = _array(u, (3,), "slide_cable18_rigid_tangent", "u")
+    cdef const double[::1] f_ = _array(f, (3,), "slide_cable18_rigid_tangent", "f")
+    J_out = np.empty((3, 25))
+    cdef double[::1] J__ = J_out.reshape(-1)
+    K_out = np.empty((25, 25))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_slide_cable18_rigid_tangent(l_, x_, &e_[0], &b_[0], &u_[0], &f_[0], &J__[0], &K__[0])
     return J_out, K_out

@@ -8,8 +8,11 @@ generated kernels and the engine is a C header.
 import numpy as np
 
 from cpython.mem cimport PyMem_Calloc, PyMem_Free
+from cpython.pycapsule cimport PyCapsule_GetPointer
 from libc.string cimport strcmp
 from scipy.linalg cimport cython_blas, cython_lapack
+
+from funicular.generated import kernels
 
 cdef extern from "kernels.h" nogil:
     ctypedef struct fu_element:
@@ -18,16 +21,20 @@ cdef extern from "kernels.h" nogil:
     ctypedef struct fu_slide:
         const char *name
         int coordinates
-    const fu_element fu_elements[]
-    const int fu_n_elements
-    const fu_slide fu_slides[]
-    const int fu_n_slides
+    ctypedef struct fu_law:
+        const char *name
+    ctypedef struct fu_tables:
+        int n_elements, n_laws, n_slides
+        const fu_element *elements
+        const fu_law *laws
+        const fu_slide *slides
 
 cdef extern from "engine.h" nogil:
     int FU_JOINT_TERMS, FU_JOINT_OUTPUTS, FU_MAX_COORDINATES
     int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR
     ctypedef struct fu_cable:
         const fu_element *kernel
+        const fu_law *law
         int n_elements, first, coordinates, per_node
         double length, tau
         const double *m
@@ -77,6 +84,7 @@ cdef extern from "engine.h" nogil:
         double *s
         double *f
         int *element
+        double *director
     ctypedef struct fu_accelerator:
         fu_system mass
         double *rhs
@@ -124,6 +132,8 @@ cdef extern from "engine.h" nogil:
     int fu_start(fu_run *run)
     int fu_advance(fu_run *run, double seconds)
 
+cdef const fu_tables *TABLES = <const fu_tables *>PyCapsule_GetPointer(kernels.tables,
+                                                                      "funicular.generated.kernels.tables")
 cdef fu_lapack LAPACK
 LAPACK.dgbtrf = <void *>cython_lapack.dgbtrf
 LAPACK.dgbtrs = <void *>cython_lapack.dgbtrs
@@ -165,10 +175,15 @@ cdef class Engine:
         self.kept, self.arrays = [], {}
         for i, cable in enumerate(model.cables):
             c = &self.cables[i]
-            name = cable.element.encode()
-            for k in range(fu_n_elements):
-                if strcmp(fu_elements[k].name, name) == 0:
-                    c.kernel = &fu_elements[k]
+            name, law = cable.element.encode(), f"{cable.element}_{cable.law}".encode()
+            for k in range(TABLES.n_elements):
+                if strcmp(TABLES.elements[k].name, name) == 0:
+                    c.kernel = &TABLES.elements[k]
+            for k in range(TABLES.n_laws):
+                if strcmp(TABLES.laws[k].name, law) == 0:
+                    c.law = &TABLES.laws[k]
+            if c.kernel is NULL or c.law is NULL:
+                raise ValueError(f"no kernels for element {cable.element} with law {cable.law}")
             c.n_elements, c.first, c.length, c.tau = cable.n_elements, cable.first, cable.length, cable.tau
             c.per_node = c.kernel.vectors * c.kernel.dim
             c.coordinates = c.kernel.nodes * c.per_node
@@ -183,9 +198,11 @@ cdef class Engine:
         for i, joint in enumerate(model.joints):
             j = &self.joints[i]
             name = joint.kernel.encode()
-            for k in range(fu_n_slides):
-                if strcmp(fu_slides[k].name, name) == 0:
-                    j.kernel = &fu_slides[k]
+            for k in range(TABLES.n_slides):
+                if strcmp(TABLES.slides[k].name, name) == 0:
+                    j.kernel = &TABLES.slides[k]
+            if j.kernel is NULL:
+                raise ValueError(f"no kernels for {joint.kernel}")
             if j.kernel.coordinates + 1 > FU_MAX_COORDINATES:
                 raise ValueError(f"{joint.kernel}: more coordinates than the engine's {FU_MAX_COORDINATES}")
             j.cable, j.rider, j.mass = joint.cable, joint.rider, joint.mass
@@ -236,6 +253,7 @@ cdef class Engine:
         joints = len(model.joints)
         state.s, state.f = self._doubles([j.s for j in model.joints]), self._doubles(np.zeros(3 * joints))
         state.element = self._ints([j.element for j in model.joints])
+        state.director = self._doubles([j.director for j in model.joints])
 
     def _work_space(self, model):
         n_joints, n_dof = len(model.joints), model.n_dof

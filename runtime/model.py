@@ -24,6 +24,7 @@ class CableModel:
 
     name: str
     element: str
+    law: str
     n_elements: int
     first: int
     length: float
@@ -63,6 +64,7 @@ class JointModel:
     mass: float
     s: float
     element: int
+    director: np.ndarray
 
 
 @dataclass
@@ -174,29 +176,27 @@ def build(scene: Scene) -> Model:
 def _cable(cable: Cable, gravity: np.ndarray, first: int) -> CableModel:
     from funicular.generated import kernels
 
-    element, length = cable.element, cable.length / cable.elements
+    element, law, length = cable.element, cable.law, cable.length / cable.elements
     section, density = cable.section.moments(), cable.material.density
+    stiffness = getattr(kernels, f"{element}_{law}_stiffness")
     return CableModel(
-        cable.name,
-        element,
-        cable.elements,
-        first,
-        length,
-        cable.material.damping_time,
+        cable.name, element, law, cable.elements, first, length, cable.material.damping_time,
         m=getattr(kernels, f"{element}_mass")(length, density, section),
-        A=getattr(kernels, f"{element}_stiffness")(length, section, cable.material.elasticity()),
+        A=(stiffness(length, section, cable.material.elasticity()) if law == "continuum"
+           else stiffness(cable.material.youngs_modulus, section)),
         gravity=getattr(kernels, f"{element}_gravity")(length, density, section, gravity),
-        shape=(cable.elements + 1, len(ELEMENTS[element]), DIM),
-    )
+        shape=(cable.elements + 1, len(ELEMENTS[element]), DIM))
 
 
 def _cable_weights(cable: Cable) -> np.ndarray:
     """How far a unit of each nodal vector moves a point: 1 for positions, and lengths for the slopes.
 
-    A unit of r_x moves the middle of an element by l/8; of r_y or r_z the surface by a radius of gyration.
+    A unit of r_x moves the middle of an element by l/8, of r_xx by about l^2/64; of r_y or r_z the surface by a
+    radius of gyration.
     """
+    length = cable.length / cable.elements
     area, iyy, izz = cable.section.moments()[:3]
-    unit = {"r": 1.0, "r_x": cable.length / cable.elements / 8, "r_y": np.sqrt(iyy / area), "r_z": np.sqrt(izz / area)}
+    unit = {"r": 1.0, "r_x": length / 8, "r_xx": length**2 / 64, "r_y": np.sqrt(iyy / area), "r_z": np.sqrt(izz / area)}
     return np.repeat([unit[name] for _ in range(cable.elements + 1) for name in ELEMENTS[cable.element]], DIM)
 
 
@@ -222,6 +222,7 @@ def _joint(slide, scene: Scene, cable: int, rider: int) -> JointModel:
         body.mass,
         slide.s,
         int(np.clip(np.floor(at), 0, along.elements - 1)),
+        along.axes[1],
     )
 
 

@@ -13,7 +13,7 @@ from funicular.sections import AnySection
 from funicular.validation import Count, Name, Part, Reference, Vector, finite, positive, show, vector, xyz
 from pydantic import Field, PlainValidator, model_validator
 
-ELEMENTS = {"beam24": ("r", "r_x", "r_y", "r_z")}
+ELEMENTS = {"beam24": ("r", "r_x", "r_y", "r_z"), "cable12": ("r", "r_x"), "cable18": ("r", "r_x", "r_xx")}
 """The nodal vectors of each element, in the order of its coordinates."""
 
 Quaternion = tuple[float, float, float, float]
@@ -28,10 +28,20 @@ def _element(value: Any) -> str:
     return value
 
 
+def _choice(*choices: str):
+    def check(value: Any) -> str | None:
+        if value is not None and value not in choices:
+            raise ValueError(f'"{value}" is not known', near(value, choices))
+        return value
+    return check
+
+
 class Cable(Part):
     """A straight, stress-free cable from ``start`` to ``end`` (m), of equal elements.
 
-    ``up`` is the direction of the section's height; only its part across the axis counts.
+    ``up`` is the direction of the section's height; only its part across the axis counts. ``strain``
+    ("green" or "engineering") and ``curvature`` ("exact" or "linear") are for the cable elements: which measures
+    their axial and bending stiffness act on, by default green and exact.
     """
 
     kind: ClassVar[str] = "cable"
@@ -40,6 +50,8 @@ class Cable(Part):
     end: Annotated[Vector, xyz("m")]
     elements: Count
     element: Annotated[str, PlainValidator(_element)] = "beam24"
+    strain: Annotated[str | None, PlainValidator(_choice("green", "engineering"))] = None
+    curvature: Annotated[str | None, PlainValidator(_choice("exact", "linear"))] = None
     section: AnySection
     material: Material
     up: Annotated[Vector, xyz()] = (0.0, 1.0, 0.0)
@@ -58,6 +70,28 @@ class Cable(Part):
                 "give the direction of the section's height",
             )
         return self
+
+    @model_validator(mode="after")
+    def _element_can(self) -> Cable:
+        cable = self.element.startswith("cable")
+        if not cable and (self.strain or self.curvature):
+            raise ValueError(f"strain and curvature are for cable elements, {self.element} is a continuum",
+                             'leave them out, or take element="cable12"')
+        if cable:
+            across = self.section.second_moment_yy, self.section.second_moment_zz
+            if abs(across[0] - across[1]) > EXACT * max(across):
+                raise ValueError(f"{self.element} has one bending stiffness: its section needs equal second moments, "
+                                 f"got {show(across, 'm⁴')}", 'take a square, a circle or a tube, or element="beam24"')
+        if self.element == "cable18" and self.curvature == "linear":
+            raise ValueError("cable18 comes with the exact curvature only")
+        return self
+
+    @property
+    def law(self) -> str:
+        """Name of the elastic law among the element's kernels."""
+        if not self.element.startswith("cable"):
+            return "continuum"
+        return f"{self.strain or 'green'}_{self.curvature or 'exact'}"
 
     @property
     def length(self) -> float:
@@ -86,7 +120,8 @@ class Cable(Part):
         """(nodes, vectors, 3): the nodal vectors of the undeformed cable, r in m and its gradients."""
         i, j, k = self.axes
         names = ELEMENTS[self.element]
-        nodes = ({"r": self.point(s), "r_x": i, "r_y": j, "r_z": k} for s in self.node_s)
+        straight = {"r_x": i, "r_y": j, "r_z": k, "r_xx": np.zeros(3)}
+        nodes = (straight | {"r": self.point(s)} for s in self.node_s)
         return np.array([[node[name] for name in names] for node in nodes])
 
     def point(self, s: float) -> np.ndarray:

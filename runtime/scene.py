@@ -52,6 +52,8 @@ class Scene:
         section: Section,
         material: Material,
         element: str = "beam24",
+        strain: str | None = None,
+        curvature: str | None = None,
         up=(0, 1, 0),
     ) -> Cable:
         """Add a straight cable of equal elements; see `Cable`. Raises SceneError."""
@@ -62,6 +64,8 @@ class Scene:
                 end=end,
                 elements=elements,
                 element=element,
+                strain=strain,
+                curvature=curvature,
                 section=section,
                 material=material,
                 up=up,

@@ -67,6 +67,27 @@ def test_a_cut_hides_what_is_below_it():
     assert Derivation(p, "e", {cut: 0, **dict.fromkeys(v, 0), length: 1})(cut) == 0
 
 
+def test_a_definition_that_moves_as_another_is_differentiated_as_that_one():
+    """|r| - 1 without cancellation has the derivative of |r|."""
+    p = Program("stretch", "", "")
+    square = p.input("square", (), "1", "r . r - 1")
+    p.stage("all")
+    length = p.define("length", sp.sqrt(1 + square))
+    strain = p.define("strain", square / (1 + length), moves_as=length)
+    point = {square: sp.Rational(9, 16)}
+    d = jacobian(p, np.array([strain]), [square])[0, 0]
+    assert expanded(p, d).subs(point) == sp.diff(sp.sqrt(1 + square) - 1, square).subs(point) == sp.Rational(2, 5)
+    assert dict(p.stages[0].definitions)[strain] == square / (1 + length), "its value stays as it was written"
+
+
+def test_inputs_that_nothing_depends_on_are_told():
+    p, values, _ = chain()
+    p.input("idle", 2, "1", "no output needs it")
+    p.input("idler", (), "1", "nor this")
+    p.output("out", values, "1", "r, q")
+    assert p.unused() == ["idle", "idler"]
+
+
 def test_numbers_and_symbols_need_no_name():
     p, _, v = chain()
     before = len(p.definition)
@@ -112,6 +133,7 @@ def test_operations_are_counted():
     (sp.sqrt(a), "FU_SQRT(a)"),
     ((a + b) ** 2, "(a + b)*(a + b)"),
     (a - (b + c), "a - b - c"),
+    (sp.Float(0.1) * a - sp.Float(0.7745966692414834) * b, "0.1*a - 0.7745966692414834*b"),
 ])
 def test_printed_c(expr, text):
     assert c_expression(expr) == text

@@ -12,7 +12,7 @@ import sympy as sp
 from funicular.derive.frames import cross
 from funicular.derive.stages import Derivation, Program
 
-NAME, N_CONFIGURATION, N_VELOCITY = "rigid", 7, 6
+NAME, DIM, N_CONFIGURATION, N_VELOCITY = "rigid", 3, 7, 6
 SOURCE = "paper eq 12 (q_r); Haug 1989, ch. 9"
 
 

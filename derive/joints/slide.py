@@ -36,6 +36,16 @@ class Slide:
         gap = program.vector("gap", self.e[0] - rider.origin(self.b))
         self.r_p = program.vector("r_p", gap + (self.r - arm))
 
+    def _director(self) -> np.ndarray:
+        """What gives the frame its normal: a slope of the element, or a direction from outside, held fixed.
+
+        Only the direction of the two normals hangs on it, not the plane that they span.
+        """
+        if not self.element.director:
+            return self.outside
+        by = {"x": x, "y": y, "z": z}[self.element.director.partition("_")[2]]
+        return self._on_axis("n", [sp.diff(f, by) for f in self.element.shape_functions], self.e)
+
     def _first_position(self) -> np.ndarray:
         """r_1 in the rows of e that are positions, zero in the slopes."""
         return np.outer(np.array(self.element.is_position, dtype=int), self.e[0])
@@ -49,16 +59,17 @@ class Slide:
 
     def constraint(self) -> np.ndarray:
         """C = A_t' r_p (eq 20), with the cut (r_p, r_x, director) through which it is differentiated."""
+        self.outside = self.program.input("director", 3, "1",
+                                          "a direction off the tangent; used where an element has none")
         self.program.stage("tangent and director")
         self.t = self.by_s.array(self.r)
-        by = {"x": x, "y": y, "z": z}[self.element.director.partition("_")[2]]
-        self.n = self._on_axis("n", [sp.diff(f, by) for f in self.element.shape_functions], self.e)
+        self.n = self._director()
         self.program.stage("tangent frame (eq 13-18)")
         self.A_t = tangent_frame(self.program, self.t, self.n)
         self.program.stage("C (eq 20)")
         self.C = np.array([self.program.define(name, c) for name, c in
                            zip(("C_l", "C_m1", "C_m2"), self.A_t.T.dot(self.r_p), strict=True)])
-        self.cut = [*self.r_p, *self.t, *self.n]
+        self.cut = [*self.r_p, *self.t, *(self.n if self.element.director else ())]
         self.program.stage("derivatives of C by r_p, r_x, director")
         self.C_cut = jacobian(self.program, self.C, self.cut)
         return self.C

@@ -32,7 +32,7 @@ static void evaluate(const fu_model *model, const fu_state *state, fu_accelerato
         const int element = state->element[j], at = cable->first + element * cable->per_node;
         const terms_view t = view(work, j);
         joint->kernel->terms(cable->length, state->s[j] - fu_element_start(model, j, element), state->q + at,
-                             state->q + rider->configuration, joint->u, state->v + at, state->v + rider->dof, t.C,
+                             state->q + rider->configuration, joint->u, state->v + at, state->v + rider->dof, state->director + 3 * j, t.C,
                              t.C_q, t.C_s, t.G, t.s_rate, t.Q_d, t.H, t.W, t.s_bias);
     }
 }
@@ -160,18 +160,47 @@ int fu_project_velocities(const fu_model *model, const fu_state *state, fu_accel
     return 0;
 }
 
-/* Newton for C_l(s) = 0 (eq 21) on one element's curve; 0 when it converged. */
-int fu_find_arc_length(const fu_model *model, const double *q, int j, int element, double *s)
+/* Newton for C_l(s) = 0 (eq 21) on the curve of the element that holds s; 0 when it converged. */
+int fu_find_arc_length(const fu_model *model, const fu_state *state, int j, double *s)
 {
     const fu_joint *joint = &model->joints[j];
     const fu_cable *cable = &model->cables[joint->cable];
-    const double start = fu_element_start(model, j, element);
     double C[3], C_s[3], step, A_t[9];
     for (int i = 0; i < 50; ++i) {
-        joint->kernel->constraint(cable->length, *s - start, q + cable->first + element * cable->per_node,
-                                  q + model->rigids[joint->rider].configuration, joint->u, C, C_s, &step, A_t);
+        joint->kernel->constraint(cable->length, *s - fu_element_start(model, j, state->element[j]),
+                                  state->q + cable->first + state->element[j] * cable->per_node,
+                                  state->q + model->rigids[joint->rider].configuration, joint->u,
+                                  state->director + 3 * j, C, C_s, &step, A_t);
         *s += step;
         if (fabs(step) <= 1e-15 * (cable->length + fabs(*s))) return 0;
     }
     return fabs(step) <= 1e-12 * cable->length ? 0 : 1;
+}
+
+/* Turn each director with the tangent: the part of it across the tangent, of unit length. Where the tangent has
+ * swung onto it, the axis least along the tangent takes over. */
+void fu_carry_directors(const fu_model *model, fu_state *state)
+{
+    double C[3], C_s[3], step, A_t[9];
+    for (int j = 0; j < model->n_joints; ++j) {
+        const fu_joint *joint = &model->joints[j];
+        const fu_cable *cable = &model->cables[joint->cable];
+        double *d = state->director + 3 * j;
+        joint->kernel->constraint(cable->length, state->s[j] - fu_element_start(model, j, state->element[j]),
+                                  state->q + cable->first + state->element[j] * cable->per_node,
+                                  state->q + model->rigids[joint->rider].configuration, joint->u, d, C, C_s, &step,
+                                  A_t);
+        const double i[3] = {A_t[0], A_t[3], A_t[6]};
+        double along = i[0] * d[0] + i[1] * d[1] + i[2] * d[2];
+        if (!(fabs(along) < 0.99)) {
+            const double x = fabs(i[0]), y = fabs(i[1]), z = fabs(i[2]);
+            const int least = x <= y && x <= z ? 0 : y <= z ? 1 : 2;
+            for (int k = 0; k < 3; ++k) d[k] = k == least;
+            along = i[least];
+        }
+        double square = 0.0;
+        for (int k = 0; k < 3; ++k) d[k] -= along * i[k];
+        for (int k = 0; k < 3; ++k) square += d[k] * d[k];
+        for (int k = 0; k < 3; ++k) d[k] /= sqrt(square);
+    }
 }

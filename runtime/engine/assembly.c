@@ -27,10 +27,10 @@ void fu_internal_forces(const fu_model *model, const double *q, const double *v,
     for (int c = 0; c < model->n_cables; ++c) {
         const fu_cable *cable = &model->cables[c];
         for (int k = 0, at = cable->first; k < cable->n_elements; ++k, at += cable->per_node) {
-            cable->kernel->elastic_force(cable->length, q + at, cable->A, part);
+            cable->law->elastic_force(cable->length, q + at, cable->A, part);
             for (int i = 0; i < cable->coordinates; ++i) f[at + i] += part[i];
             if (cable->tau > 0.0) {
-                cable->kernel->damping_force(cable->length, q + at, v + at, cable->A, cable->tau, part);
+                cable->law->damping_force(cable->length, q + at, v + at, cable->A, cable->tau, part);
                 for (int i = 0; i < cable->coordinates; ++i) f[at + i] += part[i];
             }
         }
@@ -66,9 +66,9 @@ void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, 
         const int n = cable->coordinates, dim = cable->kernel->dim, vectors = n / dim;
         for (int k = 0, at = cable->first; k < cable->n_elements; ++k, at += cable->per_node) {
             if (stiffness != 0.0) {
-                cable->kernel->elastic_tangent(cable->length, q + at, cable->A, K);
+                cable->law->elastic_tangent(cable->length, q + at, cable->A, K);
                 if (cable->tau > 0.0) {
-                    cable->kernel->damping_tangent(cable->length, q + at, v + at, cable->A, cable->tau, rate, Q);
+                    cable->law->damping_tangent(cable->length, q + at, v + at, cable->A, cable->tau, rate, Q);
                     for (int i = 0; i < n * n; ++i) K[i] += Q[i];
                 }
                 for (int i = 0; i < n * n; ++i) K[i] *= stiffness;
@@ -122,7 +122,7 @@ double fu_elastic_energy(const fu_model *model, const double *q)
     for (int c = 0; c < model->n_cables; ++c) {
         const fu_cable *cable = &model->cables[c];
         for (int k = 0, at = cable->first; k < cable->n_elements; ++k, at += cable->per_node) {
-            cable->kernel->energy(cable->length, q + at, cable->A, &part);
+            cable->law->energy(cable->length, q + at, cable->A, &part);
             total += part;
         }
     }
@@ -150,7 +150,7 @@ double fu_dissipation(const fu_model *model, const double *q, const double *v)
         const fu_cable *cable = &model->cables[c];
         if (cable->tau <= 0.0) continue;
         for (int k = 0, at = cable->first; k < cable->n_elements; ++k, at += cable->per_node) {
-            cable->kernel->dissipation(cable->length, q + at, v + at, cable->A, cable->tau, &part);
+            cable->law->dissipation(cable->length, q + at, v + at, cable->A, cable->tau, &part);
             total += part;
         }
     }

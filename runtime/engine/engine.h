@@ -19,6 +19,7 @@
 
 typedef struct {
     const fu_element *kernel;
+    const fu_law *law;
     int n_elements;
     int first;        /* first dof and first entry in q */
     int coordinates;  /* of an element */
@@ -26,7 +27,7 @@ typedef struct {
     double length;    /* of an element, m */
     double tau;       /* Kelvin-Voigt retardation time, s */
     const double *m;       /* mass matrix of an element over nodal vectors */
-    const double *A;       /* elastic constants */
+    const double *A;       /* constants of the law */
     const double *gravity; /* generalised force on an element */
 } fu_cable;
 
@@ -87,6 +88,7 @@ typedef struct {
     double *s;       /* per joint: arc-length */
     double *f;       /* per joint: force on the rider, 3 */
     int *element;    /* per joint: element that holds s */
+    double *director; /* per joint: unit vector across the tangent, carried along with the slide */
 } fu_state;
 
 /* linear.c */
@@ -128,7 +130,8 @@ int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work);
 int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerator *work, double *acceleration,
                      fu_joint_output *joints, double *reaction);
 int fu_project_velocities(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change);
-int fu_find_arc_length(const fu_model *model, const double *q, int joint, int element, double *s);
+int fu_find_arc_length(const fu_model *model, const fu_state *state, int joint, double *s);
+void fu_carry_directors(const fu_model *model, fu_state *state);
 
 /* genalpha.c: one step of the generalised-alpha method */
 typedef struct {

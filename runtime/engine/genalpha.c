@@ -180,7 +180,10 @@ static void predict(fu_run *run, double h)
     for (int j = 0; j < model->n_joints; ++j) {
         run->next.s[j] = run->now.s[j] + h * run->s_slope[j];
         run->next.element[j] = run->now.element[j];
-        for (int k = 0; k < 3; ++k) run->next.f[3 * j + k] = run->now.f[3 * j + k];
+        for (int k = 0; k < 3; ++k) {
+            run->next.f[3 * j + k] = run->now.f[3 * j + k];
+            run->next.director[3 * j + k] = run->now.director[3 * j + k];
+        }
     }
 }
 

@@ -57,8 +57,9 @@ int fu_start(fu_run *run)
     const fu_model *model = run->model;
     fu_state *now = &run->now;
     fu_joint_output joint;
+    fu_carry_directors(model, now);
     for (int j = 0; j < model->n_joints; ++j)
-        if (fu_find_arc_length(model, now->q, j, now->element[j], &now->s[j])) return FU_SINGULAR;
+        if (fu_find_arc_length(model, now, j, &now->s[j])) return FU_SINGULAR;
     if (fu_accelerator_prepare(model, &run->accelerator)) return FU_SINGULAR;
     if (fu_project_velocities(model, now, &run->accelerator, run->before)) return FU_SINGULAR;
     for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->before[i];
@@ -91,6 +92,7 @@ static void accept(fu_run *run, double h)
     run->next.t = run->now.t + h;
     run->now = run->next;
     run->next = state;
+    fu_carry_directors(model, &run->now);
     const double power = fu_dissipation(model, run->now.q, run->now.v);
     run->dissipated += 0.5 * h * (run->power + power);
     run->power = power;

@@ -1,0 +1,116 @@
+"""The kernels of a law on an element (eq 5-9): constants, energy, forces, tangents, Kelvin-Voigt damping.
+
+Signatures are the same for every law; A holds what the law calls its constants.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import sympy as sp
+from funicular.derive.gram import Gram
+from funicular.derive.gram_tangent import blocks, nodal_tangent
+from funicular.derive.laws import LAWS
+from funicular.derive.spec import Element
+from funicular.derive.stages import Program
+
+
+def build(element: Element, law: str) -> list[Program]:
+    """Every kernel of a law on an element."""
+    kernels = Kernels(element, law)
+    return [kernels.stiffness(), kernels.energy(), kernels.elastic_force(), kernels.elastic_tangent(),
+            kernels.damping_force(), kernels.damping_tangent(), kernels.dissipation()]
+
+
+class Kernels:
+    """An element's Gram products with a law over them."""
+
+    def __init__(self, element: Element, law: str):
+        self.element, self.gram = element, Gram(element)
+        self.law = LAWS[law](self.gram)
+
+    def _program(self, kernel: str, doc: str, source: str) -> Program:
+        return Program(f"{self.element.name}_{self.law.name}_{kernel}", doc, f"{source}; {self.law.source}")
+
+    def _coordinates(self, program: Program, name="e", unit="m, 1", doc="nodal vectors (eq 1)") -> np.ndarray:
+        return program.input(name, (self.element.n_vectors, self.element.dim), unit, doc)
+
+    def _strain(self, program: Program) -> tuple:
+        """Inputs l, e, A and the stages up to G - G0."""
+        length = program.input("l", (), "m", "length of the element")
+        e, A = self._coordinates(program), self.law.constants(program)
+        program.stage("strain vectors")
+        w = program.define("w", 1 / length)
+        c = self.gram.differences(program, e, w)
+        program.stage("Gram products G - G0")
+        return w, A, c, self.gram.gram(program, c)
+
+    def _rates(self, program: Program) -> tuple:
+        """Inputs l, e, v, A, tau and the stages up to the rates of the strain vectors."""
+        length = program.input("l", (), "m", "length of the element")
+        e = self._coordinates(program)
+        v = self._coordinates(program, "v", "m/s, 1/s", "rates of the nodal vectors")
+        A = self.law.constants(program)
+        tau = program.input("tau", (), "s", "retardation time of the Kelvin-Voigt law")
+        program.stage("strain vectors and their rates")
+        w = program.define("w", 1 / length)
+        return w, A, tau, self.gram.differences(program, e, w), self.gram.differences(program, v, w, "d")
+
+    def stiffness(self) -> Program:
+        """The law's constants."""
+        p = self._program("stiffness", "constants of the law", "eq 7")
+        self.law.set_up(p)
+        return p
+
+    def energy(self) -> Program:
+        """eq 7."""
+        p = self._program("energy", "elastic energy", "eq 7")
+        w, A, _, G = self._strain(p)
+        p.output("U", [self.law.energy(p, A, G, w)], "J", "elastic energy")
+        return p
+
+    def elastic_force(self) -> Program:
+        """eq 8, as dU/de = -Q_k."""
+        p = self._program("elastic_force", "dU/de, minus the elastic force Q_k", "eq 8")
+        w, A, c, G = self._strain(p)
+        u = self.law.stress(p, A, G, w)
+        p.stage("forces on strain vectors")
+        f = self.gram.vector_forces(p, c, u)
+        p.output("f", self._nodal(p, f, w), "N, N m", "dU/de")
+        return p
+
+    def elastic_tangent(self) -> Program:
+        """Second derivative of the energy."""
+        p = self._program("elastic_tangent", "d2U/de2", "derivative of eq 8")
+        w, A, c, G = self._strain(p)
+        u, moduli = self.law.stress_and_moduli(p, A, G, w)
+        K = nodal_tangent(self.gram, p, blocks(self.gram, p, c, c, moduli, u), w, symmetric=True)
+        p.output("K", K, "N/m, N, N m", "d2U/de2, symmetric")
+        return p
+
+    def damping_force(self) -> Program:
+        """Q_d of eq 9, its sign turned."""
+        p = self._program("damping_force", "minus the Kelvin-Voigt damping force Q_d", "Q_d of eq 9")
+        w, A, tau, c, dc = self._rates(p)
+        p.output("f", self._nodal(p, self.law.damping_forces(p, A, tau, c, dc, w), w), "N, N m", "-Q_d")
+        return p
+
+    def damping_tangent(self) -> Program:
+        """df/de + rate df/dv of the damping force f."""
+        p = self._program("damping_tangent", "df/de + rate df/dv of the damping force f = -Q_d",
+                          "derivative of Q_d of eq 9")
+        w, A, tau, c, dc = self._rates(p)
+        rate = p.input("rate", (), "1/s", "dv/de of the integrator")
+        block = self.law.damping_blocks(p, A, tau, c, dc, rate, w)
+        p.output("K", nodal_tangent(self.gram, p, block, w, symmetric=False), "N/m, N, N m", "df/de + rate df/dv")
+        return p
+
+    def dissipation(self) -> Program:
+        """Power that the damping force takes out."""
+        p = self._program("dissipation", "power dissipated by the damping force", "v . Q_d of eq 9")
+        w, A, tau, c, dc = self._rates(p)
+        p.output("P", [sp.sympify(self.law.dissipation(p, A, tau, c, dc, w))], "W", "dissipated power, never negative")
+        return p
+
+    def _nodal(self, program: Program, f: np.ndarray, w: sp.Expr) -> np.ndarray:
+        program.stage("forces on nodal vectors")
+        return self.gram.nodal_forces(program, f, w)

@@ -1,0 +1,166 @@
+"""St. Venant-Kirchhoff continuum, fully integrated over the volume (eq 5-8): a quadratic form in Gram products.
+
+The Green strain E = (F'F - I)/2 is linear in G, hence U = 1/2 (G - G0)' A (G - G0) with A constant, integrated
+exactly, and sparse, because Legendre polynomials are orthogonal (beam24: 114 entries of 784; in nodal slopes 228).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+
+import numpy as np
+import sympy as sp
+from funicular.derive import moments
+from funicular.derive.gram import Gram
+from funicular.derive.gram_tangent import blocks
+from funicular.derive.stages import Program
+
+NAME = "continuum"
+DOC = "St. Venant-Kirchhoff continuum, orthotropic, fully integrated"
+SOURCE = "eq 5-8"
+
+
+class Form:
+    """The constant form A of an element."""
+
+    def __init__(self, gram: Gram):
+        self.gram = gram
+
+    @cached_property
+    def strain(self) -> dict[tuple[int, int], list]:
+        """E_ij = 1/2 sum_pairs strain[ij][p] (G - G0)_p, in the ring."""
+        g, d = self.gram.gradient, range(self.gram.element.dim)
+        return {(i, j): [g[a][i] * g[b][j] + (g[b][i] * g[a][j] if a != b else 0) for a, b in self.gram.pairs]
+                for i in d for j in d if i <= j}
+
+    @cached_property
+    def elasticity(self) -> dict[tuple, int]:
+        """Index into the argument D of the law S_ij = D E, by (ij, kl); orthotropic, axes x, y, z."""
+        normal = [(i, i) for i in range(self.gram.element.dim)]
+        shear = [ij for ij in self.strain if ij[0] != ij[1]]
+        off = [(a, b) for k, a in enumerate(normal) for b in normal[k + 1:]]
+        order = [(a, a) for a in normal] + off + [(s, s) for s in shear]
+        law = {}
+        for k, (a, b) in enumerate(order):
+            law[a, b] = law[b, a] = k
+        return law
+
+    @cached_property
+    def form(self) -> dict[tuple[int, int], dict]:
+        """A over pairs (p, q): {(elastic constant, section moment, power of l): rational}, zeros left out.
+
+        Shear enters as gamma = 2 E, so W = 1/2 sum D E_ii E_jj + 1/2 sum G gamma^2.
+        """
+        products: dict = {}
+        form = {}
+        for p in range(len(self.gram.pairs)):
+            for q in range(p, len(self.gram.pairs)):
+                entry: dict = {}
+                for (ij, kl), k in self.elasticity.items():
+                    if not (self.strain[ij][p] and self.strain[kl][q]):
+                        continue
+                    integrand = self.strain[ij][p] * self.strain[kl][q]
+                    if integrand not in products:
+                        products[integrand] = moments.over_element(integrand)
+                    weight = sp.QQ(1, 4) if ij[0] == ij[1] else sp.QQ(1)
+                    for (m, power), value in products[integrand].items():
+                        entry[k, m, power] = entry.get((k, m, power), 0) + weight * value
+                entry = {k: v for k, v in sorted(entry.items()) if v}
+                if entry:
+                    form[p, q] = form[q, p] = entry
+        return form
+
+    @cached_property
+    def constants(self) -> list[tuple]:
+        """The different entries of A, in order of first use: the argument A of the kernels."""
+        return list(dict.fromkeys(tuple(e.items()) for e in self.form.values()))
+
+    @cached_property
+    def index(self) -> dict[tuple[int, int], int]:
+        """Index into `constants` of each non-zero entry of A."""
+        place = {c: k for k, c in enumerate(self.constants)}
+        return {pq: place[tuple(e.items())] for pq, e in self.form.items()}
+
+
+class Continuum:
+    """The law over an element's Gram products."""
+
+    name, doc, source = NAME, DOC, SOURCE
+
+    def __init__(self, gram: Gram):
+        self.gram, self.form = gram, Form(gram)
+
+    def constants(self, program: Program) -> np.ndarray:
+        """Input A."""
+        return program.input("A", len(self.form.constants), "N m",
+                             f"elastic constants from {self.gram.element.name}_{NAME}_stiffness")
+
+    def set_up(self, program: Program) -> None:
+        """Inputs l, section, D and output A, for any doubly symmetric section and any orthotropic law."""
+        length = program.input("l", (), "m", "length of the element")
+        section = program.input("section", len(moments.SECTION), moments.SECTION_UNITS, moments.SECTION_DOC)
+        dim = self.gram.element.dim
+        normal = "D11 D22 D33 D12 D13 D23" if dim == 3 else "D11 D22 D12"
+        shear = "G12 G13 G23" if dim == 3 else "G12"
+        D = program.input("D", len(set(self.form.elasticity.values())), "Pa",
+                          f"orthotropic law, axes x, y, z: {normal} {shear}")
+        A = [sum(sp.Rational(int(c.numerator), int(c.denominator)) * D[k] * section[m] * length**power
+                 for (k, m, power), c in entry) for entry in self.form.constants]
+        program.stage("integrals of strain products")
+        program.output("A", [program.define(f"A_{i}", a) for i, a in enumerate(A)], "N m",
+                       "different non-zero entries of A")
+
+    def energy(self, program: Program, A: np.ndarray, G: Sequence[sp.Expr], w: sp.Expr) -> sp.Expr:
+        """U."""
+        return sum(a * b for a, b in zip(self.stress(program, A, G, w), G, strict=True)) / 2
+
+    def stress(self, program: Program, A: np.ndarray, G: Sequence[sp.Expr], w: sp.Expr) -> list[sp.Expr]:
+        """Stage: u = A (G - G0)."""
+        program.stage("u = A (G - G0)")
+        return self._times(program, A, G)
+
+    def stress_and_moduli(self, program: Program, A: np.ndarray, G: Sequence[sp.Expr], w: sp.Expr):
+        """Stage: u, and d2U/dG2 by its non-zero entries."""
+        return self.stress(program, A, G, w), self._moduli(A)
+
+    def _moduli(self, A: np.ndarray) -> dict:
+        return {pq: A[k] for pq, k in self.form.index.items()}
+
+    # --- Kelvin-Voigt: stress follows G - G0 + tau dG/dt; what follows is the tau part ----------------------
+
+    def _viscous(self, program, A, tau, c, dc):
+        program.stage("rates of the Gram products")
+        dG = self.gram.gram_rate(program, c, dc)
+        program.stage("u = tau A dG/dt")
+        return self._times(program, A, dG, tau), dG
+
+    def damping_forces(self, program, A, tau, c, dc, w) -> np.ndarray:
+        """Forces on strain vectors."""
+        u, _ = self._viscous(program, A, tau, c, dc)
+        program.stage("forces on strain vectors")
+        return self.gram.vector_forces(program, c, u)
+
+    def damping_blocks(self, program, A, tau, c, dc, rate, w) -> np.ndarray:
+        """df/dc + rate df/d(dc) over strain vectors."""
+        u, _ = self._viscous(program, A, tau, c, dc)
+        program.stage("b = tau (dc/dt + rate c)")
+        b = np.array([program.vector(f"b_{name}", tau * (dc[m] + rate * c[m]))
+                      for m, name in enumerate(self.gram.names)])
+        return blocks(self.gram, program, c, b, self._moduli(A), u)
+
+    def dissipation(self, program, A, tau, c, dc, w) -> sp.Expr:
+        """Power."""
+        u, dG = self._viscous(program, A, tau, c, dc)
+        return sum(a * b for a, b in zip(u, dG, strict=True))
+
+    def _times(self, program: Program, A, strain, scale=sp.S.One) -> list[sp.Expr]:
+        u = []
+        for p in range(len(self.gram.pairs)):
+            alike: dict[int, sp.Expr] = {}
+            for q in range(len(self.gram.pairs)):
+                if (p, q) in self.form.index:
+                    k = self.form.index[p, q]
+                    alike[k] = alike.get(k, sp.S.Zero) + strain[q]
+            u.append(program.define(f"u_{self.gram.pair(p)}", scale * sum(A[k] * s for k, s in alike.items())))
+        return u

@@ -1,0 +1,117 @@
+"""The roots of verification for the laws: energy and dissipated power by quadrature, from their definitions.
+
+All at 50 digits, from the shape functions of verify_reference.py: r', r'' and F are formed at each point, and nothing
+goes through Gram products or invariants. Where a law is a polynomial, its kernels claim the exact integral; where it
+is not (engineering strain, exact curvature, damping of cables), the number of Gauss points is part of what it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import mpmath
+import numpy as np
+from funicular.derive.gram import Gram
+from funicular.derive.laws import LAWS
+from funicular.derive.spec import Element
+from funicular.derive.verify_motion import cross
+from funicular.derive.verify_reference import Shape, gauss
+
+mp = mpmath.mp
+
+
+def energy(element: Element, law: str, s):
+    """Elastic energy."""
+    return (continuum_energy if law == "continuum" else cable_energy)(element, law, s)
+
+
+def dissipation(element: Element, law: str, s):
+    """Power that Kelvin-Voigt damping takes out."""
+    return (continuum_dissipation if law == "continuum" else cable_dissipation)(element, law, s)
+
+
+def density(D, E: np.ndarray):
+    """Strain energy density of the orthotropic law: 1/2 sum D_ij E_ii E_jj + 1/2 sum G (2 E_ij)^2."""
+    dim = len(E)
+    off = [(i, j) for i in range(dim) for j in range(i + 1, dim)]
+    normal, cross, shear = D[:dim], D[dim : dim + len(off)], D[dim + len(off) :]
+    total = sum(normal[i] * E[i, i] ** 2 for i in range(dim)) / 2
+    total += sum(d * E[i, i] * E[j, j] for d, (i, j) in zip(cross, off, strict=True))
+    return total + 2 * sum(g * E[i, j] ** 2 for g, (i, j) in zip(shear, off, strict=True))
+
+
+def continuum_energy(element: Element, law: str, s):
+    """eq 5-7 by quadrature."""
+    shape = Shape(element, s["l"].item())
+    total = mp.mpf(0)
+    for at, weight in shape.points(*s["rectangle"]):
+        F = s["e"].T.dot(shape.gradient(at))
+        total += weight * density(s["D"], (F.T.dot(F) - np.eye(element.dim, dtype=int)) / 2)
+    return total
+
+
+def continuum_dissipation(element: Element, law: str, s):
+    """Power of the viscous stress tau D dE/dt by quadrature."""
+    shape = Shape(element, s["l"].item())
+    total = mp.mpf(0)
+    for at, weight in shape.points(*s["rectangle"]):
+        N = shape.gradient(at)
+        F, rate = s["e"].T.dot(N), s["v"].T.dot(N)
+        total += weight * 2 * density(s["D"], (F.T.dot(rate) + rate.T.dot(F)) / 2)
+    return s["tau"].item() * total
+
+
+def cable_energy(element: Element, law: str, s):
+    """1/2 EA strain^2 + 1/2 EI curvature^2 along the axis."""
+    strain, curvature = law.split("_")
+    EA, EI = _stiffness(s)
+    kernels = LAWS[law](Gram(element))
+    n_axial, n_bending = len(kernels.axial_points), len(kernels.bending_points)
+    # two points more, where the kernels' number is claimed to be exact
+    axial = _along(element, s, n_axial + 2 * (strain == "green"))
+    bending = _along(element, s, n_bending + 2 * (curvature == "linear"))
+    total = mp.mpf(0)
+    for weight, r_x, _, _, _ in axial:
+        square = r_x.dot(r_x)
+        eps = (square - 1) / 2 if strain == "green" else mp.sqrt(square) - 1
+        total += weight * EA * eps**2 / 2
+    for weight, r_x, r_xx, _, _ in bending:
+        normal, length = cross(r_x, r_xx), mp.sqrt(r_x.dot(r_x))
+        kappa = normal / length ** (3 if strain == "green" else 2) if curvature == "exact" else r_xx
+        total += weight * EI * kappa.dot(kappa) / 2
+    return total
+
+
+def cable_dissipation(element: Element, law: str, s):
+    """EA tau strain'^2 + EI tau |D_t r''|^2, D_t the rate as seen from a frame that turns with the tangent."""
+    strain, _ = law.split("_")
+    EA, EI = _stiffness(s)
+    degree = max(p[0] for p in Shape(element, s["l"].item()).powers)
+    total = mp.mpf(0)
+    for weight, r_x, _, v_x, _ in _along(element, s, degree):
+        rate = r_x.dot(v_x) / (1 if strain == "green" else mp.sqrt(r_x.dot(r_x)))
+        total += weight * EA * rate**2
+    for weight, r_x, r_xx, v_x, v_xx in _along(element, s, degree - 1):
+        seen = v_xx - cross(cross(r_x, v_x) / r_x.dot(r_x), r_xx)  # the tangent turns with r' x dr'/dt / r'.r'
+        total += weight * EI * seen.dot(seen)
+    return s["tau"].item() * total
+
+
+def _stiffness(s) -> tuple:
+    """EA and EI of a rectangle; its height stands along y."""
+    height, width = s["rectangle"]
+    E = s["youngs_modulus"].item()
+    return E * height * width, E * width * height**3 / 12
+
+
+def _along(element: Element, s, n: int) -> Iterator[tuple]:
+    """At n Gauss points of the axis: weight, r', r'' and their rates, all in three dimensions."""
+    shape, half = Shape(element, s["l"].item()), s["l"].item() / 2
+    for t, weight in gauss(n):
+        at = (half * (1 + t), 0, 0)
+        N_x, N_xx = shape(at, (1, 0, 0)), shape(at, (2, 0, 0))
+        yield weight * half, *(_spatial(N.dot(d)) for d in (s["e"], s["v"]) for N in (N_x, N_xx))
+
+
+def _spatial(vector: np.ndarray) -> np.ndarray:
+    return np.concatenate([vector, [mp.mpf(0)] * (3 - len(vector))])
