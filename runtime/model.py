@@ -251,8 +251,8 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
         scheme=generalised_alpha(settings.spectral_radius),
         first_step=min(output_step, 1e-3 * settings.duration),
     )
-    largest = float(np.max(np.abs(change), initial=0.0))
-    if largest > 1e-9 * (1.0 + np.max(np.abs(model.v), initial=0.0)):
+    largest = float(np.max(np.abs(change) * model.weight, initial=0.0))  # rates of slopes and turns as those of points
+    if largest > 1e-9 * (1.0 + np.max(np.abs(model.v) * model.weight, initial=0.0)):
         messages.append(f"initial velocities broke a joint: changed by up to {largest:.3g} m/s to keep it")
     if status is None:
         status = engine.advance(on_progress)

@@ -36,7 +36,7 @@ def test_paper51_is_table_1():
     assert (body.mass, body.position, body.velocity) == (1.0, (0.25, 0.0, 0.0), (1.0, 0.0, 0.0))
     assert (scene.slides["trolley"].body, scene.slides["trolley"].s) == ("A", 0.25)
     assert scene.gravity == (0.0, -9.81, 0.0)
-    assert scene.run_settings == {"duration": 1.0, "tol": 1e-5, "output_step": 0.01}
+    assert scene.run_settings == {"duration": 1.0, "tol": 1e-5, "output_step": 0.002}
 
 
 def same(a: Scene, b: Scene) -> bool:

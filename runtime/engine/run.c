@@ -50,30 +50,37 @@ static int record_row(fu_run *run)
     return info;
 }
 
-/* Consistent start: velocities on the joints, accelerations and forces from eq 38. Starting the scheme from zero
+/* Start of the scheme, consistent: velocities on the joints, accelerations and forces from eq 38. Starting it from zero
  * accelerations instead makes every error fall with the first power of the step (tests/benchmarks/order.py). */
+static int start_scheme(fu_run *run)
+{
+    const fu_model *model = run->model;
+    fu_state *now = &run->now;
+    fu_joint_output *joints = (fu_joint_output *)run->accelerator.joints;
+    if (fu_project_velocities(model, now, &run->accelerator, run->before)) return FU_SINGULAR;
+    for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->before[i];
+    if (fu_accelerations(model, now, &run->accelerator, now->acceleration, joints, 0)) return FU_SINGULAR;
+    if (run->rest_start) memset(now->acceleration, 0, sizeof(double) * (size_t)model->n_dof);
+    memcpy(now->a, now->acceleration, sizeof(double) * (size_t)model->n_dof);
+    for (int j = 0; j < model->n_joints; ++j) {
+        run->s_slope[j] = joints[j].s_rate;
+        memcpy(now->f + 3 * j, joints[j].force, sizeof joints[j].force);
+    }
+    run->factored = 0;
+    return FU_RUNNING;
+}
+
 int fu_start(fu_run *run)
 {
     const fu_model *model = run->model;
     fu_state *now = &run->now;
-    fu_joint_output joint;
     fu_carry_directors(model, now);
     for (int j = 0; j < model->n_joints; ++j)
         if (fu_find_arc_length(model, now, j, &now->s[j])) return FU_SINGULAR;
     if (fu_accelerator_prepare(model, &run->accelerator)) return FU_SINGULAR;
-    if (fu_project_velocities(model, now, &run->accelerator, run->before)) return FU_SINGULAR;
-    for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->before[i];
     for (int i = 0; i < model->n_q; ++i) run->extent = fmax(run->extent, fabs(now->q[i]));
     memcpy(run->first, now->q, sizeof(double) * (size_t)model->n_q);
-    if (record_row(run)) return FU_SINGULAR;
-    memcpy(now->acceleration, run->record.acceleration, sizeof(double) * (size_t)model->n_dof);
-    if (run->rest_start) memset(now->acceleration, 0, sizeof(double) * (size_t)model->n_dof);
-    memcpy(now->a, now->acceleration, sizeof(double) * (size_t)model->n_dof);
-    for (int j = 0; j < model->n_joints; ++j) {
-        memcpy(&joint, run->record.joint + j * FU_JOINT_OUTPUTS, sizeof joint);
-        run->s_slope[j] = joint.s_rate;
-        memcpy(now->f + 3 * j, joint.force, sizeof joint.force);
-    }
+    if (start_scheme(run) || record_row(run)) return FU_SINGULAR;
     run->power = fu_dissipation(model, now->q, now->v);
     /* tolerances are relative to the largest motion: until there is one, that of the first output step */
     for (int i = 0; i < model->n_dof; ++i) {
@@ -134,33 +141,23 @@ static int crossed(const fu_run *run, int *side)
     return which;
 }
 
-/* Put a slide that stands on a boundary into the neighbour; accelerations and force jump with r_xx there. Returns
+/* Put a slide that stands on a boundary into the neighbour. Accelerations and force jump with r_xx there: the scheme
+ * starts anew. Were they carried over, the short steps around a boundary would raise what the constraints left in them
+ * by the ratio of the steps, crossing by crossing, and a spectral radius of 1 never lets it decay. Returns
  * FU_END_OF_CABLE where there is no neighbour. */
 static int enter(fu_run *run, int j, int side)
 {
     const fu_model *model = run->model;
     fu_state *now = &run->now;
-    const fu_cable *cable = &model->cables[model->joints[j].cable];
     const int element = now->element[j] + side;
-    const int node = side > 0 ? element : element + 1;
-    if (element < 0 || element >= cable->n_elements) {
+    if (element < 0 || element >= model->cables[model->joints[j].cable].n_elements) {
         run->stopped_joint = j;
         return FU_END_OF_CABLE;
     }
-    fu_joint_output *joints = (fu_joint_output *)run->accelerator.joints;
-    if (fu_accelerations(model, now, &run->accelerator, run->before, joints, 0)) return FU_SINGULAR;
-    for (int k = 0; k < 3 * model->n_joints; ++k) now->f[k] -= joints[k / 3].force[k % 3];
     now->element[j] = element;
-    now->s[j] = fu_element_start(model, j, node);
-    if (fu_accelerations(model, now, &run->accelerator, run->work, joints, 0)) return FU_SINGULAR;
-    for (int k = 0; k < 3 * model->n_joints; ++k) now->f[k] += joints[k / 3].force[k % 3];
-    for (int i = 0; i < model->n_dof; ++i) {
-        now->a[i] += run->work[i] - run->before[i];
-        now->acceleration[i] += run->work[i] - run->before[i];
-    }
-    run->factored = 0;
+    now->s[j] = fu_element_start(model, j, side > 0 ? element : element + 1);
     ++run->statistics.crossings;
-    return FU_RUNNING;
+    return start_scheme(run);
 }
 
 /* Shorten the step until the slide j ends it on the boundary (Illinois); returns the step, 0 on failure. */
@@ -266,7 +263,7 @@ int fu_advance(fu_run *run, double seconds)
         if (target > run->duration * (1.0 - 1e-12)) target = run->duration;
         const int status = step_towards(run, target);
         if (status) {
-            if (record_row(run)) return FU_SINGULAR;
+            if (run->now.t > run->record.time[run->record.n - 1] && record_row(run)) return FU_SINGULAR;
             return status;
         }
         if (fabs(run->now.t - target) <= 1e-12 * run->duration) {

@@ -1,0 +1,44 @@
+"""What README.md shows is true: its scene runs, in Python and as TOML, and the files that it names exist."""
+
+import re
+from pathlib import Path
+
+import funicular
+import pytest
+from funicular.scene_file import loads
+
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def block(language: str) -> str:
+    (found,) = re.findall(rf"^```{language}\n(.*?)^```", README, re.MULTILINE | re.DOTALL)
+    return found
+
+
+def test_both_ways_of_writing_the_scene_are_one(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    space = {}
+    exec(block("python"), space)
+    assert "completed" in capsys.readouterr().out
+    assert (tmp_path / "first.nc").is_file()
+    from_file = loads(block("toml"), "README.md")
+    assert from_file.run_settings == {"duration": 1.0, "tol": 1e-4, "output_step": 0.01}
+    from_file.run_settings = {}
+    assert from_file.to_toml() == space["scene"].to_toml()
+
+
+def test_its_scene_is_the_bundled_one():
+    scene, bundled = loads(block("toml"), "README.md"), funicular.load_scene("paper51")
+    for parts in ("pins", "bodies", "slides"):
+        assert getattr(scene, parts) == getattr(bundled, parts)
+
+
+def test_exactly_two_commands():
+    section = README.split("## Two commands")[1].split("\n## ")[0]
+    assert [line.startswith("    python3 -m venv") for line in section.splitlines() if line[:1] == " "] == [True] * 2
+
+
+@pytest.mark.parametrize("path", sorted(set(re.findall(r"[(`]((?:derive|runtime|tests|generated)/[\w./]*)", README))))
+def test_files_that_it_names_exist(path):
+    assert (ROOT / path).exists()
