@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.progress import Progress
 from rich.table import Table
 
-WIDE = 175  # columns that the whole table takes
+WIDE = 200  # columns that the whole table takes
 
 
 class Report:

@@ -29,6 +29,10 @@ KERNELS = {
     "beam24_continuum_elastic_tangent": "l, e, A, out",
     "beam24_continuum_damping_force": "l, e, v, A, 1e-4, out",
     "beam24_continuum_damping_tangent": "l, e, v, A, 1e-4, 2e3, out",
+    "cable12_engineering_exact_elastic_force": "l, ec, Ac, out",
+    "cable12_engineering_exact_elastic_tangent": "l, ec, Ac, out",
+    "cable12_green_linear_elastic_force": "l, ec, Ac, out",
+    "cable12_green_linear_elastic_tangent": "l, ec, Ac, out",
     "slide_beam24_rigid_residual": "l, 0.2, e, b, u, f, out, out + 3",
     "slide_beam24_rigid_tangent": "l, 0.2, e, b, u, f, out, out + 93",
 }
@@ -43,6 +47,7 @@ int main(void)
 {
     const double l = 0.5, section[6] = {2.5e-3, 5.2083333e-7, 5.2083333e-7, 1.953125e-10, 1.0850694e-10, 1.953125e-10};
     const double D[9] = {4e8, 4e8, 4e8, 0, 0, 0, 2e8, 2e8, 2e8};
+    const double ec[12] = {0, 0, 0, 1, 0, 0, 0.49, 0.05, 0, 1, 0.2, 0}, Ac[2] = {1e6, 208.333};
     const double b[7] = {0.2, 0.01, 0, 1, 0, 0, 0}, u[3] = {0, 0, 0}, f[3] = {0.3, 10, 1};
     beam24_mass(l, 4200, section, m);
     beam24_continuum_stiffness(l, section, D, A);
@@ -80,8 +85,9 @@ def build(folder: Path) -> Path:
     generated = drift.folder()
     level = re.findall(r"-O\w", sysconfig.get_config_var("CFLAGS") or "")[-1:] or ["-O2"]
     compiler = shlex.split(os.environ.get("CC", "cc"))
-    sources = [folder / "loop.c", *generated.glob("*.c")]
-    sources = [source for source in sources if source.name not in ("kernels.c", "registry.c")]  # Cython's, a table
+    kernels = json.loads((generated / "manifest.json").read_text(encoding="utf-8"))["kernels"]
+    families = {kernels[name]["family"] for name in (*KERNELS, "beam24_mass", "beam24_continuum_stiffness")}
+    sources = [folder / "loop.c", *(generated / f"{family}.c" for family in sorted(families))]
     command = [*compiler, "-std=c11", *level, f"-I{generated}", *sources, "-lm", "-o", folder / "loop"]
     subprocess.run(command, check=True)
     print(f"compiled with {' '.join([*compiler, *level])}")
