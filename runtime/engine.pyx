@@ -7,6 +7,7 @@ generated kernels and the engine is a C header.
 
 import numpy as np
 
+from cpython.exc cimport PyErr_CheckSignals
 from cpython.mem cimport PyMem_Calloc, PyMem_Free
 from cpython.pycapsule cimport PyCapsule_GetPointer
 from libc.string cimport strcmp
@@ -126,7 +127,7 @@ cdef extern from "engine.h" nogil:
         double *before
         double *first
         double *s_slope
-        double h, h_factored, contraction, motion, extent
+        double h, h_factored, contraction, motion
         int factored, stopped_joint, rest_start
     void fu_linearise(fu_run *run, double h, const double *change)
     int fu_start(fu_run *run)
@@ -328,6 +329,7 @@ cdef class Engine:
             while status == FU_RUNNING:
                 with nogil:
                     status = fu_advance(&self.run, interval)
+                PyErr_CheckSignals()
                 on_progress(self.run.now.t)
         except KeyboardInterrupt:
             return "interrupted"

@@ -6,15 +6,18 @@ Coordinates, unknowns and their order are those of engine/engine.h.
 from __future__ import annotations
 
 import time
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
+from funicular.errors import FunicularWarning, SceneError
 from funicular.parts import ELEMENTS, Cable
 from funicular.scene import Scene
 from funicular.settings import RunSettings
 
 DIM = 3
+MOST_OUTPUT = 4e9  # bytes
 RIGID_DOFS, RIGID_CONFIGURATION = 6, 7
 
 
@@ -239,9 +242,14 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
 
     begin = time.perf_counter()
     model = build(scene)
+    output_step = settings.output_step
+    _check_size(model, settings)
     engine = Engine(model)
     messages = []
-    output_step = settings.output_step
+    if settings.step is not None:
+        step = output_step / np.ceil(output_step / settings.step * (1 - 1e-9))
+        if step < settings.step * (1 - 1e-6):
+            messages.append(f"step {settings.step:.6g} s was made {step:.6g} s, so that steps end on output times")
     set_up = time.perf_counter() - begin
     status, change = engine.start(
         duration=settings.duration,
@@ -251,13 +259,26 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
         scheme=generalised_alpha(settings.spectral_radius),
         first_step=min(output_step, 1e-3 * settings.duration),
     )
+    if status == "singular":
+        raise SceneError("scene", "the equations are singular at the start: a joint holds what another one holds "
+                         "already, or a cable's director lies along its tangent", "look at the slides, and at up")
     largest = float(np.max(np.abs(change) * model.weight, initial=0.0))  # rates of slopes and turns as those of points
     if largest > 1e-9 * (1.0 + np.max(np.abs(model.v) * model.weight, initial=0.0)):
         messages.append(f"initial velocities broke a joint: changed by up to {largest:.3g} m/s to keep it")
+        warnings.warn(messages[-1], FunicularWarning, stacklevel=3)
     if status is None:
         status = engine.advance(on_progress)
     wall = time.perf_counter() - begin
     return _recording(model, engine, settings, status, messages, {"set_up": set_up, "total": wall})
+
+
+def _check_size(model: Model, settings: RunSettings) -> None:
+    """Refuse what no memory holds, before it is asked for."""
+    per_row = 8 * (model.n_q + 3 * model.n_dof + 11 * len(model.joints) + 5)
+    need = per_row * settings.duration / settings.output_step
+    if not need < MOST_OUTPUT:
+        raise SceneError("run", f"output_step {settings.output_step:.6g} s makes {need:.3g} bytes of results, more "
+                         f"than {MOST_OUTPUT:.3g}", "take a larger output_step")
 
 
 def _recording(
@@ -293,7 +314,7 @@ def _recording(
     statistics["time_s"] = seconds | statistics["time_s"]
     report = {
         "status": status,
-        "integrator": settings.integrator,
+        "integrator": "genalpha",
         "spectral_radius": settings.spectral_radius,
         "tol": settings.tol if settings.step is None else None,
         "step": settings.step,

@@ -6,11 +6,10 @@ import math
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
-from funicular.errors import near
 from funicular.materials import Material
 from funicular.rotations import rotate
 from funicular.sections import AnySection
-from funicular.validation import Count, Name, Part, Reference, Vector, finite, positive, show, vector, xyz
+from funicular.validation import Count, Name, Part, Reference, Vector, finite, one_of, positive, show, vector, xyz
 from pydantic import Field, PlainValidator, model_validator
 
 ELEMENTS = {"beam24": ("r", "r_x", "r_y", "r_z"), "cable12": ("r", "r_x"), "cable18": ("r", "r_x", "r_xx")}
@@ -20,20 +19,6 @@ Quaternion = tuple[float, float, float, float]
 
 EXACT = 1e-9
 """Lengths that differ by this part of the cable's length are taken as equal."""
-
-
-def _element(value: Any) -> str:
-    if value not in ELEMENTS:
-        raise ValueError(f'"{value}" is not known', near(value, ELEMENTS))
-    return value
-
-
-def _choice(*choices: str):
-    def check(value: Any) -> str | None:
-        if value is not None and value not in choices:
-            raise ValueError(f'"{value}" is not known', near(value, choices))
-        return value
-    return check
 
 
 class Cable(Part):
@@ -49,9 +34,9 @@ class Cable(Part):
     start: Annotated[Vector, xyz("m")]
     end: Annotated[Vector, xyz("m")]
     elements: Count
-    element: Annotated[str, PlainValidator(_element)] = "beam24"
-    strain: Annotated[str | None, PlainValidator(_choice("green", "engineering"))] = None
-    curvature: Annotated[str | None, PlainValidator(_choice("exact", "linear"))] = None
+    element: Annotated[str, one_of(ELEMENTS)] = "beam24"
+    strain: Annotated[str | None, one_of(("green", "engineering"), optional=True)] = None
+    curvature: Annotated[str | None, one_of(("exact", "linear"), optional=True)] = None
     section: AnySection
     material: Material
     up: Annotated[Vector, xyz()] = (0.0, 1.0, 0.0)

@@ -180,7 +180,7 @@ class Run:
         Raises ResultFileError.
         """
         check_writable(path)
-        path = Path(path)
+        path = Path(path).resolve()  # a link keeps pointing to what it did
         part = path.with_name(f".{path.name}.{os.getpid()}.part")
         try:
             self.dataset.to_netcdf(part, engine="h5netcdf")
@@ -235,9 +235,11 @@ _COUNTS = {
 
 def check_writable(path: str | os.PathLike) -> None:
     """Raises ResultFileError if a file cannot be written at ``path``; leaves nothing behind."""
-    path = Path(path)
+    path = Path(path).resolve()
     if path.is_dir():
         raise ResultFileError(f"{path}: the results cannot be written here: this is a directory; add a name")
+    if path.exists() and not path.is_file():
+        raise ResultFileError(f"{path}: the results cannot be written here: this is a device, not a file")
     if path.exists() and not os.access(path, os.W_OK):
         raise ResultFileError(f"{path}: the results cannot be written here: the file is write-protected")
     probe = path.with_name(f".{path.name}.{os.getpid()}.probe")

@@ -236,6 +236,10 @@ class Scene:
     def _check_slide(self, slide: Slide) -> Cable:
         if slide.body not in self.bodies:
             raise SceneError(slide.where, f'there is no rigid_body "{slide.body}"', near(slide.body, self.bodies))
+        for other in self.slides.values():
+            if (other.body, other.along, other.at) == (slide.body, slide.along, slide.at):
+                raise SceneError(slide.where, f'holds the same point of body "{slide.body}" on cable "{slide.along}" '
+                                 f'as slide "{other.name}"', "leave one of them out, or give them different points at")
         return self._cable(slide.along, slide.where, slide.s)
 
     def _gap(self, slide: Slide) -> tuple[float, str]:

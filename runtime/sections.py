@@ -107,6 +107,8 @@ def _section(value: Any) -> Section:
     shape = sizes.pop("shape", None)
     if shape is None:
         raise ValueError("has no shape", "known: " + ", ".join(SHAPES))
+    if not isinstance(shape, str):
+        raise ValueError(f"has the shape {shape!r}, not a name", "known: " + ", ".join(SHAPES))
     if shape not in SHAPES:
         raise ValueError(f'has the unknown shape "{shape}"', near(shape, SHAPES))
     return SHAPES[shape].model_validate(sizes)

@@ -2,30 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, ClassVar
 
-from funicular.errors import near
-from funicular.validation import Part, positive, within
-from pydantic import Field, PlainValidator, model_validator
+from funicular.validation import Part, one_of, positive, within
+from pydantic import Field, model_validator
 
-INTEGRATORS = ("genalpha",)
+INTEGRATORS = ("auto", "genalpha")
 
 Duration = Annotated[float, positive("s")]
-
-
-def _integrator(value: Any) -> str:
-    if value not in INTEGRATORS:
-        raise ValueError(f'"{value}" is not known', near(value, INTEGRATORS))
-    return value
 
 
 class RunSettings(Part):
     """How a scene is run.
 
     duration in s; tol: the error aimed at in positions, relative to the largest motion in the scene, by which
-    the step is chosen; step: a fixed step in s instead; output_step in s, a hundredth of the duration if not
-    given; spectral_radius of the integrator at infinity: 1 keeps and 0 removes the fastest vibrations; save: the
-    file to write, or None.
+    the step is chosen; step: a fixed step in s instead, divided where need be so that steps end on output times;
+    output_step in s, a hundredth of the duration if not given; integrator: "auto" takes the best there is, today
+    genalpha; spectral_radius of the integrator at infinity: 1 keeps and 0 removes the fastest vibrations; save:
+    the file to write, or None.
     """
 
     kind: ClassVar[str] = "run"
@@ -33,7 +27,7 @@ class RunSettings(Part):
     tol: Annotated[float, positive()] = 1e-4
     step: Duration | None = None
     output_step: Duration = Field(default_factory=lambda data: data["duration"] / 100)
-    integrator: Annotated[str, PlainValidator(_integrator)] = "genalpha"
+    integrator: Annotated[str, one_of(INTEGRATORS)] = "auto"
     spectral_radius: Annotated[float, within(0, 1, ends=True)] = 0.9
     save: str | None = None
 

@@ -7,6 +7,7 @@ A quantity is ``Annotated[float, positive("m")]``; its checks raise ``ValueError
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from numbers import Integral, Real
 from typing import Annotated, Any, ClassVar
 
@@ -48,6 +49,20 @@ def show(value: float | tuple[float, ...] | np.ndarray, unit: str = "") -> str:
     """A number or vector for a message, with its unit."""
     text = f"{value:.9g}" if isinstance(value, float) else "(" + ", ".join(f"{v:.9g}" for v in value) + ")"
     return f"{text} {unit}".strip()
+
+
+def one_of(known: Iterable[str], optional: bool = False) -> PlainValidator:
+    """Check of a name among known ones, or of None where it may be left out; the refusal suggests the near one."""
+    def check(value: Any) -> str | None:
+        if value is None and optional:
+            return None
+        if not isinstance(value, str):
+            raise ValueError(f"must be a name, got {value!r}", "known: " + ", ".join(known))
+        if value not in known:
+            raise ValueError(f'"{value}" is not known', near(value, known))
+        return value
+
+    return PlainValidator(check)
 
 
 def finite(unit: str = "") -> PlainValidator:

@@ -179,7 +179,7 @@ def test_settings_and_defaults_reach_the_engine(engine):
         "tol": 1e-4,
         "step": None,
         "output_step": 0.02,
-        "integrator": "genalpha",
+        "integrator": "auto",
         "spectral_radius": 0.5,
         "save": None,
     }

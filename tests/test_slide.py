@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from funicular import EndOfCableError, Material, Rectangle, Scene
+from funicular import EndOfCableError, FunicularWarning, Material, Rectangle, Scene
 from funicular.model import build
 from funicular.rotations import rotate
 from scenery import TABLE_1, add_cable, add_rider, largest, one_rider, to_the_end
@@ -97,7 +97,8 @@ def test_two_cables_do_not_know_of_each_other(first_scene):
     add_rider(scene, 0.25, 1.0, "other", "B", "second")
     run = scene.run(1.0, step=1e-3)
     for body, z in (("A", 0), ("B", 1)):
-        np.testing.assert_allclose(run[f"{body}.position"] - [0, 0, z], first_scene["A.position"], atol=1e-13)
+        # Newton stops by the size of the scene, here 1.8 m and not 1.5 m: measured 9e-11
+        np.testing.assert_allclose(run[f"{body}.position"] - [0, 0, z], first_scene["A.position"], rtol=0, atol=1e-9)
 
 
 def test_a_body_on_two_cables_is_two_of_half_the_mass(first_scene):
@@ -107,8 +108,9 @@ def test_a_body_on_two_cables_is_two_of_half_the_mass(first_scene):
         add_cable(scene, name, start=(0, 0, z), end=(1.5, 0, z))
         scene.slide(body, along=name, s=0.25, at=(0, 0, z), name=f"on_{name}")
     run = scene.run(1.0, step=1e-3)
-    np.testing.assert_allclose(run["A.position"], first_scene["A.position"], atol=1e-13)
-    np.testing.assert_allclose(run["on_left.force"], first_scene["trolley.force"], atol=1e-7)
+    # Newton stops by the size of the scene, here 1.58 m and not 1.5 m: measured 5e-11 m and 1.5e-7 N
+    np.testing.assert_allclose(run["A.position"], first_scene["A.position"], rtol=0, atol=5e-10)
+    np.testing.assert_allclose(run["on_left.force"], first_scene["trolley.force"], rtol=0, atol=1e-6)
     assert largest(run["A.angular_velocity"]) < 1e-11
 
 
@@ -154,7 +156,8 @@ def test_the_motion_is_the_same_far_from_the_origin(distance, first_scene):
 
 def test_a_start_that_breaks_the_joint_is_projected_and_told():
     """The rider strikes the cable at rest: the least change of motion, in the norm of the masses."""
-    run = one_rider(across=(0.5, 0.2)).run(0.02, step=1e-3)
+    with pytest.warns(FunicularWarning, match="initial velocities broke a joint"):
+        run = one_rider(across=(0.5, 0.2)).run(0.02, step=1e-3, output_step=1e-3)
     (message,) = run.report["messages"]
     assert "initial velocities broke a joint" in message
     v = run["A.velocity"][0]

@@ -166,7 +166,8 @@ typedef struct {
     double *psi, *force, *work, *before;      /* n_dof */
     double *first;                            /* n_q: the configuration at the start */
     double *s_slope;                          /* per joint: predicts ds/dt */
-    double h, h_factored, contraction, motion, extent, dissipated, power, last_error;
+    double h, h_factored, contraction, dissipated, power, last_error;
+    double motion, least_motion, extent; /* m: largest so far, assumed at least, largest coordinate of a position */
     double newton_tolerance, round_off; /* of increments, m: where Newton may stop, and where it cannot go on */
     int factored, stopped_joint;
     int rest_start; /* for order.py only: start the scheme from zero accelerations */

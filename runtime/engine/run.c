@@ -4,6 +4,7 @@
 #include <string.h>
 
 #define SMALLEST_STEP 1e-12 /* of the duration */
+#define SHORT_STEP 1e-3     /* of the usual step */
 
 /* largest distance that a node or a body's centre has moved, m */
 static double motion(const fu_model *model, const double *from, const double *to)
@@ -25,6 +26,20 @@ static double motion(const fu_model *model, const double *from, const double *to
         if (square > largest) largest = square;
     }
     return sqrt(largest);
+}
+
+/* size of what coordinates are rounded to, m: the farthest position, or what unit slopes and turns move a point by */
+static double extent(const fu_model *model, const double *origin, const double *q)
+{
+    double largest = motion(model, origin, q);
+    for (int c = 0; c < model->n_cables; ++c) {
+        const fu_cable *cable = &model->cables[c];
+        for (int i = cable->kernel->dim; i < cable->per_node; ++i)
+            largest = fmax(largest, model->weight[cable->first + i]);
+    }
+    for (int b = 0; b < model->n_rigids; ++b)
+        for (int i = 3; i < 6; ++i) largest = fmax(largest, model->weight[model->rigids[b].dof + i]);
+    return largest;
 }
 
 static int record_row(fu_run *run)
@@ -60,7 +75,6 @@ static int start_scheme(fu_run *run)
     if (fu_project_velocities(model, now, &run->accelerator, run->before)) return FU_SINGULAR;
     for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->before[i];
     if (fu_accelerations(model, now, &run->accelerator, now->acceleration, joints, 0)) return FU_SINGULAR;
-    if (run->rest_start) memset(now->acceleration, 0, sizeof(double) * (size_t)model->n_dof);
     memcpy(now->a, now->acceleration, sizeof(double) * (size_t)model->n_dof);
     for (int j = 0; j < model->n_joints; ++j) {
         run->s_slope[j] = joints[j].s_rate;
@@ -78,15 +92,22 @@ int fu_start(fu_run *run)
     for (int j = 0; j < model->n_joints; ++j)
         if (fu_find_arc_length(model, now, j, &now->s[j])) return FU_SINGULAR;
     if (fu_accelerator_prepare(model, &run->accelerator)) return FU_SINGULAR;
-    for (int i = 0; i < model->n_q; ++i) run->extent = fmax(run->extent, fabs(now->q[i]));
+    memset(run->first, 0, sizeof(double) * (size_t)model->n_q);
+    run->extent = extent(model, run->first, now->q);
     memcpy(run->first, now->q, sizeof(double) * (size_t)model->n_q);
     if (start_scheme(run) || record_row(run)) return FU_SINGULAR;
+    if (run->rest_start) {
+        memset(now->acceleration, 0, sizeof(double) * (size_t)model->n_dof);
+        memset(now->a, 0, sizeof(double) * (size_t)model->n_dof);
+    }
     run->power = fu_dissipation(model, now->q, now->v);
-    /* tolerances are relative to the largest motion: until there is one, that of the first output step */
+    /* tolerances are relative to the largest motion: until there is one, that of a thousandth of the duration; and
+     * never to less than what a scene at rest cannot help */
+    run->least_motion = 1e-9 * run->extent;
     for (int i = 0; i < model->n_dof; ++i) {
-        const double t = run->output_step;
+        const double t = fmin(run->output_step, 1e-3 * run->duration);
         const double d = model->weight[i] * (fabs(now->v[i]) * t + 0.5 * fabs(now->acceleration[i]) * t * t);
-        if (d > run->motion) run->motion = d;
+        if (d > run->least_motion) run->least_motion = d;
     }
     return FU_RUNNING;
 }
@@ -197,12 +218,13 @@ static int step_towards(fu_run *run, double target)
         const double remaining = target - run->now.t;
         const double pieces = ceil(remaining / want * (1.0 - 1e-9));
         double h = pieces <= 1.0 ? remaining : remaining / pieces;
-        const double allowed = run->tol * run->motion * h / run->duration;
+        run->round_off = 4e-16 * fmax(run->extent, run->motion);
+        const double scale = fmax(run->motion, run->least_motion);
+        const double allowed = fmax(run->tol * scale * h / run->duration, run->round_off);
         /* what Newton leaves has the same sign step after step and acts like a force: it counts (T/h)^2 times in
          * positions, the local error T/h times */
         run->newton_tolerance = fmin(1e-2 * h / run->duration * (run->fixed_step > 0.0 ? run->last_error : allowed),
-                                     1e-12 * run->extent); /* keeps the joints' residual small at any tol */
-        run->round_off = 4e-16 * run->extent;
+                                     1e-14 * fmax(run->extent, scale)); /* keeps joints' residuals small at any tol */
         if (h < smallest && remaining > smallest) return FU_NO_CONVERGENCE;
         if (fu_step(run, h)) {
             want = 0.5 * h;
@@ -250,7 +272,9 @@ static int step_towards(fu_run *run, double target)
             if (factor > 1.4) run->h = fmax(run->h, h * factor);
             else if (factor < 0.8) run->h = h * factor;
         }
-        return FU_RUNNING;
+        /* what is left between a boundary and an output time can be so short that the rounding of psi, over h^2, is
+         * all there is in its accelerations: they must not go on */
+        return h < SHORT_STEP * (run->fixed_step > 0.0 ? run->fixed_step : run->h) ? start_scheme(run) : FU_RUNNING;
     }
 }
 
