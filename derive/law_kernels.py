@@ -59,7 +59,7 @@ class Kernels:
 
     def stiffness(self) -> Program:
         """The law's constants."""
-        p = self._program("stiffness", "constants of the law from the stiffness of the section", "eq 7")
+        p = self._program(self.law.set_up_kernel, "constants of the law from the stiffness of the section", "eq 7")
         self.law.set_up(p)
         return p
 
@@ -117,11 +117,13 @@ class Kernels:
         p = self._program("section_forces", "force and moment resultants of a section", "eq 6-8 at a section")
         length, x = p.input("l", (), "m", "length of the element"), p.input("x", (), "m", "arc-length from its start")
         e, S = self._coordinates(p), self.law.section_stiffness(p)
+        e0 = self.law.reference_input(p) if self.law.curved else None
         p.stage("strain vectors")
         w = p.define("w", 1 / length)
         X = p.define("X", 2 * w * x - 1)
         c = self.gram.differences(p, e, w)
-        force, moment, strain = self.law.section_forces(p, S, c, X, w)
+        c0 = self.gram.differences(p, e0, w, "r0_") if self.law.curved else None
+        force, moment, strain = self.law.section_forces(p, S, c, X, w, c0)
         p.stage("axes of the section")
         axes = self._axes(p, c, X, w)
         p.output("force", force, "N", "resultant of the stress, global axes")

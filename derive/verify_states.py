@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 import sympy as sp
+from funicular.derive import verify_curved
 from funicular.derive.spec import Element, Family, x
 from funicular.derive.verify_motion import RIDERS, exponential
 from funicular.derive.verify_numbers import Numbers
@@ -38,7 +39,10 @@ def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
         if family.role in ("element", "law"):
             state |= _constants(family, exact, state, random)
         found.append(state)
-    return [*found, found[0] | at_rest(family)]
+    rest = found[0] | at_rest(family)
+    if family.law and family.law.endswith("_curved"):
+        rest["e"] = rest["e0"]
+    return [*found, rest]
 
 
 def at_rest(family: Family) -> dict[str, np.ndarray]:
@@ -111,8 +115,10 @@ def element_state(element: Element, random: np.random.Generator) -> dict[str, np
         e[k * per_node : (k + 1) * per_node] @= rotation(random, dim, angle=0.4 * mild).T
     e += random.normal(size=(n, dim)) * 0.15 * mild**2
     e[element.is_position] += random.normal(size=dim)
+    e0 = reference(element, LENGTH) @ rotation(random, dim).T
+    e0 += random.normal(size=(n, dim)) * 0.1 * mild**2
     return {
-        "l": np.float64(LENGTH), "rectangle": np.array([HEIGHT, WIDTH]), "section": section(), "e": e,
+        "l": np.float64(LENGTH), "rectangle": np.array([HEIGHT, WIDTH]), "section": section(), "e": e, "e0": e0,
         "v": random.normal(size=(n, dim)), "vdot": random.normal(size=(n, dim)),
         "x": np.float64(LENGTH * random.uniform(0.2, 0.8)), "density": np.float64(2.9), "g": random.normal(size=dim),
         "tau": np.float64(0.37), "rate": np.float64(2.3),
@@ -129,12 +135,15 @@ def _constants(family: Family, exact: Numbers, state: dict, random: np.random.Ge
     for kernel, output in (("stiffness", "A"), ("mass", "m")):
         if kernel in exact.programs:
             made[output] = exact(kernel, s)[output].astype(float)
+    if "stiffness_at" in exact.programs:
+        points = [exact("stiffness_at", s, at=at, D=D) for at, D in verify_curved.weighted_points(family.element, s)]
+        made["A"] = np.concatenate([sum(p["A"] for p in points), points[0]["G0"]]).astype(float)
     return made
 
 
 def section_stiffness(law: str, dim: int, moments: np.ndarray, random: np.random.Generator) -> dict[str, np.ndarray]:
     """Argument S of a law; for a continuum also D, elastic constants over the section and on the axis alone."""
-    if law != "continuum":
+    if not law.startswith("continuum"):
         return {"S": 53.0 * moments[:2]}
     pairs = dim * (dim - 1) // 2
     D = np.array([np.concatenate([random.uniform(40, 60, dim), random.uniform(5, 15, pairs),

@@ -38,6 +38,14 @@ cdef extern from "kernels.h" nogil:
     void c_beam24_continuum_damping_tangent "beam24_continuum_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_beam24_continuum_dissipation "beam24_continuum_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
     void c_beam24_continuum_section_forces "beam24_continuum_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
+    void c_beam24_continuum_curved_stiffness_at "beam24_continuum_curved_stiffness_at"(double l, const double *e0, const double *at, const double *D, double *A, double *G0)
+    void c_beam24_continuum_curved_energy "beam24_continuum_curved_energy"(double l, const double *e, const double *A, double *U)
+    void c_beam24_continuum_curved_elastic_force "beam24_continuum_curved_elastic_force"(double l, const double *e, const double *A, double *f)
+    void c_beam24_continuum_curved_elastic_tangent "beam24_continuum_curved_elastic_tangent"(double l, const double *e, const double *A, double *K)
+    void c_beam24_continuum_curved_damping_force "beam24_continuum_curved_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
+    void c_beam24_continuum_curved_damping_tangent "beam24_continuum_curved_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
+    void c_beam24_continuum_curved_dissipation "beam24_continuum_curved_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_beam24_continuum_curved_section_forces "beam24_continuum_curved_section_forces"(double l, double x, const double *e, const double *S, const double *e0, double *force, double *moment, double *axes, double *strain)
     void c_cable12_green_exact_stiffness "cable12_green_exact_stiffness"(double l, const double *S, double *A)
     void c_cable12_green_exact_energy "cable12_green_exact_energy"(double l, const double *e, const double *A, double *U)
     void c_cable12_green_exact_elastic_force "cable12_green_exact_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -70,6 +78,22 @@ cdef extern from "kernels.h" nogil:
     void c_cable12_engineering_linear_damping_tangent "cable12_engineering_linear_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable12_engineering_linear_dissipation "cable12_engineering_linear_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
     void c_cable12_engineering_linear_section_forces "cable12_engineering_linear_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
+    void c_cable12_green_exact_curved_stiffness "cable12_green_exact_curved_stiffness"(double l, const double *e0, const double *S, double *A)
+    void c_cable12_green_exact_curved_energy "cable12_green_exact_curved_energy"(double l, const double *e, const double *A, double *U)
+    void c_cable12_green_exact_curved_elastic_force "cable12_green_exact_curved_elastic_force"(double l, const double *e, const double *A, double *f)
+    void c_cable12_green_exact_curved_elastic_tangent "cable12_green_exact_curved_elastic_tangent"(double l, const double *e, const double *A, double *K)
+    void c_cable12_green_exact_curved_damping_force "cable12_green_exact_curved_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
+    void c_cable12_green_exact_curved_damping_tangent "cable12_green_exact_curved_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
+    void c_cable12_green_exact_curved_dissipation "cable12_green_exact_curved_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable12_green_exact_curved_section_forces "cable12_green_exact_curved_section_forces"(double l, double x, const double *e, const double *S, const double *e0, double *force, double *moment, double *axes, double *strain)
+    void c_cable12_engineering_exact_curved_stiffness "cable12_engineering_exact_curved_stiffness"(double l, const double *e0, const double *S, double *A)
+    void c_cable12_engineering_exact_curved_energy "cable12_engineering_exact_curved_energy"(double l, const double *e, const double *A, double *U)
+    void c_cable12_engineering_exact_curved_elastic_force "cable12_engineering_exact_curved_elastic_force"(double l, const double *e, const double *A, double *f)
+    void c_cable12_engineering_exact_curved_elastic_tangent "cable12_engineering_exact_curved_elastic_tangent"(double l, const double *e, const double *A, double *K)
+    void c_cable12_engineering_exact_curved_damping_force "cable12_engineering_exact_curved_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
+    void c_cable12_engineering_exact_curved_damping_tangent "cable12_engineering_exact_curved_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
+    void c_cable12_engineering_exact_curved_dissipation "cable12_engineering_exact_curved_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable12_engineering_exact_curved_section_forces "cable12_engineering_exact_curved_section_forces"(double l, double x, const double *e, const double *S, const double *e0, double *force, double *moment, double *axes, double *strain)
     void c_cable18_green_exact_stiffness "cable18_green_exact_stiffness"(double l, const double *S, double *A)
     void c_cable18_green_exact_energy "cable18_green_exact_energy"(double l, const double *e, const double *A, double *U)
     void c_cable18_green_exact_elastic_force "cable18_green_exact_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -94,6 +118,14 @@ cdef extern from "kernels.h" nogil:
     void c_beam12p_continuum_damping_tangent "beam12p_continuum_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_beam12p_continuum_dissipation "beam12p_continuum_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
     void c_beam12p_continuum_section_forces "beam12p_continuum_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
+    void c_beam12p_continuum_curved_stiffness_at "beam12p_continuum_curved_stiffness_at"(double l, const double *e0, const double *at, const double *D, double *A, double *G0)
+    void c_beam12p_continuum_curved_energy "beam12p_continuum_curved_energy"(double l, const double *e, const double *A, double *U)
+    void c_beam12p_continuum_curved_elastic_force "beam12p_continuum_curved_elastic_force"(double l, const double *e, const double *A, double *f)
+    void c_beam12p_continuum_curved_elastic_tangent "beam12p_continuum_curved_elastic_tangent"(double l, const double *e, const double *A, double *K)
+    void c_beam12p_continuum_curved_damping_force "beam12p_continuum_curved_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
+    void c_beam12p_continuum_curved_damping_tangent "beam12p_continuum_curved_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
+    void c_beam12p_continuum_curved_dissipation "beam12p_continuum_curved_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_beam12p_continuum_curved_section_forces "beam12p_continuum_curved_section_forces"(double l, double x, const double *e, const double *S, const double *e0, double *force, double *moment, double *axes, double *strain)
     void c_cable8p_green_exact_stiffness "cable8p_green_exact_stiffness"(double l, const double *S, double *A)
     void c_cable8p_green_exact_energy "cable8p_green_exact_energy"(double l, const double *e, const double *A, double *U)
     void c_cable8p_green_exact_elastic_force "cable8p_green_exact_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -722,6 +754,190 @@ def beam24_continuum_section_forces(l, x, e, S):
     cdef double[::1] strain__ = strain_out.reshape(-1)
     with nogil:
         c_beam24_continuum_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
+
+
+def beam24_continuum_curved_stiffness_at(l, e0, at, D):
+    """constants of the law from the stiffness of the section (eq 7; eq 5-8).
+
+    l () [m]: length of the element
+    e0 (8, 3) [m, 1]: nodal vectors of the stress-free shape
+    at (3,) [m]: local coordinates x, y, z of a point
+    D (9,) [N m]: elastic constants there times the volume that it stands for: D11, D22, D33, D12, D13, D23, G12, G13, G23
+    Returns
+    A (406,) [N m]: form over Gram pairs, row by row from the diagonal
+    G0 (28,) [1]: Gram products of e0, less those of a straight element
+    """
+    cdef double l_ = l
+    cdef const double[::1] e0_ = _array(e0, (8, 3), "beam24_continuum_curved_stiffness_at", "e0")
+    cdef const double[::1] at_ = _array(at, (3,), "beam24_continuum_curved_stiffness_at", "at")
+    cdef const double[::1] D_ = _array(D, (9,), "beam24_continuum_curved_stiffness_at", "D")
+    A_out = np.empty((406,))
+    cdef double[::1] A__ = A_out.reshape(-1)
+    G0_out = np.empty((28,))
+    cdef double[::1] G0__ = G0_out.reshape(-1)
+    with nogil:
+        c_beam24_continuum_curved_stiffness_at(l_, &e0_[0], &at_[0], &D_[0], &A__[0], &G0__[0])
+    return A_out, G0_out
+
+
+def beam24_continuum_curved_energy(l, e, A):
+    """elastic energy (eq 7; eq 5-8).
+
+    l () [m]: length of the element
+    e (8, 3) [m, 1]: nodal vectors (eq 1)
+    A (434,) [N m, 1]: form over Gram pairs, summed over beam24_continuum_curved_stiffness_at; then G0
+    Returns
+    U (1,) [J]: elastic energy
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_continuum_curved_energy", "e")
+    cdef const double[::1] A_ = _array(A, (434,), "beam24_continuum_curved_energy", "A")
+    U_out = np.empty((1,))
+    cdef double[::1] U__ = U_out.reshape(-1)
+    with nogil:
+        c_beam24_continuum_curved_energy(l_, &e_[0], &A_[0], &U__[0])
+    return U_out
+
+
+def beam24_continuum_curved_elastic_force(l, e, A):
+    """dU/de, minus the elastic force Q_k (eq 8; eq 5-8).
+
+    l () [m]: length of the element
+    e (8, 3) [m, 1]: nodal vectors (eq 1)
+    A (434,) [N m, 1]: form over Gram pairs, summed over beam24_continuum_curved_stiffness_at; then G0
+    Returns
+    f (8, 3) [N, N m]: dU/de
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_continuum_curved_elastic_force", "e")
+    cdef const double[::1] A_ = _array(A, (434,), "beam24_continuum_curved_elastic_force", "A")
+    f_out = np.empty((8, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_beam24_continuum_curved_elastic_force(l_, &e_[0], &A_[0], &f__[0])
+    return f_out
+
+
+def beam24_continuum_curved_elastic_tangent(l, e, A):
+    """d2U/de2 (derivative of eq 8; eq 5-8).
+
+    l () [m]: length of the element
+    e (8, 3) [m, 1]: nodal vectors (eq 1)
+    A (434,) [N m, 1]: form over Gram pairs, summed over beam24_continuum_curved_stiffness_at; then G0
+    Returns
+    K (24, 24) [N/m, N, N m]: d2U/de2, symmetric
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_continuum_curved_elastic_tangent", "e")
+    cdef const double[::1] A_ = _array(A, (434,), "beam24_continuum_curved_elastic_tangent", "A")
+    K_out = np.empty((24, 24))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_beam24_continuum_curved_elastic_tangent(l_, &e_[0], &A_[0], &K__[0])
+    return K_out
+
+
+def beam24_continuum_curved_damping_force(l, e, v, A, tau):
+    """minus the Kelvin-Voigt damping force Q_d (Q_d of eq 9; eq 5-8).
+
+    l () [m]: length of the element
+    e (8, 3) [m, 1]: nodal vectors (eq 1)
+    v (8, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (434,) [N m, 1]: form over Gram pairs, summed over beam24_continuum_curved_stiffness_at; then G0
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    f (8, 3) [N, N m]: -Q_d
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_continuum_curved_damping_force", "e")
+    cdef const double[::1] v_ = _array(v, (8, 3), "beam24_continuum_curved_damping_force", "v")
+    cdef const double[::1] A_ = _array(A, (434,), "beam24_continuum_curved_damping_force", "A")
+    cdef double tau_ = tau
+    f_out = np.empty((8, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_beam24_continuum_curved_damping_force(l_, &e_[0], &v_[0], &A_[0], tau_, &f__[0])
+    return f_out
+
+
+def beam24_continuum_curved_damping_tangent(l, e, v, A, tau, rate):
+    """df/de + rate df/dv of the damping force f = -Q_d (derivative of Q_d of eq 9; eq 5-8).
+
+    l () [m]: length of the element
+    e (8, 3) [m, 1]: nodal vectors (eq 1)
+    v (8, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (434,) [N m, 1]: form over Gram pairs, summed over beam24_continuum_curved_stiffness_at; then G0
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    rate () [1/s]: dv/de of the integrator
+    Returns
+    K (24, 24) [N/m, N, N m]: df/de + rate df/dv
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_continuum_curved_damping_tangent", "e")
+    cdef const double[::1] v_ = _array(v, (8, 3), "beam24_continuum_curved_damping_tangent", "v")
+    cdef const double[::1] A_ = _array(A, (434,), "beam24_continuum_curved_damping_tangent", "A")
+    cdef double tau_ = tau
+    cdef double rate_ = rate
+    K_out = np.empty((24, 24))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_beam24_continuum_curved_damping_tangent(l_, &e_[0], &v_[0], &A_[0], tau_, rate_, &K__[0])
+    return K_out
+
+
+def beam24_continuum_curved_dissipation(l, e, v, A, tau):
+    """power dissipated by the damping force (v . Q_d of eq 9; eq 5-8).
+
+    l () [m]: length of the element
+    e (8, 3) [m, 1]: nodal vectors (eq 1)
+    v (8, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (434,) [N m, 1]: form over Gram pairs, summed over beam24_continuum_curved_stiffness_at; then G0
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    P (1,) [W]: dissipated power, never negative
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_continuum_curved_dissipation", "e")
+    cdef const double[::1] v_ = _array(v, (8, 3), "beam24_continuum_curved_dissipation", "v")
+    cdef const double[::1] A_ = _array(A, (434,), "beam24_continuum_curved_dissipation", "A")
+    cdef double tau_ = tau
+    P_out = np.empty((1,))
+    cdef double[::1] P__ = P_out.reshape(-1)
+    with nogil:
+        c_beam24_continuum_curved_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
+    return P_out
+
+
+def beam24_continuum_curved_section_forces(l, x, e, S, e0):
+    """force and moment resultants of a section (eq 6-8 at a section; eq 5-8).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (8, 3) [m, 1]: nodal vectors (eq 1)
+    S (9, 6) [N, N m^2, N m^2, N m^4, N m^4, N m^4]: section stiffness: integrals over A of D11, D22, D33, D12, D13, D23, G12, G13, G23 (rows; orthotropic, axes x, y, z) times 1, y^2, z^2, y^4, y^2 z^2, z^4 (columns)
+    e0 (8, 3) [m, 1]: nodal vectors of the stress-free shape
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_continuum_curved_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (9, 6), "beam24_continuum_curved_section_forces", "S")
+    cdef const double[::1] e0_ = _array(e0, (8, 3), "beam24_continuum_curved_section_forces", "e0")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_beam24_continuum_curved_section_forces(l_, x_, &e_[0], &S_[0], &e0_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
     return force_out, moment_out, axes_out, strain_out
 
 
@@ -1425,6 +1641,364 @@ def cable12_engineering_linear_section_forces(l, x, e, S):
     return force_out, moment_out, axes_out, strain_out
 
 
+def cable12_green_exact_curved_stiffness(l, e0, S):
+    """constants of the law from the stiffness of the section (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e0 (4, 3) [m, 1]: nodal vectors of the stress-free shape
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    A (32,) [N, N m^2, 1]: EA, EI, and the stress-free shape at each Gauss point
+    """
+    cdef double l_ = l
+    cdef const double[::1] e0_ = _array(e0, (4, 3), "cable12_green_exact_curved_stiffness", "e0")
+    cdef const double[::1] S_ = _array(S, (2,), "cable12_green_exact_curved_stiffness", "S")
+    A_out = np.empty((32,))
+    cdef double[::1] A__ = A_out.reshape(-1)
+    with nogil:
+        c_cable12_green_exact_curved_stiffness(l_, &e0_[0], &S_[0], &A__[0])
+    return A_out
+
+
+def cable12_green_exact_curved_energy(l, e, A):
+    """elastic energy (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    A (32,) [N, N m^2, 1]: EA, EI, and the stress-free shape at each Gauss point
+    Returns
+    U (1,) [J]: elastic energy
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_green_exact_curved_energy", "e")
+    cdef const double[::1] A_ = _array(A, (32,), "cable12_green_exact_curved_energy", "A")
+    U_out = np.empty((1,))
+    cdef double[::1] U__ = U_out.reshape(-1)
+    with nogil:
+        c_cable12_green_exact_curved_energy(l_, &e_[0], &A_[0], &U__[0])
+    return U_out
+
+
+def cable12_green_exact_curved_elastic_force(l, e, A):
+    """dU/de, minus the elastic force Q_k (eq 8; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    A (32,) [N, N m^2, 1]: EA, EI, and the stress-free shape at each Gauss point
+    Returns
+    f (4, 3) [N, N m]: dU/de
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_green_exact_curved_elastic_force", "e")
+    cdef const double[::1] A_ = _array(A, (32,), "cable12_green_exact_curved_elastic_force", "A")
+    f_out = np.empty((4, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_cable12_green_exact_curved_elastic_force(l_, &e_[0], &A_[0], &f__[0])
+    return f_out
+
+
+def cable12_green_exact_curved_elastic_tangent(l, e, A):
+    """d2U/de2 (derivative of eq 8; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    A (32,) [N, N m^2, 1]: EA, EI, and the stress-free shape at each Gauss point
+    Returns
+    K (12, 12) [N/m, N, N m]: d2U/de2, symmetric
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_green_exact_curved_elastic_tangent", "e")
+    cdef const double[::1] A_ = _array(A, (32,), "cable12_green_exact_curved_elastic_tangent", "A")
+    K_out = np.empty((12, 12))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable12_green_exact_curved_elastic_tangent(l_, &e_[0], &A_[0], &K__[0])
+    return K_out
+
+
+def cable12_green_exact_curved_damping_force(l, e, v, A, tau):
+    """minus the Kelvin-Voigt damping force Q_d (Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    v (4, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (32,) [N, N m^2, 1]: EA, EI, and the stress-free shape at each Gauss point
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    f (4, 3) [N, N m]: -Q_d
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_green_exact_curved_damping_force", "e")
+    cdef const double[::1] v_ = _array(v, (4, 3), "cable12_green_exact_curved_damping_force", "v")
+    cdef const double[::1] A_ = _array(A, (32,), "cable12_green_exact_curved_damping_force", "A")
+    cdef double tau_ = tau
+    f_out = np.empty((4, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_cable12_green_exact_curved_damping_force(l_, &e_[0], &v_[0], &A_[0], tau_, &f__[0])
+    return f_out
+
+
+def cable12_green_exact_curved_damping_tangent(l, e, v, A, tau, rate):
+    """df/de + rate df/dv of the damping force f = -Q_d (derivative of Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    v (4, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (32,) [N, N m^2, 1]: EA, EI, and the stress-free shape at each Gauss point
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    rate () [1/s]: dv/de of the integrator
+    Returns
+    K (12, 12) [N/m, N, N m]: df/de + rate df/dv
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_green_exact_curved_damping_tangent", "e")
+    cdef const double[::1] v_ = _array(v, (4, 3), "cable12_green_exact_curved_damping_tangent", "v")
+    cdef const double[::1] A_ = _array(A, (32,), "cable12_green_exact_curved_damping_tangent", "A")
+    cdef double tau_ = tau
+    cdef double rate_ = rate
+    K_out = np.empty((12, 12))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable12_green_exact_curved_damping_tangent(l_, &e_[0], &v_[0], &A_[0], tau_, rate_, &K__[0])
+    return K_out
+
+
+def cable12_green_exact_curved_dissipation(l, e, v, A, tau):
+    """power dissipated by the damping force (v . Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    v (4, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (32,) [N, N m^2, 1]: EA, EI, and the stress-free shape at each Gauss point
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    P (1,) [W]: dissipated power, never negative
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_green_exact_curved_dissipation", "e")
+    cdef const double[::1] v_ = _array(v, (4, 3), "cable12_green_exact_curved_dissipation", "v")
+    cdef const double[::1] A_ = _array(A, (32,), "cable12_green_exact_curved_dissipation", "A")
+    cdef double tau_ = tau
+    P_out = np.empty((1,))
+    cdef double[::1] P__ = P_out.reshape(-1)
+    with nogil:
+        c_cable12_green_exact_curved_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
+    return P_out
+
+
+def cable12_green_exact_curved_section_forces(l, x, e, S, e0):
+    """force and moment resultants of a section (eq 6-8 at a section; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    e0 (4, 3) [m, 1]: nodal vectors of the stress-free shape
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_green_exact_curved_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (2,), "cable12_green_exact_curved_section_forces", "S")
+    cdef const double[::1] e0_ = _array(e0, (4, 3), "cable12_green_exact_curved_section_forces", "e0")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_cable12_green_exact_curved_section_forces(l_, x_, &e_[0], &S_[0], &e0_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
+
+
+def cable12_engineering_exact_curved_stiffness(l, e0, S):
+    """constants of the law from the stiffness of the section (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e0 (4, 3) [m, 1]: nodal vectors of the stress-free shape
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    A (32,) [N, N m^2, 1]: EA, EI, and the stress-free shape at each Gauss point
+    """
+    cdef double l_ = l
+    cdef const double[::1] e0_ = _array(e0, (4, 3), "cable12_engineering_exact_curved_stiffness", "e0")
+    cdef const double[::1] S_ = _array(S, (2,), "cable12_engineering_exact_curved_stiffness", "S")
+    A_out = np.empty((32,))
+    cdef double[::1] A__ = A_out.reshape(-1)
+    with nogil:
+        c_cable12_engineering_exact_curved_stiffness(l_, &e0_[0], &S_[0], &A__[0])
+    return A_out
+
+
+def cable12_engineering_exact_curved_energy(l, e, A):
+    """elastic energy (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    A (32,) [N, N m^2, 1]: EA, EI, and the stress-free shape at each Gauss point
+    Returns
+    U (1,) [J]: elastic energy
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_engineering_exact_curved_energy", "e")
+    cdef const double[::1] A_ = _array(A, (32,), "cable12_engineering_exact_curved_energy", "A")
+    U_out = np.empty((1,))
+    cdef double[::1] U__ = U_out.reshape(-1)
+    with nogil:
+        c_cable12_engineering_exact_curved_energy(l_, &e_[0], &A_[0], &U__[0])
+    return U_out
+
+
+def cable12_engineering_exact_curved_elastic_force(l, e, A):
+    """dU/de, minus the elastic force Q_k (eq 8; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    A (32,) [N, N m^2, 1]: EA, EI, and the stress-free shape at each Gauss point
+    Returns
+    f (4, 3) [N, N m]: dU/de
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_engineering_exact_curved_elastic_force", "e")
+    cdef const double[::1] A_ = _array(A, (32,), "cable12_engineering_exact_curved_elastic_force", "A")
+    f_out = np.empty((4, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_cable12_engineering_exact_curved_elastic_force(l_, &e_[0], &A_[0], &f__[0])
+    return f_out
+
+
+def cable12_engineering_exact_curved_elastic_tangent(l, e, A):
+    """d2U/de2 (derivative of eq 8; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    A (32,) [N, N m^2, 1]: EA, EI, and the stress-free shape at each Gauss point
+    Returns
+    K (12, 12) [N/m, N, N m]: d2U/de2, symmetric
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_engineering_exact_curved_elastic_tangent", "e")
+    cdef const double[::1] A_ = _array(A, (32,), "cable12_engineering_exact_curved_elastic_tangent", "A")
+    K_out = np.empty((12, 12))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable12_engineering_exact_curved_elastic_tangent(l_, &e_[0], &A_[0], &K__[0])
+    return K_out
+
+
+def cable12_engineering_exact_curved_damping_force(l, e, v, A, tau):
+    """minus the Kelvin-Voigt damping force Q_d (Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    v (4, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (32,) [N, N m^2, 1]: EA, EI, and the stress-free shape at each Gauss point
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    f (4, 3) [N, N m]: -Q_d
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_engineering_exact_curved_damping_force", "e")
+    cdef const double[::1] v_ = _array(v, (4, 3), "cable12_engineering_exact_curved_damping_force", "v")
+    cdef const double[::1] A_ = _array(A, (32,), "cable12_engineering_exact_curved_damping_force", "A")
+    cdef double tau_ = tau
+    f_out = np.empty((4, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_cable12_engineering_exact_curved_damping_force(l_, &e_[0], &v_[0], &A_[0], tau_, &f__[0])
+    return f_out
+
+
+def cable12_engineering_exact_curved_damping_tangent(l, e, v, A, tau, rate):
+    """df/de + rate df/dv of the damping force f = -Q_d (derivative of Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    v (4, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (32,) [N, N m^2, 1]: EA, EI, and the stress-free shape at each Gauss point
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    rate () [1/s]: dv/de of the integrator
+    Returns
+    K (12, 12) [N/m, N, N m]: df/de + rate df/dv
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_engineering_exact_curved_damping_tangent", "e")
+    cdef const double[::1] v_ = _array(v, (4, 3), "cable12_engineering_exact_curved_damping_tangent", "v")
+    cdef const double[::1] A_ = _array(A, (32,), "cable12_engineering_exact_curved_damping_tangent", "A")
+    cdef double tau_ = tau
+    cdef double rate_ = rate
+    K_out = np.empty((12, 12))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable12_engineering_exact_curved_damping_tangent(l_, &e_[0], &v_[0], &A_[0], tau_, rate_, &K__[0])
+    return K_out
+
+
+def cable12_engineering_exact_curved_dissipation(l, e, v, A, tau):
+    """power dissipated by the damping force (v . Q_d of eq 9; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    v (4, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (32,) [N, N m^2, 1]: EA, EI, and the stress-free shape at each Gauss point
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    P (1,) [W]: dissipated power, never negative
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_engineering_exact_curved_dissipation", "e")
+    cdef const double[::1] v_ = _array(v, (4, 3), "cable12_engineering_exact_curved_dissipation", "v")
+    cdef const double[::1] A_ = _array(A, (32,), "cable12_engineering_exact_curved_dissipation", "A")
+    cdef double tau_ = tau
+    P_out = np.empty((1,))
+    cdef double[::1] P__ = P_out.reshape(-1)
+    with nogil:
+        c_cable12_engineering_exact_curved_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
+    return P_out
+
+
+def cable12_engineering_exact_curved_section_forces(l, x, e, S, e0):
+    """force and moment resultants of a section (eq 6-8 at a section; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    e0 (4, 3) [m, 1]: nodal vectors of the stress-free shape
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_engineering_exact_curved_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (2,), "cable12_engineering_exact_curved_section_forces", "S")
+    cdef const double[::1] e0_ = _array(e0, (4, 3), "cable12_engineering_exact_curved_section_forces", "e0")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_cable12_engineering_exact_curved_section_forces(l_, x_, &e_[0], &S_[0], &e0_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
+
+
 def cable18_green_exact_stiffness(l, S):
     """constants of the law from the stiffness of the section (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
 
@@ -1947,6 +2521,190 @@ def beam12p_continuum_section_forces(l, x, e, S):
     cdef double[::1] strain__ = strain_out.reshape(-1)
     with nogil:
         c_beam12p_continuum_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
+
+
+def beam12p_continuum_curved_stiffness_at(l, e0, at, D):
+    """constants of the law from the stiffness of the section (eq 7; eq 5-8).
+
+    l () [m]: length of the element
+    e0 (6, 2) [m, 1]: nodal vectors of the stress-free shape
+    at (3,) [m]: local coordinates x, y, z of a point
+    D (4,) [N m]: elastic constants there times the volume that it stands for: D11, D22, D12, G12
+    Returns
+    A (120,) [N m]: form over Gram pairs, row by row from the diagonal
+    G0 (15,) [1]: Gram products of e0, less those of a straight element
+    """
+    cdef double l_ = l
+    cdef const double[::1] e0_ = _array(e0, (6, 2), "beam12p_continuum_curved_stiffness_at", "e0")
+    cdef const double[::1] at_ = _array(at, (3,), "beam12p_continuum_curved_stiffness_at", "at")
+    cdef const double[::1] D_ = _array(D, (4,), "beam12p_continuum_curved_stiffness_at", "D")
+    A_out = np.empty((120,))
+    cdef double[::1] A__ = A_out.reshape(-1)
+    G0_out = np.empty((15,))
+    cdef double[::1] G0__ = G0_out.reshape(-1)
+    with nogil:
+        c_beam12p_continuum_curved_stiffness_at(l_, &e0_[0], &at_[0], &D_[0], &A__[0], &G0__[0])
+    return A_out, G0_out
+
+
+def beam12p_continuum_curved_energy(l, e, A):
+    """elastic energy (eq 7; eq 5-8).
+
+    l () [m]: length of the element
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    A (135,) [N m, 1]: form over Gram pairs, summed over beam12p_continuum_curved_stiffness_at; then G0
+    Returns
+    U (1,) [J]: elastic energy
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_continuum_curved_energy", "e")
+    cdef const double[::1] A_ = _array(A, (135,), "beam12p_continuum_curved_energy", "A")
+    U_out = np.empty((1,))
+    cdef double[::1] U__ = U_out.reshape(-1)
+    with nogil:
+        c_beam12p_continuum_curved_energy(l_, &e_[0], &A_[0], &U__[0])
+    return U_out
+
+
+def beam12p_continuum_curved_elastic_force(l, e, A):
+    """dU/de, minus the elastic force Q_k (eq 8; eq 5-8).
+
+    l () [m]: length of the element
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    A (135,) [N m, 1]: form over Gram pairs, summed over beam12p_continuum_curved_stiffness_at; then G0
+    Returns
+    f (6, 2) [N, N m]: dU/de
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_continuum_curved_elastic_force", "e")
+    cdef const double[::1] A_ = _array(A, (135,), "beam12p_continuum_curved_elastic_force", "A")
+    f_out = np.empty((6, 2))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_beam12p_continuum_curved_elastic_force(l_, &e_[0], &A_[0], &f__[0])
+    return f_out
+
+
+def beam12p_continuum_curved_elastic_tangent(l, e, A):
+    """d2U/de2 (derivative of eq 8; eq 5-8).
+
+    l () [m]: length of the element
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    A (135,) [N m, 1]: form over Gram pairs, summed over beam12p_continuum_curved_stiffness_at; then G0
+    Returns
+    K (12, 12) [N/m, N, N m]: d2U/de2, symmetric
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_continuum_curved_elastic_tangent", "e")
+    cdef const double[::1] A_ = _array(A, (135,), "beam12p_continuum_curved_elastic_tangent", "A")
+    K_out = np.empty((12, 12))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_beam12p_continuum_curved_elastic_tangent(l_, &e_[0], &A_[0], &K__[0])
+    return K_out
+
+
+def beam12p_continuum_curved_damping_force(l, e, v, A, tau):
+    """minus the Kelvin-Voigt damping force Q_d (Q_d of eq 9; eq 5-8).
+
+    l () [m]: length of the element
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    v (6, 2) [m/s, 1/s]: rates of the nodal vectors
+    A (135,) [N m, 1]: form over Gram pairs, summed over beam12p_continuum_curved_stiffness_at; then G0
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    f (6, 2) [N, N m]: -Q_d
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_continuum_curved_damping_force", "e")
+    cdef const double[::1] v_ = _array(v, (6, 2), "beam12p_continuum_curved_damping_force", "v")
+    cdef const double[::1] A_ = _array(A, (135,), "beam12p_continuum_curved_damping_force", "A")
+    cdef double tau_ = tau
+    f_out = np.empty((6, 2))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_beam12p_continuum_curved_damping_force(l_, &e_[0], &v_[0], &A_[0], tau_, &f__[0])
+    return f_out
+
+
+def beam12p_continuum_curved_damping_tangent(l, e, v, A, tau, rate):
+    """df/de + rate df/dv of the damping force f = -Q_d (derivative of Q_d of eq 9; eq 5-8).
+
+    l () [m]: length of the element
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    v (6, 2) [m/s, 1/s]: rates of the nodal vectors
+    A (135,) [N m, 1]: form over Gram pairs, summed over beam12p_continuum_curved_stiffness_at; then G0
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    rate () [1/s]: dv/de of the integrator
+    Returns
+    K (12, 12) [N/m, N, N m]: df/de + rate df/dv
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_continuum_curved_damping_tangent", "e")
+    cdef const double[::1] v_ = _array(v, (6, 2), "beam12p_continuum_curved_damping_tangent", "v")
+    cdef const double[::1] A_ = _array(A, (135,), "beam12p_continuum_curved_damping_tangent", "A")
+    cdef double tau_ = tau
+    cdef double rate_ = rate
+    K_out = np.empty((12, 12))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_beam12p_continuum_curved_damping_tangent(l_, &e_[0], &v_[0], &A_[0], tau_, rate_, &K__[0])
+    return K_out
+
+
+def beam12p_continuum_curved_dissipation(l, e, v, A, tau):
+    """power dissipated by the damping force (v . Q_d of eq 9; eq 5-8).
+
+    l () [m]: length of the element
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    v (6, 2) [m/s, 1/s]: rates of the nodal vectors
+    A (135,) [N m, 1]: form over Gram pairs, summed over beam12p_continuum_curved_stiffness_at; then G0
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    P (1,) [W]: dissipated power, never negative
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_continuum_curved_dissipation", "e")
+    cdef const double[::1] v_ = _array(v, (6, 2), "beam12p_continuum_curved_dissipation", "v")
+    cdef const double[::1] A_ = _array(A, (135,), "beam12p_continuum_curved_dissipation", "A")
+    cdef double tau_ = tau
+    P_out = np.empty((1,))
+    cdef double[::1] P__ = P_out.reshape(-1)
+    with nogil:
+        c_beam12p_continuum_curved_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
+    return P_out
+
+
+def beam12p_continuum_curved_section_forces(l, x, e, S, e0):
+    """force and moment resultants of a section (eq 6-8 at a section; eq 5-8).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    S (4, 6) [N, N m^2, N m^2, N m^4, N m^4, N m^4]: section stiffness: integrals over A of D11, D22, D12, G12 (rows; orthotropic, axes x, y, z) times 1, y^2, z^2, y^4, y^2 z^2, z^4 (columns)
+    e0 (6, 2) [m, 1]: nodal vectors of the stress-free shape
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_continuum_curved_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (4, 6), "beam12p_continuum_curved_section_forces", "S")
+    cdef const double[::1] e0_ = _array(e0, (6, 2), "beam12p_continuum_curved_section_forces", "e0")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_beam12p_continuum_curved_section_forces(l_, x_, &e_[0], &S_[0], &e0_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
     return force_out, moment_out, axes_out, strain_out
 
 

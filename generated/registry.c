@@ -51,124 +51,132 @@ static const fu_element elements[] = {
 
 static const fu_law laws[] = {
     {"beam24_continuum",
-     beam24_continuum_stiffness,
      beam24_continuum_energy,
      beam24_continuum_elastic_force,
      beam24_continuum_elastic_tangent,
      beam24_continuum_damping_force,
      beam24_continuum_damping_tangent,
-     beam24_continuum_dissipation,
-     beam24_continuum_section_forces
+     beam24_continuum_dissipation
+    },
+    {"beam24_continuum_curved",
+     beam24_continuum_curved_energy,
+     beam24_continuum_curved_elastic_force,
+     beam24_continuum_curved_elastic_tangent,
+     beam24_continuum_curved_damping_force,
+     beam24_continuum_curved_damping_tangent,
+     beam24_continuum_curved_dissipation
     },
     {"cable12_green_exact",
-     cable12_green_exact_stiffness,
      cable12_green_exact_energy,
      cable12_green_exact_elastic_force,
      cable12_green_exact_elastic_tangent,
      cable12_green_exact_damping_force,
      cable12_green_exact_damping_tangent,
-     cable12_green_exact_dissipation,
-     cable12_green_exact_section_forces
+     cable12_green_exact_dissipation
     },
     {"cable12_green_linear",
-     cable12_green_linear_stiffness,
      cable12_green_linear_energy,
      cable12_green_linear_elastic_force,
      cable12_green_linear_elastic_tangent,
      cable12_green_linear_damping_force,
      cable12_green_linear_damping_tangent,
-     cable12_green_linear_dissipation,
-     cable12_green_linear_section_forces
+     cable12_green_linear_dissipation
     },
     {"cable12_engineering_exact",
-     cable12_engineering_exact_stiffness,
      cable12_engineering_exact_energy,
      cable12_engineering_exact_elastic_force,
      cable12_engineering_exact_elastic_tangent,
      cable12_engineering_exact_damping_force,
      cable12_engineering_exact_damping_tangent,
-     cable12_engineering_exact_dissipation,
-     cable12_engineering_exact_section_forces
+     cable12_engineering_exact_dissipation
     },
     {"cable12_engineering_linear",
-     cable12_engineering_linear_stiffness,
      cable12_engineering_linear_energy,
      cable12_engineering_linear_elastic_force,
      cable12_engineering_linear_elastic_tangent,
      cable12_engineering_linear_damping_force,
      cable12_engineering_linear_damping_tangent,
-     cable12_engineering_linear_dissipation,
-     cable12_engineering_linear_section_forces
+     cable12_engineering_linear_dissipation
+    },
+    {"cable12_green_exact_curved",
+     cable12_green_exact_curved_energy,
+     cable12_green_exact_curved_elastic_force,
+     cable12_green_exact_curved_elastic_tangent,
+     cable12_green_exact_curved_damping_force,
+     cable12_green_exact_curved_damping_tangent,
+     cable12_green_exact_curved_dissipation
+    },
+    {"cable12_engineering_exact_curved",
+     cable12_engineering_exact_curved_energy,
+     cable12_engineering_exact_curved_elastic_force,
+     cable12_engineering_exact_curved_elastic_tangent,
+     cable12_engineering_exact_curved_damping_force,
+     cable12_engineering_exact_curved_damping_tangent,
+     cable12_engineering_exact_curved_dissipation
     },
     {"cable18_green_exact",
-     cable18_green_exact_stiffness,
      cable18_green_exact_energy,
      cable18_green_exact_elastic_force,
      cable18_green_exact_elastic_tangent,
      cable18_green_exact_damping_force,
      cable18_green_exact_damping_tangent,
-     cable18_green_exact_dissipation,
-     cable18_green_exact_section_forces
+     cable18_green_exact_dissipation
     },
     {"cable18_engineering_exact",
-     cable18_engineering_exact_stiffness,
      cable18_engineering_exact_energy,
      cable18_engineering_exact_elastic_force,
      cable18_engineering_exact_elastic_tangent,
      cable18_engineering_exact_damping_force,
      cable18_engineering_exact_damping_tangent,
-     cable18_engineering_exact_dissipation,
-     cable18_engineering_exact_section_forces
+     cable18_engineering_exact_dissipation
     },
     {"beam12p_continuum",
-     beam12p_continuum_stiffness,
      beam12p_continuum_energy,
      beam12p_continuum_elastic_force,
      beam12p_continuum_elastic_tangent,
      beam12p_continuum_damping_force,
      beam12p_continuum_damping_tangent,
-     beam12p_continuum_dissipation,
-     beam12p_continuum_section_forces
+     beam12p_continuum_dissipation
+    },
+    {"beam12p_continuum_curved",
+     beam12p_continuum_curved_energy,
+     beam12p_continuum_curved_elastic_force,
+     beam12p_continuum_curved_elastic_tangent,
+     beam12p_continuum_curved_damping_force,
+     beam12p_continuum_curved_damping_tangent,
+     beam12p_continuum_curved_dissipation
     },
     {"cable8p_green_exact",
-     cable8p_green_exact_stiffness,
      cable8p_green_exact_energy,
      cable8p_green_exact_elastic_force,
      cable8p_green_exact_elastic_tangent,
      cable8p_green_exact_damping_force,
      cable8p_green_exact_damping_tangent,
-     cable8p_green_exact_dissipation,
-     cable8p_green_exact_section_forces
+     cable8p_green_exact_dissipation
     },
     {"cable8p_green_linear",
-     cable8p_green_linear_stiffness,
      cable8p_green_linear_energy,
      cable8p_green_linear_elastic_force,
      cable8p_green_linear_elastic_tangent,
      cable8p_green_linear_damping_force,
      cable8p_green_linear_damping_tangent,
-     cable8p_green_linear_dissipation,
-     cable8p_green_linear_section_forces
+     cable8p_green_linear_dissipation
     },
     {"cable8p_engineering_exact",
-     cable8p_engineering_exact_stiffness,
      cable8p_engineering_exact_energy,
      cable8p_engineering_exact_elastic_force,
      cable8p_engineering_exact_elastic_tangent,
      cable8p_engineering_exact_damping_force,
      cable8p_engineering_exact_damping_tangent,
-     cable8p_engineering_exact_dissipation,
-     cable8p_engineering_exact_section_forces
+     cable8p_engineering_exact_dissipation
     },
     {"cable8p_engineering_linear",
-     cable8p_engineering_linear_stiffness,
      cable8p_engineering_linear_energy,
      cable8p_engineering_linear_elastic_force,
      cable8p_engineering_linear_elastic_tangent,
      cable8p_engineering_linear_damping_force,
      cable8p_engineering_linear_damping_tangent,
-     cable8p_engineering_linear_dissipation,
-     cable8p_engineering_linear_section_forces
+     cable8p_engineering_linear_dissipation
     }
 };
 
@@ -198,6 +206,6 @@ static const fu_slide slides[] = {
 
 const fu_tables fu_all = {
     5, elements,
-    12, laws,
+    16, laws,
     3, slides
 };

@@ -49,7 +49,7 @@ class Term:
 class Cable(Damping):
     """The law over an element's Gram products."""
 
-    source = SOURCE
+    source, curved, set_up_kernel = SOURCE, False, "stiffness"
 
     def __init__(self, gram: Gram, strain: str, curvature: str):
         self.gram, self.strain, self.curvature = gram, strain, curvature
@@ -106,9 +106,9 @@ class Cable(Damping):
         program.input("l", (), "m", "length of the element")
         program.output("A", self.section_stiffness(program), "N, N m^2", STIFFNESS_DOC)
 
-    def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, w: sp.Expr) -> tuple:
-        """Stages: force and moment in space, and strain, at X."""
-        return resultants(self, program, S, c, X, w)
+    def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X, w, c0=None) -> tuple:
+        """Stages: force and moment in space, and strain, at X; c0 of a curved stress-free shape."""
+        return resultants(self, program, S, c, X, w, c0)
 
     # --- the energy through the invariants ------------------------------------------------------------------
 

@@ -20,6 +20,7 @@ from funicular.derive.stages import Program
 NAME = "continuum"
 DOC = "St. Venant-Kirchhoff continuum, orthotropic, fully integrated"
 SOURCE = "eq 5-8"
+ROWS = {3: ("D11", "D22", "D33", "D12", "D13", "D23", "G12", "G13", "G23"), 2: ("D11", "D22", "D12", "G12")}
 
 
 class Form:
@@ -87,7 +88,8 @@ class Form:
 class Continuum:
     """The law over an element's Gram products."""
 
-    name, doc, source = NAME, DOC, SOURCE
+    name, doc, source, curved = NAME, DOC, SOURCE, False
+    set_up_kernel = "stiffness"
 
     def __init__(self, gram: Gram):
         self.gram, self.form = gram, Form(gram)
@@ -99,10 +101,10 @@ class Continuum:
 
     def section_stiffness(self, program: Program) -> np.ndarray:
         """Input S: elastic constants integrated over the section, times even powers of y and z."""
-        rows = "D11, D22, D33, D12, D13, D23, G12, G13, G23" if self.gram.element.dim == 3 else "D11, D22, D12, G12"
-        return program.input("S", (len(rows.split(", ")), len(moments.SECTION)), "N, N m^2, N m^2, N m^4, N m^4, N m^4",
-                             f"section stiffness: integrals over A of {rows} (rows; orthotropic, axes x, y, z) times "
-                             "1, y^2, z^2, y^4, y^2 z^2, z^4 (columns)")
+        rows = ROWS[self.gram.element.dim]
+        return program.input("S", (len(rows), len(moments.SECTION)), "N, N m^2, N m^2, N m^4, N m^4, N m^4",
+                             f"section stiffness: integrals over A of {', '.join(rows)} (rows; orthotropic, axes x, y, "
+                             "z) times 1, y^2, z^2, y^4, y^2 z^2, z^4 (columns)")
 
     def set_up(self, program: Program) -> None:
         """Inputs l, S and output A, for any doubly symmetric section and any orthotropic law, alike over it or not."""
@@ -114,7 +116,7 @@ class Continuum:
         program.output("A", [program.define(f"A_{i}", a) for i, a in enumerate(A)], "N m",
                        "different non-zero entries of A")
 
-    def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, w: sp.Expr) -> tuple:
+    def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X, w, c0=None) -> tuple:
         """Stages: force and moment in space, and strain, at X."""
         section = Resultants(self.form, program, S, c, X, w)
         return section.force(), section.moment(), section.strain()
