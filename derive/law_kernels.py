@@ -19,7 +19,7 @@ from funicular.derive.stages import Program
 def build(element: Element, law: str) -> list[Program]:
     """Every kernel of a law on an element."""
     kernels = Kernels(element, law)
-    return [kernels.stiffness(), kernels.energy(), kernels.elastic_force(), kernels.elastic_tangent(),
+    return [*kernels.set_up(), kernels.energy(), kernels.elastic_force(), kernels.elastic_tangent(),
             kernels.damping_force(), kernels.damping_tangent(), kernels.dissipation(), kernels.section_forces()]
 
 
@@ -57,11 +57,13 @@ class Kernels:
         w = program.define("w", 1 / length)
         return w, A, tau, self.gram.differences(program, e, w), self.gram.differences(program, v, w, "d")
 
-    def stiffness(self) -> Program:
+    def set_up(self) -> list[Program]:
         """The law's constants."""
-        p = self._program(self.law.set_up_kernel, "constants of the law from the stiffness of the section", "eq 7")
-        self.law.set_up(p)
-        return p
+        programs = []
+        for name, build in self.law.set_up().items():
+            programs.append(self._program(name, "constants of the law from the stiffness of the section", "eq 7"))
+            build(programs[-1])
+        return programs
 
     def energy(self) -> Program:
         """eq 7."""

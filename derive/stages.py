@@ -71,10 +71,10 @@ class Program:
         """Open a stage; the definitions that follow belong to it."""
         self.stages.append(Stage(title))
 
-    def define(self, name: str, expr: sp.Expr, moves_as: sp.Symbol | None = None) -> sp.Expr:
+    def define(self, name: str, expr: sp.Expr, moves_as: sp.Expr | None = None) -> sp.Expr:
         """Give an expression a name. Numbers and bare symbols pass through: a name would say nothing more.
 
-        `moves_as` is a symbol that differs from this one by a constant: derivatives are taken of that one instead.
+        `moves_as` is an expression that differs from this one by a constant: derivatives are taken of that one instead.
         """
         expr = sp.sympify(expr)
         if expr.is_Number or expr.is_Symbol:

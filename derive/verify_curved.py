@@ -73,15 +73,6 @@ def density_at(element: Element, s):
     return body.volume(s["at"]) * density(s["D"][0], body.strain(s["at"]))
 
 
-def dissipation(element: Element, law: str, s):
-    """Power of the viscous stress tau D dE/dt."""
-    body, total = Body(element, s), mp.mpf(0)
-    for at, D in weighted_points(element, s):
-        F, rate = body.gradient("e", at), body.gradient("v", at)
-        total += body.volume(at) * 2 * density(D, body.turned(at, (F.T.dot(rate) + rate.T.dot(F)) / 2))
-    return s["tau"].item() * total
-
-
 def section(element: Element, law: str, s) -> dict[str, np.ndarray]:
     """Resultants of P N dA, N dA = det J0 J0^-T e_x dy dz, and strain on the axis with its changes along y and z."""
     body, x = Body(element, s), s["x"].item()

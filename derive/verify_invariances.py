@@ -95,7 +95,8 @@ def _stiffness(family: Family, s: State) -> float:
     if family.law == "continuum":
         return float(np.max(np.abs(s["A"])))
     if family.law == "continuum_curved":
-        return float(np.max(np.abs(s["A"][: -len(Gram(family.element).pairs)])))
+        n = len(Gram(family.element).pairs)
+        return float(np.max(np.abs(s["A"][: n * (n + 1) // 2])))
     EA, EI = s["S"]
     return float(max(EA * s["l"], EI / s["l"]))
 

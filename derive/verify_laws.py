@@ -29,8 +29,7 @@ def energy(element: Element, law: str, s):
 
 def dissipation(element: Element, law: str, s):
     """Power that Kelvin-Voigt damping takes out."""
-    roots = {"continuum": continuum_dissipation, "continuum_curved": verify_curved.dissipation}
-    return roots.get(law, cable_dissipation)(element, law, s)
+    return (continuum_dissipation if law.startswith("continuum") else cable_dissipation)(element, law, s)
 
 
 def continuum_energy(element: Element, law: str, s):

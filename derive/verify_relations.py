@@ -93,7 +93,7 @@ def _stiffness_at(spec: Element) -> list[Relation]:
     """A point of the volume, tried by the energy that it adds in many states."""
     def shares(k, s):
         point = k("stiffness_at", s, D=s["D"][0])
-        A = np.concatenate([point["A"], point["G0"]])
+        A = np.concatenate([point["A"], point["G0"], k("straight_stiffness", s)["A"]])
         return [k("energy", s, A=A, e=e)["U"][0] for e in near(s)]
 
     def densities(k, s, t, j):
@@ -108,6 +108,8 @@ def _stiffness_at(spec: Element) -> list[Relation]:
         return lambda k, s, *_: k("stiffness_at", s, D=s["D"][0])[output]
 
     return [
+        Relation("straight_stiffness", "A", "the straight law's constants at 50 digits", 0,
+                 from_kernel("straight_stiffness", "A")),
         Relation("stiffness_at", "A", "a point's share at 50 digits", 0, given("A"), of=given("A")),
         Relation("stiffness_at", "A", "energy that a point adds in 450 states", 0, densities, of=shares),
         Relation("stiffness_at", "G0", "at 50 digits; the energies need it", 0, given("G0"), of=given("G0")),

@@ -40,8 +40,8 @@ def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
             state |= _constants(family, exact, state, random)
         found.append(state)
     rest = found[0] | at_rest(family)
-    if family.law and family.law.endswith("_curved"):
-        rest["e"] = rest["e0"]
+    if family.law and family.law.endswith("_curved"):  # larger alike: at rest there would be nothing to compare
+        rest["e"] = 1.25 * rest["e0"]
     return [*found, rest]
 
 
@@ -137,7 +137,7 @@ def _constants(family: Family, exact: Numbers, state: dict, random: np.random.Ge
             made[output] = exact(kernel, s)[output].astype(float)
     if "stiffness_at" in exact.programs:
         points = [exact("stiffness_at", s, at=at, D=D) for at, D in verify_curved.weighted_points(family.element, s)]
-        made["A"] = np.concatenate([sum(p["A"] for p in points), points[0]["G0"]]).astype(float)
+        made["A"] = np.concatenate([sum(p["A"] for p in points), points[0]["G0"], exact("straight_stiffness", s)["A"]]).astype(float)
     return made
 
 

@@ -58,6 +58,7 @@ void beam24_continuum_section_forces(fu_real l, fu_real x, const fu_real *e, con
 
 /* beam24_continuum_curved: elastic law continuum_curved on beam24 */
 void beam24_continuum_curved_stiffness_at(fu_real l, const fu_real *e0, const fu_real *at, const fu_real *D, fu_real *A, fu_real *G0);
+void beam24_continuum_curved_straight_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void beam24_continuum_curved_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void beam24_continuum_curved_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void beam24_continuum_curved_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
@@ -158,6 +159,7 @@ void beam12p_continuum_section_forces(fu_real l, fu_real x, const fu_real *e, co
 
 /* beam12p_continuum_curved: elastic law continuum_curved on beam12p */
 void beam12p_continuum_curved_stiffness_at(fu_real l, const fu_real *e0, const fu_real *at, const fu_real *D, fu_real *A, fu_real *G0);
+void beam12p_continuum_curved_straight_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void beam12p_continuum_curved_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void beam12p_continuum_curved_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void beam12p_continuum_curved_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);

@@ -39,6 +39,7 @@ cdef extern from "kernels.h" nogil:
     void c_beam24_continuum_dissipation "beam24_continuum_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
     void c_beam24_continuum_section_forces "beam24_continuum_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
     void c_beam24_continuum_curved_stiffness_at "beam24_continuum_curved_stiffness_at"(double l, const double *e0, const double *at, const double *D, double *A, double *G0)
+    void c_beam24_continuum_curved_straight_stiffness "beam24_continuum_curved_straight_stiffness"(double l, const double *S, double *A)
     void c_beam24_continuum_curved_energy "beam24_continuum_curved_energy"(double l, const double *e, const double *A, double *U)
     void c_beam24_continuum_curved_elastic_force "beam24_continuum_curved_elastic_force"(double l, const double *e, const double *A, double *f)
     void c_beam24_continuum_curved_elastic_tangent "beam24_continuum_curved_elastic_tangent"(double l, const double *e, const double *A, double *K)
@@ -119,6 +120,7 @@ cdef extern from "kernels.h" nogil:
     void c_beam12p_continuum_dissipation "beam12p_continuum_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
     void c_beam12p_continuum_section_forces "beam12p_continuum_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
     void c_beam12p_continuum_curved_stiffness_at "beam12p_continuum_curved_stiffness_at"(double l, const double *e0, const double *at, const double *D, double *A, double *G0)
+    void c_beam12p_continuum_curved_straight_stiffness "beam12p_continuum_curved_straight_stiffness"(double l, const double *S, double *A)
     void c_beam12p_continuum_curved_energy "beam12p_continuum_curved_energy"(double l, const double *e, const double *A, double *U)
     void c_beam12p_continuum_curved_elastic_force "beam12p_continuum_curved_elastic_force"(double l, const double *e, const double *A, double *f)
     void c_beam12p_continuum_curved_elastic_tangent "beam12p_continuum_curved_elastic_tangent"(double l, const double *e, const double *A, double *K)
@@ -781,18 +783,35 @@ def beam24_continuum_curved_stiffness_at(l, e0, at, D):
     return A_out, G0_out
 
 
+def beam24_continuum_curved_straight_stiffness(l, S):
+    """constants of the law from the stiffness of the section (eq 7; eq 5-8).
+
+    l () [m]: length of the element
+    S (9, 6) [N, N m^2, N m^2, N m^4, N m^4, N m^4]: section stiffness: integrals over A of D11, D22, D33, D12, D13, D23, G12, G13, G23 (rows; orthotropic, axes x, y, z) times 1, y^2, z^2, y^4, y^2 z^2, z^4 (columns)
+    Returns
+    A (61,) [N m]: different non-zero entries of A
+    """
+    cdef double l_ = l
+    cdef const double[::1] S_ = _array(S, (9, 6), "beam24_continuum_curved_straight_stiffness", "S")
+    A_out = np.empty((61,))
+    cdef double[::1] A__ = A_out.reshape(-1)
+    with nogil:
+        c_beam24_continuum_curved_straight_stiffness(l_, &S_[0], &A__[0])
+    return A_out
+
+
 def beam24_continuum_curved_energy(l, e, A):
     """elastic energy (eq 7; eq 5-8).
 
     l () [m]: length of the element
     e (8, 3) [m, 1]: nodal vectors (eq 1)
-    A (434,) [N m, 1]: form over Gram pairs, summed over beam24_continuum_curved_stiffness_at; then G0
+    A (495,) [N m, 1]: form over Gram pairs, summed over beam24_continuum_curved_stiffness_at; G0; the straight law's constants
     Returns
     U (1,) [J]: elastic energy
     """
     cdef double l_ = l
     cdef const double[::1] e_ = _array(e, (8, 3), "beam24_continuum_curved_energy", "e")
-    cdef const double[::1] A_ = _array(A, (434,), "beam24_continuum_curved_energy", "A")
+    cdef const double[::1] A_ = _array(A, (495,), "beam24_continuum_curved_energy", "A")
     U_out = np.empty((1,))
     cdef double[::1] U__ = U_out.reshape(-1)
     with nogil:
@@ -805,13 +824,13 @@ def beam24_continuum_curved_elastic_force(l, e, A):
 
     l () [m]: length of the element
     e (8, 3) [m, 1]: nodal vectors (eq 1)
-    A (434,) [N m, 1]: form over Gram pairs, summed over beam24_continuum_curved_stiffness_at; then G0
+    A (495,) [N m, 1]: form over Gram pairs, summed over beam24_continuum_curved_stiffness_at; G0; the straight law's constants
     Returns
     f (8, 3) [N, N m]: dU/de
     """
     cdef double l_ = l
     cdef const double[::1] e_ = _array(e, (8, 3), "beam24_continuum_curved_elastic_force", "e")
-    cdef const double[::1] A_ = _array(A, (434,), "beam24_continuum_curved_elastic_force", "A")
+    cdef const double[::1] A_ = _array(A, (495,), "beam24_continuum_curved_elastic_force", "A")
     f_out = np.empty((8, 3))
     cdef double[::1] f__ = f_out.reshape(-1)
     with nogil:
@@ -824,13 +843,13 @@ def beam24_continuum_curved_elastic_tangent(l, e, A):
 
     l () [m]: length of the element
     e (8, 3) [m, 1]: nodal vectors (eq 1)
-    A (434,) [N m, 1]: form over Gram pairs, summed over beam24_continuum_curved_stiffness_at; then G0
+    A (495,) [N m, 1]: form over Gram pairs, summed over beam24_continuum_curved_stiffness_at; G0; the straight law's constants
     Returns
     K (24, 24) [N/m, N, N m]: d2U/de2, symmetric
     """
     cdef double l_ = l
     cdef const double[::1] e_ = _array(e, (8, 3), "beam24_continuum_curved_elastic_tangent", "e")
-    cdef const double[::1] A_ = _array(A, (434,), "beam24_continuum_curved_elastic_tangent", "A")
+    cdef const double[::1] A_ = _array(A, (495,), "beam24_continuum_curved_elastic_tangent", "A")
     K_out = np.empty((24, 24))
     cdef double[::1] K__ = K_out.reshape(-1)
     with nogil:
@@ -844,7 +863,7 @@ def beam24_continuum_curved_damping_force(l, e, v, A, tau):
     l () [m]: length of the element
     e (8, 3) [m, 1]: nodal vectors (eq 1)
     v (8, 3) [m/s, 1/s]: rates of the nodal vectors
-    A (434,) [N m, 1]: form over Gram pairs, summed over beam24_continuum_curved_stiffness_at; then G0
+    A (495,) [N m, 1]: form over Gram pairs, summed over beam24_continuum_curved_stiffness_at; G0; the straight law's constants
     tau () [s]: retardation time of the Kelvin-Voigt law
     Returns
     f (8, 3) [N, N m]: -Q_d
@@ -852,7 +871,7 @@ def beam24_continuum_curved_damping_force(l, e, v, A, tau):
     cdef double l_ = l
     cdef const double[::1] e_ = _array(e, (8, 3), "beam24_continuum_curved_damping_force", "e")
     cdef const double[::1] v_ = _array(v, (8, 3), "beam24_continuum_curved_damping_force", "v")
-    cdef const double[::1] A_ = _array(A, (434,), "beam24_continuum_curved_damping_force", "A")
+    cdef const double[::1] A_ = _array(A, (495,), "beam24_continuum_curved_damping_force", "A")
     cdef double tau_ = tau
     f_out = np.empty((8, 3))
     cdef double[::1] f__ = f_out.reshape(-1)
@@ -867,7 +886,7 @@ def beam24_continuum_curved_damping_tangent(l, e, v, A, tau, rate):
     l () [m]: length of the element
     e (8, 3) [m, 1]: nodal vectors (eq 1)
     v (8, 3) [m/s, 1/s]: rates of the nodal vectors
-    A (434,) [N m, 1]: form over Gram pairs, summed over beam24_continuum_curved_stiffness_at; then G0
+    A (495,) [N m, 1]: form over Gram pairs, summed over beam24_continuum_curved_stiffness_at; G0; the straight law's constants
     tau () [s]: retardation time of the Kelvin-Voigt law
     rate () [1/s]: dv/de of the integrator
     Returns
@@ -876,7 +895,7 @@ def beam24_continuum_curved_damping_tangent(l, e, v, A, tau, rate):
     cdef double l_ = l
     cdef const double[::1] e_ = _array(e, (8, 3), "beam24_continuum_curved_damping_tangent", "e")
     cdef const double[::1] v_ = _array(v, (8, 3), "beam24_continuum_curved_damping_tangent", "v")
-    cdef const double[::1] A_ = _array(A, (434,), "beam24_continuum_curved_damping_tangent", "A")
+    cdef const double[::1] A_ = _array(A, (495,), "beam24_continuum_curved_damping_tangent", "A")
     cdef double tau_ = tau
     cdef double rate_ = rate
     K_out = np.empty((24, 24))
@@ -892,7 +911,7 @@ def beam24_continuum_curved_dissipation(l, e, v, A, tau):
     l () [m]: length of the element
     e (8, 3) [m, 1]: nodal vectors (eq 1)
     v (8, 3) [m/s, 1/s]: rates of the nodal vectors
-    A (434,) [N m, 1]: form over Gram pairs, summed over beam24_continuum_curved_stiffness_at; then G0
+    A (495,) [N m, 1]: form over Gram pairs, summed over beam24_continuum_curved_stiffness_at; G0; the straight law's constants
     tau () [s]: retardation time of the Kelvin-Voigt law
     Returns
     P (1,) [W]: dissipated power, never negative
@@ -900,7 +919,7 @@ def beam24_continuum_curved_dissipation(l, e, v, A, tau):
     cdef double l_ = l
     cdef const double[::1] e_ = _array(e, (8, 3), "beam24_continuum_curved_dissipation", "e")
     cdef const double[::1] v_ = _array(v, (8, 3), "beam24_continuum_curved_dissipation", "v")
-    cdef const double[::1] A_ = _array(A, (434,), "beam24_continuum_curved_dissipation", "A")
+    cdef const double[::1] A_ = _array(A, (495,), "beam24_continuum_curved_dissipation", "A")
     cdef double tau_ = tau
     P_out = np.empty((1,))
     cdef double[::1] P__ = P_out.reshape(-1)
@@ -2548,18 +2567,35 @@ def beam12p_continuum_curved_stiffness_at(l, e0, at, D):
     return A_out, G0_out
 
 
+def beam12p_continuum_curved_straight_stiffness(l, S):
+    """constants of the law from the stiffness of the section (eq 7; eq 5-8).
+
+    l () [m]: length of the element
+    S (4, 6) [N, N m^2, N m^2, N m^4, N m^4, N m^4]: section stiffness: integrals over A of D11, D22, D12, G12 (rows; orthotropic, axes x, y, z) times 1, y^2, z^2, y^4, y^2 z^2, z^4 (columns)
+    Returns
+    A (31,) [N m]: different non-zero entries of A
+    """
+    cdef double l_ = l
+    cdef const double[::1] S_ = _array(S, (4, 6), "beam12p_continuum_curved_straight_stiffness", "S")
+    A_out = np.empty((31,))
+    cdef double[::1] A__ = A_out.reshape(-1)
+    with nogil:
+        c_beam12p_continuum_curved_straight_stiffness(l_, &S_[0], &A__[0])
+    return A_out
+
+
 def beam12p_continuum_curved_energy(l, e, A):
     """elastic energy (eq 7; eq 5-8).
 
     l () [m]: length of the element
     e (6, 2) [m, 1]: nodal vectors (eq 1)
-    A (135,) [N m, 1]: form over Gram pairs, summed over beam12p_continuum_curved_stiffness_at; then G0
+    A (166,) [N m, 1]: form over Gram pairs, summed over beam12p_continuum_curved_stiffness_at; G0; the straight law's constants
     Returns
     U (1,) [J]: elastic energy
     """
     cdef double l_ = l
     cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_continuum_curved_energy", "e")
-    cdef const double[::1] A_ = _array(A, (135,), "beam12p_continuum_curved_energy", "A")
+    cdef const double[::1] A_ = _array(A, (166,), "beam12p_continuum_curved_energy", "A")
     U_out = np.empty((1,))
     cdef double[::1] U__ = U_out.reshape(-1)
     with nogil:
@@ -2572,13 +2608,13 @@ def beam12p_continuum_curved_elastic_force(l, e, A):
 
     l () [m]: length of the element
     e (6, 2) [m, 1]: nodal vectors (eq 1)
-    A (135,) [N m, 1]: form over Gram pairs, summed over beam12p_continuum_curved_stiffness_at; then G0
+    A (166,) [N m, 1]: form over Gram pairs, summed over beam12p_continuum_curved_stiffness_at; G0; the straight law's constants
     Returns
     f (6, 2) [N, N m]: dU/de
     """
     cdef double l_ = l
     cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_continuum_curved_elastic_force", "e")
-    cdef const double[::1] A_ = _array(A, (135,), "beam12p_continuum_curved_elastic_force", "A")
+    cdef const double[::1] A_ = _array(A, (166,), "beam12p_continuum_curved_elastic_force", "A")
     f_out = np.empty((6, 2))
     cdef double[::1] f__ = f_out.reshape(-1)
     with nogil:
@@ -2591,13 +2627,13 @@ def beam12p_continuum_curved_elastic_tangent(l, e, A):
 
     l () [m]: length of the element
     e (6, 2) [m, 1]: nodal vectors (eq 1)
-    A (135,) [N m, 1]: form over Gram pairs, summed over beam12p_continuum_curved_stiffness_at; then G0
+    A (166,) [N m, 1]: form over Gram pairs, summed over beam12p_continuum_curved_stiffness_at; G0; the straight law's constants
     Returns
     K (12, 12) [N/m, N, N m]: d2U/de2, symmetric
     """
     cdef double l_ = l
     cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_continuum_curved_elastic_tangent", "e")
-    cdef const double[::1] A_ = _array(A, (135,), "beam12p_continuum_curved_elastic_tangent", "A")
+    cdef const double[::1] A_ = _array(A, (166,), "beam12p_continuum_curved_elastic_tangent", "A")
     K_out = np.empty((12, 12))
     cdef double[::1] K__ = K_out.reshape(-1)
     with nogil:
@@ -2611,7 +2647,7 @@ def beam12p_continuum_curved_damping_force(l, e, v, A, tau):
     l () [m]: length of the element
     e (6, 2) [m, 1]: nodal vectors (eq 1)
     v (6, 2) [m/s, 1/s]: rates of the nodal vectors
-    A (135,) [N m, 1]: form over Gram pairs, summed over beam12p_continuum_curved_stiffness_at; then G0
+    A (166,) [N m, 1]: form over Gram pairs, summed over beam12p_continuum_curved_stiffness_at; G0; the straight law's constants
     tau () [s]: retardation time of the Kelvin-Voigt law
     Returns
     f (6, 2) [N, N m]: -Q_d
@@ -2619,7 +2655,7 @@ def beam12p_continuum_curved_damping_force(l, e, v, A, tau):
     cdef double l_ = l
     cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_continuum_curved_damping_force", "e")
     cdef const double[::1] v_ = _array(v, (6, 2), "beam12p_continuum_curved_damping_force", "v")
-    cdef const double[::1] A_ = _array(A, (135,), "beam12p_continuum_curved_damping_force", "A")
+    cdef const double[::1] A_ = _array(A, (166,), "beam12p_continuum_curved_damping_force", "A")
     cdef double tau_ = tau
     f_out = np.empty((6, 2))
     cdef double[::1] f__ = f_out.reshape(-1)
@@ -2634,7 +2670,7 @@ def beam12p_continuum_curved_damping_tangent(l, e, v, A, tau, rate):
     l () [m]: length of the element
     e (6, 2) [m, 1]: nodal vectors (eq 1)
     v (6, 2) [m/s, 1/s]: rates of the nodal vectors
-    A (135,) [N m, 1]: form over Gram pairs, summed over beam12p_continuum_curved_stiffness_at; then G0
+    A (166,) [N m, 1]: form over Gram pairs, summed over beam12p_continuum_curved_stiffness_at; G0; the straight law's constants
     tau () [s]: retardation time of the Kelvin-Voigt law
     rate () [1/s]: dv/de of the integrator
     Returns
@@ -2643,7 +2679,7 @@ def beam12p_continuum_curved_damping_tangent(l, e, v, A, tau, rate):
     cdef double l_ = l
     cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_continuum_curved_damping_tangent", "e")
     cdef const double[::1] v_ = _array(v, (6, 2), "beam12p_continuum_curved_damping_tangent", "v")
-    cdef const double[::1] A_ = _array(A, (135,), "beam12p_continuum_curved_damping_tangent", "A")
+    cdef const double[::1] A_ = _array(A, (166,), "beam12p_continuum_curved_damping_tangent", "A")
     cdef double tau_ = tau
     cdef double rate_ = rate
     K_out = np.empty((12, 12))
@@ -2659,7 +2695,7 @@ def beam12p_continuum_curved_dissipation(l, e, v, A, tau):
     l () [m]: length of the element
     e (6, 2) [m, 1]: nodal vectors (eq 1)
     v (6, 2) [m/s, 1/s]: rates of the nodal vectors
-    A (135,) [N m, 1]: form over Gram pairs, summed over beam12p_continuum_curved_stiffness_at; then G0
+    A (166,) [N m, 1]: form over Gram pairs, summed over beam12p_continuum_curved_stiffness_at; G0; the straight law's constants
     tau () [s]: retardation time of the Kelvin-Voigt law
     Returns
     P (1,) [W]: dissipated power, never negative
@@ -2667,7 +2703,7 @@ def beam12p_continuum_curved_dissipation(l, e, v, A, tau):
     cdef double l_ = l
     cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_continuum_curved_dissipation", "e")
     cdef const double[::1] v_ = _array(v, (6, 2), "beam12p_continuum_curved_dissipation", "v")
-    cdef const double[::1] A_ = _array(A, (135,), "beam12p_continuum_curved_dissipation", "A")
+    cdef const double[::1] A_ = _array(A, (166,), "beam12p_continuum_curved_dissipation", "A")
     cdef double tau_ = tau
     P_out = np.empty((1,))
     cdef double[::1] P__ = P_out.reshape(-1)

@@ -55,7 +55,7 @@ class CurvedCable(Cable):
         """Input A."""
         return program.input("A", self._size(), "N, N m^2, 1", "EA, EI, and the stress-free shape at each Gauss point")
 
-    def set_up(self, program: Program) -> None:
+    def stiffness(self, program: Program) -> None:
         """Inputs l, e0, S and output A."""
         length = program.input("l", (), "m", "length of the element")
         e0 = self.reference_input(program)
@@ -105,5 +105,5 @@ class CurvedCable(Cable):
         scale = program.define(f"scale{tag}", inverse**3 if self.strain == "green" else at.inverse * inverse**2)
         k2 = program.define(f"k2{tag}", ((1 + a1) * c - b * b) * scale)
         kappa = program.define(f"kappa{tag}", sp.sqrt(k2 + at.rounding))
-        change = program.define(f"dk{tag}", (k2 - at.kappa2) / (kappa + at.kappa), moves_as=kappa)
+        change = program.define(f"dk{tag}", (k2 - at.kappa2) / (kappa + at.kappa), moves_as=kappa - at.kappa)
         return at.stretch * (EA * strain**2 / 2 + EI * change * (change / 2 + at.straight)), strain, scale

@@ -6,8 +6,8 @@ exactly, and sparse, because Legendre polynomials are orthogonal (beam24: 114 en
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from functools import cached_property
+from collections.abc import Callable, Sequence
+from functools import cached_property, partial
 
 import numpy as np
 import sympy as sp
@@ -89,7 +89,6 @@ class Continuum:
     """The law over an element's Gram products."""
 
     name, doc, source, curved = NAME, DOC, SOURCE, False
-    set_up_kernel = "stiffness"
 
     def __init__(self, gram: Gram):
         self.gram, self.form = gram, Form(gram)
@@ -106,12 +105,16 @@ class Continuum:
                              f"section stiffness: integrals over A of {', '.join(rows)} (rows; orthotropic, axes x, y, "
                              "z) times 1, y^2, z^2, y^4, y^2 z^2, z^4 (columns)")
 
-    def set_up(self, program: Program) -> None:
+    def set_up(self) -> dict[str, Callable[[Program], None]]:
+        """Kernels that make A, by name."""
+        return {"stiffness": partial(self.stiffness, self.form)}
+
+    def stiffness(self, form: Form, program: Program) -> None:
         """Inputs l, S and output A, for any doubly symmetric section and any orthotropic law, alike over it or not."""
         length = program.input("l", (), "m", "length of the element")
         S = self.section_stiffness(program)
         A = [sum(sp.Rational(int(c.numerator), int(c.denominator)) * S[k, m] * length**power
-                 for (k, m, power), c in entry) for entry in self.form.constants]
+                 for (k, m, power), c in entry) for entry in form.constants]
         program.stage("integrals of strain products")
         program.output("A", [program.define(f"A_{i}", a) for i, a in enumerate(A)], "N m",
                        "different non-zero entries of A")
@@ -128,11 +131,14 @@ class Continuum:
     def stress(self, program: Program, A: np.ndarray, G: Sequence[sp.Expr], w: sp.Expr) -> list[sp.Expr]:
         """Stage: u = A (G - G0)."""
         program.stage("u = A (G - G0)")
-        return self._times(program, A, G)
+        return self._times(program, self._moduli(A), G)
 
     def tangent(self, program: Program, A: np.ndarray, G: Sequence[sp.Expr], c: np.ndarray, w: sp.Expr) -> np.ndarray:
         """Stages: d2U/dc2 over strain vectors."""
         return blocks(self.gram, program, c, c, self._moduli(A), self.stress(program, A, G, w))
+
+    def _viscous_moduli(self, A: np.ndarray) -> dict:
+        return self._moduli(A)
 
     def _moduli(self, A: np.ndarray) -> dict:
         return {pq: A[k] for pq, k in self.form.index.items()}
@@ -143,7 +149,7 @@ class Continuum:
         program.stage("rates of the Gram products")
         dG = self.gram.gram_rate(program, c, dc)
         program.stage("u = tau A dG/dt")
-        return self._times(program, A, dG, tau), dG
+        return self._times(program, self._viscous_moduli(A), dG, tau), dG
 
     def damping_forces(self, program, A, tau, c, dc, w) -> np.ndarray:
         """Forces on strain vectors."""
@@ -157,20 +163,19 @@ class Continuum:
         program.stage("b = tau (dc/dt + rate c)")
         b = np.array([program.vector(f"b_{name}", tau * (dc[m] + rate * c[m]))
                       for m, name in enumerate(self.gram.names)])
-        return blocks(self.gram, program, c, b, self._moduli(A), u)
+        return blocks(self.gram, program, c, b, self._viscous_moduli(A), u)
 
     def dissipation(self, program, A, tau, c, dc, w) -> sp.Expr:
         """Power."""
         u, dG = self._viscous(program, A, tau, c, dc)
         return sum(a * b for a, b in zip(u, dG, strict=True))
 
-    def _times(self, program: Program, A, strain, scale=sp.S.One) -> list[sp.Expr]:
+    def _times(self, program: Program, moduli: dict, strain, scale=sp.S.One) -> list[sp.Expr]:
         u = []
         for p in range(len(self.gram.pairs)):
-            alike: dict[int, sp.Expr] = {}
+            alike: dict[sp.Expr, sp.Expr] = {}
             for q in range(len(self.gram.pairs)):
-                if (p, q) in self.form.index:
-                    k = self.form.index[p, q]
-                    alike[k] = alike.get(k, sp.S.Zero) + strain[q]
-            u.append(program.define(f"u_{self.gram.pair(p)}", scale * sum(A[k] * s for k, s in alike.items())))
+                if (p, q) in moduli:
+                    alike[moduli[p, q]] = alike.get(moduli[p, q], sp.S.Zero) + strain[q]
+            u.append(program.define(f"u_{self.gram.pair(p)}", scale * sum(k * s for k, s in alike.items())))
         return u

@@ -2,12 +2,14 @@
 
 E = J0^-T (F'F - F0'F0)/2 J0^-1 is linear in G - G0 at every point, so the energy is the same quadratic form with a dense
 A and the G0 of e0. J0 is not a polynomial: A is a sum over points of the volume, each by the kernel `stiffness_at`, once
-for an element. Axes of the elastic constants are the tangent frame of the stress-free axis.
+for an element. Axes of the elastic constants are the tangent frame of the stress-free axis. Damping takes the form of the
+straight law, whose components are those of the tangent frame but for a part of the order of section over radius.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 import sympy as sp
@@ -41,17 +43,21 @@ class CurvedContinuum(Continuum):
     """The law with e0."""
 
     name, doc, curved = NAME, "St. Venant-Kirchhoff continuum, orthotropic, its stress-free shape curved", True
-    set_up_kernel = "stiffness_at"
 
     def __init__(self, gram: Gram):
-        self.gram, self.form = gram, DenseForm(gram)
+        self.gram, self.form, self.straight = gram, DenseForm(gram), Form(gram)
 
     def constants(self, program: Program) -> np.ndarray:
         """Input A."""
-        return program.input("A", self.form.size + len(self.gram.pairs), "N m, 1",
-                             f"form over Gram pairs, summed over {self.gram.element.name}_{NAME}_stiffness_at; then G0")
+        family = f"{self.gram.element.name}_{NAME}"
+        return program.input("A", self.form.size + len(self.gram.pairs) + len(self.straight.constants), "N m, 1",
+                             f"form over Gram pairs, summed over {family}_stiffness_at; G0; the straight law's constants")
 
-    def set_up(self, program: Program) -> None:
+    def set_up(self) -> dict[str, Callable[[Program], None]]:
+        """Kernels that make A, by name."""
+        return {"stiffness_at": self.stiffness_at, "straight_stiffness": partial(self.stiffness, self.straight)}
+
+    def stiffness_at(self, program: Program) -> None:
         """Inputs l, e0, at, D and outputs A, G0: what a point of the volume adds."""
         length = program.input("l", (), "m", "length of the element")
         e0 = self.reference_input(program)
@@ -102,11 +108,15 @@ class CurvedContinuum(Continuum):
         """U."""
         g = self._shifted(program, A, G)
         program.stage("u = A (G - G0)")
-        return sum(a * b for a, b in zip(self._times(program, A, g), g, strict=True)) / 2
+        return sum(a * b for a, b in zip(self._times(program, self._moduli(A), g), g, strict=True)) / 2
 
     def stress(self, program: Program, A: np.ndarray, G: Sequence[sp.Expr], w: sp.Expr) -> list[sp.Expr]:
         """Stages: u = A (G - G0)."""
         return super().stress(program, A, self._shifted(program, A, G), w)
+
+    def _viscous_moduli(self, A: np.ndarray) -> dict:
+        after = self.form.size + len(self.gram.pairs)
+        return {pq: A[after + k] for pq, k in self.straight.index.items()}
 
     def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X, w, c0=None) -> tuple:
         """Stages: force and moment in space, and strain, at X."""
