@@ -9,7 +9,10 @@ static const fu_element elements[] = {
      beam24_mass,
      beam24_gravity,
      beam24_inertia_force,
-     beam24_position
+     beam24_position,
+     beam24_on_axis,
+     beam24_follower_force,
+     beam24_moment
     },
     {"cable12",
      2,
@@ -18,7 +21,10 @@ static const fu_element elements[] = {
      cable12_mass,
      cable12_gravity,
      cable12_inertia_force,
-     cable12_position
+     cable12_position,
+     cable12_on_axis,
+     cable12_follower_force,
+     cable12_moment
     },
     {"cable18",
      2,
@@ -27,7 +33,10 @@ static const fu_element elements[] = {
      cable18_mass,
      cable18_gravity,
      cable18_inertia_force,
-     cable18_position
+     cable18_position,
+     cable18_on_axis,
+     cable18_follower_force,
+     cable18_moment
     },
     {"beam12p",
      2,
@@ -36,7 +45,10 @@ static const fu_element elements[] = {
      beam12p_mass,
      beam12p_gravity,
      beam12p_inertia_force,
-     beam12p_position
+     beam12p_position,
+     beam12p_on_axis,
+     beam12p_follower_force,
+     beam12p_moment
     },
     {"cable8p",
      2,
@@ -45,7 +57,10 @@ static const fu_element elements[] = {
      cable8p_mass,
      cable8p_gravity,
      cable8p_inertia_force,
-     cable8p_position
+     cable8p_position,
+     cable8p_on_axis,
+     cable8p_follower_force,
+     cable8p_moment
     }
 };
 
@@ -148,9 +163,33 @@ static const fu_law laws[] = {
     }
 };
 
+static const fu_body bodys[] = {
+    {"rigid",
+     3,
+     7,
+     6,
+     rigid_point,
+     rigid_point_force,
+     rigid_inertia_force,
+     rigid_inertia_tangent,
+     rigid_kinetic_energy
+    },
+    {"planar_rigid",
+     2,
+     4,
+     3,
+     planar_rigid_point,
+     planar_rigid_point_force,
+     planar_rigid_inertia_force,
+     planar_rigid_inertia_tangent,
+     planar_rigid_kinetic_energy
+    }
+};
+
 static const fu_slide slides[] = {
     {"slide_beam24_rigid",
      30,
+     3,
      slide_beam24_rigid_constraint,
      slide_beam24_rigid_terms,
      slide_beam24_rigid_residual,
@@ -158,6 +197,7 @@ static const fu_slide slides[] = {
     },
     {"slide_cable12_rigid",
      18,
+     3,
      slide_cable12_rigid_constraint,
      slide_cable12_rigid_terms,
      slide_cable12_rigid_residual,
@@ -165,15 +205,33 @@ static const fu_slide slides[] = {
     },
     {"slide_cable18_rigid",
      24,
+     3,
      slide_cable18_rigid_constraint,
      slide_cable18_rigid_terms,
      slide_cable18_rigid_residual,
      slide_cable18_rigid_tangent
+    },
+    {"slide_beam12p_planar_rigid",
+     15,
+     2,
+     slide_beam12p_planar_rigid_constraint,
+     slide_beam12p_planar_rigid_terms,
+     slide_beam12p_planar_rigid_residual,
+     slide_beam12p_planar_rigid_tangent
+    },
+    {"slide_cable8p_planar_rigid",
+     11,
+     2,
+     slide_cable8p_planar_rigid_constraint,
+     slide_cable8p_planar_rigid_terms,
+     slide_cable8p_planar_rigid_residual,
+     slide_cable8p_planar_rigid_tangent
     }
 };
 
 const fu_tables fu_all = {
     5, elements,
     12, laws,
-    3, slides
+    2, bodys,
+    5, slides
 };
