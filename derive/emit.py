@@ -14,7 +14,7 @@ from importlib import metadata
 import jinja2
 from funicular.derive.printer import c_expression
 from funicular.derive.sources import deciding, spec_hash
-from funicular.derive.spec import Family
+from funicular.derive.spec import Family, SpecError
 from funicular.derive.stages import Argument, Program
 
 TOOLS = ("sympy", "mpmath", "jinja2")
@@ -118,9 +118,27 @@ def _operations_text(program: Program) -> str:
 
 
 def _shared(members: list[Derived]) -> dict[str, str]:
-    """Kernels by suffix, with their parameters, that all families of a role have with the same parameters."""
-    each = [{p.name.removeprefix(d.family.name + "_"): signature(p) for p in d.programs} for d in members]
-    return {name: text for name, text in each[0].items() if all(other.get(name) == text for other in each)}
+    """Kernels of a role by suffix, with their parameters, but for each family's own.
+
+    Raises SpecError where two families do not agree on them.
+    """
+    first, *others = members
+    kernels = _parameters(first)
+    for other in others:
+        theirs = _parameters(other)
+        for suffix in [*kernels, *theirs]:
+            here, there = kernels.get(suffix, "none"), theirs.get(suffix, "none")
+            if here != there:
+                raise SpecError(f'role "{first.family.role}": the engine\'s table needs the kernel {suffix} of every '
+                                f"family with the same parameters; {first.family.name} has ({here}), "
+                                f"{other.family.name} has ({there}): derive all families where it is new, or list it "
+                                "in Family.own to keep it out of the table")
+    return kernels
+
+
+def _parameters(derived: Derived) -> dict[str, str]:
+    every = {p.name.removeprefix(derived.family.name + "_"): signature(p) for p in derived.programs}
+    return {suffix: text for suffix, text in every.items() if suffix not in derived.family.own}
 
 
 def _call(program: Program | Recorded) -> str:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 from functools import partial
+from types import ModuleType
 
-from funicular.derive import element_kernels, law_kernels
-from funicular.derive.bodies import rigid
+from funicular.derive import body_kernels, element_kernels, law_kernels
+from funicular.derive.bodies import BODIES
 from funicular.derive.elements import ELEMENTS
 from funicular.derive.joints import slide
 from funicular.derive.spec import Element, Family
@@ -24,24 +25,33 @@ def _element(element: Element) -> Family:
 def _law(element: Element, law: str) -> Family:
     return Family(f"{element.name}_{law}", f"elastic law {law} on {element.name}",
                   partial(law_kernels.build, element, law), (f"elements.{element.name}", "law_kernels"),
-                  role="law", element=element, law=law)
+                  role="law", own=("stiffness",), element=element, law=law)
 
 
-def _slide(element: Element) -> Family:
-    return Family(f"slide_{element.name}_{rigid.NAME}",
-                  f"sliding joint of a {rigid.NAME} rider on a {element.name} cable",
-                  partial(slide.build, element),
-                  ("joints.slide", f"elements.{element.name}", f"bodies.{rigid.NAME}"),
-                  role="slide", facts={"coordinates": element.n_coordinates + rigid.N_VELOCITY},
-                  element=element, rider=rigid.NAME)
+def _body(body: ModuleType) -> Family:
+    return Family(body.NAME, body.DOC, partial(body_kernels.build, body), (f"bodies.{body.NAME}", "body_kernels"),
+                  role="body",
+                  facts={"dim": body.DIM, "configuration": body.N_CONFIGURATION, "velocity": body.N_VELOCITY},
+                  rider=body.NAME)
+
+
+def _slide(element: Element, rider: ModuleType) -> Family:
+    return Family(f"slide_{element.name}_{rider.NAME}",
+                  f"sliding joint of a {rider.NAME} rider on a {element.name} cable",
+                  partial(slide.build, element, rider),
+                  ("joints.slide", f"elements.{element.name}", f"bodies.{rider.NAME}"),
+                  role="slide",
+                  facts={"coordinates": element.n_coordinates + rider.N_VELOCITY, "dim": element.dim},
+                  element=element, rider=rider.NAME)
 
 
 def families() -> dict[str, Family]:
     """Every family by name: elements, their laws, bodies, and the slide for each pair of element and rider."""
     every = [*map(_element, ELEMENTS.values()),
              *(_law(element, law) for element in ELEMENTS.values() for law in element.laws),
-             Family(rigid.NAME, "rigid body", rigid.build, (f"bodies.{rigid.NAME}",), rider=rigid.NAME),
-             *(_slide(element) for element in ELEMENTS.values() if element.dim == rigid.DIM)]
+             *map(_body, BODIES.values()),
+             *(_slide(element, rider) for rider in BODIES.values() for element in ELEMENTS.values()
+               if element.dim == rider.DIM)]
     return {f.name: f for f in every}
 
 

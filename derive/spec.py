@@ -17,6 +17,10 @@ COORDINATES = {"x": x, "y": y, "z": z}
 CABLE_LAWS = ("green_exact", "green_linear", "engineering_exact", "engineering_linear")
 
 
+class SpecError(ValueError):
+    """A spec that cannot be derived, or not beside the others."""
+
+
 @dataclass(frozen=True)
 class Element:
     """r(x, y, z) = sum_k N_k d_k (eq 2): monomials, nodes, and which vectors the nodes carry.
@@ -75,12 +79,12 @@ class Element:
     def shape_functions(self) -> tuple[sp.Expr, ...]:
         """N_k(x, y, z; l), from N_k(d_j) = delta_kj on the span of the basis.
 
-        Raises ValueError where the nodal conditions do not fix the basis.
+        Raises SpecError where the nodal conditions do not fix the basis.
         """
         basis = [sp.sympify(b) for b in self.basis]
         conditions = self.nodal_conditions(basis)
         if conditions.shape[0] != conditions.shape[1] or conditions.det() == 0:
-            raise ValueError(f"{self.name}: {conditions.shape[0]} nodal conditions do not fix "
+            raise SpecError(f"{self.name}: {conditions.shape[0]} nodal conditions do not fix "
                              f"{len(basis)} basis functions")
         return tuple((sp.Matrix([basis]) * conditions.inv()).applyfunc(sp.expand))
 
@@ -90,7 +94,8 @@ class Family:
     """The kernels of one generated file.
 
     `modules` are its specs: their text, and all that they import here, is in the spec hash. Families of one `role` have
-    kernels of the same signatures; the engine reaches them through a table, each with its `facts` (integers).
+    kernels of the same signatures, but for those in `own`; the engine reaches them through a table, each with its
+    `facts` (integers).
     `element`, `law` (a name in laws/) and `rider` (the name of a body) are what the kernels are about: verification
     samples their states.
     """
@@ -101,6 +106,7 @@ class Family:
     modules: tuple[str, ...]
     role: str = ""
     facts: dict[str, int] = field(default_factory=dict)
+    own: tuple[str, ...] = ()
     element: Element | None = None
     law: str | None = None
     rider: str | None = None

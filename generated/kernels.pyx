@@ -14,22 +14,37 @@ cdef extern from "kernels.h" nogil:
     void c_beam24_gravity "beam24_gravity"(double l, double density, const double *section, const double *g, double *Q)
     void c_beam24_inertia_force "beam24_inertia_force"(const double *m, const double *a, double *f)
     void c_beam24_position "beam24_position"(double l, const double *at, const double *e, double *N, double *r)
+    void c_beam24_on_axis "beam24_on_axis"(double l, double x, double *N, double *N_x)
+    void c_beam24_follower_force "beam24_follower_force"(double l, double x, const double *e, const double *c, double *f, double *K)
+    void c_beam24_moment "beam24_moment"(double l, double x, const double *e, const double *M, double *f, double *K)
     void c_cable12_mass "cable12_mass"(double l, double density, const double *section, double *m)
     void c_cable12_gravity "cable12_gravity"(double l, double density, const double *section, const double *g, double *Q)
     void c_cable12_inertia_force "cable12_inertia_force"(const double *m, const double *a, double *f)
     void c_cable12_position "cable12_position"(double l, const double *at, const double *e, double *N, double *r)
+    void c_cable12_on_axis "cable12_on_axis"(double l, double x, double *N, double *N_x)
+    void c_cable12_follower_force "cable12_follower_force"(double l, double x, const double *e, const double *c, double *f, double *K)
+    void c_cable12_moment "cable12_moment"(double l, double x, const double *e, const double *M, double *f, double *K)
     void c_cable18_mass "cable18_mass"(double l, double density, const double *section, double *m)
     void c_cable18_gravity "cable18_gravity"(double l, double density, const double *section, const double *g, double *Q)
     void c_cable18_inertia_force "cable18_inertia_force"(const double *m, const double *a, double *f)
     void c_cable18_position "cable18_position"(double l, const double *at, const double *e, double *N, double *r)
+    void c_cable18_on_axis "cable18_on_axis"(double l, double x, double *N, double *N_x)
+    void c_cable18_follower_force "cable18_follower_force"(double l, double x, const double *e, const double *c, double *f, double *K)
+    void c_cable18_moment "cable18_moment"(double l, double x, const double *e, const double *M, double *f, double *K)
     void c_beam12p_mass "beam12p_mass"(double l, double density, const double *section, double *m)
     void c_beam12p_gravity "beam12p_gravity"(double l, double density, const double *section, const double *g, double *Q)
     void c_beam12p_inertia_force "beam12p_inertia_force"(const double *m, const double *a, double *f)
     void c_beam12p_position "beam12p_position"(double l, const double *at, const double *e, double *N, double *r)
+    void c_beam12p_on_axis "beam12p_on_axis"(double l, double x, double *N, double *N_x)
+    void c_beam12p_follower_force "beam12p_follower_force"(double l, double x, const double *e, const double *c, double *f, double *K)
+    void c_beam12p_moment "beam12p_moment"(double l, double x, const double *e, const double *M, double *f, double *K)
     void c_cable8p_mass "cable8p_mass"(double l, double density, const double *section, double *m)
     void c_cable8p_gravity "cable8p_gravity"(double l, double density, const double *section, const double *g, double *Q)
     void c_cable8p_inertia_force "cable8p_inertia_force"(const double *m, const double *a, double *f)
     void c_cable8p_position "cable8p_position"(double l, const double *at, const double *e, double *N, double *r)
+    void c_cable8p_on_axis "cable8p_on_axis"(double l, double x, double *N, double *N_x)
+    void c_cable8p_follower_force "cable8p_follower_force"(double l, double x, const double *e, const double *c, double *f, double *K)
+    void c_cable8p_moment "cable8p_moment"(double l, double x, const double *e, const double *M, double *f, double *K)
     void c_beam24_continuum_stiffness "beam24_continuum_stiffness"(double l, const double *S, double *A)
     void c_beam24_continuum_energy "beam24_continuum_energy"(double l, const double *e, const double *A, double *U)
     void c_beam24_continuum_elastic_force "beam24_continuum_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -115,9 +130,15 @@ cdef extern from "kernels.h" nogil:
     void c_cable8p_engineering_linear_damping_tangent "cable8p_engineering_linear_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable8p_engineering_linear_dissipation "cable8p_engineering_linear_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
     void c_rigid_point "rigid_point"(const double *b, const double *u, const double *w, double *p, double *p_q, double *v, double *bias)
+    void c_rigid_point_force "rigid_point_force"(const double *b, const double *u, const double *f, double *p, double *p_q, double *K)
     void c_rigid_inertia_force "rigid_inertia_force"(double mass, const double *J, const double *w, const double *a, double *f)
     void c_rigid_inertia_tangent "rigid_inertia_tangent"(double mass, const double *J, const double *w, double *M, double *D)
     void c_rigid_kinetic_energy "rigid_kinetic_energy"(double mass, const double *J, const double *w, double *T)
+    void c_planar_rigid_point "planar_rigid_point"(const double *b, const double *u, const double *w, double *p, double *p_q, double *v, double *bias)
+    void c_planar_rigid_point_force "planar_rigid_point_force"(const double *b, const double *u, const double *f, double *p, double *p_q, double *K)
+    void c_planar_rigid_inertia_force "planar_rigid_inertia_force"(double mass, const double *J, const double *w, const double *a, double *f)
+    void c_planar_rigid_inertia_tangent "planar_rigid_inertia_tangent"(double mass, const double *J, const double *w, double *M, double *D)
+    void c_planar_rigid_kinetic_energy "planar_rigid_kinetic_energy"(double mass, const double *J, const double *w, double *T)
     void c_slide_beam24_rigid_constraint "slide_beam24_rigid_constraint"(double l, double x, const double *e, const double *b, const double *u, const double *director, double *C, double *C_s, double *s_step, double *A_t)
     void c_slide_beam24_rigid_terms "slide_beam24_rigid_terms"(double l, double x, const double *e, const double *b, const double *u, const double *v, const double *w, const double *director, double *C, double *C_q, double *C_s, double *G, double *s_rate, double *Q_d, double *H, double *W, double *s_bias)
     void c_slide_beam24_rigid_residual "slide_beam24_rigid_residual"(double l, double x, const double *e, const double *b, const double *u, const double *f, double *phi, double *g)
@@ -130,6 +151,14 @@ cdef extern from "kernels.h" nogil:
     void c_slide_cable18_rigid_terms "slide_cable18_rigid_terms"(double l, double x, const double *e, const double *b, const double *u, const double *v, const double *w, const double *director, double *C, double *C_q, double *C_s, double *G, double *s_rate, double *Q_d, double *H, double *W, double *s_bias)
     void c_slide_cable18_rigid_residual "slide_cable18_rigid_residual"(double l, double x, const double *e, const double *b, const double *u, const double *f, double *phi, double *g)
     void c_slide_cable18_rigid_tangent "slide_cable18_rigid_tangent"(double l, double x, const double *e, const double *b, const double *u, const double *f, double *J, double *K)
+    void c_slide_beam12p_planar_rigid_constraint "slide_beam12p_planar_rigid_constraint"(double l, double x, const double *e, const double *b, const double *u, const double *director, double *C, double *C_s, double *s_step, double *A_t)
+    void c_slide_beam12p_planar_rigid_terms "slide_beam12p_planar_rigid_terms"(double l, double x, const double *e, const double *b, const double *u, const double *v, const double *w, const double *director, double *C, double *C_q, double *C_s, double *G, double *s_rate, double *Q_d, double *H, double *W, double *s_bias)
+    void c_slide_beam12p_planar_rigid_residual "slide_beam12p_planar_rigid_residual"(double l, double x, const double *e, const double *b, const double *u, const double *f, double *phi, double *g)
+    void c_slide_beam12p_planar_rigid_tangent "slide_beam12p_planar_rigid_tangent"(double l, double x, const double *e, const double *b, const double *u, const double *f, double *J, double *K)
+    void c_slide_cable8p_planar_rigid_constraint "slide_cable8p_planar_rigid_constraint"(double l, double x, const double *e, const double *b, const double *u, const double *director, double *C, double *C_s, double *s_step, double *A_t)
+    void c_slide_cable8p_planar_rigid_terms "slide_cable8p_planar_rigid_terms"(double l, double x, const double *e, const double *b, const double *u, const double *v, const double *w, const double *director, double *C, double *C_q, double *C_s, double *G, double *s_rate, double *Q_d, double *H, double *W, double *s_bias)
+    void c_slide_cable8p_planar_rigid_residual "slide_cable8p_planar_rigid_residual"(double l, double x, const double *e, const double *b, const double *u, const double *f, double *phi, double *g)
+    void c_slide_cable8p_planar_rigid_tangent "slide_cable8p_planar_rigid_tangent"(double l, double x, const double *e, const double *b, const double *u, const double *f, double *J, double *K)
 
 
 tables = PyCapsule_New(<void *>&fu_all, "funicular.generated.kernels.tables", NULL)
@@ -222,6 +251,74 @@ def beam24_position(l, at, e):
     return N_out, r_out
 
 
+def beam24_on_axis(l, x):
+    """shape functions and slopes of a point of the centreline (eq 2).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    Returns
+    N (8,) [1, m]: shape functions at (x, 0, 0)
+    N_x (8,) [1/m, 1]: their derivatives by x
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    N_out = np.empty((8,))
+    cdef double[::1] N__ = N_out.reshape(-1)
+    N_x_out = np.empty((8,))
+    cdef double[::1] N_x__ = N_x_out.reshape(-1)
+    with nogil:
+        c_beam24_on_axis(l_, x_, &N__[0], &N_x__[0])
+    return N_out, N_x_out
+
+
+def beam24_follower_force(l, x, e, c):
+    """generalised force of a force that turns with the tangent frame (N' A_t c, A_t of eq 18).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (8, 3) [m, 1]: nodal vectors (eq 1)
+    c (3,) [N]: components along i j k of the tangent frame
+    Returns
+    f (8, 3) [N, N m]: generalised force
+    K (24, 24) [N/m, N, N m]: derivatives of f by e, not symmetric
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_follower_force", "e")
+    cdef const double[::1] c_ = _array(c, (3,), "beam24_follower_force", "c")
+    f_out = np.empty((8, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    K_out = np.empty((24, 24))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_beam24_follower_force(l_, x_, &e_[0], &c_[0], &f__[0], &K__[0])
+    return f_out, K_out
+
+
+def beam24_moment(l, x, e, M):
+    """generalised force of a moment in global axes (work on the rotation of the section).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (8, 3) [m, 1]: nodal vectors (eq 1)
+    M (3,) [N m]: moment
+    Returns
+    f (8, 3) [N, N m]: generalised force
+    K (24, 24) [N/m, N, N m]: derivatives of f by e, not symmetric
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_moment", "e")
+    cdef const double[::1] M_ = _array(M, (3,), "beam24_moment", "M")
+    f_out = np.empty((8, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    K_out = np.empty((24, 24))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_beam24_moment(l_, x_, &e_[0], &M_[0], &f__[0], &K__[0])
+    return f_out, K_out
+
+
 def cable12_mass(l, density, section):
     """mass matrix m of M = m (x) I (eq 4).
 
@@ -299,6 +396,74 @@ def cable12_position(l, at, e):
     with nogil:
         c_cable12_position(l_, &at_[0], &e_[0], &N__[0], &r__[0])
     return N_out, r_out
+
+
+def cable12_on_axis(l, x):
+    """shape functions and slopes of a point of the centreline (eq 2).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    Returns
+    N (4,) [1, m]: shape functions at (x, 0, 0)
+    N_x (4,) [1/m, 1]: their derivatives by x
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    N_out = np.empty((4,))
+    cdef double[::1] N__ = N_out.reshape(-1)
+    N_x_out = np.empty((4,))
+    cdef double[::1] N_x__ = N_x_out.reshape(-1)
+    with nogil:
+        c_cable12_on_axis(l_, x_, &N__[0], &N_x__[0])
+    return N_out, N_x_out
+
+
+def cable12_follower_force(l, x, e, c):
+    """generalised force of a force that turns with the tangent frame (N' A_t c, A_t of eq 18).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    c (1,) [N]: components along i of the tangent frame
+    Returns
+    f (4, 3) [N, N m]: generalised force
+    K (12, 12) [N/m, N, N m]: derivatives of f by e, not symmetric
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_follower_force", "e")
+    cdef const double[::1] c_ = _array(c, (1,), "cable12_follower_force", "c")
+    f_out = np.empty((4, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    K_out = np.empty((12, 12))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable12_follower_force(l_, x_, &e_[0], &c_[0], &f__[0], &K__[0])
+    return f_out, K_out
+
+
+def cable12_moment(l, x, e, M):
+    """generalised force of a moment in global axes (work on the rotation of the section).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    M (3,) [N m]: moment
+    Returns
+    f (4, 3) [N, N m]: generalised force
+    K (12, 12) [N/m, N, N m]: derivatives of f by e, not symmetric
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_moment", "e")
+    cdef const double[::1] M_ = _array(M, (3,), "cable12_moment", "M")
+    f_out = np.empty((4, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    K_out = np.empty((12, 12))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable12_moment(l_, x_, &e_[0], &M_[0], &f__[0], &K__[0])
+    return f_out, K_out
 
 
 def cable18_mass(l, density, section):
@@ -380,6 +545,74 @@ def cable18_position(l, at, e):
     return N_out, r_out
 
 
+def cable18_on_axis(l, x):
+    """shape functions and slopes of a point of the centreline (eq 2).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    Returns
+    N (6,) [1, m]: shape functions at (x, 0, 0)
+    N_x (6,) [1/m, 1]: their derivatives by x
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    N_out = np.empty((6,))
+    cdef double[::1] N__ = N_out.reshape(-1)
+    N_x_out = np.empty((6,))
+    cdef double[::1] N_x__ = N_x_out.reshape(-1)
+    with nogil:
+        c_cable18_on_axis(l_, x_, &N__[0], &N_x__[0])
+    return N_out, N_x_out
+
+
+def cable18_follower_force(l, x, e, c):
+    """generalised force of a force that turns with the tangent frame (N' A_t c, A_t of eq 18).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (6, 3) [m, 1]: nodal vectors (eq 1)
+    c (1,) [N]: components along i of the tangent frame
+    Returns
+    f (6, 3) [N, N m]: generalised force
+    K (18, 18) [N/m, N, N m]: derivatives of f by e, not symmetric
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (6, 3), "cable18_follower_force", "e")
+    cdef const double[::1] c_ = _array(c, (1,), "cable18_follower_force", "c")
+    f_out = np.empty((6, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    K_out = np.empty((18, 18))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable18_follower_force(l_, x_, &e_[0], &c_[0], &f__[0], &K__[0])
+    return f_out, K_out
+
+
+def cable18_moment(l, x, e, M):
+    """generalised force of a moment in global axes (work on the rotation of the section).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (6, 3) [m, 1]: nodal vectors (eq 1)
+    M (3,) [N m]: moment
+    Returns
+    f (6, 3) [N, N m]: generalised force
+    K (18, 18) [N/m, N, N m]: derivatives of f by e, not symmetric
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (6, 3), "cable18_moment", "e")
+    cdef const double[::1] M_ = _array(M, (3,), "cable18_moment", "M")
+    f_out = np.empty((6, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    K_out = np.empty((18, 18))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable18_moment(l_, x_, &e_[0], &M_[0], &f__[0], &K__[0])
+    return f_out, K_out
+
+
 def beam12p_mass(l, density, section):
     """mass matrix m of M = m (x) I (eq 4).
 
@@ -459,6 +692,74 @@ def beam12p_position(l, at, e):
     return N_out, r_out
 
 
+def beam12p_on_axis(l, x):
+    """shape functions and slopes of a point of the centreline (eq 2).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    Returns
+    N (6,) [1, m]: shape functions at (x, 0, 0)
+    N_x (6,) [1/m, 1]: their derivatives by x
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    N_out = np.empty((6,))
+    cdef double[::1] N__ = N_out.reshape(-1)
+    N_x_out = np.empty((6,))
+    cdef double[::1] N_x__ = N_x_out.reshape(-1)
+    with nogil:
+        c_beam12p_on_axis(l_, x_, &N__[0], &N_x__[0])
+    return N_out, N_x_out
+
+
+def beam12p_follower_force(l, x, e, c):
+    """generalised force of a force that turns with the tangent frame (N' A_t c, A_t of eq 18).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    c (2,) [N]: components along i j of the tangent frame
+    Returns
+    f (6, 2) [N, N m]: generalised force
+    K (12, 12) [N/m, N, N m]: derivatives of f by e, not symmetric
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_follower_force", "e")
+    cdef const double[::1] c_ = _array(c, (2,), "beam12p_follower_force", "c")
+    f_out = np.empty((6, 2))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    K_out = np.empty((12, 12))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_beam12p_follower_force(l_, x_, &e_[0], &c_[0], &f__[0], &K__[0])
+    return f_out, K_out
+
+
+def beam12p_moment(l, x, e, M):
+    """generalised force of a moment in global axes (work on the rotation of the section).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    M (1,) [N m]: moment about z
+    Returns
+    f (6, 2) [N, N m]: generalised force
+    K (12, 12) [N/m, N, N m]: derivatives of f by e, not symmetric
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_moment", "e")
+    cdef const double[::1] M_ = _array(M, (1,), "beam12p_moment", "M")
+    f_out = np.empty((6, 2))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    K_out = np.empty((12, 12))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_beam12p_moment(l_, x_, &e_[0], &M_[0], &f__[0], &K__[0])
+    return f_out, K_out
+
+
 def cable8p_mass(l, density, section):
     """mass matrix m of M = m (x) I (eq 4).
 
@@ -536,6 +837,74 @@ def cable8p_position(l, at, e):
     with nogil:
         c_cable8p_position(l_, &at_[0], &e_[0], &N__[0], &r__[0])
     return N_out, r_out
+
+
+def cable8p_on_axis(l, x):
+    """shape functions and slopes of a point of the centreline (eq 2).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    Returns
+    N (4,) [1, m]: shape functions at (x, 0, 0)
+    N_x (4,) [1/m, 1]: their derivatives by x
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    N_out = np.empty((4,))
+    cdef double[::1] N__ = N_out.reshape(-1)
+    N_x_out = np.empty((4,))
+    cdef double[::1] N_x__ = N_x_out.reshape(-1)
+    with nogil:
+        c_cable8p_on_axis(l_, x_, &N__[0], &N_x__[0])
+    return N_out, N_x_out
+
+
+def cable8p_follower_force(l, x, e, c):
+    """generalised force of a force that turns with the tangent frame (N' A_t c, A_t of eq 18).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    c (2,) [N]: components along i j of the tangent frame
+    Returns
+    f (4, 2) [N, N m]: generalised force
+    K (8, 8) [N/m, N, N m]: derivatives of f by e, not symmetric
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_follower_force", "e")
+    cdef const double[::1] c_ = _array(c, (2,), "cable8p_follower_force", "c")
+    f_out = np.empty((4, 2))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    K_out = np.empty((8, 8))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable8p_follower_force(l_, x_, &e_[0], &c_[0], &f__[0], &K__[0])
+    return f_out, K_out
+
+
+def cable8p_moment(l, x, e, M):
+    """generalised force of a moment in global axes (work on the rotation of the section).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    M (1,) [N m]: moment about z
+    Returns
+    f (4, 2) [N, N m]: generalised force
+    K (8, 8) [N/m, N, N m]: derivatives of f by e, not symmetric
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_moment", "e")
+    cdef const double[::1] M_ = _array(M, (1,), "cable8p_moment", "M")
+    f_out = np.empty((4, 2))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    K_out = np.empty((8, 8))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_cable8p_moment(l_, x_, &e_[0], &M_[0], &f__[0], &K__[0])
+    return f_out, K_out
 
 
 def beam24_continuum_stiffness(l, S):
@@ -2288,7 +2657,7 @@ def rigid_point(b, u, w):
     p (3,) [m]: position R + A u
     p_q (3, 6) [1, m]: derivatives by translation and rotation about body axes
     v (3,) [m/s]: velocity
-    bias (3,) [m/s^2]: acceleration at zero R'' and zero omega'
+    bias (3,) [m/s^2]: acceleration at zero accelerations of the coordinates
     """
     cdef const double[::1] b_ = _array(b, (7,), "rigid_point", "b")
     cdef const double[::1] u_ = _array(u, (3,), "rigid_point", "u")
@@ -2304,6 +2673,31 @@ def rigid_point(b, u, w):
     with nogil:
         c_rigid_point(&b_[0], &u_[0], &w_[0], &p__[0], &p_q__[0], &v__[0], &bias__[0])
     return p_out, p_q_out, v_out, bias_out
+
+
+def rigid_point_force(b, u, f):
+    """position and Jacobian of a point, derivative of the force p_q' f (paper eq 12 (q_r); Haug 1989, ch. 9).
+
+    b (7,) [m, 1]: position of the mass centre, unit quaternion w x y z
+    u (3,) [m]: point in body axes from the mass centre
+    f (3,) [N]: force on the point, held fixed
+    Returns
+    p (3,) [m]: position R + A u
+    p_q (3, 6) [1, m]: derivatives by translation and rotation about body axes
+    K (6, 6) [N/m, N, N m]: derivatives of p_q' f by translation and rotation
+    """
+    cdef const double[::1] b_ = _array(b, (7,), "rigid_point_force", "b")
+    cdef const double[::1] u_ = _array(u, (3,), "rigid_point_force", "u")
+    cdef const double[::1] f_ = _array(f, (3,), "rigid_point_force", "f")
+    p_out = np.empty((3,))
+    cdef double[::1] p__ = p_out.reshape(-1)
+    p_q_out = np.empty((3, 6))
+    cdef double[::1] p_q__ = p_q_out.reshape(-1)
+    K_out = np.empty((6, 6))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_rigid_point_force(&b_[0], &u_[0], &f_[0], &p__[0], &p_q__[0], &K__[0])
+    return p_out, p_q_out, K_out
 
 
 def rigid_inertia_force(mass, J, w, a):
@@ -2368,20 +2762,135 @@ def rigid_kinetic_energy(mass, J, w):
     return T_out
 
 
+def planar_rigid_point(b, u, w):
+    """position, Jacobian, velocity and acceleration bias of a point (paper eq 12 (q_r) in the plane).
+
+    b (4,) [m, 1]: position of the mass centre, cosine and sine of the angle
+    u (2,) [m]: point in body axes from the mass centre
+    w (3,) [m/s, rad/s]: velocity of the mass centre, angular velocity
+    Returns
+    p (2,) [m]: position R + A u
+    p_q (2, 3) [1, m]: derivatives by translation and rotation about body axes
+    v (2,) [m/s]: velocity
+    bias (2,) [m/s^2]: acceleration at zero accelerations of the coordinates
+    """
+    cdef const double[::1] b_ = _array(b, (4,), "planar_rigid_point", "b")
+    cdef const double[::1] u_ = _array(u, (2,), "planar_rigid_point", "u")
+    cdef const double[::1] w_ = _array(w, (3,), "planar_rigid_point", "w")
+    p_out = np.empty((2,))
+    cdef double[::1] p__ = p_out.reshape(-1)
+    p_q_out = np.empty((2, 3))
+    cdef double[::1] p_q__ = p_q_out.reshape(-1)
+    v_out = np.empty((2,))
+    cdef double[::1] v__ = v_out.reshape(-1)
+    bias_out = np.empty((2,))
+    cdef double[::1] bias__ = bias_out.reshape(-1)
+    with nogil:
+        c_planar_rigid_point(&b_[0], &u_[0], &w_[0], &p__[0], &p_q__[0], &v__[0], &bias__[0])
+    return p_out, p_q_out, v_out, bias_out
+
+
+def planar_rigid_point_force(b, u, f):
+    """position and Jacobian of a point, derivative of the force p_q' f (paper eq 12 (q_r) in the plane).
+
+    b (4,) [m, 1]: position of the mass centre, cosine and sine of the angle
+    u (2,) [m]: point in body axes from the mass centre
+    f (2,) [N]: force on the point, held fixed
+    Returns
+    p (2,) [m]: position R + A u
+    p_q (2, 3) [1, m]: derivatives by translation and rotation about body axes
+    K (3, 3) [N/m, N, N m]: derivatives of p_q' f by translation and rotation
+    """
+    cdef const double[::1] b_ = _array(b, (4,), "planar_rigid_point_force", "b")
+    cdef const double[::1] u_ = _array(u, (2,), "planar_rigid_point_force", "u")
+    cdef const double[::1] f_ = _array(f, (2,), "planar_rigid_point_force", "f")
+    p_out = np.empty((2,))
+    cdef double[::1] p__ = p_out.reshape(-1)
+    p_q_out = np.empty((2, 3))
+    cdef double[::1] p_q__ = p_q_out.reshape(-1)
+    K_out = np.empty((3, 3))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_planar_rigid_point_force(&b_[0], &u_[0], &f_[0], &p__[0], &p_q__[0], &K__[0])
+    return p_out, p_q_out, K_out
+
+
+def planar_rigid_inertia_force(mass, J, w, a):
+    """m R'' and J omega' + omega x J omega (M q'' of eq 12).
+
+    mass () [kg]: mass
+    J (3, 3) [kg m^2]: inertia about the mass centre in body axes, symmetric
+    w (3,) [m/s, rad/s]: velocity of the mass centre, angular velocity
+    a (3,) [m/s^2, rad/s^2]: accelerations R'', omega'
+    Returns
+    f (3,) [N, N m]: inertia force
+    """
+    cdef double mass_ = mass
+    cdef const double[::1] J_ = _array(J, (3, 3), "planar_rigid_inertia_force", "J")
+    cdef const double[::1] w_ = _array(w, (3,), "planar_rigid_inertia_force", "w")
+    cdef const double[::1] a_ = _array(a, (3,), "planar_rigid_inertia_force", "a")
+    f_out = np.empty((3,))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_planar_rigid_inertia_force(mass_, &J_[0], &w_[0], &a_[0], &f__[0])
+    return f_out
+
+
+def planar_rigid_inertia_tangent(mass, J, w):
+    """mass matrix and derivative of the inertia force by velocity (derivative of M q'').
+
+    mass () [kg]: mass
+    J (3, 3) [kg m^2]: inertia about the mass centre in body axes, symmetric
+    w (3,) [m/s, rad/s]: velocity of the mass centre, angular velocity
+    Returns
+    M (3, 3) [kg, kg m^2]: mass matrix
+    D (3, 3) [kg m/s]: derivative of the inertia force by w
+    """
+    cdef double mass_ = mass
+    cdef const double[::1] J_ = _array(J, (3, 3), "planar_rigid_inertia_tangent", "J")
+    cdef const double[::1] w_ = _array(w, (3,), "planar_rigid_inertia_tangent", "w")
+    M_out = np.empty((3, 3))
+    cdef double[::1] M__ = M_out.reshape(-1)
+    D_out = np.empty((3, 3))
+    cdef double[::1] D__ = D_out.reshape(-1)
+    with nogil:
+        c_planar_rigid_inertia_tangent(mass_, &J_[0], &w_[0], &M__[0], &D__[0])
+    return M_out, D_out
+
+
+def planar_rigid_kinetic_energy(mass, J, w):
+    """kinetic energy (eq 3 for a rigid body).
+
+    mass () [kg]: mass
+    J (3, 3) [kg m^2]: inertia about the mass centre in body axes, symmetric
+    w (3,) [m/s, rad/s]: velocity of the mass centre, angular velocity
+    Returns
+    T (1,) [J]: kinetic energy
+    """
+    cdef double mass_ = mass
+    cdef const double[::1] J_ = _array(J, (3, 3), "planar_rigid_kinetic_energy", "J")
+    cdef const double[::1] w_ = _array(w, (3,), "planar_rigid_kinetic_energy", "w")
+    T_out = np.empty((1,))
+    cdef double[::1] T__ = T_out.reshape(-1)
+    with nogil:
+        c_planar_rigid_kinetic_energy(mass_, &J_[0], &w_[0], &T__[0])
+    return T_out
+
+
 def slide_beam24_rigid_constraint(l, x, e, b, u, director):
     """C, C_s and the Newton step for s (eq 19-22).
 
-    l () [m]: length of the element that holds s
-    x () [m]: arc-length s from the element's first node
-    e (8, 3) [m, 1]: nodal vectors of that element
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (8, 3) [m, 1]: nodal vectors (eq 1)
     b (7,) [m, 1]: position of the mass centre, unit quaternion w x y z
     u (3,) [m]: point in body axes from the mass centre
-    director (3,) [1]: a direction off the tangent; used where an element has none
+    director (3,) [1]: a direction off the tangent; used in space, where an element has none
     Returns
-    C (3,) [m]: constraint in the tangent frame: C_l, C_m1, C_m2
+    C (3,) [m]: constraint in the tangent frame: C_l, then C_m across the cable
     C_s (3,) [1]: derivative of C by s
     s_step (1,) [m]: Newton step of C_l(s) = 0
-    A_t (3, 3) [1]: tangent frame, columns i j k (eq 18)
+    A_t (3, 3) [1]: tangent frame, columns i j (k) (eq 18)
     """
     cdef double l_ = l
     cdef double x_ = x
@@ -2405,22 +2914,22 @@ def slide_beam24_rigid_constraint(l, x, e, b, u, director):
 def slide_beam24_rigid_terms(l, x, e, b, u, v, w, director):
     """terms of the equations of motion with the slide (eq 20-37).
 
-    l () [m]: length of the element that holds s
-    x () [m]: arc-length s from the element's first node
-    e (8, 3) [m, 1]: nodal vectors of that element
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (8, 3) [m, 1]: nodal vectors (eq 1)
     b (7,) [m, 1]: position of the mass centre, unit quaternion w x y z
     u (3,) [m]: point in body axes from the mass centre
     v (8, 3) [m/s, 1/s]: rates of the nodal vectors
     w (6,) [m/s, rad/s]: velocity of the mass centre, body-axis angular velocity
-    director (3,) [1]: a direction off the tangent; used where an element has none
+    director (3,) [1]: a direction off the tangent; used in space, where an element has none
     Returns
-    C (3,) [m]: constraint in the tangent frame: C_l, C_m1, C_m2
+    C (3,) [m]: constraint in the tangent frame: C_l, then C_m across the cable
     C_q (3, 30) [1, m]: derivatives of C by the nodal vectors, then the rider
     C_s (3,) [1]: derivative of C by s
     G (30,) [1, m]: ds = G dq (eq 24)
     s_rate (1,) [m/s]: rate of s (eq 25)
     Q_d (3,) [m/s^2]: second derivative of C at zero accelerations (eq 33)
-    H (2, 30) [1, m]: Jacobian of the two constraints that stay (eq 31)
+    H (2, 30) [1, m]: Jacobian of the constraints that stay (eq 31)
     W (2,) [m/s^2]: H q'' = W (eq 36-37)
     s_bias (1,) [m/s^2]: s'' - G q'' (eq 34, sign mended)
     """
@@ -2458,9 +2967,9 @@ def slide_beam24_rigid_terms(l, x, e, b, u, v, w, director):
 def slide_beam24_rigid_residual(l, x, e, b, u, f):
     """phi and the gradient of f . phi by (e, rider, s) (eq 19, 28-30).
 
-    l () [m]: length of the element that holds s
-    x () [m]: arc-length s from the element's first node
-    e (8, 3) [m, 1]: nodal vectors of that element
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (8, 3) [m, 1]: nodal vectors (eq 1)
     b (7,) [m, 1]: position of the mass centre, unit quaternion w x y z
     u (3,) [m]: point in body axes from the mass centre
     f (3,) [N]: force of the joint on the rider
@@ -2486,9 +2995,9 @@ def slide_beam24_rigid_residual(l, x, e, b, u, f):
 def slide_beam24_rigid_tangent(l, x, e, b, u, f):
     """derivatives of phi and of the gradient of f . phi (eq 19, 28-30).
 
-    l () [m]: length of the element that holds s
-    x () [m]: arc-length s from the element's first node
-    e (8, 3) [m, 1]: nodal vectors of that element
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (8, 3) [m, 1]: nodal vectors (eq 1)
     b (7,) [m, 1]: position of the mass centre, unit quaternion w x y z
     u (3,) [m]: point in body axes from the mass centre
     f (3,) [N]: force of the joint on the rider
@@ -2514,17 +3023,17 @@ def slide_beam24_rigid_tangent(l, x, e, b, u, f):
 def slide_cable12_rigid_constraint(l, x, e, b, u, director):
     """C, C_s and the Newton step for s (eq 19-22).
 
-    l () [m]: length of the element that holds s
-    x () [m]: arc-length s from the element's first node
-    e (4, 3) [m, 1]: nodal vectors of that element
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
     b (7,) [m, 1]: position of the mass centre, unit quaternion w x y z
     u (3,) [m]: point in body axes from the mass centre
-    director (3,) [1]: a direction off the tangent; used where an element has none
+    director (3,) [1]: a direction off the tangent; used in space, where an element has none
     Returns
-    C (3,) [m]: constraint in the tangent frame: C_l, C_m1, C_m2
+    C (3,) [m]: constraint in the tangent frame: C_l, then C_m across the cable
     C_s (3,) [1]: derivative of C by s
     s_step (1,) [m]: Newton step of C_l(s) = 0
-    A_t (3, 3) [1]: tangent frame, columns i j k (eq 18)
+    A_t (3, 3) [1]: tangent frame, columns i j (k) (eq 18)
     """
     cdef double l_ = l
     cdef double x_ = x
@@ -2548,22 +3057,22 @@ def slide_cable12_rigid_constraint(l, x, e, b, u, director):
 def slide_cable12_rigid_terms(l, x, e, b, u, v, w, director):
     """terms of the equations of motion with the slide (eq 20-37).
 
-    l () [m]: length of the element that holds s
-    x () [m]: arc-length s from the element's first node
-    e (4, 3) [m, 1]: nodal vectors of that element
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
     b (7,) [m, 1]: position of the mass centre, unit quaternion w x y z
     u (3,) [m]: point in body axes from the mass centre
     v (4, 3) [m/s, 1/s]: rates of the nodal vectors
     w (6,) [m/s, rad/s]: velocity of the mass centre, body-axis angular velocity
-    director (3,) [1]: a direction off the tangent; used where an element has none
+    director (3,) [1]: a direction off the tangent; used in space, where an element has none
     Returns
-    C (3,) [m]: constraint in the tangent frame: C_l, C_m1, C_m2
+    C (3,) [m]: constraint in the tangent frame: C_l, then C_m across the cable
     C_q (3, 18) [1, m]: derivatives of C by the nodal vectors, then the rider
     C_s (3,) [1]: derivative of C by s
     G (18,) [1, m]: ds = G dq (eq 24)
     s_rate (1,) [m/s]: rate of s (eq 25)
     Q_d (3,) [m/s^2]: second derivative of C at zero accelerations (eq 33)
-    H (2, 18) [1, m]: Jacobian of the two constraints that stay (eq 31)
+    H (2, 18) [1, m]: Jacobian of the constraints that stay (eq 31)
     W (2,) [m/s^2]: H q'' = W (eq 36-37)
     s_bias (1,) [m/s^2]: s'' - G q'' (eq 34, sign mended)
     """
@@ -2601,9 +3110,9 @@ def slide_cable12_rigid_terms(l, x, e, b, u, v, w, director):
 def slide_cable12_rigid_residual(l, x, e, b, u, f):
     """phi and the gradient of f . phi by (e, rider, s) (eq 19, 28-30).
 
-    l () [m]: length of the element that holds s
-    x () [m]: arc-length s from the element's first node
-    e (4, 3) [m, 1]: nodal vectors of that element
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
     b (7,) [m, 1]: position of the mass centre, unit quaternion w x y z
     u (3,) [m]: point in body axes from the mass centre
     f (3,) [N]: force of the joint on the rider
@@ -2629,9 +3138,9 @@ def slide_cable12_rigid_residual(l, x, e, b, u, f):
 def slide_cable12_rigid_tangent(l, x, e, b, u, f):
     """derivatives of phi and of the gradient of f . phi (eq 19, 28-30).
 
-    l () [m]: length of the element that holds s
-    x () [m]: arc-length s from the element's first node
-    e (4, 3) [m, 1]: nodal vectors of that element
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
     b (7,) [m, 1]: position of the mass centre, unit quaternion w x y z
     u (3,) [m]: point in body axes from the mass centre
     f (3,) [N]: force of the joint on the rider
@@ -2657,17 +3166,17 @@ def slide_cable12_rigid_tangent(l, x, e, b, u, f):
 def slide_cable18_rigid_constraint(l, x, e, b, u, director):
     """C, C_s and the Newton step for s (eq 19-22).
 
-    l () [m]: length of the element that holds s
-    x () [m]: arc-length s from the element's first node
-    e (6, 3) [m, 1]: nodal vectors of that element
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (6, 3) [m, 1]: nodal vectors (eq 1)
     b (7,) [m, 1]: position of the mass centre, unit quaternion w x y z
     u (3,) [m]: point in body axes from the mass centre
-    director (3,) [1]: a direction off the tangent; used where an element has none
+    director (3,) [1]: a direction off the tangent; used in space, where an element has none
     Returns
-    C (3,) [m]: constraint in the tangent frame: C_l, C_m1, C_m2
+    C (3,) [m]: constraint in the tangent frame: C_l, then C_m across the cable
     C_s (3,) [1]: derivative of C by s
     s_step (1,) [m]: Newton step of C_l(s) = 0
-    A_t (3, 3) [1]: tangent frame, columns i j k (eq 18)
+    A_t (3, 3) [1]: tangent frame, columns i j (k) (eq 18)
     """
     cdef double l_ = l
     cdef double x_ = x
@@ -2691,22 +3200,22 @@ def slide_cable18_rigid_constraint(l, x, e, b, u, director):
 def slide_cable18_rigid_terms(l, x, e, b, u, v, w, director):
     """terms of the equations of motion with the slide (eq 20-37).
 
-    l () [m]: length of the element that holds s
-    x () [m]: arc-length s from the element's first node
-    e (6, 3) [m, 1]: nodal vectors of that element
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (6, 3) [m, 1]: nodal vectors (eq 1)
     b (7,) [m, 1]: position of the mass centre, unit quaternion w x y z
     u (3,) [m]: point in body axes from the mass centre
     v (6, 3) [m/s, 1/s]: rates of the nodal vectors
     w (6,) [m/s, rad/s]: velocity of the mass centre, body-axis angular velocity
-    director (3,) [1]: a direction off the tangent; used where an element has none
+    director (3,) [1]: a direction off the tangent; used in space, where an element has none
     Returns
-    C (3,) [m]: constraint in the tangent frame: C_l, C_m1, C_m2
+    C (3,) [m]: constraint in the tangent frame: C_l, then C_m across the cable
     C_q (3, 24) [1, m]: derivatives of C by the nodal vectors, then the rider
     C_s (3,) [1]: derivative of C by s
     G (24,) [1, m]: ds = G dq (eq 24)
     s_rate (1,) [m/s]: rate of s (eq 25)
     Q_d (3,) [m/s^2]: second derivative of C at zero accelerations (eq 33)
-    H (2, 24) [1, m]: Jacobian of the two constraints that stay (eq 31)
+    H (2, 24) [1, m]: Jacobian of the constraints that stay (eq 31)
     W (2,) [m/s^2]: H q'' = W (eq 36-37)
     s_bias (1,) [m/s^2]: s'' - G q'' (eq 34, sign mended)
     """
@@ -2744,9 +3253,9 @@ def slide_cable18_rigid_terms(l, x, e, b, u, v, w, director):
 def slide_cable18_rigid_residual(l, x, e, b, u, f):
     """phi and the gradient of f . phi by (e, rider, s) (eq 19, 28-30).
 
-    l () [m]: length of the element that holds s
-    x () [m]: arc-length s from the element's first node
-    e (6, 3) [m, 1]: nodal vectors of that element
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (6, 3) [m, 1]: nodal vectors (eq 1)
     b (7,) [m, 1]: position of the mass centre, unit quaternion w x y z
     u (3,) [m]: point in body axes from the mass centre
     f (3,) [N]: force of the joint on the rider
@@ -2772,9 +3281,9 @@ def slide_cable18_rigid_residual(l, x, e, b, u, f):
 def slide_cable18_rigid_tangent(l, x, e, b, u, f):
     """derivatives of phi and of the gradient of f . phi (eq 19, 28-30).
 
-    l () [m]: length of the element that holds s
-    x () [m]: arc-length s from the element's first node
-    e (6, 3) [m, 1]: nodal vectors of that element
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (6, 3) [m, 1]: nodal vectors (eq 1)
     b (7,) [m, 1]: position of the mass centre, unit quaternion w x y z
     u (3,) [m]: point in body axes from the mass centre
     f (3,) [N]: force of the joint on the rider
@@ -2794,4 +3303,290 @@ def slide_cable18_rigid_tangent(l, x, e, b, u, f):
     cdef double[::1] K__ = K_out.reshape(-1)
     with nogil:
         c_slide_cable18_rigid_tangent(l_, x_, &e_[0], &b_[0], &u_[0], &f_[0], &J__[0], &K__[0])
+    return J_out, K_out
+
+
+def slide_beam12p_planar_rigid_constraint(l, x, e, b, u, director):
+    """C, C_s and the Newton step for s (eq 19-22).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    b (4,) [m, 1]: position of the mass centre, cosine and sine of the angle
+    u (2,) [m]: point in body axes from the mass centre
+    director (2,) [1]: a direction off the tangent; used in space, where an element has none
+    Returns
+    C (2,) [m]: constraint in the tangent frame: C_l, then C_m across the cable
+    C_s (2,) [1]: derivative of C by s
+    s_step (1,) [m]: Newton step of C_l(s) = 0
+    A_t (2, 2) [1]: tangent frame, columns i j (k) (eq 18)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (6, 2), "slide_beam12p_planar_rigid_constraint", "e")
+    cdef const double[::1] b_ = _array(b, (4,), "slide_beam12p_planar_rigid_constraint", "b")
+    cdef const double[::1] u_ = _array(u, (2,), "slide_beam12p_planar_rigid_constraint", "u")
+    cdef const double[::1] director_ = _array(director, (2,), "slide_beam12p_planar_rigid_constraint", "director")
+    C_out = np.empty((2,))
+    cdef double[::1] C__ = C_out.reshape(-1)
+    C_s_out = np.empty((2,))
+    cdef double[::1] C_s__ = C_s_out.reshape(-1)
+    s_step_out = np.empty((1,))
+    cdef double[::1] s_step__ = s_step_out.reshape(-1)
+    A_t_out = np.empty((2, 2))
+    cdef double[::1] A_t__ = A_t_out.reshape(-1)
+    with nogil:
+        c_slide_beam12p_planar_rigid_constraint(l_, x_, &e_[0], &b_[0], &u_[0], &director_[0], &C__[0], &C_s__[0], &s_step__[0], &A_t__[0])
+    return C_out, C_s_out, s_step_out, A_t_out
+
+
+def slide_beam12p_planar_rigid_terms(l, x, e, b, u, v, w, director):
+    """terms of the equations of motion with the slide (eq 20-37).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    b (4,) [m, 1]: position of the mass centre, cosine and sine of the angle
+    u (2,) [m]: point in body axes from the mass centre
+    v (6, 2) [m/s, 1/s]: rates of the nodal vectors
+    w (3,) [m/s, rad/s]: velocity of the mass centre, angular velocity
+    director (2,) [1]: a direction off the tangent; used in space, where an element has none
+    Returns
+    C (2,) [m]: constraint in the tangent frame: C_l, then C_m across the cable
+    C_q (2, 15) [1, m]: derivatives of C by the nodal vectors, then the rider
+    C_s (2,) [1]: derivative of C by s
+    G (15,) [1, m]: ds = G dq (eq 24)
+    s_rate (1,) [m/s]: rate of s (eq 25)
+    Q_d (2,) [m/s^2]: second derivative of C at zero accelerations (eq 33)
+    H (1, 15) [1, m]: Jacobian of the constraints that stay (eq 31)
+    W (1,) [m/s^2]: H q'' = W (eq 36-37)
+    s_bias (1,) [m/s^2]: s'' - G q'' (eq 34, sign mended)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (6, 2), "slide_beam12p_planar_rigid_terms", "e")
+    cdef const double[::1] b_ = _array(b, (4,), "slide_beam12p_planar_rigid_terms", "b")
+    cdef const double[::1] u_ = _array(u, (2,), "slide_beam12p_planar_rigid_terms", "u")
+    cdef const double[::1] v_ = _array(v, (6, 2), "slide_beam12p_planar_rigid_terms", "v")
+    cdef const double[::1] w_ = _array(w, (3,), "slide_beam12p_planar_rigid_terms", "w")
+    cdef const double[::1] director_ = _array(director, (2,), "slide_beam12p_planar_rigid_terms", "director")
+    C_out = np.empty((2,))
+    cdef double[::1] C__ = C_out.reshape(-1)
+    C_q_out = np.empty((2, 15))
+    cdef double[::1] C_q__ = C_q_out.reshape(-1)
+    C_s_out = np.empty((2,))
+    cdef double[::1] C_s__ = C_s_out.reshape(-1)
+    G_out = np.empty((15,))
+    cdef double[::1] G__ = G_out.reshape(-1)
+    s_rate_out = np.empty((1,))
+    cdef double[::1] s_rate__ = s_rate_out.reshape(-1)
+    Q_d_out = np.empty((2,))
+    cdef double[::1] Q_d__ = Q_d_out.reshape(-1)
+    H_out = np.empty((1, 15))
+    cdef double[::1] H__ = H_out.reshape(-1)
+    W_out = np.empty((1,))
+    cdef double[::1] W__ = W_out.reshape(-1)
+    s_bias_out = np.empty((1,))
+    cdef double[::1] s_bias__ = s_bias_out.reshape(-1)
+    with nogil:
+        c_slide_beam12p_planar_rigid_terms(l_, x_, &e_[0], &b_[0], &u_[0], &v_[0], &w_[0], &director_[0], &C__[0], &C_q__[0], &C_s__[0], &G__[0], &s_rate__[0], &Q_d__[0], &H__[0], &W__[0], &s_bias__[0])
+    return C_out, C_q_out, C_s_out, G_out, s_rate_out, Q_d_out, H_out, W_out, s_bias_out
+
+
+def slide_beam12p_planar_rigid_residual(l, x, e, b, u, f):
+    """phi and the gradient of f . phi by (e, rider, s) (eq 19, 28-30).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    b (4,) [m, 1]: position of the mass centre, cosine and sine of the angle
+    u (2,) [m]: point in body axes from the mass centre
+    f (2,) [N]: force of the joint on the rider
+    Returns
+    phi (2,) [m]: r(s) - p
+    g (16,) [N, N m]: gradient of f . phi
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (6, 2), "slide_beam12p_planar_rigid_residual", "e")
+    cdef const double[::1] b_ = _array(b, (4,), "slide_beam12p_planar_rigid_residual", "b")
+    cdef const double[::1] u_ = _array(u, (2,), "slide_beam12p_planar_rigid_residual", "u")
+    cdef const double[::1] f_ = _array(f, (2,), "slide_beam12p_planar_rigid_residual", "f")
+    phi_out = np.empty((2,))
+    cdef double[::1] phi__ = phi_out.reshape(-1)
+    g_out = np.empty((16,))
+    cdef double[::1] g__ = g_out.reshape(-1)
+    with nogil:
+        c_slide_beam12p_planar_rigid_residual(l_, x_, &e_[0], &b_[0], &u_[0], &f_[0], &phi__[0], &g__[0])
+    return phi_out, g_out
+
+
+def slide_beam12p_planar_rigid_tangent(l, x, e, b, u, f):
+    """derivatives of phi and of the gradient of f . phi (eq 19, 28-30).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    b (4,) [m, 1]: position of the mass centre, cosine and sine of the angle
+    u (2,) [m]: point in body axes from the mass centre
+    f (2,) [N]: force of the joint on the rider
+    Returns
+    J (2, 16) [1, m]: derivatives of phi by (e, rider, s)
+    K (16, 16) [N/m, N, N m]: derivatives of g by (e, rider, s)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (6, 2), "slide_beam12p_planar_rigid_tangent", "e")
+    cdef const double[::1] b_ = _array(b, (4,), "slide_beam12p_planar_rigid_tangent", "b")
+    cdef const double[::1] u_ = _array(u, (2,), "slide_beam12p_planar_rigid_tangent", "u")
+    cdef const double[::1] f_ = _array(f, (2,), "slide_beam12p_planar_rigid_tangent", "f")
+    J_out = np.empty((2, 16))
+    cdef double[::1] J__ = J_out.reshape(-1)
+    K_out = np.empty((16, 16))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_slide_beam12p_planar_rigid_tangent(l_, x_, &e_[0], &b_[0], &u_[0], &f_[0], &J__[0], &K__[0])
+    return J_out, K_out
+
+
+def slide_cable8p_planar_rigid_constraint(l, x, e, b, u, director):
+    """C, C_s and the Newton step for s (eq 19-22).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    b (4,) [m, 1]: position of the mass centre, cosine and sine of the angle
+    u (2,) [m]: point in body axes from the mass centre
+    director (2,) [1]: a direction off the tangent; used in space, where an element has none
+    Returns
+    C (2,) [m]: constraint in the tangent frame: C_l, then C_m across the cable
+    C_s (2,) [1]: derivative of C by s
+    s_step (1,) [m]: Newton step of C_l(s) = 0
+    A_t (2, 2) [1]: tangent frame, columns i j (k) (eq 18)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 2), "slide_cable8p_planar_rigid_constraint", "e")
+    cdef const double[::1] b_ = _array(b, (4,), "slide_cable8p_planar_rigid_constraint", "b")
+    cdef const double[::1] u_ = _array(u, (2,), "slide_cable8p_planar_rigid_constraint", "u")
+    cdef const double[::1] director_ = _array(director, (2,), "slide_cable8p_planar_rigid_constraint", "director")
+    C_out = np.empty((2,))
+    cdef double[::1] C__ = C_out.reshape(-1)
+    C_s_out = np.empty((2,))
+    cdef double[::1] C_s__ = C_s_out.reshape(-1)
+    s_step_out = np.empty((1,))
+    cdef double[::1] s_step__ = s_step_out.reshape(-1)
+    A_t_out = np.empty((2, 2))
+    cdef double[::1] A_t__ = A_t_out.reshape(-1)
+    with nogil:
+        c_slide_cable8p_planar_rigid_constraint(l_, x_, &e_[0], &b_[0], &u_[0], &director_[0], &C__[0], &C_s__[0], &s_step__[0], &A_t__[0])
+    return C_out, C_s_out, s_step_out, A_t_out
+
+
+def slide_cable8p_planar_rigid_terms(l, x, e, b, u, v, w, director):
+    """terms of the equations of motion with the slide (eq 20-37).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    b (4,) [m, 1]: position of the mass centre, cosine and sine of the angle
+    u (2,) [m]: point in body axes from the mass centre
+    v (4, 2) [m/s, 1/s]: rates of the nodal vectors
+    w (3,) [m/s, rad/s]: velocity of the mass centre, angular velocity
+    director (2,) [1]: a direction off the tangent; used in space, where an element has none
+    Returns
+    C (2,) [m]: constraint in the tangent frame: C_l, then C_m across the cable
+    C_q (2, 11) [1, m]: derivatives of C by the nodal vectors, then the rider
+    C_s (2,) [1]: derivative of C by s
+    G (11,) [1, m]: ds = G dq (eq 24)
+    s_rate (1,) [m/s]: rate of s (eq 25)
+    Q_d (2,) [m/s^2]: second derivative of C at zero accelerations (eq 33)
+    H (1, 11) [1, m]: Jacobian of the constraints that stay (eq 31)
+    W (1,) [m/s^2]: H q'' = W (eq 36-37)
+    s_bias (1,) [m/s^2]: s'' - G q'' (eq 34, sign mended)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 2), "slide_cable8p_planar_rigid_terms", "e")
+    cdef const double[::1] b_ = _array(b, (4,), "slide_cable8p_planar_rigid_terms", "b")
+    cdef const double[::1] u_ = _array(u, (2,), "slide_cable8p_planar_rigid_terms", "u")
+    cdef const double[::1] v_ = _array(v, (4, 2), "slide_cable8p_planar_rigid_terms", "v")
+    cdef const double[::1] w_ = _array(w, (3,), "slide_cable8p_planar_rigid_terms", "w")
+    cdef const double[::1] director_ = _array(director, (2,), "slide_cable8p_planar_rigid_terms", "director")
+    C_out = np.empty((2,))
+    cdef double[::1] C__ = C_out.reshape(-1)
+    C_q_out = np.empty((2, 11))
+    cdef double[::1] C_q__ = C_q_out.reshape(-1)
+    C_s_out = np.empty((2,))
+    cdef double[::1] C_s__ = C_s_out.reshape(-1)
+    G_out = np.empty((11,))
+    cdef double[::1] G__ = G_out.reshape(-1)
+    s_rate_out = np.empty((1,))
+    cdef double[::1] s_rate__ = s_rate_out.reshape(-1)
+    Q_d_out = np.empty((2,))
+    cdef double[::1] Q_d__ = Q_d_out.reshape(-1)
+    H_out = np.empty((1, 11))
+    cdef double[::1] H__ = H_out.reshape(-1)
+    W_out = np.empty((1,))
+    cdef double[::1] W__ = W_out.reshape(-1)
+    s_bias_out = np.empty((1,))
+    cdef double[::1] s_bias__ = s_bias_out.reshape(-1)
+    with nogil:
+        c_slide_cable8p_planar_rigid_terms(l_, x_, &e_[0], &b_[0], &u_[0], &v_[0], &w_[0], &director_[0], &C__[0], &C_q__[0], &C_s__[0], &G__[0], &s_rate__[0], &Q_d__[0], &H__[0], &W__[0], &s_bias__[0])
+    return C_out, C_q_out, C_s_out, G_out, s_rate_out, Q_d_out, H_out, W_out, s_bias_out
+
+
+def slide_cable8p_planar_rigid_residual(l, x, e, b, u, f):
+    """phi and the gradient of f . phi by (e, rider, s) (eq 19, 28-30).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    b (4,) [m, 1]: position of the mass centre, cosine and sine of the angle
+    u (2,) [m]: point in body axes from the mass centre
+    f (2,) [N]: force of the joint on the rider
+    Returns
+    phi (2,) [m]: r(s) - p
+    g (12,) [N, N m]: gradient of f . phi
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 2), "slide_cable8p_planar_rigid_residual", "e")
+    cdef const double[::1] b_ = _array(b, (4,), "slide_cable8p_planar_rigid_residual", "b")
+    cdef const double[::1] u_ = _array(u, (2,), "slide_cable8p_planar_rigid_residual", "u")
+    cdef const double[::1] f_ = _array(f, (2,), "slide_cable8p_planar_rigid_residual", "f")
+    phi_out = np.empty((2,))
+    cdef double[::1] phi__ = phi_out.reshape(-1)
+    g_out = np.empty((12,))
+    cdef double[::1] g__ = g_out.reshape(-1)
+    with nogil:
+        c_slide_cable8p_planar_rigid_residual(l_, x_, &e_[0], &b_[0], &u_[0], &f_[0], &phi__[0], &g__[0])
+    return phi_out, g_out
+
+
+def slide_cable8p_planar_rigid_tangent(l, x, e, b, u, f):
+    """derivatives of phi and of the gradient of f . phi (eq 19, 28-30).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from the element's first node
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    b (4,) [m, 1]: position of the mass centre, cosine and sine of the angle
+    u (2,) [m]: point in body axes from the mass centre
+    f (2,) [N]: force of the joint on the rider
+    Returns
+    J (2, 12) [1, m]: derivatives of phi by (e, rider, s)
+    K (12, 12) [N/m, N, N m]: derivatives of g by (e, rider, s)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 2), "slide_cable8p_planar_rigid_tangent", "e")
+    cdef const double[::1] b_ = _array(b, (4,), "slide_cable8p_planar_rigid_tangent", "b")
+    cdef const double[::1] u_ = _array(u, (2,), "slide_cable8p_planar_rigid_tangent", "u")
+    cdef const double[::1] f_ = _array(f, (2,), "slide_cable8p_planar_rigid_tangent", "f")
+    J_out = np.empty((2, 12))
+    cdef double[::1] J__ = J_out.reshape(-1)
+    K_out = np.empty((12, 12))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_slide_cable8p_planar_rigid_tangent(l_, x_, &e_[0], &b_[0], &u_[0], &f_[0], &J__[0], &K__[0])
     return J_out, K_out

@@ -9,7 +9,10 @@ static const fu_element elements[] = {
      beam24_mass,
      beam24_gravity,
      beam24_inertia_force,
-     beam24_position
+     beam24_position,
+     beam24_on_axis,
+     beam24_follower_force,
+     beam24_moment
     },
     {"cable12",
      2,
@@ -18,7 +21,10 @@ static const fu_element elements[] = {
      cable12_mass,
      cable12_gravity,
      cable12_inertia_force,
-     cable12_position
+     cable12_position,
+     cable12_on_axis,
+     cable12_follower_force,
+     cable12_moment
     },
     {"cable18",
      2,
@@ -27,7 +33,10 @@ static const fu_element elements[] = {
      cable18_mass,
      cable18_gravity,
      cable18_inertia_force,
-     cable18_position
+     cable18_position,
+     cable18_on_axis,
+     cable18_follower_force,
+     cable18_moment
     },
     {"beam12p",
      2,
@@ -36,7 +45,10 @@ static const fu_element elements[] = {
      beam12p_mass,
      beam12p_gravity,
      beam12p_inertia_force,
-     beam12p_position
+     beam12p_position,
+     beam12p_on_axis,
+     beam12p_follower_force,
+     beam12p_moment
     },
     {"cable8p",
      2,
@@ -45,13 +57,15 @@ static const fu_element elements[] = {
      cable8p_mass,
      cable8p_gravity,
      cable8p_inertia_force,
-     cable8p_position
+     cable8p_position,
+     cable8p_on_axis,
+     cable8p_follower_force,
+     cable8p_moment
     }
 };
 
 static const fu_law laws[] = {
     {"beam24_continuum",
-     beam24_continuum_stiffness,
      beam24_continuum_energy,
      beam24_continuum_elastic_force,
      beam24_continuum_elastic_tangent,
@@ -60,7 +74,6 @@ static const fu_law laws[] = {
      beam24_continuum_dissipation
     },
     {"cable12_green_exact",
-     cable12_green_exact_stiffness,
      cable12_green_exact_energy,
      cable12_green_exact_elastic_force,
      cable12_green_exact_elastic_tangent,
@@ -69,7 +82,6 @@ static const fu_law laws[] = {
      cable12_green_exact_dissipation
     },
     {"cable12_green_linear",
-     cable12_green_linear_stiffness,
      cable12_green_linear_energy,
      cable12_green_linear_elastic_force,
      cable12_green_linear_elastic_tangent,
@@ -78,7 +90,6 @@ static const fu_law laws[] = {
      cable12_green_linear_dissipation
     },
     {"cable12_engineering_exact",
-     cable12_engineering_exact_stiffness,
      cable12_engineering_exact_energy,
      cable12_engineering_exact_elastic_force,
      cable12_engineering_exact_elastic_tangent,
@@ -87,7 +98,6 @@ static const fu_law laws[] = {
      cable12_engineering_exact_dissipation
     },
     {"cable12_engineering_linear",
-     cable12_engineering_linear_stiffness,
      cable12_engineering_linear_energy,
      cable12_engineering_linear_elastic_force,
      cable12_engineering_linear_elastic_tangent,
@@ -96,7 +106,6 @@ static const fu_law laws[] = {
      cable12_engineering_linear_dissipation
     },
     {"cable18_green_exact",
-     cable18_green_exact_stiffness,
      cable18_green_exact_energy,
      cable18_green_exact_elastic_force,
      cable18_green_exact_elastic_tangent,
@@ -105,7 +114,6 @@ static const fu_law laws[] = {
      cable18_green_exact_dissipation
     },
     {"cable18_engineering_exact",
-     cable18_engineering_exact_stiffness,
      cable18_engineering_exact_energy,
      cable18_engineering_exact_elastic_force,
      cable18_engineering_exact_elastic_tangent,
@@ -114,7 +122,6 @@ static const fu_law laws[] = {
      cable18_engineering_exact_dissipation
     },
     {"beam12p_continuum",
-     beam12p_continuum_stiffness,
      beam12p_continuum_energy,
      beam12p_continuum_elastic_force,
      beam12p_continuum_elastic_tangent,
@@ -123,7 +130,6 @@ static const fu_law laws[] = {
      beam12p_continuum_dissipation
     },
     {"cable8p_green_exact",
-     cable8p_green_exact_stiffness,
      cable8p_green_exact_energy,
      cable8p_green_exact_elastic_force,
      cable8p_green_exact_elastic_tangent,
@@ -132,7 +138,6 @@ static const fu_law laws[] = {
      cable8p_green_exact_dissipation
     },
     {"cable8p_green_linear",
-     cable8p_green_linear_stiffness,
      cable8p_green_linear_energy,
      cable8p_green_linear_elastic_force,
      cable8p_green_linear_elastic_tangent,
@@ -141,7 +146,6 @@ static const fu_law laws[] = {
      cable8p_green_linear_dissipation
     },
     {"cable8p_engineering_exact",
-     cable8p_engineering_exact_stiffness,
      cable8p_engineering_exact_energy,
      cable8p_engineering_exact_elastic_force,
      cable8p_engineering_exact_elastic_tangent,
@@ -150,7 +154,6 @@ static const fu_law laws[] = {
      cable8p_engineering_exact_dissipation
     },
     {"cable8p_engineering_linear",
-     cable8p_engineering_linear_stiffness,
      cable8p_engineering_linear_energy,
      cable8p_engineering_linear_elastic_force,
      cable8p_engineering_linear_elastic_tangent,
@@ -160,9 +163,33 @@ static const fu_law laws[] = {
     }
 };
 
+static const fu_body bodys[] = {
+    {"rigid",
+     3,
+     7,
+     6,
+     rigid_point,
+     rigid_point_force,
+     rigid_inertia_force,
+     rigid_inertia_tangent,
+     rigid_kinetic_energy
+    },
+    {"planar_rigid",
+     2,
+     4,
+     3,
+     planar_rigid_point,
+     planar_rigid_point_force,
+     planar_rigid_inertia_force,
+     planar_rigid_inertia_tangent,
+     planar_rigid_kinetic_energy
+    }
+};
+
 static const fu_slide slides[] = {
     {"slide_beam24_rigid",
      30,
+     3,
      slide_beam24_rigid_constraint,
      slide_beam24_rigid_terms,
      slide_beam24_rigid_residual,
@@ -170,6 +197,7 @@ static const fu_slide slides[] = {
     },
     {"slide_cable12_rigid",
      18,
+     3,
      slide_cable12_rigid_constraint,
      slide_cable12_rigid_terms,
      slide_cable12_rigid_residual,
@@ -177,15 +205,33 @@ static const fu_slide slides[] = {
     },
     {"slide_cable18_rigid",
      24,
+     3,
      slide_cable18_rigid_constraint,
      slide_cable18_rigid_terms,
      slide_cable18_rigid_residual,
      slide_cable18_rigid_tangent
+    },
+    {"slide_beam12p_planar_rigid",
+     15,
+     2,
+     slide_beam12p_planar_rigid_constraint,
+     slide_beam12p_planar_rigid_terms,
+     slide_beam12p_planar_rigid_residual,
+     slide_beam12p_planar_rigid_tangent
+    },
+    {"slide_cable8p_planar_rigid",
+     11,
+     2,
+     slide_cable8p_planar_rigid_constraint,
+     slide_cable8p_planar_rigid_terms,
+     slide_cable8p_planar_rigid_residual,
+     slide_cable8p_planar_rigid_tangent
     }
 };
 
 const fu_tables fu_all = {
     5, elements,
     12, laws,
-    3, slides
+    2, bodys,
+    5, slides
 };

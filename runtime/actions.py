@@ -147,7 +147,7 @@ class Actions:
         self.dead.append(DeadLoad(number, list(model.first + used), list(total[used])))
 
     def _turning(self, kind: int, number: int, cable: str, points, value: np.ndarray) -> None:
-        c = np.array([0.0, value[2], 0.0]) if kind == CABLE_MOMENT and self.scene.dim == 2 else value
+        c = np.array([value[2], 0.0, 0.0]) if kind == CABLE_MOMENT and self.scene.dim == 2 else value
         self.turning += [LoadModel(kind, number, self.cable_index[cable], element, x, (0.0, 0.0, 0.0),
                                    tuple(weight * c)) for element, x, weight in points]
 
