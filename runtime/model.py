@@ -15,6 +15,7 @@ from funicular.errors import FunicularWarning, SceneError
 from funicular.parts import ELEMENTS, Cable
 from funicular.scene import Scene
 from funicular.settings import RunSettings
+from funicular.stiffness import section_stiffness
 
 DIM = 3
 MOST_OUTPUT = 4e9  # bytes
@@ -185,8 +186,7 @@ def _cable(cable: Cable, gravity: np.ndarray, first: int) -> CableModel:
     return CableModel(
         cable.name, element, law, cable.elements, first, length, cable.material.damping_time,
         m=getattr(kernels, f"{element}_mass")(length, density, section),
-        A=(stiffness(length, section, cable.material.elasticity()) if law == "continuum"
-           else stiffness(cable.material.youngs_modulus, section)),
+        A=stiffness(length, section_stiffness(law, cable.section, cable.material)),
         gravity=getattr(kernels, f"{element}_gravity")(length, density, section, gravity),
         shape=(cable.elements + 1, len(ELEMENTS[element]), DIM))
 
