@@ -92,7 +92,7 @@ def test_a_file_is_named_by_its_path(tmp_path):
         ("gravity = [0, nan, 0]", "x.toml: scene: gravity must be finite, got (0, nan, 0) m/s²"),
         ("[cable]", "x.toml: [cable]: must be an array of tables; write [[cable]], in two brackets"),
         ("[[cable]]", "x.toml: [[cable]] 1: name is missing"),
-        ('[[cable]]\nname = "wire"', 'x.toml: cable "wire": start is missing'),
+        ('[[cable]]\nname = "wire"', 'x.toml: cable "wire": elements is missing'),
         (CABLE + "elemnts = 3", 'x.toml: cable "wire": "elemnts" is not known here; did you mean "elements"?'),
         (
             CABLE.replace("width =", "widht ="),

@@ -1,0 +1,330 @@
+"""Cables: how they are drawn, their stress-free shape, and which elements and elastic laws suit which sections."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar, NamedTuple
+
+import numpy as np
+from funicular import curves
+from funicular.materials import Material
+from funicular.sections import AnySection, General
+from funicular.validation import Count, Name, Part, Vector, one_of, positive, show, xyz
+from pydantic import PlainValidator, model_validator
+
+EXACT = 1e-9
+"""Lengths that differ by this part of the cable's length are taken as equal."""
+
+FOLLOWS = 0.5
+"""An element's slope along the curve that it stands for must be this part of the curve's everywhere."""
+
+
+class ElementFacts(NamedTuple):
+    """What a scene must know of an element: nodal vectors in the order of its coordinates, dimension, laws."""
+
+    vectors: tuple[str, ...]
+    dim: int
+    laws: tuple[str, ...]
+
+    @property
+    def is_beam(self) -> bool:
+        """Whether its section has axes, hence shear (and in space torsion)."""
+        return "r_y" in self.vectors
+
+
+_BEAM = ("continuum", "continuum_curved", "structural")
+_CABLE = ("green_exact", "green_linear", "engineering_exact", "engineering_linear")
+
+FACTS = {
+    "beam24": ElementFacts(("r", "r_x", "r_y", "r_z"), 3, _BEAM),
+    "cable12": ElementFacts(("r", "r_x"), 3, (*_CABLE, "green_exact_curved", "engineering_exact_curved")),
+    "cable18": ElementFacts(("r", "r_x", "r_xx"), 3, ("green_exact", "engineering_exact")),
+    "beam12p": ElementFacts(("r", "r_x", "r_y"), 2, _BEAM),
+    "cable8p": ElementFacts(("r", "r_x"), 2, _CABLE),
+}
+
+ELEMENTS = {name: facts.vectors for name, facts in FACTS.items()}
+"""The nodal vectors of each element, in the order of its coordinates."""
+
+KERNEL_LAWS = {"poisson_split": "continuum"}
+"""Laws that run on the kernels of another one, with other constants."""
+
+
+def possible_laws(element: str) -> list[str]:
+    """The laws that a cable of these elements can be given."""
+    laws = [law for law in FACTS[element].laws if not law.endswith("_curved")]
+    return laws + [law for law, kernels in KERNEL_LAWS.items() if kernels in laws]
+
+
+def _points(value: Any) -> tuple[tuple[float, ...], ...]:
+    return curves.points(value)
+
+
+class Cable(Part):
+    """A cable of equal elements, drawn straight, through points or along a curve.
+
+    Drawn, which is how a run starts: from ``start`` to ``end``; or smoothly through ``points`` (x, y, z); or along
+    ``curve``, a function of u from 0 to 1 that gives x, y, z (kept as points; in Python only). All in m.
+    Undeformed: ``rest`` "drawn", the drawn shape, or "straight"; ``rest_length`` in m, the length as drawn if not
+    given: a shorter one makes the drawn cable taut, a longer one slack (or compressed, where it is straight).
+    All arc-lengths s are of the undeformed cable.
+
+    ``up`` is the direction of the section's height at the start; only its part across the axis counts, and from there
+    on the section turns with the curve, about its tangent nowhere. Planar elements lie in the plane z = 0, with the
+    height in it. ``law``: for beams "continuum" (the default), "poisson_split" or "structural"; for cables
+    ``strain`` ("green" or "engineering") and ``curvature`` ("exact" or "linear"), the measures that their axial and
+    bending stiffness act on, by default green and exact.
+    """
+
+    kind: ClassVar[str] = "cable"
+    name: Name
+    start: Annotated[Vector | None, xyz("m")] = None
+    end: Annotated[Vector | None, xyz("m")] = None
+    points: Annotated[tuple[tuple[float, ...], ...] | None, PlainValidator(_points)] = None
+    elements: Count
+    element: Annotated[str, one_of(FACTS)] = "beam24"
+    law: str = None
+    strain: Annotated[str | None, one_of(("green", "engineering"), optional=True)] = None
+    curvature: Annotated[str | None, one_of(("exact", "linear"), optional=True)] = None
+    section: AnySection
+    material: Material
+    up: Annotated[Vector, xyz()] = (0.0, 1.0, 0.0)
+    rest: Annotated[str, one_of(("drawn", "straight"))] = "drawn"
+    rest_length: Annotated[float, positive("m")] | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _settled(cls, data: Any) -> Any:
+        """A curve as points, and the law by its name."""
+        if not isinstance(data, dict):
+            return data
+        optional = ("start", "end", "points", "curve", "law", "strain", "curvature", "rest_length")
+        data = {name: value for name, value in data.items() if value is not None or name not in optional}
+        if "curve" in data:
+            if "points" in data:
+                raise ValueError("has points and a curve", "give one of them")
+            curve, elements = data.pop("curve"), data.get("elements")
+            if not callable(curve):
+                raise ValueError(f"curve must be a function of u from 0 to 1, got {curve!r}", "or give points")
+            data["points"] = curves.sample(curve, min(elements, 1000) if isinstance(elements, int) else 1)
+        if data.get("element", "beam24") in FACTS:
+            data["law"] = _law(data)
+        return data
+
+    @model_validator(mode="after")
+    def _is_drawn(self) -> Cable:
+        ends = self.start is not None, self.end is not None
+        if self.points is not None and any(ends):
+            raise ValueError("has points and start or end", "give the points alone, the first is the start")
+        if self.points is None and not all(ends):
+            missing = "end is" if ends[0] else "start is" if ends[1] else "start and end, or points, are"
+            raise ValueError(f"{missing} missing")
+        if self.points is None and self.start == self.end:
+            raise ValueError(
+                f"start and end must be different points, got {show(self.start)} and {show(self.end, 'm')}")
+        self._refuse_what_leaves_the_plane()
+        self._refuse_a_lost_up()
+        self._refuse_coarse_elements()
+        return self
+
+    def _refuse_what_leaves_the_plane(self) -> None:
+        if self.dim == 3:
+            return
+        for number, point in enumerate(self._way):
+            if point[2] != 0:
+                where = f"point {number + 1}" if self.points else ("start", "end")[number]
+                raise ValueError(f"{self.element} is planar, but {where} leaves the plane z = 0: {show(point, 'm')}",
+                                 "draw it with z = 0, or take " + _others(3, self.element))
+        if self.up[2] != 0:
+            raise ValueError(f"{self.element} is planar, but up leaves the plane z = 0: {show(self.up)}",
+                             "leave it out: the height lies in the plane")
+
+    def _refuse_a_lost_up(self) -> None:
+        if self.dim == 3:
+            axis = self._shape.tangent(0.0)
+            tilt = np.linalg.norm(np.cross(axis, self.up))
+            if not tilt > 1e-6 * np.linalg.norm(self.up):
+                raise ValueError(
+                    f"up must not be zero or parallel to the axis {show(axis)}, got {show(self.up)}",
+                    "give the direction of the section's height")
+
+    def _refuse_coarse_elements(self) -> None:
+        """An element whose slope loses the direction of the curve could not even be drawn."""
+        if self._shape.straight:
+            return
+        xi, length = np.linspace(0, 1, 17)[:, None, None], self.drawn_length / self.elements
+        nodes = length * np.arange(self.elements + 1)
+        r, t = self._shape.point(nodes), self._shape.tangent(nodes)
+        slope = (6 * xi * (1 - xi) * np.diff(r, axis=0) / length
+                 + (1 - 4 * xi + 3 * xi**2) * t[:-1] + (3 * xi**2 - 2 * xi) * t[1:])
+        onward = np.sum(slope * self._shape.tangent(nodes[:-1] + length * xi[..., 0]), axis=-1).min(axis=0)
+        worst = int(np.argmin(onward))
+        if onward[worst] < FOLLOWS:
+            raise ValueError(f"element {worst + 1} of {self.elements} cannot follow the curve from "
+                             f"{show(r[worst])} to {show(r[worst + 1], 'm')}: it bends too much there",
+                             "take more elements")
+
+    @model_validator(mode="after")
+    def _law_suits(self) -> Cable:
+        if self.is_curved and self.kernel_law not in FACTS[self.element].laws:
+            able = [f"{name} ({', '.join(law for law in possible_laws(name) if _kernel_law(law, True) in facts.laws)})"
+                    for name, facts in FACTS.items() if any(_kernel_law(law, True) in facts.laws
+                                                            for law in possible_laws(name))]
+            raise ValueError(f'{self.element} with law "{self.law}" is stress-free only where it is straight, but '
+                             "it is drawn curved", 'take rest="straight", or one of ' + ", ".join(able))
+        section, facts = self.section, FACTS[self.element]
+        given = {keyword for keyword in ("torsion_constant", "shear_factors")
+                 if getattr(section, f"given_{keyword}") is not None}
+        if not facts.is_beam:
+            self._refuse_unequal_bending()
+            if given:
+                raise ValueError(f"section.{min(given)} is given, but {self.element} has neither shear nor torsion",
+                                 "leave it out, or take " + _others(facts.dim, beam=True))
+        elif self.law == "structural":
+            needed = {"shear_factors"} | ({"torsion_constant"} if facts.dim == 3 else set())
+            if isinstance(section, General) and (missing := needed - given):
+                raise ValueError(f'law "structural" needs section.{min(missing)}, which a general section does not '
+                                 "tell", "give it to the section")
+        elif isinstance(section, General):
+            raise ValueError(f'law "{self.law}" integrates over the shape of the section, which a general section does '
+                             "not tell", 'take law="structural", a rectangle, circle or tube, or '
+                             + _others(facts.dim, beam=False))
+        elif self.law == "continuum" and given:
+            raise ValueError(f'section.{min(given)} is given, but law "continuum" computes its own from the shape',
+                             'leave it out, or take law="poisson_split" or "structural"')
+        return self
+
+    def _refuse_unequal_bending(self) -> None:
+        across = self.section.second_moment_yy, self.section.second_moment_zz
+        if self.dim == 3 and abs(across[0] - across[1]) > EXACT * max(across):
+            raise ValueError(f"{self.element} has one bending stiffness: its section needs equal second moments, "
+                             f"got {show(across, 'm⁴')}", 'take a square, a circle or a tube, or element="beam24"')
+
+    @property
+    def dim(self) -> int:
+        """3, or 2 for planar elements."""
+        return FACTS[self.element].dim
+
+    @property
+    def kernel_law(self) -> str:
+        """Name of the law among the element's kernels; those that end in ``_curved``, and structural, take e0."""
+        return _kernel_law(self.law, self.is_curved)
+
+    @property
+    def _way(self) -> tuple[tuple[float, ...], ...]:
+        return self.points if self.points is not None else (self.start, self.end)
+
+    @property
+    def _shape(self) -> curves.Line | curves.Spline:
+        return curves.shape_through(self._way)
+
+    @property
+    def drawn_length(self) -> float:
+        """Length in m of the cable as it is drawn."""
+        return self._shape.length
+
+    @property
+    def length(self) -> float:
+        """Undeformed length in m."""
+        return self.drawn_length if self.rest_length is None else self.rest_length
+
+    @property
+    def stretch(self) -> float:
+        """Length as drawn over undeformed length."""
+        return 1.0 if self.rest_length is None else self.drawn_length / self.rest_length
+
+    @property
+    def is_curved(self) -> bool:
+        """Whether the undeformed shape is."""
+        return self.rest == "drawn" and not self._shape.straight
+
+    @property
+    def node_s(self) -> np.ndarray:
+        """(nodes,): arc-length of the nodes in m."""
+        return self.length * np.arange(self.elements + 1) / self.elements
+
+    def point(self, s: float) -> np.ndarray:
+        """(3,): the point of the drawn centreline at arc-length ``s``, in m."""
+        return self._shape.point(s * self.stretch)
+
+    def axes_at(self, s) -> np.ndarray:
+        """(..., 3, 3): unit vectors along axis, height and width, as rows, at arc-lengths ``s`` as drawn."""
+        s = np.asarray(s, dtype=float)
+        places, which = np.unique(np.append(s.ravel() * self.stretch, [0.0, self.drawn_length]), return_inverse=True)
+        if self.dim == 2:
+            i, k = self._shape.tangent(places), np.array([0.0, 0.0, 1.0])
+            axes = np.stack([i, np.cross(k, i), np.broadcast_to(k, i.shape)], axis=1)
+        else:
+            axes = curves.transported(self._way, self.up, tuple(places.tolist()))
+        return axes[which[: s.size]].reshape(*s.shape, 3, 3)
+
+    @property
+    def axes(self) -> np.ndarray:
+        """(3, 3): the axes at the start, see `axes_at`."""
+        return self.axes_at(0.0)
+
+    @property
+    def nodal_vectors(self) -> np.ndarray:
+        """(nodes, vectors, 3): as drawn; r in m, its gradients by the undeformed cable, r_xx in 1/m."""
+        drawn, stretch = self.node_s * self.stretch, self.stretch
+        return self._vectors(self._shape.point(drawn), self.axes_at(self.node_s), stretch,
+                             stretch**2 * self._shape.curvature(drawn))
+
+    @property
+    def rest_nodal_vectors(self) -> np.ndarray:
+        """(nodes, vectors, 3): those of the stress-free cable, with the drawn one's start and direction there."""
+        start = self._shape.point(0.0)
+        if self.rest == "straight":
+            axes = np.broadcast_to(self.axes, (self.elements + 1, 3, 3))
+            return self._vectors(start + self.node_s[:, None] * axes[:, 0], axes, 1.0, np.zeros((self.elements + 1, 3)))
+        drawn = self.node_s * self.stretch
+        return self._vectors(start + (self._shape.point(drawn) - start) / self.stretch, self.axes_at(self.node_s), 1.0,
+                             self.stretch * self._shape.curvature(drawn))
+
+    def _vectors(self, r: np.ndarray, axes: np.ndarray, stretch: float, r_xx: np.ndarray) -> np.ndarray:
+        known = {"r": r, "r_x": stretch * axes[:, 0], "r_y": axes[:, 1], "r_z": axes[:, 2], "r_xx": r_xx}
+        return np.stack([known[name] for name in FACTS[self.element].vectors], axis=1)
+
+    def nearest_s(self, point: np.ndarray) -> float:
+        """Arc-length of the point of the drawn cable nearest to ``point``, in m."""
+        return self._shape.nearest(point) / self.stretch
+
+    def node_at(self, s: float) -> int | None:
+        """The node at arc-length ``s``, None if there is none."""
+        node = round(s / self.length * self.elements)
+        on_node = 0 <= node <= self.elements and abs(self.node_s[node] - s) <= EXACT * self.length
+        return node if on_node else None
+
+
+def _law(data: dict) -> str:
+    """The law of a cable from what it is given; ValueError if the element has no such law."""
+    element = data.get("element", "beam24")
+    law, strain, curvature = (data.get(name) for name in ("law", "strain", "curvature"))
+    possible = possible_laws(element)
+    if FACTS[element].is_beam:
+        if strain or curvature:
+            raise ValueError(f"strain and curvature are for cable elements, {element} is a beam",
+                             "leave them out, or take " + _others(FACTS[element].dim, beam=False))
+        law = "continuum" if law is None else law
+    elif law is None or strain or curvature:
+        by_measures = f"{strain or 'green'}_{curvature or 'exact'}"
+        if law not in (None, by_measures):
+            raise ValueError(f'law "{law}" and strain and curvature disagree', "give the one or the others")
+        law = by_measures
+    if law not in possible:
+        known = {strain or "green", curvature or "exact"} <= {"green", "engineering", "exact", "linear"}
+        if not known:  # the checks of strain and curvature say it better
+            return law
+        raise ValueError(f'law "{law}" is not possible for {element}', "possible: " + ", ".join(possible))
+    return law
+
+
+def _kernel_law(law: str, curved: bool) -> str:
+    law = KERNEL_LAWS.get(law, law)
+    return f"{law}_curved" if curved and law != "structural" else law
+
+
+def _others(dim: int, but: str = "", *, beam: bool | None = None) -> str:
+    """Elements to take instead, for a remedy."""
+    names = [f'"{name}"' for name, facts in FACTS.items()
+             if facts.dim == dim and name != but and beam in (None, facts.is_beam)]
+    return "element=" + " or ".join(names)
