@@ -17,7 +17,8 @@ from funicular.settings import EquilibriumSettings
 from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
 
-SMALLEST_DAMPING = 1e-4
+FULL_STEPS = 15
+SMALLEST_DAMPING = 1e-3
 SMALLEST_STEP = 1e-5
 """Of the load: where smaller steps do not converge either, the path has ended."""
 MOST_PATH_STEPS = 2000
@@ -80,13 +81,47 @@ class Path:
             self.engine.place(0.0, **self.engine.placed())
 
     def newton(self, fraction: float) -> bool:
-        """Newton at a load fraction, damped so that corrections with the same tangent shrink (Deuflhard 2011, ch. 3)."""
+        """Newton at a load fraction: full steps, then from the same start steps found by a line search."""
+        kept = self.keep()
+        if self._full_steps(fraction):
+            return True
+        self.restore(kept)
+        return self._line_search(fraction)
+
+    def _full_steps(self, fraction: float) -> bool:
+        """Corrections may grow for a while: the second order of a turn stretches what is stiff along its axis, and the next
+        correction takes that back. A line search would make many small steps of it.
+        """
+        least = np.inf
+        for _ in range(FULL_STEPS):
+            change = self._correction(fraction)
+            if change is None:
+                return False
+            size = self.length(change)
+            if not size < min(1e3 * least, 10.0 * self.size):
+                return False
+            least = min(least, size)
+            self.move(change)
+            if size <= self.settings.tolerance * self.size:
+                return True
+        return False
+
+    def _correction(self, fraction: float) -> np.ndarray | None:
+        """Newton's, None where the tangent is singular."""
+        self.iterations += 1
+        try:
+            return self.factor()(-self.off(fraction))
+        except RuntimeError:
+            return None
+
+    def _line_search(self, fraction: float) -> bool:
+        """Newton, damped so that corrections with the same tangent shrink (Deuflhard 2011, ch. 3)."""
         damping, before = 1.0, None
         for _ in range(self.settings.max_iterations):
             self.iterations += 1
             try:
                 solve = self.factor()
-            except RuntimeError:  # an exactly singular tangent
+            except RuntimeError:
                 return False
             change = solve(-self.off(fraction))
             size = self.length(change)
@@ -102,7 +137,6 @@ class Path:
                 bar = solve(-self.off(fraction))
                 ratio = self.length(bar) / size if size else 0.0
                 if size <= self.settings.tolerance * self.size and ratio <= 1.0 and damping == 1.0:
-                    self.move(bar)
                     return True
                 if ratio < 1.0 or size <= ROUNDING * self.size:
                     break
@@ -180,7 +214,7 @@ def _load(path: Path) -> float:
         path.restore(kept)
         if step <= SMALLEST_STEP:
             return 1.0 if path.relax(1.0) else _back(path, kept, reached)
-        step = 0.25 * min(step, target - reached)
+        step = 0.25 * (target - reached)
     return reached
 
 
