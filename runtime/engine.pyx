@@ -595,6 +595,11 @@ cdef class Engine:
                            "output": s.time_output}}
 
     @property
+    def unknowns(self):
+        """Number of unknowns of a Newton system."""
+        return self.run.newton.n + self.run.newton.m
+
+    @property
     def time(self):
         """Time reached, s."""
         return self.run.now.t
