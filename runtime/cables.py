@@ -8,6 +8,7 @@ import numpy as np
 from funicular import curves
 from funicular.materials import Material
 from funicular.sections import AnySection, General
+from funicular.stiffness import KERNEL_LAWS, kernel_law
 from funicular.validation import Count, Name, Part, Vector, one_of, positive, show, xyz
 from pydantic import PlainValidator, model_validator
 
@@ -44,10 +45,6 @@ FACTS = {
 
 ELEMENTS = {name: facts.vectors for name, facts in FACTS.items()}
 """The nodal vectors of each element, in the order of its coordinates."""
-
-KERNEL_LAWS = {"poisson_split": "continuum"}
-"""Laws that run on the kernels of another one, with other constants."""
-
 
 def possible_laws(element: str) -> list[str]:
     """The laws that a cable of these elements can be given."""
@@ -319,7 +316,7 @@ def _law(data: dict) -> str:
 
 
 def _kernel_law(law: str, curved: bool) -> str:
-    law = KERNEL_LAWS.get(law, law)
+    law = kernel_law(law)
     return f"{law}_curved" if curved and law != "structural" else law
 
 

@@ -23,9 +23,13 @@ def section_stiffness(law: str, section: Section, material: Material, dim: int =
     return _LAWS.get(law, _cable)(section, material, dim)
 
 
+KERNEL_LAWS = {"poisson_split": "continuum"}
+"""Laws that run on the kernels of another one: they differ by the stiffness of the section alone."""
+
+
 def kernel_law(law: str) -> str:
-    """The law whose kernels a law runs on: some differ by the stiffness of the section alone."""
-    return "continuum" if law == "poisson_split" else law
+    """The law whose kernels a law runs on."""
+    return KERNEL_LAWS.get(law, law)
 
 
 def _cable(section: Section, material: Material, dim: int) -> np.ndarray:
