@@ -17,6 +17,8 @@ from scipy.sparse.linalg import ArpackNoConvergence, eigsh
 
 DENSE = 600
 """Unknowns up to which all modes are computed at once, by LAPACK."""
+ROUNDING = 1e-14
+"""Of the highest frequency's square: what rounding leaves of that of a free motion."""
 ASYMMETRY = 1e-9
 """Of the stiffness: what rounding leaves; more comes from follower loads and moments."""
 
@@ -64,7 +66,13 @@ def modes(scene: Scene, n: int, about: Equilibrium | None = None) -> Modes:
     squares, vectors = _solve(K, M, constraints, n)
     dofs = np.array([engine.spread(np.append(x, np.zeros(model.n_band + model.n_border_dof + model.n_extra - len(x))))
                      for x in vectors.T])
-    return _named(model, squares, dofs)
+    return _named(model, np.where(np.abs(squares) < ROUNDING * _fastest(K, M), 0.0, squares), dofs)
+
+
+def _fastest(K: csc_array, M: csc_array) -> float:
+    """rad²/s², about the square of the highest frequency."""
+    heavy = M.diagonal() > 0
+    return float(np.max(np.abs(K.diagonal()[heavy]) / M.diagonal()[heavy], initial=0.0))
 
 
 def _condensed(full: csc_array, model) -> tuple[csc_array, csc_array]:

@@ -1,4 +1,4 @@
-"""Equilibrium: a scene's rest under its loads, by damped Newton in load steps or along the equilibrium path.
+"""Equilibrium: a scene's rest under its loads, by Newton and relaxation in load steps, or along the equilibrium path.
 
 R(x) is what forces and constraints leave over. From the drawn state x0 the path R(x) = (1 - p) R(x0) leads from p = 0 to
 equilibrium at p = 1: for a drawn state without stress that is loading in proportion, and any other state will do too.
@@ -17,13 +17,14 @@ from funicular.settings import EquilibriumSettings
 from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
 
-FULL_STEPS = 15
-SMALLEST_DAMPING = 1e-3
-SMALLEST_STEP = 1e-5
+GROWTH = 1e3
+"""Of a correction over the least one before: Newton diverges."""
+SMALLEST_STEP = 1e-3
 """Of the load: where smaller steps do not converge either, the path has ended."""
 MOST_PATH_STEPS = 2000
-ROUNDING = 1e-13
-"""Corrections below this part of the scene's size are what coordinates are rounded to."""
+MOST_RELAXATIONS = 1000
+FREE = 1e-14
+"""Of the fastest vibration's square: a stiffness this small is none."""
 
 
 class Path:
@@ -42,6 +43,11 @@ class Path:
         self.weight = np.zeros(len(self.start))  # forces and arc-lengths do not count in the size of a correction
         self.weight[place[free]] = self.model.weight[free]
         self.size = self._extent()
+        stiffness = self.engine.matrix(0.0, 0.0, 1.0).diagonal()
+        inertia = self.engine.matrix(1.0, 0.0, 0.0).diagonal()
+        heavy = inertia > 0
+        # rad²/s², of the fastest vibration: what is left free (a rider that may turn about its rope) has no stiffness
+        self.fastest = float(np.max(np.abs(stiffness[heavy]) / inertia[heavy], initial=0.0))
         self.iterations = 0
 
     def _extent(self) -> float:
@@ -58,8 +64,8 @@ class Path:
         return self.residual() - (1.0 - fraction) * self.start
 
     def factor(self, inertia: float = 0.0) -> Callable[[np.ndarray], np.ndarray]:
-        """Solver of the tangent, with some mass added where it is asked for."""
-        return _solver(self.engine.matrix(inertia, 0.0, 1.0))
+        """Solver of the tangent, with some mass added."""
+        return _solver(self.engine.matrix(inertia or FREE * self.fastest, 0.0, 1.0))
 
     def length(self, change: np.ndarray) -> float:
         """Size of a correction in m."""
@@ -81,24 +87,20 @@ class Path:
             self.engine.place(0.0, **self.engine.placed())
 
     def newton(self, fraction: float) -> bool:
-        """Newton at a load fraction: full steps, then from the same start steps found by a line search."""
-        kept = self.keep()
-        if self._full_steps(fraction):
-            return True
-        self.restore(kept)
-        return self._line_search(fraction)
+        """Newton at a load fraction, full steps.
 
-    def _full_steps(self, fraction: float) -> bool:
-        """Corrections may grow for a while: the second order of a turn stretches what is stiff along its axis, and the next
-        correction takes that back. A line search would make many small steps of it.
+        Corrections may grow for a while: the second order of a turn stretches what is stiff along its axis, and the next
+        correction takes that back. A line search makes hundreds of small steps of it; `relax` does better.
         """
         least = np.inf
-        for _ in range(FULL_STEPS):
-            change = self._correction(fraction)
-            if change is None:
+        for _ in range(self.settings.max_iterations):
+            self.iterations += 1
+            try:
+                change = self.factor()(-self.off(fraction))
+            except RuntimeError:  # an exactly singular tangent
                 return False
             size = self.length(change)
-            if not size < min(1e3 * least, 10.0 * self.size):
+            if not size < min(GROWTH * least, 10.0 * self.size):
                 return False
             least = min(least, size)
             self.move(change)
@@ -106,59 +108,13 @@ class Path:
                 return True
         return False
 
-    def _correction(self, fraction: float) -> np.ndarray | None:
-        """Newton's, None where the tangent is singular."""
-        self.iterations += 1
-        try:
-            return self.factor()(-self.off(fraction))
-        except RuntimeError:
-            return None
-
-    def _line_search(self, fraction: float) -> bool:
-        """Newton, damped so that corrections with the same tangent shrink (Deuflhard 2011, ch. 3)."""
-        damping, before = 1.0, None
-        for _ in range(self.settings.max_iterations):
-            self.iterations += 1
-            try:
-                solve = self.factor()
-            except RuntimeError:
-                return False
-            change = solve(-self.off(fraction))
-            size = self.length(change)
-            if not size < np.inf:
-                return False
-            if before is not None:
-                old, bar = before
-                gap = self.length(bar - change)
-                damping = min(1.0, self.length(old) * self.length(bar) / (gap * size) * damping if gap * size else 1.0)
-            kept = self.keep()
-            while True:
-                self.move(damping * change)
-                bar = solve(-self.off(fraction))
-                ratio = self.length(bar) / size if size else 0.0
-                if size <= self.settings.tolerance * self.size and ratio <= 1.0 and damping == 1.0:
-                    return True
-                if ratio < 1.0 or size <= ROUNDING * self.size:
-                    break
-                self.restore(kept)
-                gap = self.length(bar - (1.0 - damping) * change)
-                damping = min(0.5 * size * damping**2 / gap if gap else 0.0, 0.5 * damping)
-                if not damping >= SMALLEST_DAMPING:
-                    return False
-            before = change, bar
-        return False
-
     def relax(self, fraction: float) -> bool:
         """Pseudo-transient continuation: implicit Euler without regard to accuracy, its step growing as R falls
-        (Kelley & Keyes 1998). It finds stable equilibria where Newton's tangent is singular: slack cables.
+        (Kelley & Keyes 1998). It finds the stable equilibria that Newton misses: far turns of stiff cables, slack ones.
         """
-        mass, first, kept = None, None, self.keep()
-        for _ in range(20 * self.settings.max_iterations):
+        mass, kept = 1e-3 * self.fastest, self.keep()
+        for _ in range(MOST_RELAXATIONS):
             self.iterations += 1
-            if mass is None:
-                stiffness = abs(self.engine.matrix(0.0, 0.0, 1.0).diagonal())
-                inertia = abs(self.engine.matrix(1.0, 0.0, 0.0).diagonal())
-                mass = float(np.max(stiffness[inertia > 0] / inertia[inertia > 0], initial=0.0)) * 1e-3
             try:
                 change = self.factor(mass)(-self.off(fraction))
             except RuntimeError:
@@ -175,10 +131,9 @@ class Path:
                 self.restore(kept)
                 mass *= 100.0
                 continue
-            first = first or now
             kept = self.keep()
             mass *= 0.5 if size < 0.02 * self.size else 1.0
-            if mass < 1e-6 and size < 1e-3 * self.size:
+            if mass < 1e-10 * self.fastest or size < 1e-5 * self.size:
                 return self.newton(fraction)
         return False
 
@@ -203,23 +158,19 @@ def equilibrium(scene: Scene, settings: EquilibriumSettings) -> Equilibrium:
 
 
 def _load(path: Path) -> float:
-    """Load steps, halved where Newton fails; returns the fraction of the load that was reached."""
+    """Load steps, halved where neither Newton nor relaxation ends; returns the fraction of the load that was reached."""
     reached, step = 0.0, 1.0 / path.settings.load_steps
     while reached < 1.0:
-        kept = path.keep()
-        target = min(1.0, reached + step)
-        if path.newton(target):
-            reached, step = target, 2.0 * step
-            continue
-        path.restore(kept)
-        if step <= SMALLEST_STEP:
-            return 1.0 if path.relax(1.0) else _back(path, kept, reached)
-        step = 0.25 * (target - reached)
-    return reached
-
-
-def _back(path: Path, kept: dict, reached: float) -> float:
-    path.restore(kept)
+        kept, target = path.keep(), min(1.0, reached + step)
+        for solve in (path.newton, path.relax):
+            if solve(target):
+                reached = target
+                break
+            path.restore(kept)
+        else:
+            step = 0.5 * (target - reached)
+            if step < SMALLEST_STEP:
+                break
     return reached
 
 
