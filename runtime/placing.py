@@ -161,7 +161,7 @@ def point_of(scene: Scene, end: End) -> np.ndarray:
 
 def placed_spring(scene: Scene, spring: Spring) -> Spring:
     """The spring with its ends and its length complete."""
-    a, b = (placed_end(scene, getattr(spring, name), spring.where, f"{name} ") for name in ("a", "b"))
+    a, b = (placed_end(scene, getattr(spring, name), spring.where, f"{name}: ") for name in ("a", "b"))
     points = point_of(scene, a), point_of(scene, b)
     distance = float(np.linalg.norm(points[1] - points[0]))
     if not distance > 1e-12 * (1 + np.abs(points).max()):
