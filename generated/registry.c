@@ -57,7 +57,8 @@ static const fu_law laws[] = {
      beam24_continuum_elastic_tangent,
      beam24_continuum_damping_force,
      beam24_continuum_damping_tangent,
-     beam24_continuum_dissipation
+     beam24_continuum_dissipation,
+     beam24_continuum_section_forces
     },
     {"cable12_green_exact",
      cable12_green_exact_stiffness,
@@ -66,7 +67,8 @@ static const fu_law laws[] = {
      cable12_green_exact_elastic_tangent,
      cable12_green_exact_damping_force,
      cable12_green_exact_damping_tangent,
-     cable12_green_exact_dissipation
+     cable12_green_exact_dissipation,
+     cable12_green_exact_section_forces
     },
     {"cable12_green_linear",
      cable12_green_linear_stiffness,
@@ -75,7 +77,8 @@ static const fu_law laws[] = {
      cable12_green_linear_elastic_tangent,
      cable12_green_linear_damping_force,
      cable12_green_linear_damping_tangent,
-     cable12_green_linear_dissipation
+     cable12_green_linear_dissipation,
+     cable12_green_linear_section_forces
     },
     {"cable12_engineering_exact",
      cable12_engineering_exact_stiffness,
@@ -84,7 +87,8 @@ static const fu_law laws[] = {
      cable12_engineering_exact_elastic_tangent,
      cable12_engineering_exact_damping_force,
      cable12_engineering_exact_damping_tangent,
-     cable12_engineering_exact_dissipation
+     cable12_engineering_exact_dissipation,
+     cable12_engineering_exact_section_forces
     },
     {"cable12_engineering_linear",
      cable12_engineering_linear_stiffness,
@@ -93,7 +97,8 @@ static const fu_law laws[] = {
      cable12_engineering_linear_elastic_tangent,
      cable12_engineering_linear_damping_force,
      cable12_engineering_linear_damping_tangent,
-     cable12_engineering_linear_dissipation
+     cable12_engineering_linear_dissipation,
+     cable12_engineering_linear_section_forces
     },
     {"cable18_green_exact",
      cable18_green_exact_stiffness,
@@ -102,7 +107,8 @@ static const fu_law laws[] = {
      cable18_green_exact_elastic_tangent,
      cable18_green_exact_damping_force,
      cable18_green_exact_damping_tangent,
-     cable18_green_exact_dissipation
+     cable18_green_exact_dissipation,
+     cable18_green_exact_section_forces
     },
     {"cable18_engineering_exact",
      cable18_engineering_exact_stiffness,
@@ -111,7 +117,8 @@ static const fu_law laws[] = {
      cable18_engineering_exact_elastic_tangent,
      cable18_engineering_exact_damping_force,
      cable18_engineering_exact_damping_tangent,
-     cable18_engineering_exact_dissipation
+     cable18_engineering_exact_dissipation,
+     cable18_engineering_exact_section_forces
     },
     {"beam12p_continuum",
      beam12p_continuum_stiffness,
@@ -120,7 +127,8 @@ static const fu_law laws[] = {
      beam12p_continuum_elastic_tangent,
      beam12p_continuum_damping_force,
      beam12p_continuum_damping_tangent,
-     beam12p_continuum_dissipation
+     beam12p_continuum_dissipation,
+     beam12p_continuum_section_forces
     },
     {"cable8p_green_exact",
      cable8p_green_exact_stiffness,
@@ -129,7 +137,8 @@ static const fu_law laws[] = {
      cable8p_green_exact_elastic_tangent,
      cable8p_green_exact_damping_force,
      cable8p_green_exact_damping_tangent,
-     cable8p_green_exact_dissipation
+     cable8p_green_exact_dissipation,
+     cable8p_green_exact_section_forces
     },
     {"cable8p_green_linear",
      cable8p_green_linear_stiffness,
@@ -138,7 +147,8 @@ static const fu_law laws[] = {
      cable8p_green_linear_elastic_tangent,
      cable8p_green_linear_damping_force,
      cable8p_green_linear_damping_tangent,
-     cable8p_green_linear_dissipation
+     cable8p_green_linear_dissipation,
+     cable8p_green_linear_section_forces
     },
     {"cable8p_engineering_exact",
      cable8p_engineering_exact_stiffness,
@@ -147,7 +157,8 @@ static const fu_law laws[] = {
      cable8p_engineering_exact_elastic_tangent,
      cable8p_engineering_exact_damping_force,
      cable8p_engineering_exact_damping_tangent,
-     cable8p_engineering_exact_dissipation
+     cable8p_engineering_exact_dissipation,
+     cable8p_engineering_exact_section_forces
     },
     {"cable8p_engineering_linear",
      cable8p_engineering_linear_stiffness,
@@ -156,7 +167,8 @@ static const fu_law laws[] = {
      cable8p_engineering_linear_elastic_tangent,
      cable8p_engineering_linear_damping_force,
      cable8p_engineering_linear_damping_tangent,
-     cable8p_engineering_linear_dissipation
+     cable8p_engineering_linear_dissipation,
+     cable8p_engineering_linear_section_forces
     }
 };
 
