@@ -52,6 +52,7 @@ cdef extern from "kernels.h" nogil:
     void c_beam24_continuum_damping_force "beam24_continuum_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_beam24_continuum_damping_tangent "beam24_continuum_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_beam24_continuum_dissipation "beam24_continuum_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_beam24_continuum_section_forces "beam24_continuum_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
     void c_cable12_green_exact_stiffness "cable12_green_exact_stiffness"(double l, const double *S, double *A)
     void c_cable12_green_exact_energy "cable12_green_exact_energy"(double l, const double *e, const double *A, double *U)
     void c_cable12_green_exact_elastic_force "cable12_green_exact_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -59,6 +60,7 @@ cdef extern from "kernels.h" nogil:
     void c_cable12_green_exact_damping_force "cable12_green_exact_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable12_green_exact_damping_tangent "cable12_green_exact_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable12_green_exact_dissipation "cable12_green_exact_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable12_green_exact_section_forces "cable12_green_exact_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
     void c_cable12_green_linear_stiffness "cable12_green_linear_stiffness"(double l, const double *S, double *A)
     void c_cable12_green_linear_energy "cable12_green_linear_energy"(double l, const double *e, const double *A, double *U)
     void c_cable12_green_linear_elastic_force "cable12_green_linear_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -66,6 +68,7 @@ cdef extern from "kernels.h" nogil:
     void c_cable12_green_linear_damping_force "cable12_green_linear_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable12_green_linear_damping_tangent "cable12_green_linear_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable12_green_linear_dissipation "cable12_green_linear_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable12_green_linear_section_forces "cable12_green_linear_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
     void c_cable12_engineering_exact_stiffness "cable12_engineering_exact_stiffness"(double l, const double *S, double *A)
     void c_cable12_engineering_exact_energy "cable12_engineering_exact_energy"(double l, const double *e, const double *A, double *U)
     void c_cable12_engineering_exact_elastic_force "cable12_engineering_exact_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -73,6 +76,7 @@ cdef extern from "kernels.h" nogil:
     void c_cable12_engineering_exact_damping_force "cable12_engineering_exact_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable12_engineering_exact_damping_tangent "cable12_engineering_exact_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable12_engineering_exact_dissipation "cable12_engineering_exact_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable12_engineering_exact_section_forces "cable12_engineering_exact_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
     void c_cable12_engineering_linear_stiffness "cable12_engineering_linear_stiffness"(double l, const double *S, double *A)
     void c_cable12_engineering_linear_energy "cable12_engineering_linear_energy"(double l, const double *e, const double *A, double *U)
     void c_cable12_engineering_linear_elastic_force "cable12_engineering_linear_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -80,6 +84,7 @@ cdef extern from "kernels.h" nogil:
     void c_cable12_engineering_linear_damping_force "cable12_engineering_linear_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable12_engineering_linear_damping_tangent "cable12_engineering_linear_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable12_engineering_linear_dissipation "cable12_engineering_linear_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable12_engineering_linear_section_forces "cable12_engineering_linear_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
     void c_cable18_green_exact_stiffness "cable18_green_exact_stiffness"(double l, const double *S, double *A)
     void c_cable18_green_exact_energy "cable18_green_exact_energy"(double l, const double *e, const double *A, double *U)
     void c_cable18_green_exact_elastic_force "cable18_green_exact_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -87,6 +92,7 @@ cdef extern from "kernels.h" nogil:
     void c_cable18_green_exact_damping_force "cable18_green_exact_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable18_green_exact_damping_tangent "cable18_green_exact_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable18_green_exact_dissipation "cable18_green_exact_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable18_green_exact_section_forces "cable18_green_exact_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
     void c_cable18_engineering_exact_stiffness "cable18_engineering_exact_stiffness"(double l, const double *S, double *A)
     void c_cable18_engineering_exact_energy "cable18_engineering_exact_energy"(double l, const double *e, const double *A, double *U)
     void c_cable18_engineering_exact_elastic_force "cable18_engineering_exact_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -94,6 +100,7 @@ cdef extern from "kernels.h" nogil:
     void c_cable18_engineering_exact_damping_force "cable18_engineering_exact_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable18_engineering_exact_damping_tangent "cable18_engineering_exact_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable18_engineering_exact_dissipation "cable18_engineering_exact_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable18_engineering_exact_section_forces "cable18_engineering_exact_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
     void c_beam12p_continuum_stiffness "beam12p_continuum_stiffness"(double l, const double *S, double *A)
     void c_beam12p_continuum_energy "beam12p_continuum_energy"(double l, const double *e, const double *A, double *U)
     void c_beam12p_continuum_elastic_force "beam12p_continuum_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -101,6 +108,7 @@ cdef extern from "kernels.h" nogil:
     void c_beam12p_continuum_damping_force "beam12p_continuum_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_beam12p_continuum_damping_tangent "beam12p_continuum_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_beam12p_continuum_dissipation "beam12p_continuum_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_beam12p_continuum_section_forces "beam12p_continuum_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
     void c_cable8p_green_exact_stiffness "cable8p_green_exact_stiffness"(double l, const double *S, double *A)
     void c_cable8p_green_exact_energy "cable8p_green_exact_energy"(double l, const double *e, const double *A, double *U)
     void c_cable8p_green_exact_elastic_force "cable8p_green_exact_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -108,6 +116,7 @@ cdef extern from "kernels.h" nogil:
     void c_cable8p_green_exact_damping_force "cable8p_green_exact_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable8p_green_exact_damping_tangent "cable8p_green_exact_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable8p_green_exact_dissipation "cable8p_green_exact_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable8p_green_exact_section_forces "cable8p_green_exact_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
     void c_cable8p_green_linear_stiffness "cable8p_green_linear_stiffness"(double l, const double *S, double *A)
     void c_cable8p_green_linear_energy "cable8p_green_linear_energy"(double l, const double *e, const double *A, double *U)
     void c_cable8p_green_linear_elastic_force "cable8p_green_linear_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -115,6 +124,7 @@ cdef extern from "kernels.h" nogil:
     void c_cable8p_green_linear_damping_force "cable8p_green_linear_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable8p_green_linear_damping_tangent "cable8p_green_linear_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable8p_green_linear_dissipation "cable8p_green_linear_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable8p_green_linear_section_forces "cable8p_green_linear_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
     void c_cable8p_engineering_exact_stiffness "cable8p_engineering_exact_stiffness"(double l, const double *S, double *A)
     void c_cable8p_engineering_exact_energy "cable8p_engineering_exact_energy"(double l, const double *e, const double *A, double *U)
     void c_cable8p_engineering_exact_elastic_force "cable8p_engineering_exact_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -122,6 +132,7 @@ cdef extern from "kernels.h" nogil:
     void c_cable8p_engineering_exact_damping_force "cable8p_engineering_exact_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable8p_engineering_exact_damping_tangent "cable8p_engineering_exact_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable8p_engineering_exact_dissipation "cable8p_engineering_exact_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable8p_engineering_exact_section_forces "cable8p_engineering_exact_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
     void c_cable8p_engineering_linear_stiffness "cable8p_engineering_linear_stiffness"(double l, const double *S, double *A)
     void c_cable8p_engineering_linear_energy "cable8p_engineering_linear_energy"(double l, const double *e, const double *A, double *U)
     void c_cable8p_engineering_linear_elastic_force "cable8p_engineering_linear_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -129,6 +140,7 @@ cdef extern from "kernels.h" nogil:
     void c_cable8p_engineering_linear_damping_force "cable8p_engineering_linear_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable8p_engineering_linear_damping_tangent "cable8p_engineering_linear_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable8p_engineering_linear_dissipation "cable8p_engineering_linear_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable8p_engineering_linear_section_forces "cable8p_engineering_linear_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
     void c_rigid_point "rigid_point"(const double *b, const double *u, const double *w, double *p, double *p_q, double *v, double *bias)
     void c_rigid_point_force "rigid_point_force"(const double *b, const double *u, const double *f, double *p, double *p_q, double *K)
     void c_rigid_inertia_force "rigid_inertia_force"(double mass, const double *J, const double *w, const double *a, double *f)
@@ -1052,6 +1064,36 @@ def beam24_continuum_dissipation(l, e, v, A, tau):
     return P_out
 
 
+def beam24_continuum_section_forces(l, x, e, S):
+    """force and moment resultants of a section (eq 6-8 at a section; eq 5-8).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (8, 3) [m, 1]: nodal vectors (eq 1)
+    S (9, 6) [N, N m^2, N m^2, N m^4, N m^4, N m^4]: section stiffness: integrals over A of D11, D22, D33, D12, D13, D23, G12, G13, G23 (rows; orthotropic, axes x, y, z) times 1, y^2, z^2, y^4, y^2 z^2, z^4 (columns)
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_continuum_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (9, 6), "beam24_continuum_section_forces", "S")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_beam24_continuum_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
+
+
 def cable12_green_exact_stiffness(l, S):
     """constants of the law from the stiffness of the section (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
 
@@ -1195,6 +1237,36 @@ def cable12_green_exact_dissipation(l, e, v, A, tau):
     with nogil:
         c_cable12_green_exact_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
     return P_out
+
+
+def cable12_green_exact_section_forces(l, x, e, S):
+    """force and moment resultants of a section (eq 6-8 at a section; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_green_exact_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (2,), "cable12_green_exact_section_forces", "S")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_cable12_green_exact_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
 
 
 def cable12_green_linear_stiffness(l, S):
@@ -1342,6 +1414,36 @@ def cable12_green_linear_dissipation(l, e, v, A, tau):
     return P_out
 
 
+def cable12_green_linear_section_forces(l, x, e, S):
+    """force and moment resultants of a section (eq 6-8 at a section; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_green_linear_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (2,), "cable12_green_linear_section_forces", "S")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_cable12_green_linear_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
+
+
 def cable12_engineering_exact_stiffness(l, S):
     """constants of the law from the stiffness of the section (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
 
@@ -1485,6 +1587,36 @@ def cable12_engineering_exact_dissipation(l, e, v, A, tau):
     with nogil:
         c_cable12_engineering_exact_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
     return P_out
+
+
+def cable12_engineering_exact_section_forces(l, x, e, S):
+    """force and moment resultants of a section (eq 6-8 at a section; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_engineering_exact_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (2,), "cable12_engineering_exact_section_forces", "S")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_cable12_engineering_exact_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
 
 
 def cable12_engineering_linear_stiffness(l, S):
@@ -1632,6 +1764,36 @@ def cable12_engineering_linear_dissipation(l, e, v, A, tau):
     return P_out
 
 
+def cable12_engineering_linear_section_forces(l, x, e, S):
+    """force and moment resultants of a section (eq 6-8 at a section; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_engineering_linear_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (2,), "cable12_engineering_linear_section_forces", "S")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_cable12_engineering_linear_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
+
+
 def cable18_green_exact_stiffness(l, S):
     """constants of the law from the stiffness of the section (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
 
@@ -1775,6 +1937,36 @@ def cable18_green_exact_dissipation(l, e, v, A, tau):
     with nogil:
         c_cable18_green_exact_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
     return P_out
+
+
+def cable18_green_exact_section_forces(l, x, e, S):
+    """force and moment resultants of a section (eq 6-8 at a section; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (6, 3) [m, 1]: nodal vectors (eq 1)
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (6, 3), "cable18_green_exact_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (2,), "cable18_green_exact_section_forces", "S")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_cable18_green_exact_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
 
 
 def cable18_engineering_exact_stiffness(l, S):
@@ -1922,6 +2114,36 @@ def cable18_engineering_exact_dissipation(l, e, v, A, tau):
     return P_out
 
 
+def cable18_engineering_exact_section_forces(l, x, e, S):
+    """force and moment resultants of a section (eq 6-8 at a section; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (6, 3) [m, 1]: nodal vectors (eq 1)
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (6, 3), "cable18_engineering_exact_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (2,), "cable18_engineering_exact_section_forces", "S")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_cable18_engineering_exact_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
+
+
 def beam12p_continuum_stiffness(l, S):
     """constants of the law from the stiffness of the section (eq 7; eq 5-8).
 
@@ -2065,6 +2287,36 @@ def beam12p_continuum_dissipation(l, e, v, A, tau):
     with nogil:
         c_beam12p_continuum_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
     return P_out
+
+
+def beam12p_continuum_section_forces(l, x, e, S):
+    """force and moment resultants of a section (eq 6-8 at a section; eq 5-8).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    S (4, 6) [N, N m^2, N m^2, N m^4, N m^4, N m^4]: section stiffness: integrals over A of D11, D22, D12, G12 (rows; orthotropic, axes x, y, z) times 1, y^2, z^2, y^4, y^2 z^2, z^4 (columns)
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_continuum_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (4, 6), "beam12p_continuum_section_forces", "S")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_beam12p_continuum_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
 
 
 def cable8p_green_exact_stiffness(l, S):
@@ -2212,6 +2464,36 @@ def cable8p_green_exact_dissipation(l, e, v, A, tau):
     return P_out
 
 
+def cable8p_green_exact_section_forces(l, x, e, S):
+    """force and moment resultants of a section (eq 6-8 at a section; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_green_exact_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (2,), "cable8p_green_exact_section_forces", "S")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_cable8p_green_exact_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
+
+
 def cable8p_green_linear_stiffness(l, S):
     """constants of the law from the stiffness of the section (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
 
@@ -2355,6 +2637,36 @@ def cable8p_green_linear_dissipation(l, e, v, A, tau):
     with nogil:
         c_cable8p_green_linear_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
     return P_out
+
+
+def cable8p_green_linear_section_forces(l, x, e, S):
+    """force and moment resultants of a section (eq 6-8 at a section; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_green_linear_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (2,), "cable8p_green_linear_section_forces", "S")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_cable8p_green_linear_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
 
 
 def cable8p_engineering_exact_stiffness(l, S):
@@ -2502,6 +2814,36 @@ def cable8p_engineering_exact_dissipation(l, e, v, A, tau):
     return P_out
 
 
+def cable8p_engineering_exact_section_forces(l, x, e, S):
+    """force and moment resultants of a section (eq 6-8 at a section; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_engineering_exact_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (2,), "cable8p_engineering_exact_section_forces", "S")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_cable8p_engineering_exact_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
+
+
 def cable8p_engineering_linear_stiffness(l, S):
     """constants of the law from the stiffness of the section (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
 
@@ -2645,6 +2987,36 @@ def cable8p_engineering_linear_dissipation(l, e, v, A, tau):
     with nogil:
         c_cable8p_engineering_linear_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
     return P_out
+
+
+def cable8p_engineering_linear_section_forces(l, x, e, S):
+    """force and moment resultants of a section (eq 6-8 at a section; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_engineering_linear_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (2,), "cable8p_engineering_linear_section_forces", "S")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_cable8p_engineering_linear_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
 
 
 def rigid_point(b, u, w):

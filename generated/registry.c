@@ -71,7 +71,8 @@ static const fu_law laws[] = {
      beam24_continuum_elastic_tangent,
      beam24_continuum_damping_force,
      beam24_continuum_damping_tangent,
-     beam24_continuum_dissipation
+     beam24_continuum_dissipation,
+     beam24_continuum_section_forces
     },
     {"cable12_green_exact",
      cable12_green_exact_energy,
@@ -79,7 +80,8 @@ static const fu_law laws[] = {
      cable12_green_exact_elastic_tangent,
      cable12_green_exact_damping_force,
      cable12_green_exact_damping_tangent,
-     cable12_green_exact_dissipation
+     cable12_green_exact_dissipation,
+     cable12_green_exact_section_forces
     },
     {"cable12_green_linear",
      cable12_green_linear_energy,
@@ -87,7 +89,8 @@ static const fu_law laws[] = {
      cable12_green_linear_elastic_tangent,
      cable12_green_linear_damping_force,
      cable12_green_linear_damping_tangent,
-     cable12_green_linear_dissipation
+     cable12_green_linear_dissipation,
+     cable12_green_linear_section_forces
     },
     {"cable12_engineering_exact",
      cable12_engineering_exact_energy,
@@ -95,7 +98,8 @@ static const fu_law laws[] = {
      cable12_engineering_exact_elastic_tangent,
      cable12_engineering_exact_damping_force,
      cable12_engineering_exact_damping_tangent,
-     cable12_engineering_exact_dissipation
+     cable12_engineering_exact_dissipation,
+     cable12_engineering_exact_section_forces
     },
     {"cable12_engineering_linear",
      cable12_engineering_linear_energy,
@@ -103,7 +107,8 @@ static const fu_law laws[] = {
      cable12_engineering_linear_elastic_tangent,
      cable12_engineering_linear_damping_force,
      cable12_engineering_linear_damping_tangent,
-     cable12_engineering_linear_dissipation
+     cable12_engineering_linear_dissipation,
+     cable12_engineering_linear_section_forces
     },
     {"cable18_green_exact",
      cable18_green_exact_energy,
@@ -111,7 +116,8 @@ static const fu_law laws[] = {
      cable18_green_exact_elastic_tangent,
      cable18_green_exact_damping_force,
      cable18_green_exact_damping_tangent,
-     cable18_green_exact_dissipation
+     cable18_green_exact_dissipation,
+     cable18_green_exact_section_forces
     },
     {"cable18_engineering_exact",
      cable18_engineering_exact_energy,
@@ -119,7 +125,8 @@ static const fu_law laws[] = {
      cable18_engineering_exact_elastic_tangent,
      cable18_engineering_exact_damping_force,
      cable18_engineering_exact_damping_tangent,
-     cable18_engineering_exact_dissipation
+     cable18_engineering_exact_dissipation,
+     cable18_engineering_exact_section_forces
     },
     {"beam12p_continuum",
      beam12p_continuum_energy,
@@ -127,7 +134,8 @@ static const fu_law laws[] = {
      beam12p_continuum_elastic_tangent,
      beam12p_continuum_damping_force,
      beam12p_continuum_damping_tangent,
-     beam12p_continuum_dissipation
+     beam12p_continuum_dissipation,
+     beam12p_continuum_section_forces
     },
     {"cable8p_green_exact",
      cable8p_green_exact_energy,
@@ -135,7 +143,8 @@ static const fu_law laws[] = {
      cable8p_green_exact_elastic_tangent,
      cable8p_green_exact_damping_force,
      cable8p_green_exact_damping_tangent,
-     cable8p_green_exact_dissipation
+     cable8p_green_exact_dissipation,
+     cable8p_green_exact_section_forces
     },
     {"cable8p_green_linear",
      cable8p_green_linear_energy,
@@ -143,7 +152,8 @@ static const fu_law laws[] = {
      cable8p_green_linear_elastic_tangent,
      cable8p_green_linear_damping_force,
      cable8p_green_linear_damping_tangent,
-     cable8p_green_linear_dissipation
+     cable8p_green_linear_dissipation,
+     cable8p_green_linear_section_forces
     },
     {"cable8p_engineering_exact",
      cable8p_engineering_exact_energy,
@@ -151,7 +161,8 @@ static const fu_law laws[] = {
      cable8p_engineering_exact_elastic_tangent,
      cable8p_engineering_exact_damping_force,
      cable8p_engineering_exact_damping_tangent,
-     cable8p_engineering_exact_dissipation
+     cable8p_engineering_exact_dissipation,
+     cable8p_engineering_exact_section_forces
     },
     {"cable8p_engineering_linear",
      cable8p_engineering_linear_energy,
@@ -159,7 +170,8 @@ static const fu_law laws[] = {
      cable8p_engineering_linear_elastic_tangent,
      cable8p_engineering_linear_damping_force,
      cable8p_engineering_linear_damping_tangent,
-     cable8p_engineering_linear_dissipation
+     cable8p_engineering_linear_dissipation,
+     cable8p_engineering_linear_section_forces
     }
 };
 

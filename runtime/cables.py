@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar, NamedTuple
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from funicular import curves
+from funicular.elements import ElementKind, built_in
+from funicular.errors import near
 from funicular.materials import Material
 from funicular.sections import AnySection, General
 from funicular.stiffness import KERNEL_LAWS, kernel_law
@@ -19,37 +21,18 @@ FOLLOWS = 0.5
 """An element's slope along the curve that it stands for must be this part of the curve's everywhere."""
 
 
-class ElementFacts(NamedTuple):
-    """What a scene must know of an element: nodal vectors in the order of its coordinates, dimension, laws."""
-
-    vectors: tuple[str, ...]
-    dim: int
-    laws: tuple[str, ...]
-
-    @property
-    def is_beam(self) -> bool:
-        """Whether its section has axes, hence shear (and in space torsion)."""
-        return "r_y" in self.vectors
-
-
-_BEAM = ("continuum", "continuum_curved", "structural")
-_CABLE = ("green_exact", "green_linear", "engineering_exact", "engineering_linear")
-
-FACTS = {
-    "beam24": ElementFacts(("r", "r_x", "r_y", "r_z"), 3, _BEAM),
-    "cable12": ElementFacts(("r", "r_x"), 3, (*_CABLE, "green_exact_curved", "engineering_exact_curved")),
-    "cable18": ElementFacts(("r", "r_x", "r_xx"), 3, ("green_exact", "engineering_exact")),
-    "beam12p": ElementFacts(("r", "r_x", "r_y"), 2, _BEAM),
-    "cable8p": ElementFacts(("r", "r_x"), 2, _CABLE),
-}
-
-ELEMENTS = {name: facts.vectors for name, facts in FACTS.items()}
-"""The nodal vectors of each element, in the order of its coordinates."""
-
-def possible_laws(element: str) -> list[str]:
-    """The laws that a cable of these elements can be given."""
-    laws = [law for law in FACTS[element].laws if not law.endswith("_curved")]
+def possible_laws(kind: ElementKind) -> list[str]:
+    """The laws that a cable of such elements can be given."""
+    laws = [law for law in kind.laws if not law.endswith("_curved")]
     return laws + [law for law, kernels in KERNEL_LAWS.items() if kernels in laws]
+
+
+def _element(value: Any) -> str:
+    if not isinstance(value, str):
+        raise ValueError(f"must be a name, got {value!r}", "known: " + ", ".join(built_in()))
+    if value not in built_in():
+        raise ValueError(f'"{value}" is not known', near(value, built_in()))
+    return value
 
 
 def _points(value: Any) -> tuple[tuple[float, ...], ...]:
@@ -78,7 +61,7 @@ class Cable(Part):
     end: Annotated[Vector | None, xyz("m")] = None
     points: Annotated[tuple[tuple[float, ...], ...] | None, PlainValidator(_points)] = None
     elements: Count
-    element: Annotated[str, one_of(FACTS)] = "beam24"
+    element: Annotated[str, PlainValidator(_element)] = "beam24"
     law: str = None
     strain: Annotated[str | None, one_of(("green", "engineering"), optional=True)] = None
     curvature: Annotated[str | None, one_of(("exact", "linear"), optional=True)] = None
@@ -103,8 +86,9 @@ class Cable(Part):
             if not callable(curve):
                 raise ValueError(f"curve must be a function of u from 0 to 1, got {curve!r}", "or give points")
             data["points"] = curves.sample(curve, min(elements, 1000) if isinstance(elements, int) else 1)
-        if data.get("element", "beam24") in FACTS:
-            data["law"] = _law(data)
+        kind = built_in().get(str(data.get("element", "beam24")))
+        if kind is not None:
+            data["law"] = _law(kind, data)
         return data
 
     @model_validator(mode="after")
@@ -130,7 +114,7 @@ class Cable(Part):
             if point[2] != 0:
                 where = f"point {number + 1}" if self.points else ("start", "end")[number]
                 raise ValueError(f"{self.element} is planar, but {where} leaves the plane z = 0: {show(point, 'm')}",
-                                 "draw it with z = 0, or take " + _others(3, self.element))
+                                 "draw it with z = 0, or take " + _others(3))
         if self.up[2] != 0:
             raise ValueError(f"{self.element} is planar, but up leaves the plane z = 0: {show(self.up)}",
                              "leave it out: the height lies in the plane")
@@ -162,29 +146,30 @@ class Cable(Part):
 
     @model_validator(mode="after")
     def _law_suits(self) -> Cable:
-        if self.is_curved and self.kernel_law not in FACTS[self.element].laws:
-            able = [f"{name} ({', '.join(law for law in possible_laws(name) if _kernel_law(law, True) in facts.laws)})"
-                    for name, facts in FACTS.items() if any(_kernel_law(law, True) in facts.laws
-                                                            for law in possible_laws(name))]
+        kind = self.kind_of_element
+        if self.is_curved and self.kernel_law not in kind.laws:
+            curved = {name: [law for law in possible_laws(other) if _kernel_law(law, True) in other.laws]
+                      for name, other in built_in().items()}
+            able = [f"{name} ({', '.join(laws)})" for name, laws in curved.items() if laws]
             raise ValueError(f'{self.element} with law "{self.law}" is stress-free only where it is straight, but '
                              "it is drawn curved", 'take rest="straight", or one of ' + ", ".join(able))
-        section, facts = self.section, FACTS[self.element]
+        section = self.section
         given = {keyword for keyword in ("torsion_constant", "shear_factors")
                  if getattr(section, f"given_{keyword}") is not None}
-        if not facts.is_beam:
+        if kind.is_cable:
             self._refuse_unequal_bending()
             if given:
                 raise ValueError(f"section.{min(given)} is given, but {self.element} has neither shear nor torsion",
-                                 "leave it out, or take " + _others(facts.dim, beam=True))
+                                 "leave it out, or take " + _others(kind.dim, cable=False))
         elif self.law == "structural":
-            needed = {"shear_factors"} | ({"torsion_constant"} if facts.dim == 3 else set())
+            needed = {"shear_factors"} | ({"torsion_constant"} if kind.dim == 3 else set())
             if isinstance(section, General) and (missing := needed - given):
                 raise ValueError(f'law "structural" needs section.{min(missing)}, which a general section does not '
                                  "tell", "give it to the section")
         elif isinstance(section, General):
             raise ValueError(f'law "{self.law}" integrates over the shape of the section, which a general section does '
                              "not tell", 'take law="structural", a rectangle, circle or tube, or '
-                             + _others(facts.dim, beam=False))
+                             + _others(kind.dim, cable=True))
         elif self.law == "continuum" and given:
             raise ValueError(f'section.{min(given)} is given, but law "continuum" computes its own from the shape',
                              'leave it out, or take law="poisson_split" or "structural"')
@@ -197,14 +182,24 @@ class Cable(Part):
                              f"got {show(across, 'm⁴')}", 'take a square, a circle or a tube, or element="beam24"')
 
     @property
+    def kind_of_element(self) -> ElementKind:
+        """What its element is."""
+        return built_in()[self.element]
+
+    @property
     def dim(self) -> int:
         """3, or 2 for planar elements."""
-        return FACTS[self.element].dim
+        return self.kind_of_element.dim
 
     @property
     def kernel_law(self) -> str:
         """Name of the law among the element's kernels; those that end in ``_curved``, and structural, take e0."""
         return _kernel_law(self.law, self.is_curved)
+
+    @property
+    def stiffness_law(self) -> str:
+        """Name of the law whose stiffness of the section it takes, see `stiffness.section_stiffness`."""
+        return self.kind_of_element.laws.get(self.law, self.law)
 
     @property
     def _way(self) -> tuple[tuple[float, ...], ...]:
@@ -279,7 +274,7 @@ class Cable(Part):
 
     def _vectors(self, r: np.ndarray, axes: np.ndarray, stretch: float, r_xx: np.ndarray) -> np.ndarray:
         known = {"r": r, "r_x": stretch * axes[:, 0], "r_y": axes[:, 1], "r_z": axes[:, 2], "r_xx": r_xx}
-        return np.stack([known[name] for name in FACTS[self.element].vectors], axis=1)
+        return np.stack([known[name] for name in self.kind_of_element.nodal_vectors], axis=1)
 
     def nearest_s(self, point: np.ndarray) -> float:
         """Arc-length of the point of the drawn cable nearest to ``point``, in m."""
@@ -292,17 +287,17 @@ class Cable(Part):
         return node if on_node else None
 
 
-def _law(data: dict) -> str:
+def _law(kind: ElementKind, data: dict) -> str:
     """The law of a cable from what it is given; ValueError if the element has no such law."""
     element = data.get("element", "beam24")
     law, strain, curvature = (data.get(name) for name in ("law", "strain", "curvature"))
-    possible = possible_laws(element)
-    if FACTS[element].is_beam:
-        if strain or curvature:
+    possible = possible_laws(kind)
+    if law is None and not (strain or curvature):
+        return possible[0]
+    if strain or curvature:
+        if not kind.is_cable:
             raise ValueError(f"strain and curvature are for cable elements, {element} is a beam",
-                             "leave them out, or take " + _others(FACTS[element].dim, beam=False))
-        law = "continuum" if law is None else law
-    elif law is None or strain or curvature:
+                             "leave them out, or take " + _others(kind.dim, cable=True))
         by_measures = f"{strain or 'green'}_{curvature or 'exact'}"
         if law not in (None, by_measures):
             raise ValueError(f'law "{law}" and strain and curvature disagree', "give the one or the others")
@@ -320,8 +315,7 @@ def _kernel_law(law: str, curved: bool) -> str:
     return f"{law}_curved" if curved and law != "structural" else law
 
 
-def _others(dim: int, but: str = "", *, beam: bool | None = None) -> str:
+def _others(dim: int, *, cable: bool | None = None) -> str:
     """Elements to take instead, for a remedy."""
-    names = [f'"{name}"' for name, facts in FACTS.items()
-             if facts.dim == dim and name != but and beam in (None, facts.is_beam)]
+    names = [f'"{name}"' for name, kind in built_in().items() if kind.dim == dim and cable in (None, kind.is_cable)]
     return "element=" + " or ".join(names)

@@ -1,13 +1,17 @@
 """What a scene is made of, in the order in which it can be added: a slide needs its cable and its body."""
 
 from funicular.bodies import RigidBody
-from funicular.cables import ELEMENTS, EXACT, Cable
+from funicular.cables import EXACT, Cable
+from funicular.elements import built_in
 from funicular.loads import DistributedForce, Force, Moment
 from funicular.slides import Slide
 from funicular.springs import Spring
 from funicular.supports import Clamp, Join, Motion, Pin
 
 KINDS = (Cable, Pin, Clamp, Motion, Join, RigidBody, Slide, Force, DistributedForce, Moment, Spring)
+
+ELEMENTS = {name: kind.nodal_vectors for name, kind in built_in().items()}
+"""The nodal vectors of each element, in the order of its coordinates."""
 
 PARTS = {part.kind: part for part in KINDS}
 """The kinds of parts by their names in scene files and in messages."""

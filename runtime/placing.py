@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from funicular.cables import EXACT, FACTS, Cable
+from funicular.cables import EXACT, Cable
+from funicular.elements import built_in
 from funicular.errors import SceneError, near
 from funicular.loads import DistributedForce, Force, Moment
 from funicular.springs import End, Spring
@@ -111,14 +112,14 @@ def placed_load(scene: Scene, load: Force | DistributedForce | Moment) -> Part:
         update = {"s": end.s} | ({"at": end.at} if isinstance(load, Force) else {})
         load = load.model_copy(update=update)
         cable = scene.cables.get(load.on)
-    if cable is not None and cable.dim == 3 and not FACTS[cable.element].is_beam:
+    if cable is not None and cable.dim == 3 and not cable.kind_of_element.director:
         _check_without_section(load, cable)
     return load
 
 
 def _check_without_section(load: Part, cable: Cable) -> None:
     """Without axes of the section there is nothing to turn about the tangent, and no direction across it."""
-    with_axes = "element=" + " or ".join(f'"{n}"' for n, f in FACTS.items() if f.is_beam and f.dim == cable.dim)
+    with_axes = "element=" + " or ".join(f'"{n}"' for n, kind in built_in().items() if kind.director and kind.dim == 3)
     if isinstance(load, Moment):
         value, tangent = np.array(load.value), cable.axes_at(load.s)[0]
         twist = float(np.dot(value, tangent))
@@ -161,7 +162,7 @@ def point_of(scene: Scene, end: End) -> np.ndarray:
 
 def placed_spring(scene: Scene, spring: Spring) -> Spring:
     """The spring with its ends and its length complete."""
-    a, b = (placed_end(scene, getattr(spring, name), spring.where, f"{name} ") for name in ("a", "b"))
+    a, b = (placed_end(scene, getattr(spring, name), spring.where, f"{name}: ") for name in ("a", "b"))
     points = point_of(scene, a), point_of(scene, b)
     distance = float(np.linalg.norm(points[1] - points[0]))
     if not distance > 1e-12 * (1 + np.abs(points).max()):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from funicular.bodies import RigidBody
-from funicular.cables import FACTS
+from funicular.elements import built_in
 from funicular.errors import SceneError
 from funicular.loads import DistributedForce, Force, Moment
 from funicular.signals import Constant
@@ -19,15 +19,13 @@ from funicular.validation import Part, show
 if TYPE_CHECKING:
     from funicular.scene import Scene
 
-SPATIAL = ", ".join(f'"{name}"' for name, facts in FACTS.items() if facts.dim == 3)
-
-
 def check_plane(scene: Scene, part: Part | None = None) -> None:
     """Refuse a part, or all of the scene, where it leaves the plane. Raises SceneError."""
     planar = next((cable for cable in scene.cables.values() if cable.dim == 2), None)
     if planar is None:
         return
-    remedy = f"let it stay in the plane, or take spatial elements: {SPATIAL}"
+    spatial = ", ".join(f'"{name}"' for name, kind in built_in().items() if kind.dim == 3)
+    remedy = f"let it stay in the plane, or take spatial elements: {spatial}"
     plane = f'leaves the plane z = 0 of the {planar.element} cable "{planar.name}"'
     if part is None and scene.gravity[2]:
         raise SceneError("scene", f"gravity {show(scene.gravity, 'm/s²')} {plane}", remedy)

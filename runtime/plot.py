@@ -10,6 +10,7 @@ import numpy as np
 from funicular.errors import ResultFileError
 from funicular.results import ENERGIES
 from funicular.rotations import rotate
+from funicular.section_forces import PLACES, section_forces
 
 if TYPE_CHECKING:
     import os
@@ -225,15 +226,16 @@ def draw_section_forces(run: Run, cable: str) -> Figure:
     from matplotlib.colors import Normalize
     from matplotlib.figure import Figure
 
-    forces = run.section_forces(cable)
+    described = run.scene.cables[cable]
+    s = np.linspace(0, described.length, PLACES * described.elements + 1)
     shown = np.unique(np.linspace(0, len(run.time) - 1, SNAPSHOTS).round().astype(int))
     colour = ScalarMappable(Normalize(run.time[0], max(run.time[-1], run.time[0] + 1e-9)), "viridis")
+    forces = section_forces(described, run[f"{cable}.nodal_vectors"][shown], s)
     figure = Figure(figsize=(7, 4.8))
     tension, moment = figure.subplots(2, sharex=True)
-    for index in shown:
-        line = {"color": colour.to_rgba(run.time[index])}
-        tension.plot(forces["s"], forces["tension"][index], **line)
-        moment.plot(forces["s"], np.linalg.norm(forces["moment"][index], axis=-1), **line)
+    for time, pull, turn in zip(run.time[shown], forces["tension"], forces["moment"], strict=True):
+        tension.plot(s, pull, color=colour.to_rgba(time))
+        moment.plot(s, np.linalg.norm(turn, axis=-1), color=colour.to_rgba(time))
     tension.set_ylabel("tension / N")
     moment.set_ylabel("moment / (N m)")
     moment.set_xlabel(f"arc-length s of {cable} / m")
@@ -247,8 +249,8 @@ def draw_energy(run: Run) -> Figure:
 
     figure = Figure(figsize=(7, 4.8))
     changes, error = figure.subplots(2, sharex=True, height_ratios=(2.2, 1))
-    for name in ENERGIES:
-        energy = run[f"energy.{name}"] if f"energy.{name}" in run else np.zeros(1)
+    for name in (name for name in ENERGIES if f"energy.{name}" in run):
+        energy = run[f"energy.{name}"]
         if name in ("kinetic", "elastic", "potential") or energy.any():
             changes.plot(run.time, energy - energy[0], label=name)
     changes.axhline(0, color="0.4", linewidth=0.7)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from funicular.cables import EXACT, FACTS, Cable
+from funicular.cables import EXACT, Cable
 from funicular.errors import FunicularError, UnknownResultError, near
 from funicular.stiffness import section_stiffness
 from funicular.validation import show
@@ -55,7 +55,7 @@ def section_forces(cable: Cable, nodal_vectors: np.ndarray, s: np.ndarray) -> di
 
     kernel = getattr(kernels, f"{cable.element}_{cable.kernel_law}_section_forces")
     length, dim = cable.length / cable.elements, cable.dim
-    stiffness = section_stiffness(cable.law, cable.section, cable.material, dim)
+    stiffness = section_stiffness(cable.stiffness_law, cable.section, cable.material, dim)
     element = np.clip(np.floor(s / length * (1 + EXACT)).astype(int), 0, cable.elements - 1)
     with_rest = cable.kernel_law == "structural" or cable.is_curved
     rest = cable.rest_nodal_vectors[..., :dim]
@@ -75,7 +75,7 @@ def _components(cable: Cable, force, moment, axes, strain) -> dict[str, np.ndarr
     tension, shear_y, shear_z = np.moveaxis(np.einsum("tsij,tsj->tsi", axes, force), -1, 0)
     across = np.linalg.norm(force - tension[..., None] * axes[..., 0, :], axis=-1)
     strains = np.moveaxis(strain, -1, 0)
-    if not FACTS[cable.element].is_beam:
+    if not cable.kind_of_element.director:
         return {"tension": tension, "shear": across, "strain": strains[0], "curvature": strains[5]}
     moments = np.moveaxis(np.einsum("tsij,tsj->tsi", axes, moment), -1, 0)
     return dict(zip(BEAM, (tension, across, shear_y, shear_z, *moments, *strains), strict=True))
@@ -99,7 +99,7 @@ def dataset(run: Run, name: str, s=None) -> xarray.Dataset:
         raise FunicularError(f'section forces of "{name}": s must lie on the cable, in [0, {cable.length:.9g}] m, '
                              f"got {wrong}")
     values = section_forces(cable, run[f"{name}.nodal_vectors"], s)
-    labels = GLOBAL | (BEAM if FACTS[cable.element].is_beam else CABLE)
+    labels = GLOBAL | (BEAM if cable.kind_of_element.director else CABLE)
     dims = {"force": ("time", "s", "xyz"), "moment": ("time", "s", "xyz")}
     return xarray.Dataset(
         {key: (dims.get(key, ("time", "s")), value, {"units": labels[key][0], "long_name": labels[key][1]})
