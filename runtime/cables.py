@@ -235,8 +235,19 @@ class Cable(Part):
         return self.length * np.arange(self.elements + 1) / self.elements
 
     def point(self, s: float) -> np.ndarray:
-        """(3,): the point of the drawn centreline at arc-length ``s``, in m."""
-        return self._shape.point(s * self.stretch)
+        """(3,): the point of the centreline at arc-length ``s``, in m, as the elements draw it.
+
+        Between nodes that is not quite the curve that they are drawn along; a rider has to start on the elements.
+        """
+        if self._shape.straight:
+            return self._shape.point(s * self.stretch)
+        from funicular.generated import kernels
+
+        length = self.length / self.elements
+        element = int(np.clip(np.floor(s / length), 0, self.elements - 1))
+        e = np.concatenate(self.nodal_vectors[element : element + 2])[:, : self.dim]
+        _, r = getattr(kernels, f"{self.element}_position")(length, np.array([s - element * length, 0, 0]), e)
+        return np.pad(r, (0, 3 - self.dim))
 
     def axes_at(self, s) -> np.ndarray:
         """(..., 3, 3): unit vectors along axis, height and width, as rows, at arc-lengths ``s`` as drawn."""

@@ -115,7 +115,7 @@ def dumps(scene: Scene) -> str:
 
 
 def _data(value: Any) -> Any:
-    """A value as plain data: of a part what it was made with; what was left out is left out again."""
+    """A value as plain data: of a part all that is set, defaults too, which a later version may change."""
     match value:
         case Constant():
             return value.constant
@@ -126,8 +126,7 @@ def _data(value: Any) -> Any:
         case Part():
             tag = {"shape": value.shape} if isinstance(value, Section) else {}
             tag = {"form": value.form} if isinstance(value, Signal) else tag
-            given = {keyword: getattr(value, name) for keyword, name in value.keywords().items()
-                     if name in value.model_fields_set}
+            given = {keyword: getattr(value, name) for keyword, name in value.keywords().items()}
             return tag | {keyword: _data(each) for keyword, each in given.items() if each is not None}
         case list() | tuple():
             return [_data(each) for each in value]

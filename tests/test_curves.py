@@ -67,6 +67,27 @@ def test_nodal_vectors_as_drawn_and_at_rest_are_one():
     assert_allclose(np.cross(r_x, r_y), r_z, atol=1e-15)
 
 
+@pytest.mark.parametrize("element", ["cable12", "beam24", "beam12p"])
+def test_a_point_is_where_the_elements_draw_it(element):
+    flat = element == "beam12p"
+    wire = drawn(element=element, curve=(lambda u: (arc(u)[0], arc(u)[2], 0)) if flat else arc)
+    for s, node in zip(wire.node_s, wire.nodal_vectors, strict=True):
+        assert_allclose(wire.point(s), node[0], atol=1e-15)
+    (r0, t0), (r1, t1) = wire.nodal_vectors[1:3, :2]
+    length = wire.length / 4
+    middle = (r0 + r1) / 2 + length * (t0 - t1) / 8  # of the cubic
+    assert_allclose(wire.point(1.5 * length), middle, atol=1e-14)
+    assert 1e-7 < np.linalg.norm(middle - wire._shape.point(1.5 * length)) < 1e-4
+
+
+def test_a_rider_starts_on_the_elements():
+    scene = Scene()
+    wire = scene.cable("wire", curve=arc, elements=2, section=Circle(radius=0.01), material=SOFT)
+    scene.rigid_body("A", mass=1, inertia=(1, 1, 1), position=wire.point(0.3))
+    scene.slide("A", along=wire, s=0.3)
+    assert scene.messages == []
+
+
 def test_three_points_make_a_parabola():
     wire = drawn(curve=None, points=[(0, 0, 0), (1, 1, 0), (2, 0, 0)])
     x = np.linspace(0, 2, 200001)

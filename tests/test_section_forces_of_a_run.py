@@ -1,4 +1,4 @@
-"""Section forces along a cable: the right element and place, the components, the labels. The kernel is a stand-in."""
+"""Section forces along a cable: the right element and place, components, labels; mostly with a stand-in kernel."""
 
 import re
 from types import SimpleNamespace
@@ -89,6 +89,21 @@ def test_curved_and_structural_laws_take_the_rest_shape(calls):
     wire = straight("beam24", start=None, end=None, points=[(0, 0, 0), (1, 0.2, 0), (2, 0, 0)])
     section_forces(wire, wire.nodal_vectors[None], np.array([1.9]))
     assert_allclose(calls[0].e0[0], np.concatenate(wire.rest_nodal_vectors[1:]))
+
+
+@pytest.mark.parametrize("element", ["beam24", "cable12", "cable18", "beam12p", "cable8p"])
+def test_a_taut_cable_by_its_own_kernel(element):
+    """Green strain, second Piola-Kirchhoff: N = E A (stretch² - 1)/2 stretch, where the section keeps its size."""
+    steel = Material(youngs_modulus=1e6, density=1000, poisson_ratio=0)
+    scene = Scene()
+    wire = scene.cable("wire", start=(0, 0, 0), end=(2, 0, 0), elements=3, element=element, material=steel,
+                       section=Circle(radius=0.1), rest_length=1.6)
+    forces = section_forces(wire, wire.nodal_vectors[None], np.array([0, 0.7, 1.6]))
+    expected = 1e6 * wire.section.area * (1.25**2 - 1) / 2 * 1.25
+    assert_allclose(forces["tension"], np.full((1, 3), expected), rtol=1e-12)
+    assert_allclose(forces["force"], [[[expected, 0, 0]] * 3], atol=1e-9 * expected)
+    assert_allclose(forces["moment"], 0, atol=1e-9 * expected)
+    assert_allclose(forces["strain"], (1.25**2 - 1) / 2, rtol=1e-12)
 
 
 def test_what_is_not_there(run):
