@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
+from pathlib import Path
 
 import sympy as sp
 from funicular.derive.stages import Program
@@ -22,7 +23,7 @@ class Element:
     """r(x, y, z) = sum_k N_k d_k (eq 2): monomials, nodes, and which vectors the nodes carry.
 
     `director` names the nodal vector from which the tangent frame takes its normal (eq 16); empty where there is
-    none. `laws` names the energies (laws/) that it comes with.
+    none. `laws` are the energies that it comes with: names in laws/, or classes of the same interface.
     """
 
     name: str
@@ -30,7 +31,7 @@ class Element:
     basis: tuple[sp.Expr, ...]
     nodal_vectors: tuple[str, ...]
     director: str
-    laws: tuple[str, ...]
+    laws: tuple[str | type, ...]
     doc: str
     source: str
     nodes: tuple[sp.Expr, ...] = (sp.S.Zero, l)
@@ -91,8 +92,9 @@ class Family:
 
     `modules` are its specs: their text, and all that they import here, is in the spec hash. Families of one `role` have
     kernels of the same signatures; the engine reaches them through a table, each with its `facts` (integers).
-    `element`, `law` (a name in laws/) and `rider` (the name of a body) are what the kernels are about: verification
-    samples their states.
+    `element`, `law` and `rider` (the name of a body) are what the kernels are about: verification samples their states.
+    `like` is the law in laws/ whose section stiffness and scale the law shares: itself, but for a law of the user's.
+    `spec` is the user's file that the element stands in, None for those of this package.
     """
 
     name: str
@@ -103,4 +105,6 @@ class Family:
     facts: dict[str, int] = field(default_factory=dict)
     element: Element | None = None
     law: str | None = None
+    like: str | None = None
     rider: str | None = None
+    spec: Path | None = None
