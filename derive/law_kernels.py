@@ -57,7 +57,7 @@ class Kernels:
 
     def stiffness(self) -> Program:
         """The law's constants."""
-        p = self._program("stiffness", "constants of the law", "eq 7")
+        p = self._program("stiffness", "constants of the law from the stiffness of the section", "eq 7")
         self.law.set_up(p)
         return p
 

@@ -30,84 +30,84 @@ cdef extern from "kernels.h" nogil:
     void c_cable8p_gravity "cable8p_gravity"(double l, double density, const double *section, const double *g, double *Q)
     void c_cable8p_inertia_force "cable8p_inertia_force"(const double *m, const double *a, double *f)
     void c_cable8p_position "cable8p_position"(double l, const double *at, const double *e, double *N, double *r)
-    void c_beam24_continuum_stiffness "beam24_continuum_stiffness"(double l, const double *section, const double *D, double *A)
+    void c_beam24_continuum_stiffness "beam24_continuum_stiffness"(double l, const double *S, double *A)
     void c_beam24_continuum_energy "beam24_continuum_energy"(double l, const double *e, const double *A, double *U)
     void c_beam24_continuum_elastic_force "beam24_continuum_elastic_force"(double l, const double *e, const double *A, double *f)
     void c_beam24_continuum_elastic_tangent "beam24_continuum_elastic_tangent"(double l, const double *e, const double *A, double *K)
     void c_beam24_continuum_damping_force "beam24_continuum_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_beam24_continuum_damping_tangent "beam24_continuum_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_beam24_continuum_dissipation "beam24_continuum_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
-    void c_cable12_green_exact_stiffness "cable12_green_exact_stiffness"(double youngs_modulus, const double *section, double *A)
+    void c_cable12_green_exact_stiffness "cable12_green_exact_stiffness"(double l, const double *S, double *A)
     void c_cable12_green_exact_energy "cable12_green_exact_energy"(double l, const double *e, const double *A, double *U)
     void c_cable12_green_exact_elastic_force "cable12_green_exact_elastic_force"(double l, const double *e, const double *A, double *f)
     void c_cable12_green_exact_elastic_tangent "cable12_green_exact_elastic_tangent"(double l, const double *e, const double *A, double *K)
     void c_cable12_green_exact_damping_force "cable12_green_exact_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable12_green_exact_damping_tangent "cable12_green_exact_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable12_green_exact_dissipation "cable12_green_exact_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
-    void c_cable12_green_linear_stiffness "cable12_green_linear_stiffness"(double youngs_modulus, const double *section, double *A)
+    void c_cable12_green_linear_stiffness "cable12_green_linear_stiffness"(double l, const double *S, double *A)
     void c_cable12_green_linear_energy "cable12_green_linear_energy"(double l, const double *e, const double *A, double *U)
     void c_cable12_green_linear_elastic_force "cable12_green_linear_elastic_force"(double l, const double *e, const double *A, double *f)
     void c_cable12_green_linear_elastic_tangent "cable12_green_linear_elastic_tangent"(double l, const double *e, const double *A, double *K)
     void c_cable12_green_linear_damping_force "cable12_green_linear_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable12_green_linear_damping_tangent "cable12_green_linear_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable12_green_linear_dissipation "cable12_green_linear_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
-    void c_cable12_engineering_exact_stiffness "cable12_engineering_exact_stiffness"(double youngs_modulus, const double *section, double *A)
+    void c_cable12_engineering_exact_stiffness "cable12_engineering_exact_stiffness"(double l, const double *S, double *A)
     void c_cable12_engineering_exact_energy "cable12_engineering_exact_energy"(double l, const double *e, const double *A, double *U)
     void c_cable12_engineering_exact_elastic_force "cable12_engineering_exact_elastic_force"(double l, const double *e, const double *A, double *f)
     void c_cable12_engineering_exact_elastic_tangent "cable12_engineering_exact_elastic_tangent"(double l, const double *e, const double *A, double *K)
     void c_cable12_engineering_exact_damping_force "cable12_engineering_exact_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable12_engineering_exact_damping_tangent "cable12_engineering_exact_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable12_engineering_exact_dissipation "cable12_engineering_exact_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
-    void c_cable12_engineering_linear_stiffness "cable12_engineering_linear_stiffness"(double youngs_modulus, const double *section, double *A)
+    void c_cable12_engineering_linear_stiffness "cable12_engineering_linear_stiffness"(double l, const double *S, double *A)
     void c_cable12_engineering_linear_energy "cable12_engineering_linear_energy"(double l, const double *e, const double *A, double *U)
     void c_cable12_engineering_linear_elastic_force "cable12_engineering_linear_elastic_force"(double l, const double *e, const double *A, double *f)
     void c_cable12_engineering_linear_elastic_tangent "cable12_engineering_linear_elastic_tangent"(double l, const double *e, const double *A, double *K)
     void c_cable12_engineering_linear_damping_force "cable12_engineering_linear_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable12_engineering_linear_damping_tangent "cable12_engineering_linear_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable12_engineering_linear_dissipation "cable12_engineering_linear_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
-    void c_cable18_green_exact_stiffness "cable18_green_exact_stiffness"(double youngs_modulus, const double *section, double *A)
+    void c_cable18_green_exact_stiffness "cable18_green_exact_stiffness"(double l, const double *S, double *A)
     void c_cable18_green_exact_energy "cable18_green_exact_energy"(double l, const double *e, const double *A, double *U)
     void c_cable18_green_exact_elastic_force "cable18_green_exact_elastic_force"(double l, const double *e, const double *A, double *f)
     void c_cable18_green_exact_elastic_tangent "cable18_green_exact_elastic_tangent"(double l, const double *e, const double *A, double *K)
     void c_cable18_green_exact_damping_force "cable18_green_exact_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable18_green_exact_damping_tangent "cable18_green_exact_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable18_green_exact_dissipation "cable18_green_exact_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
-    void c_cable18_engineering_exact_stiffness "cable18_engineering_exact_stiffness"(double youngs_modulus, const double *section, double *A)
+    void c_cable18_engineering_exact_stiffness "cable18_engineering_exact_stiffness"(double l, const double *S, double *A)
     void c_cable18_engineering_exact_energy "cable18_engineering_exact_energy"(double l, const double *e, const double *A, double *U)
     void c_cable18_engineering_exact_elastic_force "cable18_engineering_exact_elastic_force"(double l, const double *e, const double *A, double *f)
     void c_cable18_engineering_exact_elastic_tangent "cable18_engineering_exact_elastic_tangent"(double l, const double *e, const double *A, double *K)
     void c_cable18_engineering_exact_damping_force "cable18_engineering_exact_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable18_engineering_exact_damping_tangent "cable18_engineering_exact_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable18_engineering_exact_dissipation "cable18_engineering_exact_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
-    void c_beam12p_continuum_stiffness "beam12p_continuum_stiffness"(double l, const double *section, const double *D, double *A)
+    void c_beam12p_continuum_stiffness "beam12p_continuum_stiffness"(double l, const double *S, double *A)
     void c_beam12p_continuum_energy "beam12p_continuum_energy"(double l, const double *e, const double *A, double *U)
     void c_beam12p_continuum_elastic_force "beam12p_continuum_elastic_force"(double l, const double *e, const double *A, double *f)
     void c_beam12p_continuum_elastic_tangent "beam12p_continuum_elastic_tangent"(double l, const double *e, const double *A, double *K)
     void c_beam12p_continuum_damping_force "beam12p_continuum_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_beam12p_continuum_damping_tangent "beam12p_continuum_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_beam12p_continuum_dissipation "beam12p_continuum_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
-    void c_cable8p_green_exact_stiffness "cable8p_green_exact_stiffness"(double youngs_modulus, const double *section, double *A)
+    void c_cable8p_green_exact_stiffness "cable8p_green_exact_stiffness"(double l, const double *S, double *A)
     void c_cable8p_green_exact_energy "cable8p_green_exact_energy"(double l, const double *e, const double *A, double *U)
     void c_cable8p_green_exact_elastic_force "cable8p_green_exact_elastic_force"(double l, const double *e, const double *A, double *f)
     void c_cable8p_green_exact_elastic_tangent "cable8p_green_exact_elastic_tangent"(double l, const double *e, const double *A, double *K)
     void c_cable8p_green_exact_damping_force "cable8p_green_exact_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable8p_green_exact_damping_tangent "cable8p_green_exact_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable8p_green_exact_dissipation "cable8p_green_exact_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
-    void c_cable8p_green_linear_stiffness "cable8p_green_linear_stiffness"(double youngs_modulus, const double *section, double *A)
+    void c_cable8p_green_linear_stiffness "cable8p_green_linear_stiffness"(double l, const double *S, double *A)
     void c_cable8p_green_linear_energy "cable8p_green_linear_energy"(double l, const double *e, const double *A, double *U)
     void c_cable8p_green_linear_elastic_force "cable8p_green_linear_elastic_force"(double l, const double *e, const double *A, double *f)
     void c_cable8p_green_linear_elastic_tangent "cable8p_green_linear_elastic_tangent"(double l, const double *e, const double *A, double *K)
     void c_cable8p_green_linear_damping_force "cable8p_green_linear_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable8p_green_linear_damping_tangent "cable8p_green_linear_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable8p_green_linear_dissipation "cable8p_green_linear_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
-    void c_cable8p_engineering_exact_stiffness "cable8p_engineering_exact_stiffness"(double youngs_modulus, const double *section, double *A)
+    void c_cable8p_engineering_exact_stiffness "cable8p_engineering_exact_stiffness"(double l, const double *S, double *A)
     void c_cable8p_engineering_exact_energy "cable8p_engineering_exact_energy"(double l, const double *e, const double *A, double *U)
     void c_cable8p_engineering_exact_elastic_force "cable8p_engineering_exact_elastic_force"(double l, const double *e, const double *A, double *f)
     void c_cable8p_engineering_exact_elastic_tangent "cable8p_engineering_exact_elastic_tangent"(double l, const double *e, const double *A, double *K)
     void c_cable8p_engineering_exact_damping_force "cable8p_engineering_exact_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable8p_engineering_exact_damping_tangent "cable8p_engineering_exact_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable8p_engineering_exact_dissipation "cable8p_engineering_exact_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
-    void c_cable8p_engineering_linear_stiffness "cable8p_engineering_linear_stiffness"(double youngs_modulus, const double *section, double *A)
+    void c_cable8p_engineering_linear_stiffness "cable8p_engineering_linear_stiffness"(double l, const double *S, double *A)
     void c_cable8p_engineering_linear_energy "cable8p_engineering_linear_energy"(double l, const double *e, const double *A, double *U)
     void c_cable8p_engineering_linear_elastic_force "cable8p_engineering_linear_elastic_force"(double l, const double *e, const double *A, double *f)
     void c_cable8p_engineering_linear_elastic_tangent "cable8p_engineering_linear_elastic_tangent"(double l, const double *e, const double *A, double *K)
@@ -538,22 +538,20 @@ def cable8p_position(l, at, e):
     return N_out, r_out
 
 
-def beam24_continuum_stiffness(l, section, D):
-    """constants of the law (eq 7; eq 5-8).
+def beam24_continuum_stiffness(l, S):
+    """constants of the law from the stiffness of the section (eq 7; eq 5-8).
 
     l () [m]: length of the element
-    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
-    D (9,) [Pa]: orthotropic law, axes x, y, z: D11 D22 D33 D12 D13 D23 G12 G13 G23
+    S (9, 6) [N, N m^2, N m^2, N m^4, N m^4, N m^4]: section stiffness: integrals over A of D11, D22, D33, D12, D13, D23, G12, G13, G23 (rows; orthotropic, axes x, y, z) times 1, y^2, z^2, y^4, y^2 z^2, z^4 (columns)
     Returns
     A (61,) [N m]: different non-zero entries of A
     """
     cdef double l_ = l
-    cdef const double[::1] section_ = _array(section, (6,), "beam24_continuum_stiffness", "section")
-    cdef const double[::1] D_ = _array(D, (9,), "beam24_continuum_stiffness", "D")
+    cdef const double[::1] S_ = _array(S, (9, 6), "beam24_continuum_stiffness", "S")
     A_out = np.empty((61,))
     cdef double[::1] A__ = A_out.reshape(-1)
     with nogil:
-        c_beam24_continuum_stiffness(l_, &section_[0], &D_[0], &A__[0])
+        c_beam24_continuum_stiffness(l_, &S_[0], &A__[0])
     return A_out
 
 
@@ -685,20 +683,20 @@ def beam24_continuum_dissipation(l, e, v, A, tau):
     return P_out
 
 
-def cable12_green_exact_stiffness(youngs_modulus, section):
-    """constants of the law (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+def cable12_green_exact_stiffness(l, S):
+    """constants of the law from the stiffness of the section (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
 
-    youngs_modulus () [Pa]: Young's modulus
-    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    l () [m]: length of the element
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
     Returns
     A (2,) [N, N m^2]: axial and bending stiffness EA, EI
     """
-    cdef double youngs_modulus_ = youngs_modulus
-    cdef const double[::1] section_ = _array(section, (6,), "cable12_green_exact_stiffness", "section")
+    cdef double l_ = l
+    cdef const double[::1] S_ = _array(S, (2,), "cable12_green_exact_stiffness", "S")
     A_out = np.empty((2,))
     cdef double[::1] A__ = A_out.reshape(-1)
     with nogil:
-        c_cable12_green_exact_stiffness(youngs_modulus_, &section_[0], &A__[0])
+        c_cable12_green_exact_stiffness(l_, &S_[0], &A__[0])
     return A_out
 
 
@@ -830,20 +828,20 @@ def cable12_green_exact_dissipation(l, e, v, A, tau):
     return P_out
 
 
-def cable12_green_linear_stiffness(youngs_modulus, section):
-    """constants of the law (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+def cable12_green_linear_stiffness(l, S):
+    """constants of the law from the stiffness of the section (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
 
-    youngs_modulus () [Pa]: Young's modulus
-    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    l () [m]: length of the element
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
     Returns
     A (2,) [N, N m^2]: axial and bending stiffness EA, EI
     """
-    cdef double youngs_modulus_ = youngs_modulus
-    cdef const double[::1] section_ = _array(section, (6,), "cable12_green_linear_stiffness", "section")
+    cdef double l_ = l
+    cdef const double[::1] S_ = _array(S, (2,), "cable12_green_linear_stiffness", "S")
     A_out = np.empty((2,))
     cdef double[::1] A__ = A_out.reshape(-1)
     with nogil:
-        c_cable12_green_linear_stiffness(youngs_modulus_, &section_[0], &A__[0])
+        c_cable12_green_linear_stiffness(l_, &S_[0], &A__[0])
     return A_out
 
 
@@ -975,20 +973,20 @@ def cable12_green_linear_dissipation(l, e, v, A, tau):
     return P_out
 
 
-def cable12_engineering_exact_stiffness(youngs_modulus, section):
-    """constants of the law (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+def cable12_engineering_exact_stiffness(l, S):
+    """constants of the law from the stiffness of the section (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
 
-    youngs_modulus () [Pa]: Young's modulus
-    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    l () [m]: length of the element
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
     Returns
     A (2,) [N, N m^2]: axial and bending stiffness EA, EI
     """
-    cdef double youngs_modulus_ = youngs_modulus
-    cdef const double[::1] section_ = _array(section, (6,), "cable12_engineering_exact_stiffness", "section")
+    cdef double l_ = l
+    cdef const double[::1] S_ = _array(S, (2,), "cable12_engineering_exact_stiffness", "S")
     A_out = np.empty((2,))
     cdef double[::1] A__ = A_out.reshape(-1)
     with nogil:
-        c_cable12_engineering_exact_stiffness(youngs_modulus_, &section_[0], &A__[0])
+        c_cable12_engineering_exact_stiffness(l_, &S_[0], &A__[0])
     return A_out
 
 
@@ -1120,20 +1118,20 @@ def cable12_engineering_exact_dissipation(l, e, v, A, tau):
     return P_out
 
 
-def cable12_engineering_linear_stiffness(youngs_modulus, section):
-    """constants of the law (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+def cable12_engineering_linear_stiffness(l, S):
+    """constants of the law from the stiffness of the section (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
 
-    youngs_modulus () [Pa]: Young's modulus
-    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    l () [m]: length of the element
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
     Returns
     A (2,) [N, N m^2]: axial and bending stiffness EA, EI
     """
-    cdef double youngs_modulus_ = youngs_modulus
-    cdef const double[::1] section_ = _array(section, (6,), "cable12_engineering_linear_stiffness", "section")
+    cdef double l_ = l
+    cdef const double[::1] S_ = _array(S, (2,), "cable12_engineering_linear_stiffness", "S")
     A_out = np.empty((2,))
     cdef double[::1] A__ = A_out.reshape(-1)
     with nogil:
-        c_cable12_engineering_linear_stiffness(youngs_modulus_, &section_[0], &A__[0])
+        c_cable12_engineering_linear_stiffness(l_, &S_[0], &A__[0])
     return A_out
 
 
@@ -1265,20 +1263,20 @@ def cable12_engineering_linear_dissipation(l, e, v, A, tau):
     return P_out
 
 
-def cable18_green_exact_stiffness(youngs_modulus, section):
-    """constants of the law (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+def cable18_green_exact_stiffness(l, S):
+    """constants of the law from the stiffness of the section (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
 
-    youngs_modulus () [Pa]: Young's modulus
-    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    l () [m]: length of the element
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
     Returns
     A (2,) [N, N m^2]: axial and bending stiffness EA, EI
     """
-    cdef double youngs_modulus_ = youngs_modulus
-    cdef const double[::1] section_ = _array(section, (6,), "cable18_green_exact_stiffness", "section")
+    cdef double l_ = l
+    cdef const double[::1] S_ = _array(S, (2,), "cable18_green_exact_stiffness", "S")
     A_out = np.empty((2,))
     cdef double[::1] A__ = A_out.reshape(-1)
     with nogil:
-        c_cable18_green_exact_stiffness(youngs_modulus_, &section_[0], &A__[0])
+        c_cable18_green_exact_stiffness(l_, &S_[0], &A__[0])
     return A_out
 
 
@@ -1410,20 +1408,20 @@ def cable18_green_exact_dissipation(l, e, v, A, tau):
     return P_out
 
 
-def cable18_engineering_exact_stiffness(youngs_modulus, section):
-    """constants of the law (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+def cable18_engineering_exact_stiffness(l, S):
+    """constants of the law from the stiffness of the section (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
 
-    youngs_modulus () [Pa]: Young's modulus
-    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    l () [m]: length of the element
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
     Returns
     A (2,) [N, N m^2]: axial and bending stiffness EA, EI
     """
-    cdef double youngs_modulus_ = youngs_modulus
-    cdef const double[::1] section_ = _array(section, (6,), "cable18_engineering_exact_stiffness", "section")
+    cdef double l_ = l
+    cdef const double[::1] S_ = _array(S, (2,), "cable18_engineering_exact_stiffness", "S")
     A_out = np.empty((2,))
     cdef double[::1] A__ = A_out.reshape(-1)
     with nogil:
-        c_cable18_engineering_exact_stiffness(youngs_modulus_, &section_[0], &A__[0])
+        c_cable18_engineering_exact_stiffness(l_, &S_[0], &A__[0])
     return A_out
 
 
@@ -1555,22 +1553,20 @@ def cable18_engineering_exact_dissipation(l, e, v, A, tau):
     return P_out
 
 
-def beam12p_continuum_stiffness(l, section, D):
-    """constants of the law (eq 7; eq 5-8).
+def beam12p_continuum_stiffness(l, S):
+    """constants of the law from the stiffness of the section (eq 7; eq 5-8).
 
     l () [m]: length of the element
-    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
-    D (4,) [Pa]: orthotropic law, axes x, y, z: D11 D22 D12 G12
+    S (4, 6) [N, N m^2, N m^2, N m^4, N m^4, N m^4]: section stiffness: integrals over A of D11, D22, D12, G12 (rows; orthotropic, axes x, y, z) times 1, y^2, z^2, y^4, y^2 z^2, z^4 (columns)
     Returns
     A (31,) [N m]: different non-zero entries of A
     """
     cdef double l_ = l
-    cdef const double[::1] section_ = _array(section, (6,), "beam12p_continuum_stiffness", "section")
-    cdef const double[::1] D_ = _array(D, (4,), "beam12p_continuum_stiffness", "D")
+    cdef const double[::1] S_ = _array(S, (4, 6), "beam12p_continuum_stiffness", "S")
     A_out = np.empty((31,))
     cdef double[::1] A__ = A_out.reshape(-1)
     with nogil:
-        c_beam12p_continuum_stiffness(l_, &section_[0], &D_[0], &A__[0])
+        c_beam12p_continuum_stiffness(l_, &S_[0], &A__[0])
     return A_out
 
 
@@ -1702,20 +1698,20 @@ def beam12p_continuum_dissipation(l, e, v, A, tau):
     return P_out
 
 
-def cable8p_green_exact_stiffness(youngs_modulus, section):
-    """constants of the law (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+def cable8p_green_exact_stiffness(l, S):
+    """constants of the law from the stiffness of the section (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
 
-    youngs_modulus () [Pa]: Young's modulus
-    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    l () [m]: length of the element
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
     Returns
     A (2,) [N, N m^2]: axial and bending stiffness EA, EI
     """
-    cdef double youngs_modulus_ = youngs_modulus
-    cdef const double[::1] section_ = _array(section, (6,), "cable8p_green_exact_stiffness", "section")
+    cdef double l_ = l
+    cdef const double[::1] S_ = _array(S, (2,), "cable8p_green_exact_stiffness", "S")
     A_out = np.empty((2,))
     cdef double[::1] A__ = A_out.reshape(-1)
     with nogil:
-        c_cable8p_green_exact_stiffness(youngs_modulus_, &section_[0], &A__[0])
+        c_cable8p_green_exact_stiffness(l_, &S_[0], &A__[0])
     return A_out
 
 
@@ -1847,20 +1843,20 @@ def cable8p_green_exact_dissipation(l, e, v, A, tau):
     return P_out
 
 
-def cable8p_green_linear_stiffness(youngs_modulus, section):
-    """constants of the law (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+def cable8p_green_linear_stiffness(l, S):
+    """constants of the law from the stiffness of the section (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
 
-    youngs_modulus () [Pa]: Young's modulus
-    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    l () [m]: length of the element
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
     Returns
     A (2,) [N, N m^2]: axial and bending stiffness EA, EI
     """
-    cdef double youngs_modulus_ = youngs_modulus
-    cdef const double[::1] section_ = _array(section, (6,), "cable8p_green_linear_stiffness", "section")
+    cdef double l_ = l
+    cdef const double[::1] S_ = _array(S, (2,), "cable8p_green_linear_stiffness", "S")
     A_out = np.empty((2,))
     cdef double[::1] A__ = A_out.reshape(-1)
     with nogil:
-        c_cable8p_green_linear_stiffness(youngs_modulus_, &section_[0], &A__[0])
+        c_cable8p_green_linear_stiffness(l_, &S_[0], &A__[0])
     return A_out
 
 
@@ -1992,20 +1988,20 @@ def cable8p_green_linear_dissipation(l, e, v, A, tau):
     return P_out
 
 
-def cable8p_engineering_exact_stiffness(youngs_modulus, section):
-    """constants of the law (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+def cable8p_engineering_exact_stiffness(l, S):
+    """constants of the law from the stiffness of the section (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
 
-    youngs_modulus () [Pa]: Young's modulus
-    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    l () [m]: length of the element
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
     Returns
     A (2,) [N, N m^2]: axial and bending stiffness EA, EI
     """
-    cdef double youngs_modulus_ = youngs_modulus
-    cdef const double[::1] section_ = _array(section, (6,), "cable8p_engineering_exact_stiffness", "section")
+    cdef double l_ = l
+    cdef const double[::1] S_ = _array(S, (2,), "cable8p_engineering_exact_stiffness", "S")
     A_out = np.empty((2,))
     cdef double[::1] A__ = A_out.reshape(-1)
     with nogil:
-        c_cable8p_engineering_exact_stiffness(youngs_modulus_, &section_[0], &A__[0])
+        c_cable8p_engineering_exact_stiffness(l_, &S_[0], &A__[0])
     return A_out
 
 
@@ -2137,20 +2133,20 @@ def cable8p_engineering_exact_dissipation(l, e, v, A, tau):
     return P_out
 
 
-def cable8p_engineering_linear_stiffness(youngs_modulus, section):
-    """constants of the law (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+def cable8p_engineering_linear_stiffness(l, S):
+    """constants of the law from the stiffness of the section (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
 
-    youngs_modulus () [Pa]: Young's modulus
-    section (6,) [m^2, m^4, m^4, m^6, m^6, m^6]: section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4
+    l () [m]: length of the element
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
     Returns
     A (2,) [N, N m^2]: axial and bending stiffness EA, EI
     """
-    cdef double youngs_modulus_ = youngs_modulus
-    cdef const double[::1] section_ = _array(section, (6,), "cable8p_engineering_linear_stiffness", "section")
+    cdef double l_ = l
+    cdef const double[::1] S_ = _array(S, (2,), "cable8p_engineering_linear_stiffness", "S")
     A_out = np.empty((2,))
     cdef double[::1] A__ = A_out.reshape(-1)
     with nogil:
-        c_cable8p_engineering_linear_stiffness(youngs_modulus_, &section_[0], &A__[0])
+        c_cable8p_engineering_linear_stiffness(l_, &S_[0], &A__[0])
     return A_out
 
 

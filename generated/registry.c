@@ -51,6 +51,7 @@ static const fu_element elements[] = {
 
 static const fu_law laws[] = {
     {"beam24_continuum",
+     beam24_continuum_stiffness,
      beam24_continuum_energy,
      beam24_continuum_elastic_force,
      beam24_continuum_elastic_tangent,
@@ -59,6 +60,7 @@ static const fu_law laws[] = {
      beam24_continuum_dissipation
     },
     {"cable12_green_exact",
+     cable12_green_exact_stiffness,
      cable12_green_exact_energy,
      cable12_green_exact_elastic_force,
      cable12_green_exact_elastic_tangent,
@@ -67,6 +69,7 @@ static const fu_law laws[] = {
      cable12_green_exact_dissipation
     },
     {"cable12_green_linear",
+     cable12_green_linear_stiffness,
      cable12_green_linear_energy,
      cable12_green_linear_elastic_force,
      cable12_green_linear_elastic_tangent,
@@ -75,6 +78,7 @@ static const fu_law laws[] = {
      cable12_green_linear_dissipation
     },
     {"cable12_engineering_exact",
+     cable12_engineering_exact_stiffness,
      cable12_engineering_exact_energy,
      cable12_engineering_exact_elastic_force,
      cable12_engineering_exact_elastic_tangent,
@@ -83,6 +87,7 @@ static const fu_law laws[] = {
      cable12_engineering_exact_dissipation
     },
     {"cable12_engineering_linear",
+     cable12_engineering_linear_stiffness,
      cable12_engineering_linear_energy,
      cable12_engineering_linear_elastic_force,
      cable12_engineering_linear_elastic_tangent,
@@ -91,6 +96,7 @@ static const fu_law laws[] = {
      cable12_engineering_linear_dissipation
     },
     {"cable18_green_exact",
+     cable18_green_exact_stiffness,
      cable18_green_exact_energy,
      cable18_green_exact_elastic_force,
      cable18_green_exact_elastic_tangent,
@@ -99,6 +105,7 @@ static const fu_law laws[] = {
      cable18_green_exact_dissipation
     },
     {"cable18_engineering_exact",
+     cable18_engineering_exact_stiffness,
      cable18_engineering_exact_energy,
      cable18_engineering_exact_elastic_force,
      cable18_engineering_exact_elastic_tangent,
@@ -107,6 +114,7 @@ static const fu_law laws[] = {
      cable18_engineering_exact_dissipation
     },
     {"beam12p_continuum",
+     beam12p_continuum_stiffness,
      beam12p_continuum_energy,
      beam12p_continuum_elastic_force,
      beam12p_continuum_elastic_tangent,
@@ -115,6 +123,7 @@ static const fu_law laws[] = {
      beam12p_continuum_dissipation
     },
     {"cable8p_green_exact",
+     cable8p_green_exact_stiffness,
      cable8p_green_exact_energy,
      cable8p_green_exact_elastic_force,
      cable8p_green_exact_elastic_tangent,
@@ -123,6 +132,7 @@ static const fu_law laws[] = {
      cable8p_green_exact_dissipation
     },
     {"cable8p_green_linear",
+     cable8p_green_linear_stiffness,
      cable8p_green_linear_energy,
      cable8p_green_linear_elastic_force,
      cable8p_green_linear_elastic_tangent,
@@ -131,6 +141,7 @@ static const fu_law laws[] = {
      cable8p_green_linear_dissipation
     },
     {"cable8p_engineering_exact",
+     cable8p_engineering_exact_stiffness,
      cable8p_engineering_exact_energy,
      cable8p_engineering_exact_elastic_force,
      cable8p_engineering_exact_elastic_tangent,
@@ -139,6 +150,7 @@ static const fu_law laws[] = {
      cable8p_engineering_exact_dissipation
     },
     {"cable8p_engineering_linear",
+     cable8p_engineering_linear_stiffness,
      cable8p_engineering_linear_energy,
      cable8p_engineering_linear_elastic_force,
      cable8p_engineering_linear_elastic_tangent,

@@ -17,6 +17,7 @@ from funicular.libraries import kernels_of, tables_of
 from funicular.parts import Cable
 from funicular.scene import Scene
 from funicular.settings import RunSettings
+from funicular.stiffness import section_stiffness
 
 DIM = 3
 MOST_OUTPUT = 4e9  # bytes
@@ -188,8 +189,7 @@ def _cable(cable: Cable, gravity: np.ndarray, first: int) -> CableModel:
     return CableModel(
         cable.name, element, law, cable.elements, first, length, cable.material.damping_time,
         m=getattr(kernels, f"{element}_mass")(length, density, section),
-        A=(stiffness(length, section, cable.material.elasticity()) if cable.kind_of_element.laws[law] == "continuum"
-           else stiffness(cable.material.youngs_modulus, section)),
+        A=stiffness(length, section_stiffness(cable.kind_of_element.laws[law], cable.section, cable.material)),
         gravity=getattr(kernels, f"{element}_gravity")(length, density, section, gravity),
         shape=(cable.elements + 1, len(vectors), DIM), vectors=vectors, tables=tables_of(cable.library))
 
