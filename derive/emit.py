@@ -50,7 +50,12 @@ class Derived:
 
 def derive(family: Family) -> Derived:
     """Run the derivation of one family."""
-    return Derived(family, [p.prune() for p in family.build()], *came_from(family))
+    return derived(family, family.build())
+
+
+def derived(family: Family, programs: list[Program]) -> Derived:
+    """A family with its programs, pruned, and where they came from."""
+    return Derived(family, [p.prune() for p in programs], *came_from(family))
 
 
 def came_from(family: Family) -> tuple[list[str], str]:

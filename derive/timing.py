@@ -53,12 +53,12 @@ static void time_{name}(void)
 """
 
 
-def measure(names: Iterable[str], families: Mapping[str, Family], manifest: dict, kernels, generated: Path,
-            work: Path, level: str = "-O3", repetitions: int = 5) -> list[dict]:
+def measure(names: Iterable[str], families: Mapping[str, Family], manifest: dict, kernels, units: Iterable[Path],
+            header: Path, work: Path, level: str = "-O3", repetitions: int = 5) -> list[dict]:
     """A row for each kernel: microseconds a call (best of rounds that take turns), operations, bytes of code.
 
-    names: of kernels; manifest, generated: what was generated and its folder; kernels: their Python face; work: a
-    folder for the program.
+    names: of kernels; manifest: what it says of them; kernels: their Python face; units: the C or object files that
+    hold them; header: the folder of kernels.h; work: one for the program.
     """
     loops, used = [], {}
     for name in names:
@@ -68,8 +68,7 @@ def measure(names: Iterable[str], families: Mapping[str, Family], manifest: dict
     source, program = work / "loop.c", work / "loop"
     source.write_text(_PROGRAM.format(loops="".join(text for _, text in loops),
                                       calls="\n".join(f"    time_{name}();" for name, _ in loops)), encoding="utf-8")
-    subprocess.run([*compiler(), "-std=c11", level, f"-I{generated}", source,
-                    *(generated / f"{family}.c" for family in used), "-lm", "-o", program], check=True)
+    subprocess.run([*compiler(), "-std=c11", level, f"-I{header}", source, *units, "-lm", "-o", program], check=True)
     times: dict[str, list[float]] = {name: [] for name, _ in loops}
     for _ in range(repetitions):
         for line in subprocess.run([program], capture_output=True, text=True, check=True).stdout.splitlines():

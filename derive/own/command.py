@@ -8,12 +8,14 @@ from functools import partial
 from pathlib import Path
 
 from funicular.derive import emit, timing
+from funicular.derive.law_kernels import Kernels
+from funicular.derive.laws import law_name
 from funicular.derive.own import basis, energy, library, load
 from funicular.derive.own.load import SpecError
 from funicular.derive.spec import Family
 from funicular.derive.verify import examined
 from funicular.derive.verify_compile import CompilerError, compiler
-from funicular.derive.verify_report import Report
+from funicular.derive.verify_report import WIDE, Report
 from funicular.libraries import load as load_library
 from rich import box
 from rich.console import Console
@@ -24,6 +26,8 @@ def main(spec: Path, out: Path) -> None:
     """The command. Raises SpecError, also for a compiler that is missing."""
     begin = time.perf_counter()
     console = Console(highlight=False, markup=False, soft_wrap=True)
+    if not console.is_terminal:
+        console = Console(highlight=False, markup=False, width=WIDE)  # piped lines stay whole
     spec, out = spec.resolve(), out.resolve()
     library.check_destination(out)
     try:
@@ -74,9 +78,10 @@ def _make(spec: Path, families: dict[str, Family], work: Path, out: Path, consol
         raise SpecError(str(spec), f"{report.failures} checks of verification fail, the first: {report.first_failure}",
                         "the tables above have the figures; nothing was written")
     with console.status("compile and time"):
-        shared = library.compile_shared(files, made)
+        units = library.compile_units(files, made, extra)
+        shared = library.link_shared(units, made)
         manifest = library.write_manifest(derived, files, spec, shared)
-        rows = timing.measure(list(manifest["kernels"]), families, manifest, load_library(made).kernels, made, extra,
+        rows = timing.measure(manifest["kernels"], families, manifest, load_library(made).kernels, units, made, extra,
                               library.LEVEL)
     console.print(_table(rows, report))
     library.move(made, out)
@@ -86,27 +91,22 @@ def _derived(spec: Path, family: Family) -> emit.Derived:
     """Derive a family; what the user's own code raises, and what the law lacks, is told with its place."""
     place = f'{spec}: element "{family.element.name}"' + (f', law "{family.law}"' if family.law else "")
     with load.blaming(spec, place):
-        if family.role == "law":  # its energy first: what has a kink may have no derivatives
-            _checked(family, place)
-        return emit.derive(family)
-
-
-def _checked(family: Family, place: str) -> None:
-    from funicular.derive.law_kernels import Kernels
-
-    law = next(law for law in family.element.laws if family.law in (law, getattr(law, "name", None)))
-    energy.check_arithmetic([Kernels(family.element, law).energy()], place)
-    programs = family.build()
-    energy.check_arithmetic(programs, place)
-    energy.check_law(family, programs, place)
+        if family.role != "law":
+            return emit.derive(family)
+        law = next(law for law in family.element.laws if law_name(law) == family.law)
+        energy.check_arithmetic([Kernels(family.element, law).energy()], place)  # first: a kink may have no derivatives
+        made = emit.derived(family, family.build())
+        energy.check_arithmetic(made.programs, place)
+        energy.check_law(family, made.programs, place)
+        return made
 
 
 def _table(rows: list[dict], report: Report) -> Table:
     """Kernels with operations, bytes of code, errors and time."""
-    table = Table(title="Errors are relative to the output's largest entry; one thread", title_justify="left",
-                  box=box.SIMPLE_HEAD)
-    for name in ("kernel", "operations", "bytes of code", "rounding", "against derivative", "µs a call"):
-        table.add_column(name, justify="left" if name == "kernel" else "right")
+    table = Table(title="Errors are relative to the output's largest entry; times are of one thread",
+                  title_justify="left", box=box.SIMPLE_HEAD)
+    for name in ("kernel", "operations", "bytes of code", "rounding", "50 digits", "µs a call"):
+        table.add_column(name, justify="left" if name == "kernel" else "right", no_wrap=True)
     for row in rows:
         operations = sum(n for key, n in row.items() if key in ("add", "mul", "div", "sqrt"))
         errors = [f.errors for f in report.findings if f.kernel == row["kernel"]]

@@ -57,24 +57,26 @@ def render(every: list[Derived]) -> dict[str, str]:
     return emit.render(every, [d.family.name for d in every], lambda _: None, like=manifest()["tables"])
 
 
-def compile_shared(files: dict[str, str], folder: Path) -> Path:
-    """Compile the C files of a folder, one process each, and link them. Raises CompilerError.
-
-    The name holds a hash of the file, since a process that has one of that name open gets no other.
-    """
+def compile_units(files: dict[str, str], folder: Path, work: Path) -> list[Path]:
+    """Compile the C files of a folder to object files in another, one process each. Raises CompilerError."""
     started = []
     for name in sorted(files):
         if name.endswith(".c"):
-            command = [*compiler(), *FLAGS, f"-I{folder}", "-c", str(folder / name), "-o", str(folder / f"{name}.o")]
+            command = [*compiler(), *FLAGS, f"-I{folder}", "-c", str(folder / name), "-o", str(work / f"{name}.o")]
             started.append((name, subprocess.Popen(command, stderr=subprocess.PIPE, text=True)))
     for name, process in started:
         _finish(name, process)
-    objects = [str(folder / f"{name}.o") for name, _ in started]
+    return [work / f"{name}.o" for name, _ in started]
+
+
+def link_shared(units: list[Path], folder: Path) -> Path:
+    """Link object files to a shared library in a folder. Raises CompilerError.
+
+    The name holds a hash of the file, since a process that has one of that name open gets no other.
+    """
     linked = folder / "kernels.so"
-    _finish(linked.name, subprocess.Popen([*compiler(), "-shared", *objects, "-lm", "-o", str(linked)],
+    _finish(linked.name, subprocess.Popen([*compiler(), "-shared", *map(str, units), "-lm", "-o", str(linked)],
                                           stderr=subprocess.PIPE, text=True))
-    for file in objects:
-        os.unlink(file)
     return linked.rename(folder / f"kernels-{_digest(linked)[:12]}.so")
 
 
