@@ -29,7 +29,7 @@ class LibraryError(FunicularError, ValueError):
         super().__init__(cause, remedy)
 
     def __str__(self) -> str:
-        return "; ".join(self.args)
+        return "library " + "; ".join(self.args)
 
 
 class Kernel:
@@ -79,7 +79,7 @@ def load(directory: str | os.PathLike) -> Library:
     try:
         text = (path / MANIFEST).read_bytes()
     except OSError as error:
-        raise LibraryError(f'"{directory}" holds no library: {MANIFEST} cannot be read ({error.strerror})',
+        raise LibraryError(f'"{directory}" is none: {MANIFEST} cannot be read ({error.strerror})',
                            "make one with " + COMMAND.format(spec="FILE", out=directory)) from None
     if _loaded.get(str(path), (b"",))[0] != text:
         _loaded[str(path)] = text, _open(path, text)
@@ -106,17 +106,17 @@ def _open(path: Path, text: bytes) -> Library:
         made, file, digest = content["interface"], path / content["library"]["file"], content["library"]["sha256"]
         again = "make it anew with " + COMMAND.format(spec=content["library"]["spec"], out=path)
     except (ValueError, KeyError, TypeError):
-        raise LibraryError(f'"{path}" holds no library: its {MANIFEST} is not that of one',
+        raise LibraryError(f'"{path}" is none: its {MANIFEST} is not that of a library',
                            "make one with " + COMMAND.format(spec="FILE", out=path)) from None
     if made != elements.manifest()["interface"]:
-        raise LibraryError(f'the library in "{path}" was made for another version of funicular: its tables of kernels '
+        raise LibraryError(f'"{path}" was made for another version of funicular: its tables of kernels '
                            f"are laid out as {made}, here as {elements.manifest()['interface']}", again)
     try:
         if hashlib.sha256(file.read_bytes()).hexdigest() != digest:
-            raise LibraryError(f'the library in "{path}" is damaged: {file.name} is not the file that was made', again)
+            raise LibraryError(f'"{path}" is damaged: {file.name} is not the file that was made', again)
         shared = ctypes.CDLL(str(file))
     except OSError as error:
-        raise LibraryError(f'the library in "{path}" cannot be loaded here: {error}', again) from None
+        raise LibraryError(f'"{path}" cannot be loaded here: {error}', again) from None
     kernels = SimpleNamespace(**{name: Kernel(shared, name, entry) for name, entry in content["kernels"].items()})
     return Library(path, elements.of_manifest(content), kernels,
                    ctypes.addressof(ctypes.c_char.in_dll(shared, "fu_all")))

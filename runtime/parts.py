@@ -22,11 +22,12 @@ EXACT = 1e-9
 
 
 def _library(value: Any) -> str | None:
-    """A directory, as an absolute path; what is in it is looked at with the element."""
+    """The directory of a library, as an absolute path."""
     if value is None:
         return None
     if not isinstance(value, str | os.PathLike):
         raise ValueError(f"must be a directory, got {value!r}")
+    of_library(os.path.abspath(value))
     return os.path.abspath(value)
 
 
