@@ -17,8 +17,8 @@ SECTION_DEGREE = {"element": 2, "continuum": 1}  # in y, z: what the section mom
 SIZES = {"nodal_vectors": (tuple, "a tuple of names"), "basis": (tuple, "a tuple of monomials"),
          "laws": (tuple, "a tuple of names or classes"), "name": (str, "text"), "doc": (str, "text"),
          "source": (str, "text"), "director": (str, "the name of a nodal vector, or empty")}
-C_WORDS = {"auto", "case", "char", "const", "default", "do", "double", "enum", "extern", "float", "goto", "inline", "int",
-           "long", "register", "restrict", "short", "signed", "sizeof", "static", "struct", "switch", "typedef",
+C_WORDS = {"auto", "case", "char", "const", "default", "do", "double", "enum", "extern", "float", "goto", "inline",
+           "int", "long", "register", "restrict", "short", "signed", "sizeof", "static", "struct", "switch", "typedef",
            "union", "unsigned", "void", "volatile"}
 
 
@@ -82,8 +82,8 @@ def _monomials(element: Element) -> Iterator[tuple[str, str]]:
         f, here = sp.sympify(given), f"basis[{k}] = {given}"
         strange = sorted(map(str, f.free_symbols - {x, y, z}))
         if strange:
-            yield (f"r is not linear in the nodal vectors: {here} depends on {', '.join(strange)}, but the basis must be "
-                   "the same in every configuration", f"give monomials of {', '.join(map(str, allowed))} alone")
+            yield (f"r is not linear in the nodal vectors: {here} depends on {', '.join(strange)}, but the basis "
+                   "must be the same in every configuration", f"give monomials of {', '.join(map(str, allowed))} alone")
         if not f.is_polynomial(x, y, z):
             yield f"{here} is not a polynomial", f"give monomials of {', '.join(map(str, allowed))}"
         poly = sp.Poly(f, x, y, z)
@@ -135,7 +135,8 @@ def _laws(element: Element) -> Iterator[tuple[str, str]]:
         name, like = law_name(law), law_like(law)
         if like.startswith(("green_", "engineering_")):
             if across:
-                yield (f"law {name} knows the centreline alone, but the basis has {', '.join(sorted(map(str, across)))}: "
+                more = ", ".join(sorted(map(str, across)))
+                yield (f"law {name} knows the centreline alone, but the basis has {more}: "
                        "nothing resists the deformation of the section", "take the law continuum")
             continue
         if len(across) < element.dim - 1:

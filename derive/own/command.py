@@ -46,7 +46,8 @@ def main(spec: Path, out: Path) -> None:
     except CompilerError as problem:
         raise SpecError(str(spec), f"cannot be compiled: {problem}") from None
     except OSError as problem:
-        raise SpecError(str(out), f"cannot be written: {problem.strerror or problem}", "give another --out DIR") from None
+        cause = f"cannot be written: {problem.strerror or problem}"
+        raise SpecError(str(out), cause, "give another --out DIR") from None
     console.print(f"written: {out}, {time.perf_counter() - begin:.0f} s. In a scene: element = "
                   f'"{next(iter(families))}", library = "{out}"')
 

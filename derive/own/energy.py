@@ -6,8 +6,6 @@ are those of verification (two bent elements and the straight reference), the la
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import mpmath
 import numpy as np
 import sympy as sp
