@@ -87,7 +87,7 @@ def main(names: list[str], generated: Path | None = None) -> int:
         print(f"funicular verify: {unknown.args[0]}", file=sys.stderr)
         return 1
     try:
-        failures = _run(list(wanted.values()), generated or folder())
+        failures = examined(list(wanted.values()), generated or folder()).show()
     except CompilerError as problem:
         print(f"funicular verify: {problem}", file=sys.stderr)
         return 1
@@ -95,31 +95,36 @@ def main(names: list[str], generated: Path | None = None) -> int:
     return 1 if failures else 0
 
 
-def _run(wanted: list[Family], generated: Path) -> int:
+Catalogue = Callable[[], dict[str, Family]]
+
+
+def examined(wanted: list[Family], generated: Path, catalogue: Catalogue = families) -> Report:
+    """Everything found about families whose C is in `generated`; `catalogue` finds them by name in other processes."""
     report = Report()
     with report.progress(len(wanted)) as progress:
-        for name, (outputs, items) in _results(wanted, generated, progress).items():
+        for name, (outputs, items) in _results(wanted, generated, catalogue, progress).items():
             report.missing(outputs)
             for item in items:
                 report.add(name, item)
-    return report.show()
+    return report
 
 
 Items = list[Finding | tuple[str, float, float]]
 
 
-def _results(wanted: list[Family], generated: Path, progress: Callable[[], None]) -> dict[str, tuple[list[str], Items]]:
+def _results(wanted: list[Family], generated: Path, catalogue: Catalogue,
+             progress: Callable[[], None]) -> dict[str, tuple[list[str], Items]]:
     """What `_examined` returns, by family in the order wanted; one process a core, the longest files first."""
     names = [family.name for family in wanted]
     found = {}
     workers = min(os.cpu_count() or 1, len(names))
     if workers == 1:
         for name in names:
-            found[name] = _examined(name, generated)
+            found[name] = _examined(name, generated, catalogue)
             progress()
         return found
     with ProcessPoolExecutor(workers, get_context("spawn")) as pool:
-        waiting = {pool.submit(_examined, name, generated): name for name in
+        waiting = {pool.submit(_examined, name, generated, catalogue): name for name in
                    sorted(names, key=lambda name: -_size(generated / f"{name}.c"))}
         try:
             for future in as_completed(waiting):
@@ -135,11 +140,11 @@ def _size(path: Path) -> int:
     return path.stat().st_size if path.is_file() else 0
 
 
-def _examined(name: str, generated: Path) -> tuple[list[str], Items]:
+def _examined(name: str, generated: Path, catalogue: Catalogue) -> tuple[list[str], Items]:
     """Outputs of a family that no relation is about, findings and invariances."""
     # what a broken kernel returns is a finding, not a warning
     with (tempfile.TemporaryDirectory(prefix="funicular-verify-") as work, mpmath.workdps(DIGITS),
           np.errstate(all="ignore")):
-        subject = prepare(families()[name], generated, Path(work))
+        subject = prepare(catalogue()[name], generated, Path(work))
         return uncovered(subject.family, subject.programs), [
             item.plain() if isinstance(item, Finding) else item for item in verify(subject)]

@@ -42,29 +42,36 @@ def density(D, E: np.ndarray):
 
 def continuum_energy(element: Element, law: str, s):
     """eq 5-7 by quadrature."""
-    shape = Shape(element, s["l"].item())
     total = mp.mpf(0)
-    for at, weight in shape.points(*s["rectangle"]):
-        F = s["e"].T.dot(shape.gradient(at))
-        total += weight * density(s["D"], (F.T.dot(F) - np.eye(element.dim, dtype=int)) / 2)
+    for N, weight, D in _material_points(element, s):
+        F = s["e"].T.dot(N)
+        total += weight * density(D, (F.T.dot(F) - np.eye(element.dim, dtype=int)) / 2)
     return total
 
 
 def continuum_dissipation(element: Element, law: str, s):
     """Power of the viscous stress tau D dE/dt by quadrature."""
-    shape = Shape(element, s["l"].item())
     total = mp.mpf(0)
-    for at, weight in shape.points(*s["rectangle"]):
-        N = shape.gradient(at)
+    for N, weight, D in _material_points(element, s):
         F, rate = s["e"].T.dot(N), s["v"].T.dot(N)
-        total += weight * 2 * density(s["D"], (F.T.dot(rate) + rate.T.dot(F)) / 2)
+        total += weight * 2 * density(D, (F.T.dot(rate) + rate.T.dot(F)) / 2)
     return s["tau"].item() * total
+
+
+def _material_points(element: Element, s) -> Iterator[tuple]:
+    """Gradient of the shape functions, weight and elastic constants: D[0] over the volume, D[1] on the axis alone."""
+    shape = Shape(element, s["l"].item())
+    height, width = s["rectangle"]
+    for at, weight in shape.points(height, width):
+        yield shape.gradient(at), weight, s["D"][0]
+    for t, weight in gauss(2 * max(p[0] for p in shape.powers) + 1):
+        yield shape.gradient((shape.l / 2 * (1 + t), 0, 0)), weight * shape.l / 2 * height * width, s["D"][1]
 
 
 def cable_energy(element: Element, law: str, s):
     """1/2 EA strain^2 + 1/2 EI curvature^2 along the axis."""
     strain, curvature = law.split("_")
-    EA, EI = _stiffness(s)
+    EA, EI = s["S"]
     kernels = LAWS[law](Gram(element))
     n_axial, n_bending = len(kernels.axial_points), len(kernels.bending_points)
     # two points more, where the kernels' number is claimed to be exact
@@ -85,7 +92,7 @@ def cable_energy(element: Element, law: str, s):
 def cable_dissipation(element: Element, law: str, s):
     """EA tau strain'^2 + EI tau |D_t r''|^2, D_t the rate as seen from a frame that turns with the tangent."""
     strain, _ = law.split("_")
-    EA, EI = _stiffness(s)
+    EA, EI = s["S"]
     degree = max(p[0] for p in Shape(element, s["l"].item()).powers)
     total = mp.mpf(0)
     for weight, r_x, _, v_x, _ in _along(element, s, degree):
@@ -95,13 +102,6 @@ def cable_dissipation(element: Element, law: str, s):
         seen = v_xx - cross(cross(r_x, v_x) / r_x.dot(r_x), r_xx)  # the tangent turns with r' x dr'/dt / r'.r'
         total += weight * EI * seen.dot(seen)
     return s["tau"].item() * total
-
-
-def _stiffness(s) -> tuple:
-    """EA and EI of a rectangle; its height stands along y."""
-    height, width = s["rectangle"]
-    E = s["youngs_modulus"].item()
-    return E * height * width, E * width * height**3 / 12
 
 
 def _along(element: Element, s, n: int) -> Iterator[tuple]:

@@ -45,19 +45,39 @@ class Report:
         """Outputs without a relation."""
         self.uncovered += outputs
 
+    @property
+    def failures(self) -> int:
+        """How many findings, outputs and invariances are not as they must be."""
+        return len(self._failed) + len(self.uncovered) + len(self._broken)
+
+    @property
+    def first_failure(self) -> str:
+        """The first of them in a line."""
+        for f in self._failed:
+            return f"{f.kernel}: {f.place(f.worst_entry)} is not {f.relation.text} ({', '.join(f.failed)})"
+        for output in self.uncovered:
+            return f"{output} is not verified"
+        return "; ".join(f"{family}: {text}" for family, text, *_ in self._broken[:1])
+
+    @property
+    def _failed(self) -> list[Finding]:
+        return [f for f in self.findings if f.failed]
+
+    @property
+    def _broken(self) -> list[tuple[str, str, float, float]]:
+        return [i for i in self.invariances if not i[2] <= i[3]]
+
     def show(self) -> int:
         """Print everything; returns the number of failures."""
         self.out.print(self._derivatives())
         self.out.print(self._invariances())
-        failed = [f for f in self.findings if f.failed]
-        for finding in failed:
+        for finding in self._failed:
             self._detail(finding)
         for output in self.uncovered:
             self.out.print(f"{output}: no relation verifies this output; add one in verify_relations.py")
-        broken = [i for i in self.invariances if not i[2] <= i[3]]
-        for family, text, error, ceiling in broken:
+        for family, text, error, ceiling in self._broken:
             self.out.print(f"{family}: {text}: {error:.2g}, may be {ceiling:.2g}")
-        return len(failed) + len(self.uncovered) + len(broken)
+        return self.failures
 
     def _derivatives(self) -> Table:
         wide = self.out.width >= WIDE

@@ -124,14 +124,24 @@ def element_state(element: Element, random: np.random.Generator) -> dict[str, np
 
 def _constants(family: Family, exact: Numbers, state: dict, random: np.random.Generator) -> dict[str, np.ndarray]:
     dim = family.element.dim
-    pairs = dim * (dim - 1) // 2
-    D = np.concatenate([random.uniform(40, 60, dim), random.uniform(5, 15, pairs), random.uniform(10, 20, pairs)])
-    made = {"D": D, "youngs_modulus": np.float64(53.0), "a": random.normal(size=(family.element.n_vectors, dim))}
+    made = {"a": random.normal(size=(family.element.n_vectors, dim))}
+    if family.role == "law":
+        made |= section_stiffness(family.like, dim, state["section"], random)
     s = exact.state(state | made)
     for kernel, output in (("stiffness", "A"), ("mass", "m")):
         if kernel in exact.programs:
             made[output] = exact(kernel, s)[output].astype(float)
     return made
+
+
+def section_stiffness(law: str, dim: int, moments: np.ndarray, random: np.random.Generator) -> dict[str, np.ndarray]:
+    """Argument S of a law; for a continuum also D, elastic constants over the section and on the axis alone."""
+    if law != "continuum":
+        return {"S": 53.0 * moments[:2]}
+    pairs = dim * (dim - 1) // 2
+    D = np.array([np.concatenate([random.uniform(40, 60, dim), random.uniform(5, 15, pairs),
+                                  random.uniform(10, 20, pairs)]) for _ in range(2)])
+    return {"S": np.outer(D[0], moments) + np.outer(D[1], moments * [1, 0, 0, 0, 0, 0]), "D": D}
 
 
 def loads(element: Element, random: np.random.Generator) -> dict[str, np.ndarray]:

@@ -62,7 +62,7 @@ void cable8p_follower_force(fu_real l, fu_real x, const fu_real *e, const fu_rea
 void cable8p_moment(fu_real l, fu_real x, const fu_real *e, const fu_real *M, fu_real *f, fu_real *K);
 
 /* beam24_continuum: elastic law continuum on beam24 */
-void beam24_continuum_stiffness(fu_real l, const fu_real *section, const fu_real *D, fu_real *A);
+void beam24_continuum_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void beam24_continuum_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void beam24_continuum_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void beam24_continuum_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
@@ -71,7 +71,7 @@ void beam24_continuum_damping_tangent(fu_real l, const fu_real *e, const fu_real
 void beam24_continuum_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 
 /* cable12_green_exact: elastic law green_exact on cable12 */
-void cable12_green_exact_stiffness(fu_real youngs_modulus, const fu_real *section, fu_real *A);
+void cable12_green_exact_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void cable12_green_exact_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable12_green_exact_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable12_green_exact_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
@@ -80,7 +80,7 @@ void cable12_green_exact_damping_tangent(fu_real l, const fu_real *e, const fu_r
 void cable12_green_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 
 /* cable12_green_linear: elastic law green_linear on cable12 */
-void cable12_green_linear_stiffness(fu_real youngs_modulus, const fu_real *section, fu_real *A);
+void cable12_green_linear_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void cable12_green_linear_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable12_green_linear_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable12_green_linear_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
@@ -89,7 +89,7 @@ void cable12_green_linear_damping_tangent(fu_real l, const fu_real *e, const fu_
 void cable12_green_linear_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 
 /* cable12_engineering_exact: elastic law engineering_exact on cable12 */
-void cable12_engineering_exact_stiffness(fu_real youngs_modulus, const fu_real *section, fu_real *A);
+void cable12_engineering_exact_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void cable12_engineering_exact_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable12_engineering_exact_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable12_engineering_exact_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
@@ -98,7 +98,7 @@ void cable12_engineering_exact_damping_tangent(fu_real l, const fu_real *e, cons
 void cable12_engineering_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 
 /* cable12_engineering_linear: elastic law engineering_linear on cable12 */
-void cable12_engineering_linear_stiffness(fu_real youngs_modulus, const fu_real *section, fu_real *A);
+void cable12_engineering_linear_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void cable12_engineering_linear_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable12_engineering_linear_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable12_engineering_linear_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
@@ -107,7 +107,7 @@ void cable12_engineering_linear_damping_tangent(fu_real l, const fu_real *e, con
 void cable12_engineering_linear_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 
 /* cable18_green_exact: elastic law green_exact on cable18 */
-void cable18_green_exact_stiffness(fu_real youngs_modulus, const fu_real *section, fu_real *A);
+void cable18_green_exact_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void cable18_green_exact_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable18_green_exact_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable18_green_exact_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
@@ -116,7 +116,7 @@ void cable18_green_exact_damping_tangent(fu_real l, const fu_real *e, const fu_r
 void cable18_green_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 
 /* cable18_engineering_exact: elastic law engineering_exact on cable18 */
-void cable18_engineering_exact_stiffness(fu_real youngs_modulus, const fu_real *section, fu_real *A);
+void cable18_engineering_exact_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void cable18_engineering_exact_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable18_engineering_exact_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable18_engineering_exact_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
@@ -125,7 +125,7 @@ void cable18_engineering_exact_damping_tangent(fu_real l, const fu_real *e, cons
 void cable18_engineering_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 
 /* beam12p_continuum: elastic law continuum on beam12p */
-void beam12p_continuum_stiffness(fu_real l, const fu_real *section, const fu_real *D, fu_real *A);
+void beam12p_continuum_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void beam12p_continuum_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void beam12p_continuum_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void beam12p_continuum_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
@@ -134,7 +134,7 @@ void beam12p_continuum_damping_tangent(fu_real l, const fu_real *e, const fu_rea
 void beam12p_continuum_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 
 /* cable8p_green_exact: elastic law green_exact on cable8p */
-void cable8p_green_exact_stiffness(fu_real youngs_modulus, const fu_real *section, fu_real *A);
+void cable8p_green_exact_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void cable8p_green_exact_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable8p_green_exact_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable8p_green_exact_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
@@ -143,7 +143,7 @@ void cable8p_green_exact_damping_tangent(fu_real l, const fu_real *e, const fu_r
 void cable8p_green_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 
 /* cable8p_green_linear: elastic law green_linear on cable8p */
-void cable8p_green_linear_stiffness(fu_real youngs_modulus, const fu_real *section, fu_real *A);
+void cable8p_green_linear_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void cable8p_green_linear_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable8p_green_linear_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable8p_green_linear_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
@@ -152,7 +152,7 @@ void cable8p_green_linear_damping_tangent(fu_real l, const fu_real *e, const fu_
 void cable8p_green_linear_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 
 /* cable8p_engineering_exact: elastic law engineering_exact on cable8p */
-void cable8p_engineering_exact_stiffness(fu_real youngs_modulus, const fu_real *section, fu_real *A);
+void cable8p_engineering_exact_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void cable8p_engineering_exact_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable8p_engineering_exact_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable8p_engineering_exact_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
@@ -161,7 +161,7 @@ void cable8p_engineering_exact_damping_tangent(fu_real l, const fu_real *e, cons
 void cable8p_engineering_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 
 /* cable8p_engineering_linear: elastic law engineering_linear on cable8p */
-void cable8p_engineering_linear_stiffness(fu_real youngs_modulus, const fu_real *section, fu_real *A);
+void cable8p_engineering_linear_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void cable8p_engineering_linear_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable8p_engineering_linear_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable8p_engineering_linear_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
@@ -231,6 +231,7 @@ typedef struct {
 /* What the engine needs of a law. */
 typedef struct {
     const char *name;
+    void (*stiffness)(fu_real l, const fu_real *S, fu_real *A);
     void (*energy)(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
     void (*elastic_force)(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
     void (*elastic_tangent)(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);

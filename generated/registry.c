@@ -66,6 +66,7 @@ static const fu_element elements[] = {
 
 static const fu_law laws[] = {
     {"beam24_continuum",
+     beam24_continuum_stiffness,
      beam24_continuum_energy,
      beam24_continuum_elastic_force,
      beam24_continuum_elastic_tangent,
@@ -74,6 +75,7 @@ static const fu_law laws[] = {
      beam24_continuum_dissipation
     },
     {"cable12_green_exact",
+     cable12_green_exact_stiffness,
      cable12_green_exact_energy,
      cable12_green_exact_elastic_force,
      cable12_green_exact_elastic_tangent,
@@ -82,6 +84,7 @@ static const fu_law laws[] = {
      cable12_green_exact_dissipation
     },
     {"cable12_green_linear",
+     cable12_green_linear_stiffness,
      cable12_green_linear_energy,
      cable12_green_linear_elastic_force,
      cable12_green_linear_elastic_tangent,
@@ -90,6 +93,7 @@ static const fu_law laws[] = {
      cable12_green_linear_dissipation
     },
     {"cable12_engineering_exact",
+     cable12_engineering_exact_stiffness,
      cable12_engineering_exact_energy,
      cable12_engineering_exact_elastic_force,
      cable12_engineering_exact_elastic_tangent,
@@ -98,6 +102,7 @@ static const fu_law laws[] = {
      cable12_engineering_exact_dissipation
     },
     {"cable12_engineering_linear",
+     cable12_engineering_linear_stiffness,
      cable12_engineering_linear_energy,
      cable12_engineering_linear_elastic_force,
      cable12_engineering_linear_elastic_tangent,
@@ -106,6 +111,7 @@ static const fu_law laws[] = {
      cable12_engineering_linear_dissipation
     },
     {"cable18_green_exact",
+     cable18_green_exact_stiffness,
      cable18_green_exact_energy,
      cable18_green_exact_elastic_force,
      cable18_green_exact_elastic_tangent,
@@ -114,6 +120,7 @@ static const fu_law laws[] = {
      cable18_green_exact_dissipation
     },
     {"cable18_engineering_exact",
+     cable18_engineering_exact_stiffness,
      cable18_engineering_exact_energy,
      cable18_engineering_exact_elastic_force,
      cable18_engineering_exact_elastic_tangent,
@@ -122,6 +129,7 @@ static const fu_law laws[] = {
      cable18_engineering_exact_dissipation
     },
     {"beam12p_continuum",
+     beam12p_continuum_stiffness,
      beam12p_continuum_energy,
      beam12p_continuum_elastic_force,
      beam12p_continuum_elastic_tangent,
@@ -130,6 +138,7 @@ static const fu_law laws[] = {
      beam12p_continuum_dissipation
     },
     {"cable8p_green_exact",
+     cable8p_green_exact_stiffness,
      cable8p_green_exact_energy,
      cable8p_green_exact_elastic_force,
      cable8p_green_exact_elastic_tangent,
@@ -138,6 +147,7 @@ static const fu_law laws[] = {
      cable8p_green_exact_dissipation
     },
     {"cable8p_green_linear",
+     cable8p_green_linear_stiffness,
      cable8p_green_linear_energy,
      cable8p_green_linear_elastic_force,
      cable8p_green_linear_elastic_tangent,
@@ -146,6 +156,7 @@ static const fu_law laws[] = {
      cable8p_green_linear_dissipation
     },
     {"cable8p_engineering_exact",
+     cable8p_engineering_exact_stiffness,
      cable8p_engineering_exact_energy,
      cable8p_engineering_exact_elastic_force,
      cable8p_engineering_exact_elastic_tangent,
@@ -154,6 +165,7 @@ static const fu_law laws[] = {
      cable8p_engineering_exact_dissipation
     },
     {"cable8p_engineering_linear",
+     cable8p_engineering_linear_stiffness,
      cable8p_engineering_linear_energy,
      cable8p_engineering_linear_elastic_force,
      cable8p_engineering_linear_elastic_tangent,

@@ -148,6 +148,26 @@ STATUS = {FU_DONE: "completed", FU_END_OF_CABLE: "end_of_cable", FU_NO_CONVERGEN
 JOINT_OUTPUTS = ("s_rate", "s_acceleration", "force", "multiplier", "residual")
 
 
+cdef const void *_table(address, role, name) except NULL:
+    """Kernels of an element, law or slide by name, in a library's fu_all at an address, or in this package's (0)."""
+    cdef const fu_tables *tables = <const fu_tables *><size_t>address if address else TABLES
+    cdef int k
+    wanted = name.encode()
+    if role == "element":
+        for k in range(tables.n_elements):
+            if strcmp(tables.elements[k].name, wanted) == 0:
+                return &tables.elements[k]
+    elif role == "law":
+        for k in range(tables.n_laws):
+            if strcmp(tables.laws[k].name, wanted) == 0:
+                return &tables.laws[k]
+    else:
+        for k in range(tables.n_slides):
+            if strcmp(tables.slides[k].name, wanted) == 0:
+                return &tables.slides[k]
+    raise ValueError(f"no kernels for {role} {name}")
+
+
 cdef class Engine:
     """One run of a model (see model.py for the fields that it reads)."""
 
@@ -176,15 +196,8 @@ cdef class Engine:
         self.kept, self.arrays = [], {}
         for i, cable in enumerate(model.cables):
             c = &self.cables[i]
-            name, law = cable.element.encode(), f"{cable.element}_{cable.law}".encode()
-            for k in range(TABLES.n_elements):
-                if strcmp(TABLES.elements[k].name, name) == 0:
-                    c.kernel = &TABLES.elements[k]
-            for k in range(TABLES.n_laws):
-                if strcmp(TABLES.laws[k].name, law) == 0:
-                    c.law = &TABLES.laws[k]
-            if c.kernel is NULL or c.law is NULL:
-                raise ValueError(f"no kernels for element {cable.element} with law {cable.law}")
+            c.kernel = <const fu_element *>_table(cable.tables, "element", cable.element)
+            c.law = <const fu_law *>_table(cable.tables, "law", f"{cable.element}_{cable.law}")
             c.n_elements, c.first, c.length, c.tau = cable.n_elements, cable.first, cable.length, cable.tau
             c.per_node = c.kernel.vectors * c.kernel.dim
             c.coordinates = c.kernel.nodes * c.per_node
@@ -198,12 +211,7 @@ cdef class Engine:
                 r.gravity[k] = body.gravity[k]
         for i, joint in enumerate(model.joints):
             j = &self.joints[i]
-            name = joint.kernel.encode()
-            for k in range(TABLES.n_slides):
-                if strcmp(TABLES.slides[k].name, name) == 0:
-                    j.kernel = &TABLES.slides[k]
-            if j.kernel is NULL:
-                raise ValueError(f"no kernels for {joint.kernel}")
+            j.kernel = <const fu_slide *>_table(model.cables[joint.cable].tables, "slide", joint.kernel)
             if j.kernel.coordinates + 1 > FU_MAX_COORDINATES:
                 raise ValueError(f"{joint.kernel}: more coordinates than the engine's {FU_MAX_COORDINATES}")
             j.cable, j.rider, j.mass = joint.cable, joint.rider, joint.mass

@@ -11,10 +11,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
+from funicular.elements import gauge
 from funicular.errors import FunicularWarning, SceneError
-from funicular.parts import ELEMENTS, Cable
+from funicular.libraries import kernels_of, tables_of
+from funicular.parts import Cable
 from funicular.scene import Scene
 from funicular.settings import RunSettings
+from funicular.stiffness import section_stiffness
 
 DIM = 3
 MOST_OUTPUT = 4e9  # bytes
@@ -36,6 +39,8 @@ class CableModel:
     A: np.ndarray
     gravity: np.ndarray
     shape: tuple[int, int, int]
+    vectors: tuple[str, ...]
+    tables: int = 0
 
     @property
     def coordinates(self) -> slice:
@@ -177,30 +182,24 @@ def build(scene: Scene) -> Model:
 
 
 def _cable(cable: Cable, gravity: np.ndarray, first: int) -> CableModel:
-    from funicular.generated import kernels
-
+    kernels, vectors = kernels_of(cable.library), cable.kind_of_element.nodal_vectors
     element, law, length = cable.element, cable.law, cable.length / cable.elements
     section, density = cable.section.moments(), cable.material.density
     stiffness = getattr(kernels, f"{element}_{law}_stiffness")
     return CableModel(
         cable.name, element, law, cable.elements, first, length, cable.material.damping_time,
         m=getattr(kernels, f"{element}_mass")(length, density, section),
-        A=(stiffness(length, section, cable.material.elasticity()) if law == "continuum"
-           else stiffness(cable.material.youngs_modulus, section)),
+        A=stiffness(length, section_stiffness(cable.kind_of_element.laws[law], cable.section, cable.material)),
         gravity=getattr(kernels, f"{element}_gravity")(length, density, section, gravity),
-        shape=(cable.elements + 1, len(ELEMENTS[element]), DIM))
+        shape=(cable.elements + 1, len(vectors), DIM), vectors=vectors, tables=tables_of(cable.library))
 
 
 def _cable_weights(cable: Cable) -> np.ndarray:
-    """How far a unit of each nodal vector moves a point: 1 for positions, and lengths for the slopes.
-
-    A unit of r_x moves the middle of an element by l/8, of r_xx by about l^2/64; of r_y or r_z the surface by a
-    radius of gyration.
-    """
-    length = cable.length / cable.elements
+    """How far a unit of each nodal vector moves a point: 1 for positions, and lengths for the slopes."""
     area, iyy, izz = cable.section.moments()[:3]
-    unit = {"r": 1.0, "r_x": length / 8, "r_xx": length**2 / 64, "r_y": np.sqrt(iyy / area), "r_z": np.sqrt(izz / area)}
-    return np.repeat([unit[name] for _ in range(cable.elements + 1) for name in ELEMENTS[cable.element]], DIM)
+    unit = gauge(cable.kind_of_element.nodal_vectors, cable.length / cable.elements, np.sqrt(iyy / area),
+                 np.sqrt(izz / area))
+    return np.repeat(np.tile(list(unit), cable.elements + 1), DIM)
 
 
 def _rigid_weights(body) -> np.ndarray:
@@ -293,7 +292,7 @@ def _recording(
             "nodal_vectors": q[:, at].reshape(shape),
             "nodal_velocity": v[:, at].reshape(shape),
             "node_s": cable.length * np.arange(cable.shape[0]),
-            "vector_names": ELEMENTS[cable.element],
+            "vector_names": cable.vectors,
         }
     bodies = {}
     for body in model.rigids:

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
+import os
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
+from funicular.elements import ElementKind, of_library
+from funicular.errors import near
 from funicular.materials import Material
 from funicular.rotations import rotate
 from funicular.sections import AnySection
 from funicular.validation import Count, Name, Part, Reference, Vector, finite, one_of, positive, show, vector, xyz
-from pydantic import Field, PlainValidator, model_validator
-
-ELEMENTS = {"beam24": ("r", "r_x", "r_y", "r_z"), "cable12": ("r", "r_x"), "cable18": ("r", "r_x", "r_xx")}
-"""The nodal vectors of each element, in the order of its coordinates."""
+from pydantic import Field, PlainValidator, ValidationInfo, model_validator
 
 Quaternion = tuple[float, float, float, float]
 
@@ -21,12 +21,34 @@ EXACT = 1e-9
 """Lengths that differ by this part of the cable's length are taken as equal."""
 
 
+def _library(value: Any) -> str | None:
+    """A directory, as an absolute path; what is in it is looked at with the element."""
+    if value is None:
+        return None
+    if not isinstance(value, str | os.PathLike):
+        raise ValueError(f"must be a directory, got {value!r}")
+    return os.path.abspath(value)
+
+
+def _element(value: Any, info: ValidationInfo) -> str:
+    """An element's name in the library, or in this package."""
+    library = info.data.get("library")
+    known = [name for name, kind in of_library(library).items() if kind.dim == 3]
+    if not isinstance(value, str):
+        raise ValueError(f"must be a name, got {value!r}", "known: " + ", ".join(known))
+    if value not in known:
+        where = f' in library "{library}"' if library else ""
+        raise ValueError(f'"{value}" is not known{where}', near(value, known))
+    return value
+
+
 class Cable(Part):
     """A straight, stress-free cable from ``start`` to ``end`` (m), of equal elements.
 
     ``up`` is the direction of the section's height; only its part across the axis counts. ``strain``
     ("green" or "engineering") and ``curvature`` ("exact" or "linear") are for the cable elements: which measures
-    their axial and bending stiffness act on, by default green and exact.
+    their axial and bending stiffness act on, by default green and exact. ``library`` is the directory of a library
+    of elements of your own, made by ``funicular derive --spec``, for an ``element`` that stands there.
     """
 
     kind: ClassVar[str] = "cable"
@@ -34,7 +56,8 @@ class Cable(Part):
     start: Annotated[Vector, xyz("m")]
     end: Annotated[Vector, xyz("m")]
     elements: Count
-    element: Annotated[str, one_of(ELEMENTS)] = "beam24"
+    library: Annotated[str | None, PlainValidator(_library)] = None
+    element: Annotated[str, PlainValidator(_element)] = "beam24"
     strain: Annotated[str | None, one_of(("green", "engineering"), optional=True)] = None
     curvature: Annotated[str | None, one_of(("exact", "linear"), optional=True)] = None
     section: AnySection
@@ -58,7 +81,7 @@ class Cable(Part):
 
     @model_validator(mode="after")
     def _element_can(self) -> Cable:
-        cable = self.element.startswith("cable")
+        cable = self.kind_of_element.is_cable
         if not cable and (self.strain or self.curvature):
             raise ValueError(f"strain and curvature are for cable elements, {self.element} is a continuum",
                              'leave them out, or take element="cable12"')
@@ -67,16 +90,21 @@ class Cable(Part):
             if abs(across[0] - across[1]) > EXACT * max(across):
                 raise ValueError(f"{self.element} has one bending stiffness: its section needs equal second moments, "
                                  f"got {show(across, 'm⁴')}", 'take a square, a circle or a tube, or element="beam24"')
-        if self.element == "cable18" and self.curvature == "linear":
-            raise ValueError("cable18 comes with the exact curvature only")
+        if self.law not in self.kind_of_element.laws:
+            raise ValueError(f"{self.element} has no law {self.law}", "known: " + ", ".join(self.kind_of_element.laws))
         return self
+
+    @property
+    def kind_of_element(self) -> ElementKind:
+        """What its element is."""
+        return of_library(self.library)[self.element]
 
     @property
     def law(self) -> str:
         """Name of the elastic law among the element's kernels."""
-        if not self.element.startswith("cable"):
-            return "continuum"
-        return f"{self.strain or 'green'}_{self.curvature or 'exact'}"
+        if self.strain or self.curvature:
+            return f"{self.strain or 'green'}_{self.curvature or 'exact'}"
+        return next(iter(self.kind_of_element.laws))
 
     @property
     def length(self) -> float:
@@ -104,10 +132,9 @@ class Cable(Part):
     def nodal_vectors(self) -> np.ndarray:
         """(nodes, vectors, 3): the nodal vectors of the undeformed cable, r in m and its gradients."""
         i, j, k = self.axes
-        names = ELEMENTS[self.element]
-        straight = {"r_x": i, "r_y": j, "r_z": k, "r_xx": np.zeros(3)}
-        nodes = (straight | {"r": self.point(s)} for s in self.node_s)
-        return np.array([[node[name] for name in names] for node in nodes])
+        slopes = {"r_x": i, "r_y": j, "r_z": k}  # higher derivatives of a straight cable are zero
+        return np.array([[self.point(s) if name == "r" else slopes.get(name, np.zeros(3))
+                          for name in self.kind_of_element.nodal_vectors] for s in self.node_s])
 
     def point(self, s: float) -> np.ndarray:
         """(3,): the point of the undeformed centreline at arc-length ``s``, in m."""

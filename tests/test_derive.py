@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from funicular.derive import drift, emit, sources
 from funicular.derive.families import families
-from funicular.derive.spec import Family, SpecError
+from funicular.derive.spec import Family, FamilyError
 from funicular.derive.stages import Program
 from funicular.derive.verify_compile import compiler
 from operation_ceilings import CEILINGS
@@ -186,10 +186,10 @@ def test_kernels_of_a_role_that_differ_are_refused_or_declared():
         return emit.Derived(Family(name, "", list, (), role="shape", **more), [program], [], "")
 
     square, box = family("square", "a"), family("box", "ab")
-    with pytest.raises(SpecError, match=r'role "shape": .* kernel area .* square has \(fu_real a, fu_real \*A\), '
+    with pytest.raises(FamilyError, match=r'role "shape": .* kernel area .* square has \(fu_real a, fu_real \*A\), '
                                         r"box has \(fu_real a, fu_real b, fu_real \*A\).* Family.own"):
         emit.render([square, box], [], print)
-    with pytest.raises(SpecError, match=r"other has \(none\)"):
+    with pytest.raises(FamilyError, match=r"other has \(none\)"):
         emit.render([square, replace(family("other", "a"), programs=[])], [], print)
     apart = [family("square", "a", own=("area",)), family("box", "ab", own=("area",))]
     header = emit.render(apart, [], print)["kernels.h"]

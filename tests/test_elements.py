@@ -36,10 +36,10 @@ class Elastic:
         if law == "continuum":
             pairs = self.element.dim * (self.element.dim - 1) // 2
             D = np.concatenate([np.full(self.element.dim, YOUNGS_MODULUS), np.full(pairs, 10.0), np.full(pairs, 20.0)])
-            self.A = self("stiffness")(self.l, self.section, D)
+            self.A = self("stiffness")(self.l, np.outer(D, self.section))
             self.energy_scale = np.abs(self.A).max()
         else:
-            self.A = self("stiffness")(YOUNGS_MODULUS, self.section)
+            self.A = self("stiffness")(self.l, YOUNGS_MODULUS * self.section[:2])
             self.energy_scale = max(self.A[0] * self.l, self.A[1] / self.l)
 
     def __call__(self, name: str):

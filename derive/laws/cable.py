@@ -19,6 +19,7 @@ from funicular.derive.gram import Gram
 from funicular.derive.stages import Derivation, Program, jacobian
 
 SOURCE = "DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)"
+STIFFNESS_DOC = "axial and bending stiffness EA, EI"
 
 
 @dataclass(frozen=True)
@@ -73,13 +74,16 @@ class Cable:
 
     def constants(self, program: Program) -> np.ndarray:
         """Input A."""
-        return program.input("A", 2, "N, N m^2", "axial and bending stiffness EA, EI")
+        return program.input("A", 2, "N, N m^2", STIFFNESS_DOC)
+
+    def section_stiffness(self, program: Program) -> np.ndarray:
+        """Input S."""
+        return program.input("S", 2, "N, N m^2", STIFFNESS_DOC)
 
     def set_up(self, program: Program) -> None:
-        """Inputs E, section and output A."""
-        E = program.input("youngs_modulus", (), "Pa", "Young's modulus")
-        section = program.input("section", len(moments.SECTION), moments.SECTION_UNITS, moments.SECTION_DOC)
-        program.output("A", [E * section[0], E * section[1]], "N, N m^2", "axial and bending stiffness EA, EI")
+        """Inputs l, S and output A, which is S."""
+        program.input("l", (), "m", "length of the element")
+        program.output("A", self.section_stiffness(program), "N, N m^2", STIFFNESS_DOC)
 
     # --- the energy through the invariants ------------------------------------------------------------------
 

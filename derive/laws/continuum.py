@@ -36,7 +36,7 @@ class Form:
 
     @cached_property
     def elasticity(self) -> dict[tuple, int]:
-        """Index into the argument D of the law S_ij = D E, by (ij, kl); orthotropic, axes x, y, z."""
+        """Row of the section stiffness S of the law D E, by (ij, kl); orthotropic, axes x, y, z."""
         normal = [(i, i) for i in range(self.gram.element.dim)]
         shear = [ij for ij in self.strain if ij[0] != ij[1]]
         off = [(a, b) for k, a in enumerate(normal) for b in normal[k + 1:]]
@@ -96,16 +96,18 @@ class Continuum:
         return program.input("A", len(self.form.constants), "N m",
                              f"elastic constants from {self.gram.element.name}_{NAME}_stiffness")
 
+    def section_stiffness(self, program: Program) -> np.ndarray:
+        """Input S: elastic constants integrated over the section, times even powers of y and z."""
+        rows = "D11, D22, D33, D12, D13, D23, G12, G13, G23" if self.gram.element.dim == 3 else "D11, D22, D12, G12"
+        return program.input("S", (len(rows.split(", ")), len(moments.SECTION)), "N, N m^2, N m^2, N m^4, N m^4, N m^4",
+                             f"section stiffness: integrals over A of {rows} (rows; orthotropic, axes x, y, z) times "
+                             "1, y^2, z^2, y^4, y^2 z^2, z^4 (columns)")
+
     def set_up(self, program: Program) -> None:
-        """Inputs l, section, D and output A, for any doubly symmetric section and any orthotropic law."""
+        """Inputs l, S and output A, for any doubly symmetric section and any orthotropic law, alike over it or not."""
         length = program.input("l", (), "m", "length of the element")
-        section = program.input("section", len(moments.SECTION), moments.SECTION_UNITS, moments.SECTION_DOC)
-        dim = self.gram.element.dim
-        normal = "D11 D22 D33 D12 D13 D23" if dim == 3 else "D11 D22 D12"
-        shear = "G12 G13 G23" if dim == 3 else "G12"
-        D = program.input("D", len(set(self.form.elasticity.values())), "Pa",
-                          f"orthotropic law, axes x, y, z: {normal} {shear}")
-        A = [sum(sp.Rational(int(c.numerator), int(c.denominator)) * D[k] * section[m] * length**power
+        S = self.section_stiffness(program)
+        A = [sum(sp.Rational(int(c.numerator), int(c.denominator)) * S[k, m] * length**power
                  for (k, m, power), c in entry) for entry in self.form.constants]
         program.stage("integrals of strain products")
         program.output("A", [program.define(f"A_{i}", a) for i, a in enumerate(A)], "N m",

@@ -47,10 +47,12 @@ int main(void)
 {
     const double l = 0.5, section[6] = {2.5e-3, 5.2083333e-7, 5.2083333e-7, 1.953125e-10, 1.0850694e-10, 1.953125e-10};
     const double D[9] = {4e8, 4e8, 4e8, 0, 0, 0, 2e8, 2e8, 2e8};
+    double S[54];
     const double ec[12] = {0, 0, 0, 1, 0, 0, 0.49, 0.05, 0, 1, 0.2, 0}, Ac[2] = {1e6, 208.333};
     const double b[7] = {0.2, 0.01, 0, 1, 0, 0, 0}, u[3] = {0, 0, 0}, f[3] = {0.3, 10, 1};
     beam24_mass(l, 4200, section, m);
-    beam24_continuum_stiffness(l, section, D, A);
+    for (int i = 0; i < 54; ++i) S[i] = D[i / 6] * section[i % 6];
+    beam24_continuum_stiffness(l, S, A);
     for (int k = 0; k < 2; ++k) {
         e[12 * k] = 0.49 * k;
         e[12 * k + 1] = 0.05 * k;
