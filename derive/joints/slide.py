@@ -74,6 +74,13 @@ class Slide:
         self.C_cut = jacobian(self.program, self.C, self.cut)
         return self.C
 
+    def by_arc_length(self) -> np.ndarray:
+        """C_s (eq 22). dr_p/ds = r_x is along i: along j and k it is zero, and would be nothing but rounding."""
+        dim = len(self.r_p)
+        C_s = self.C_cut[:, dim:].dot(self.by_s.array(np.array(self.cut[dim:], dtype=object)))
+        C_s[0] += self.A_t[:, 0].dot(self.t)
+        return C_s
+
     def through_cut(self, derivation: Derivation) -> np.ndarray:
         """Derivative of C along a derivation, by the chain rule through the cut."""
         return self.C_cut.dot(derivation.array(np.array(self.cut, dtype=object)))
@@ -90,7 +97,7 @@ def _constraint(name: str, element: Element) -> Program:
     slide = Slide(p, element)
     C = slide.constraint()
     p.stage("C_s (eq 22)")
-    C_s = slide.through_cut(slide.by_s)
+    C_s = slide.by_arc_length()
     p.output("C", C, "m", "constraint in the tangent frame: C_l, C_m1, C_m2")
     p.output("C_s", C_s, "1", "derivative of C by s")
     p.output("s_step", [-C[0] / p.define("C_ls", C_s[0])], "m", "Newton step of C_l(s) = 0")
@@ -105,8 +112,7 @@ def _terms(name: str, element: Element) -> Program:
     w = slide.rider.velocity(p)
     C = slide.constraint()
     p.stage("C_s and C_q (eq 22-23)")
-    C_s = np.array([p.define(f"C_s{k}", c) for k, c in zip(("l", "m1", "m2"), slide.through_cut(slide.by_s),
-                                                          strict=True)])
+    C_s = np.array([p.define(f"C_s{k}", c) for k, c in zip(("l", "m1", "m2"), slide.by_arc_length(), strict=True)])
     by_q = slide.by_e + slide.by_rider
     C_q = np.stack([[p.define(f"C_q{name}_{k}", c) for name, c in zip(("l", "m1", "m2"), slide.through_cut(d),
                                                                       strict=True)]
