@@ -57,7 +57,7 @@ CEILINGS = {
         "damping_tangent": 1640, "dissipation": 217
     },
     "rigid": {"point": 207, "inertia_force": 45, "inertia_tangent": 48, "kinetic_energy": 31},
-    "slide_beam24_rigid": {"constraint": 615, "terms": 1673, "residual": 213, "tangent": 292},
-    "slide_cable12_rigid": {"constraint": 488, "terms": 1456, "residual": 213, "tangent": 292},
-    "slide_cable18_rigid": {"constraint": 795, "terms": 2449, "residual": 377, "tangent": 599},
+    "slide_beam24_rigid": {"constraint": 603, "terms": 1661, "residual": 213, "tangent": 292},
+    "slide_cable12_rigid": {"constraint": 476, "terms": 1444, "residual": 213, "tangent": 292},
+    "slide_cable18_rigid": {"constraint": 783, "terms": 2437, "residual": 377, "tangent": 599},
 }
