@@ -2,8 +2,7 @@
 
 The files of generated/ are compiled as they stand: a sign changed by hand shows at once. Relations are in
 verify_relations.py and verify_slide.py, methods and their ceilings in verify_methods.py, rounding and its ceilings in
-verify_rounding.py; families come from the
-list in families.py, so a new element or rider is covered by being there.
+verify_rounding.py; families come from the list in families.py, so a new element or rider is covered by being there.
 """
 
 from __future__ import annotations
