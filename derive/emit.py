@@ -211,5 +211,6 @@ def _signatures(derived: Derived) -> dict[str, str]:
 
 
 def _call(program: Program | Recorded) -> str:
-    inputs = [f"{a.name}_" if a.shape == () else f"&{a.name}_[0]" for a in program.inputs]
-    return ", ".join([*inputs, *(f"&{a.name}__[0]" for a in program.outputs)])
+    """The arguments of a C call, from arrays of pointers `a` and `out`."""
+    inputs = [f"*a[{i}]" if a.shape == () else f"a[{i}]" for i, a in enumerate(program.inputs)]
+    return ", ".join([*inputs, *(f"out[{i}]" for i in range(len(program.outputs)))])

@@ -231,7 +231,6 @@ typedef struct {
 /* What the engine needs of a law. */
 typedef struct {
     const char *name;
-    void (*stiffness)(fu_real l, const fu_real *S, fu_real *A);
     void (*energy)(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
     void (*elastic_force)(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
     void (*elastic_tangent)(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
@@ -276,5 +275,13 @@ typedef struct {
     const fu_slide *slides;
 } fu_tables;
 extern const fu_tables fu_all;
+
+/* Every kernel by name, behind one signature: pointers to its inputs (scalars too) and to its outputs, in order. */
+typedef struct {
+    const char *name;
+    void (*call)(const fu_real *const *a, fu_real *const *out);
+} fu_kernel;
+extern const fu_kernel fu_kernels[];
+extern const int fu_n_kernels;
 
 #endif
