@@ -9,6 +9,7 @@ from pathlib import Path
 
 from funicular.derive import emit
 from funicular.derive.families import families, named
+from funicular.derive.spec import FamilyError
 from rich.console import Console
 from rich.progress import Progress
 
@@ -118,7 +119,7 @@ def main(names: list[str], check: bool = False) -> int:
         files = generate(names or (None if check else changed()), show=err.is_terminal)
         if not check:
             written = write(files)
-    except (KeyError, OSError) as problem:
+    except (KeyError, OSError, FamilyError) as problem:
         err.print(f"funicular derive: {problem.args[0] if isinstance(problem, KeyError) else problem}")
         return 1
     unknown = [] if names else extra()

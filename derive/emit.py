@@ -14,7 +14,7 @@ from importlib import metadata
 import jinja2
 from funicular.derive.printer import c_expression
 from funicular.derive.sources import deciding, spec_hash
-from funicular.derive.spec import Family
+from funicular.derive.spec import Family, FamilyError
 from funicular.derive.stages import Argument, Program
 
 TOOLS = ("sympy", "mpmath", "jinja2")
@@ -191,15 +191,31 @@ def _operations_text(program: Program) -> str:
 
 
 def _shared(members: list[Derived]) -> dict[str, str]:
-    """Kernels by suffix, with their parameters, that all families of a role have with the same parameters."""
-    each = [_signatures(d) for d in members]
-    return {name: text for name, text in each[0].items() if all(other.get(name) == text for other in each)}
+    """Kernels of a role by suffix, with their parameters, but for each family's own.
+
+    Raises FamilyError where two families do not agree on them.
+    """
+    first, *others = members
+    kernels = _signatures(first)
+    for other in others:
+        theirs = _signatures(other)
+        for suffix in [*kernels, *theirs]:
+            here, there = kernels.get(suffix, "none"), theirs.get(suffix, "none")
+            if here != there:
+                raise FamilyError(f'role "{first.family.role}": the engine\'s table needs the kernel {suffix} of every '
+                                f"family with the same parameters; {first.family.name} has ({here}), "
+                                f"{other.family.name} has ({there}): derive all families where it is new, or list it "
+                                "in Family.own to keep it out of the table")
+    return kernels
 
 
 def _signatures(derived: Derived) -> dict[str, str]:
-    return {p.name.removeprefix(derived.family.name + "_"): signature(p) for p in derived.programs}
+    """C parameters by kernel, of those that belong in the table."""
+    every = {p.name.removeprefix(derived.family.name + "_"): signature(p) for p in derived.programs}
+    return {suffix: text for suffix, text in every.items() if suffix not in derived.family.own}
 
 
 def _call(program: Program | Recorded) -> str:
-    inputs = [f"{a.name}_" if a.shape == () else f"&{a.name}_[0]" for a in program.inputs]
-    return ", ".join([*inputs, *(f"&{a.name}__[0]" for a in program.outputs)])
+    """The arguments of a C call, from arrays of pointers `a` and `out`."""
+    inputs = [f"*a[{i}]" if a.shape == () else f"a[{i}]" for i, a in enumerate(program.inputs)]
+    return ", ".join([*inputs, *(f"out[{i}]" for i in range(len(program.outputs)))])

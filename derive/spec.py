@@ -18,6 +18,10 @@ COORDINATES = {"x": x, "y": y, "z": z}
 CABLE_LAWS = ("green_exact", "green_linear", "engineering_exact", "engineering_linear")
 
 
+class FamilyError(ValueError):
+    """Families of one role whose kernels do not fit one table."""
+
+
 @dataclass(frozen=True)
 class Element:
     """r(x, y, z) = sum_k N_k d_k (eq 2): monomials, nodes, and which vectors the nodes carry.
@@ -91,7 +95,8 @@ class Family:
     """The kernels of one generated file.
 
     `modules` are its specs: their text, and all that they import here, is in the spec hash. Families of one `role` have
-    kernels of the same signatures; the engine reaches them through a table, each with its `facts` (integers).
+    kernels of the same signatures, but for those in `own`; the engine reaches them through a table, each with its
+    `facts` (integers).
     `element`, `law` and `rider` (the name of a body) are what the kernels are about: verification samples their states.
     `like` is the law in laws/ whose section stiffness and scale the law shares: itself, but for a law of the user's.
     `spec` is the user's file that the element stands in, None for those of this package.
@@ -103,6 +108,7 @@ class Family:
     modules: tuple[str, ...]
     role: str = ""
     facts: dict[str, int] = field(default_factory=dict)
+    own: tuple[str, ...] = ()
     element: Element | None = None
     law: str | None = None
     like: str | None = None

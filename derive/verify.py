@@ -1,8 +1,8 @@
-"""`funicular verify`: every derivative in the generated C, tried by independent methods, and the invariances.
+"""`funicular verify`: every derivative in the generated C, tried by independent methods, rounding, and the invariances.
 
 The files of generated/ are compiled as they stand: a sign changed by hand shows at once. Relations are in
-verify_relations.py and verify_slide.py, methods and their ceilings in verify_methods.py; families come from the
-list in families.py, so a new element or rider is covered by being there.
+verify_relations.py and verify_slide.py, methods and their ceilings in verify_methods.py, rounding and its ceilings in
+verify_rounding.py; families come from the list in families.py, so a new element or rider is covered by being there.
 """
 
 from __future__ import annotations
@@ -30,7 +30,10 @@ from funicular.derive.verify_invariances import invariances
 from funicular.derive.verify_methods import Finding, examine
 from funicular.derive.verify_relations import relations
 from funicular.derive.verify_report import Report
+from funicular.derive.verify_rounding import Rounding, roundings
 from funicular.derive.verify_states import states
+
+Item = Finding | Rounding | tuple[str, float, float]
 
 
 @dataclass(frozen=True)
@@ -63,12 +66,13 @@ def uncovered(family: Family, programs: list[Program]) -> list[str]:
     return [f"{p.name}: {a.name}" for p in programs for a in p.outputs if (p.name, a.name) not in known]
 
 
-def verify(subject: Subject) -> Iterator[Finding | tuple[str, float, float]]:
-    """Findings of a family's relations, then its invariances, each the worst over the sample states."""
+def verify(subject: Subject) -> Iterator[Item]:
+    """Findings of a family's relations, rounding of its kernels, its invariances: the worst over the sample states."""
     kinds = subject.kinds()
     samples = states(subject.family, kinds["exact"])
     for relation in relations(subject.family):
         yield examine(f"{subject.family.name}_{relation.kernel}", relation, kinds, samples)
+    yield from roundings(subject.family, kinds, samples)
     real = kinds["real"]
     worst: dict[str, tuple[float, float]] = {}
     for text, error, ceiling in invariances(subject.family, real, [real.state(s) for s in samples]):
@@ -109,11 +113,8 @@ def examined(wanted: list[Family], generated: Path, catalogue: Catalogue = famil
     return report
 
 
-Items = list[Finding | tuple[str, float, float]]
-
-
 def _results(wanted: list[Family], generated: Path, catalogue: Catalogue,
-             progress: Callable[[], None]) -> dict[str, tuple[list[str], Items]]:
+             progress: Callable[[], None]) -> dict[str, tuple[list[str], list[Item]]]:
     """What `_examined` returns, by family in the order wanted; one process a core, the longest files first."""
     names = [family.name for family in wanted]
     found = {}
@@ -140,7 +141,7 @@ def _size(path: Path) -> int:
     return path.stat().st_size if path.is_file() else 0
 
 
-def _examined(name: str, generated: Path, catalogue: Catalogue) -> tuple[list[str], Items]:
+def _examined(name: str, generated: Path, catalogue: Catalogue) -> tuple[list[str], list[Item]]:
     """Outputs of a family that no relation is about, findings and invariances."""
     # what a broken kernel returns is a finding, not a warning
     with (tempfile.TemporaryDirectory(prefix="funicular-verify-") as work, mpmath.workdps(DIGITS),

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from funicular.derive import verify_laws
 from funicular.derive import verify_reference as reference
 from funicular.derive.spec import Element, Family
 from funicular.derive.verify_methods import Relation
-from funicular.derive.verify_motion import RIDERS, cross, turned
+from funicular.derive.verify_motion import RIDERS, cross, exponential, spin, turned
 
 
 def relations(family: Family) -> list[Relation]:
@@ -17,8 +18,8 @@ def relations(family: Family) -> list[Relation]:
     from funicular.derive.verify_slide import slide
 
     table: dict[str, Callable[[Family], list[Relation]]] = {"element": element, "law": law, "slide": slide,
-                                                               "rigid": rigid}
-    return table[family.role or family.name](family)
+                                                               "body": body}
+    return table[family.role](family)
 
 
 def unit(like: np.ndarray, j: int) -> np.ndarray:
@@ -46,7 +47,9 @@ def root(function: Callable, *about) -> Callable:
 
 
 def element(family: Family) -> list[Relation]:
-    """eq 2-4."""
+    """eq 2-4, and loads."""
+    from funicular.derive.verify_loads import loads
+
     spec: Element = family.element
 
     def shape(s):
@@ -58,6 +61,7 @@ def element(family: Family) -> list[Relation]:
         Relation("inertia_force", "f", "(m ⊗ I) a", 0, root(lambda s: np.asarray(s["m"]).dot(s["a"]))),
         Relation("position", "N", "nodal conditions solved at 50 digits", 0, root(shape)),
         Relation("position", "r", "Σ N d", 0, root(lambda s: shape(s).dot(s["e"]))),
+        *loads(spec),
     ]
 
 
@@ -91,31 +95,44 @@ def _half(path: Callable) -> Callable:
     return lambda k, s, t, j: path(k, s, t, j) / 2
 
 
-def rigid(family: Family) -> list[Relation]:
-    """Rigid body: points along finite motions, and Newton-Euler from momentum."""
-    rider = RIDERS[family.name]
-    n = rider.n_velocity
+def body(family: Family) -> list[Relation]:
+    """A body: points along finite motions, and Newton-Euler from momentum."""
+    rider = RIDERS[family.rider]
+    n, dim = rider.n_velocity, rider.dim
 
     def point(k, s, motion):
         return rider.point(rider.moved(k, s["b"], motion), s["u"])
 
+    def by_coordinate(k, s, t, j):
+        return point(k, s, t * unit(s["w"], j))
+
+    def force_of_point(k, s, t, j):
+        out = k("point_force", s, b=rider.moved(k, s["b"], t * unit(s["w"], j)))
+        return out["p_q"].T.dot(s["f"])
+
     def momentum(k, s, t, j):
-        """In the axes of t = 0: mass velocity, A J omega."""
+        """In the axes of t = 0: mass velocity, A J omega about the axes of rotation."""
         velocity = s["w"] + t * s["a"]
-        turn = rider.moved(k, np.concatenate([s["b"][:3], k.array([1, 0, 0, 0])]), t * s["w"])[3:]
-        return np.concatenate([s["mass"] * velocity[:3], turned(turn, s["J"].dot(velocity[3:]))])
+        turn = exponential(k, t * spin(s["w"], dim))
+        return np.concatenate([s["mass"] * velocity[:dim],
+                               turned(turn, s["J"].dot(spin(velocity, dim)))[dim - n:]])
 
     def kinetic_energy(k, s, t, j):
         """Of point masses with the same inertia: J = sum m (p.p I - p p')."""
         spread = (s["J"].trace() / 2) * np.eye(3, dtype=int) - s["J"]
-        return sum(s["mass"] * s["w"][i] ** 2 for i in range(3)) / 2 + _spinning(spread, s["w"][3:])
+        return sum(s["mass"] * s["w"][i] ** 2 for i in range(dim)) / 2 + _spinning(spread, spin(s["w"], dim))
 
+    at = Relation("point", "p", "R + A u by quaternions or complex numbers", 0,
+                  lambda k, s, t, j: rider.point(s["b"], s["u"]))
+    p_q = Relation("point", "p_q", "dp by translation and rotation about body axes", 1, by_coordinate, n)
     return [
-        Relation("point", "p", "R + q u q*", 0, lambda k, s, t, j: rider.point(s["b"], s["u"])),
-        Relation("point", "p_q", "dp by translation and rotation about body axes", 1,
-                 lambda k, s, t, j: point(k, s, t * unit(s["w"], j)), n),
+        at,
+        p_q,
         Relation("point", "v", "dp/dt", 1, lambda k, s, t, j: point(k, s, t * s["w"])),
         Relation("point", "bias", "d²p/dt² at constant velocities", 2, lambda k, s, t, j: point(k, s, t * s["w"])),
+        replace(at, kernel="point_force"),
+        replace(p_q, kernel="point_force"),
+        Relation("point_force", "K", "d(p_q' f) by translation and rotation", 1, force_of_point, n),
         Relation("inertia_force", "f", "rate of momentum", 1, momentum),
         Relation("inertia_tangent", "M", "df/da", 1, from_kernel("inertia_force", "f", a=entry("a")), n),
         Relation("inertia_tangent", "D", "df/dw", 1, from_kernel("inertia_force", "f", w=entry("w")), n),

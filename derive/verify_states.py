@@ -26,17 +26,20 @@ def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
     for seed in SEEDS:
         random = np.random.default_rng(seed)
         state: dict[str, np.ndarray] = {}
+        dim = family.element.dim if family.element else RIDERS[family.rider].dim
         if family.element:
             state |= element_state(family.element, random)
         if family.rider:
-            near = _on_axis(family.element, state) if family.element else random.normal(size=3)
+            near = on_axis(family.element, state) if family.element else random.normal(size=dim)
             state |= RIDERS[family.rider].sample(random, near)
             state |= {"mass": np.float64(1.7), "J": _inertia(random), "a": random.normal(size=len(state["w"]))}
         if family.element and family.rider:
             state["director"] = director(family.element, state, random)
-        state["f"] = random.normal(size=family.element.dim if family.element else 3)
+        state["f"] = random.normal(size=dim)
         if family.role in ("element", "law"):
             state |= _constants(family, exact, state, random)
+        if family.role == "element":
+            state |= loads(family.element, random)
         found.append(state)
     return [*found, found[0] | at_rest(family)]
 
@@ -48,22 +51,21 @@ def at_rest(family: Family) -> dict[str, np.ndarray]:
         state["e"] = reference(family.element, LENGTH)
         state["x"] = np.float64(LENGTH / 2)
     if family.rider:
-        origin = np.zeros(3)
-        origin[0] = LENGTH / 2
-        state |= RIDERS[family.rider].at_rest(origin)
-        state["director"] = np.array([0.0, 1.0, 0.0])
+        rider = RIDERS[family.rider]
+        state |= rider.at_rest(LENGTH / 2 * np.eye(rider.dim)[0])
+        state["director"] = np.eye(rider.dim)[1]
     return state
 
 
 def director(element: Element, state: dict[str, np.ndarray], random: np.random.Generator) -> np.ndarray:
     """A direction off the tangent, neither of unit length nor normal to it."""
-    tangent = _on_axis(element, state, 1)
+    tangent = on_axis(element, state, 1)
     tangent /= np.linalg.norm(tangent)
-    normal = np.linalg.qr(np.stack([tangent, *random.normal(size=(2, 3))], axis=1))[0][:, 1]
+    normal = np.linalg.qr(np.stack([tangent, *random.normal(size=(element.dim - 1, element.dim))], axis=1))[0][:, 1]
     return 0.6 * tangent + 1.3 * normal
 
 
-def _on_axis(element: Element, state: dict[str, np.ndarray], order: int = 0) -> np.ndarray:
+def on_axis(element: Element, state: dict[str, np.ndarray], order: int = 0) -> np.ndarray:
     """Point of the centreline at the state's x, or a derivative there."""
     return Shape(element, state["l"])((state["x"], 0, 0), (order, 0, 0)).astype(float) @ state["e"]
 
@@ -140,6 +142,12 @@ def section_stiffness(law: str, dim: int, moments: np.ndarray, random: np.random
     D = np.array([np.concatenate([random.uniform(40, 60, dim), random.uniform(5, 15, pairs),
                                   random.uniform(10, 20, pairs)]) for _ in range(2)])
     return {"S": np.outer(D[0], moments) + np.outer(D[1], moments * [1, 0, 0, 0, 0, 0]), "D": D}
+
+
+def loads(element: Element, random: np.random.Generator) -> dict[str, np.ndarray]:
+    """Components of a follower force and of a moment, as many as the element takes."""
+    local = element.dim if element.dim == 2 or element.director else 1
+    return {"c": random.normal(size=local), "M": random.normal(size=1 if element.dim == 2 else 3)}
 
 
 def _inertia(random: np.random.Generator) -> np.ndarray:
