@@ -11,6 +11,7 @@ from funicular.derive import body_kernels, element_kernels, law_kernels
 from funicular.derive.bodies import BODIES
 from funicular.derive.elements import ELEMENTS
 from funicular.derive.joints import slide
+from funicular.derive.laws import law_like, law_name
 from funicular.derive.spec import Element, Family
 
 
@@ -22,10 +23,11 @@ def _element(element: Element) -> Family:
                   element=element)
 
 
-def _law(element: Element, law: str) -> Family:
-    return Family(f"{element.name}_{law}", f"elastic law {law} on {element.name}",
+def _law(element: Element, law: str | type) -> Family:
+    name = law_name(law)
+    return Family(f"{element.name}_{name}", f"elastic law {name} on {element.name}",
                   partial(law_kernels.build, element, law), (f"elements.{element.name}", "law_kernels"),
-                  role="law", own=("stiffness",), element=element, law=law)
+                  role="law", own=("stiffness",), element=element, law=name, like=law_like(law))
 
 
 def _body(body: ModuleType) -> Family:
@@ -45,13 +47,19 @@ def _slide(element: Element, rider: ModuleType) -> Family:
                   element=element, rider=rider.NAME)
 
 
+def of_element(element: Element) -> list[Family]:
+    """An element's own kernels, its laws, and the slide of each rider of its dimension."""
+    return [_element(element), *(_law(element, law) for law in element.laws),
+            *(_slide(element, rider) for rider in BODIES.values() if rider.DIM == element.dim)]
+
+
 def families() -> dict[str, Family]:
     """Every family by name: elements, their laws, bodies, and the slide for each pair of element and rider."""
-    every = [*map(_element, ELEMENTS.values()),
-             *(_law(element, law) for element in ELEMENTS.values() for law in element.laws),
-             *map(_body, BODIES.values()),
-             *(_slide(element, rider) for rider in BODIES.values() for element in ELEMENTS.values()
-               if element.dim == rider.DIM)]
+    of_role: dict[str, list[Family]] = {"element": [], "law": [], "slide": []}
+    for element in ELEMENTS.values():
+        for family in of_element(element):
+            of_role[family.role].append(family)
+    every = [*of_role["element"], *of_role["law"], *map(_body, BODIES.values()), *of_role["slide"]]
     return {f.name: f for f in every}
 
 

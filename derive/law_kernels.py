@@ -11,12 +11,12 @@ from funicular.derive.frames import spatial, tangent_frame, unit
 from funicular.derive.gram import DIRECTIONS, Gram
 from funicular.derive.gram_point import axis, expansion
 from funicular.derive.gram_tangent import blocks, nodal_tangent
-from funicular.derive.laws import LAWS
+from funicular.derive.laws import law_class, law_name
 from funicular.derive.spec import Element
 from funicular.derive.stages import Program
 
 
-def build(element: Element, law: str) -> list[Program]:
+def build(element: Element, law: str | type) -> list[Program]:
     """Every kernel of a law on an element."""
     kernels = Kernels(element, law)
     return [kernels.stiffness(), kernels.energy(), kernels.elastic_force(), kernels.elastic_tangent(),
@@ -26,12 +26,12 @@ def build(element: Element, law: str) -> list[Program]:
 class Kernels:
     """An element's Gram products with a law over them."""
 
-    def __init__(self, element: Element, law: str):
+    def __init__(self, element: Element, law: str | type):
         self.element, self.gram = element, Gram(element)
-        self.law = LAWS[law](self.gram)
+        self.law, self.name = law_class(law)(self.gram), f"{element.name}_{law_name(law)}"
 
     def _program(self, kernel: str, doc: str, source: str) -> Program:
-        return Program(f"{self.element.name}_{self.law.name}_{kernel}", doc, f"{source}; {self.law.source}")
+        return Program(f"{self.name}_{kernel}", doc, f"{source}; {self.law.source}")
 
     def _coordinates(self, program: Program, name="e", unit="m, 1", doc="nodal vectors (eq 1)") -> np.ndarray:
         return program.input(name, (self.element.n_vectors, self.element.dim), unit, doc)

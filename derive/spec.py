@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
+from pathlib import Path
 
 import sympy as sp
 from funicular.derive.stages import Program
@@ -17,8 +18,8 @@ COORDINATES = {"x": x, "y": y, "z": z}
 CABLE_LAWS = ("green_exact", "green_linear", "engineering_exact", "engineering_linear")
 
 
-class SpecError(ValueError):
-    """A spec that cannot be derived, or not beside the others."""
+class FamilyError(ValueError):
+    """Families of one role whose kernels do not fit one table."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +27,7 @@ class Element:
     """r(x, y, z) = sum_k N_k d_k (eq 2): monomials, nodes, and which vectors the nodes carry.
 
     `director` names the nodal vector from which the tangent frame takes its normal (eq 16); empty where there is
-    none. `laws` names the energies (laws/) that it comes with.
+    none. `laws` are the energies that it comes with: names in laws/, or classes of the same interface.
     """
 
     name: str
@@ -34,7 +35,7 @@ class Element:
     basis: tuple[sp.Expr, ...]
     nodal_vectors: tuple[str, ...]
     director: str
-    laws: tuple[str, ...]
+    laws: tuple[str | type, ...]
     doc: str
     source: str
     nodes: tuple[sp.Expr, ...] = (sp.S.Zero, l)
@@ -79,12 +80,12 @@ class Element:
     def shape_functions(self) -> tuple[sp.Expr, ...]:
         """N_k(x, y, z; l), from N_k(d_j) = delta_kj on the span of the basis.
 
-        Raises SpecError where the nodal conditions do not fix the basis.
+        Raises ValueError where the nodal conditions do not fix the basis.
         """
         basis = [sp.sympify(b) for b in self.basis]
         conditions = self.nodal_conditions(basis)
         if conditions.shape[0] != conditions.shape[1] or conditions.det() == 0:
-            raise SpecError(f"{self.name}: {conditions.shape[0]} nodal conditions do not fix "
+            raise ValueError(f"{self.name}: {conditions.shape[0]} nodal conditions do not fix "
                              f"{len(basis)} basis functions")
         return tuple((sp.Matrix([basis]) * conditions.inv()).applyfunc(sp.expand))
 
@@ -96,8 +97,9 @@ class Family:
     `modules` are its specs: their text, and all that they import here, is in the spec hash. Families of one `role` have
     kernels of the same signatures, but for those in `own`; the engine reaches them through a table, each with its
     `facts` (integers).
-    `element`, `law` (a name in laws/) and `rider` (the name of a body) are what the kernels are about: verification
-    samples their states.
+    `element`, `law` and `rider` (the name of a body) are what the kernels are about: verification samples their states.
+    `like` is the law in laws/ whose section stiffness and scale the law shares: itself, but for a law of the user's.
+    `spec` is the user's file that the element stands in, None for those of this package.
     """
 
     name: str
@@ -109,4 +111,6 @@ class Family:
     own: tuple[str, ...] = ()
     element: Element | None = None
     law: str | None = None
+    like: str | None = None
     rider: str | None = None
+    spec: Path | None = None

@@ -88,7 +88,7 @@ def _rigid_motion(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
 
 def _stiffness(family: Family, s: State) -> float:
     """Energy of a strain of order one."""
-    if family.law == "continuum":
+    if family.like == "continuum":
         return float(np.max(np.abs(s["A"])))
     EA, EI = s["A"]
     return float(max(EA * s["l"], EI / s["l"]))
@@ -142,7 +142,7 @@ def _damping(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
     f = k("damping_force", s)["f"]
     scale_f = max(scale, np.max(np.abs(f)))
     yield "damping: no net force", relative(positions @ f, scale_f), 64 * EPS
-    twisted = spec.dim == 3 and family.law != "continuum"
+    twisted = spec.dim == 3 and family.like != "continuum"
     for spin in spins(spec.dim):
         v = relative_e @ spin.T + np.outer(positions, s["g"])
         f_rigid, P = k("damping_force", s, v=v)["f"], k("dissipation", s, v=v)["P"]

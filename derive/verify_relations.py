@@ -73,7 +73,10 @@ def law(family: Family) -> list[Relation]:
     def energy_of_constants(k, s):
         return k("energy", s, A=k("stiffness", s)["A"])["U"]
 
-    energy, power = (root(f, spec, family.law) for f in (verify_laws.energy, verify_laws.dissipation))
+    if family.law == family.like:
+        energy, power = (root(f, spec, family.law) for f in (verify_laws.energy, verify_laws.dissipation))
+    else:  # a law of the user's is what its energy and its dissipated power say
+        energy, power = from_kernel("energy", "U"), from_kernel("dissipation", "P")
     force_by_both = from_kernel("damping_force", "f", e=entry("e"), v=lambda s, j: s["rate"] * unit(s["v"], j))
     return [
         Relation("stiffness", "A", "the law's constants at 50 digits", 0, from_kernel("stiffness", "A")),

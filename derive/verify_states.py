@@ -30,7 +30,7 @@ def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
         if family.element:
             state |= element_state(family.element, random)
         if family.rider:
-            near = _on_axis(family.element, state) if family.element else random.normal(size=dim)
+            near = on_axis(family.element, state) if family.element else random.normal(size=dim)
             state |= RIDERS[family.rider].sample(random, near)
             state |= {"mass": np.float64(1.7), "J": _inertia(random), "a": random.normal(size=len(state["w"]))}
         if family.element and family.rider:
@@ -59,13 +59,13 @@ def at_rest(family: Family) -> dict[str, np.ndarray]:
 
 def director(element: Element, state: dict[str, np.ndarray], random: np.random.Generator) -> np.ndarray:
     """A direction off the tangent, neither of unit length nor normal to it."""
-    tangent = _on_axis(element, state, 1)
+    tangent = on_axis(element, state, 1)
     tangent /= np.linalg.norm(tangent)
     normal = np.linalg.qr(np.stack([tangent, *random.normal(size=(element.dim - 1, element.dim))], axis=1))[0][:, 1]
     return 0.6 * tangent + 1.3 * normal
 
 
-def _on_axis(element: Element, state: dict[str, np.ndarray], order: int = 0) -> np.ndarray:
+def on_axis(element: Element, state: dict[str, np.ndarray], order: int = 0) -> np.ndarray:
     """Point of the centreline at the state's x, or a derivative there."""
     return Shape(element, state["l"])((state["x"], 0, 0), (order, 0, 0)).astype(float) @ state["e"]
 
@@ -126,7 +126,7 @@ def _constants(family: Family, exact: Numbers, state: dict, random: np.random.Ge
     dim = family.element.dim
     made = {"a": random.normal(size=(family.element.n_vectors, dim))}
     if family.role == "law":
-        made |= section_stiffness(family.law, dim, state["section"], random)
+        made |= section_stiffness(family.like, dim, state["section"], random)
     s = exact.state(state | made)
     for kernel, output in (("stiffness", "A"), ("mass", "m")):
         if kernel in exact.programs:

@@ -289,4 +289,12 @@ typedef struct {
 } fu_tables;
 extern const fu_tables fu_all;
 
+/* Every kernel by name, behind one signature: pointers to its inputs (scalars too) and to its outputs, in order. */
+typedef struct {
+    const char *name;
+    void (*call)(const fu_real *const *a, fu_real *const *out);
+} fu_kernel;
+extern const fu_kernel fu_kernels[];
+extern const int fu_n_kernels;
+
 #endif

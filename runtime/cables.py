@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+import os
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from funicular import curves
-from funicular.elements import ElementKind, built_in
+from funicular.elements import ElementKind, built_in, of_library
 from funicular.errors import near
 from funicular.materials import Material
 from funicular.sections import AnySection, General
 from funicular.stiffness import KERNEL_LAWS, kernel_law
 from funicular.validation import Count, Name, Part, Vector, one_of, positive, show, xyz
-from pydantic import PlainValidator, model_validator
+from pydantic import PlainValidator, ValidationInfo, model_validator
 
 EXACT = 1e-9
 """Lengths that differ by this part of the cable's length are taken as equal."""
@@ -27,11 +28,25 @@ def possible_laws(kind: ElementKind) -> list[str]:
     return laws + [law for law, kernels in KERNEL_LAWS.items() if kernels in laws]
 
 
-def _element(value: Any) -> str:
+def _library(value: Any) -> str | None:
+    """The directory of a library, as an absolute path."""
+    if value is None:
+        return None
+    if not isinstance(value, str | os.PathLike):
+        raise ValueError(f"must be a directory, got {value!r}")
+    of_library(os.path.abspath(value))
+    return os.path.abspath(value)
+
+
+def _element(value: Any, info: ValidationInfo) -> str:
+    """An element's name in the library, or in this package."""
+    library = info.data.get("library")
+    known = of_library(library)
     if not isinstance(value, str):
-        raise ValueError(f"must be a name, got {value!r}", "known: " + ", ".join(built_in()))
-    if value not in built_in():
-        raise ValueError(f'"{value}" is not known', near(value, built_in()))
+        raise ValueError(f"must be a name, got {value!r}", "known: " + ", ".join(known))
+    if value not in known:
+        where = f' in library "{library}"' if library else ""
+        raise ValueError(f'"{value}" is not known{where}', near(value, known))
     return value
 
 
@@ -61,6 +76,7 @@ class Cable(Part):
     end: Annotated[Vector | None, xyz("m")] = None
     points: Annotated[tuple[tuple[float, ...], ...] | None, PlainValidator(_points)] = None
     elements: Count
+    library: Annotated[str | None, PlainValidator(_library)] = None
     element: Annotated[str, PlainValidator(_element)] = "beam24"
     law: str = None
     strain: Annotated[str | None, one_of(("green", "engineering"), optional=True)] = None
@@ -77,7 +93,7 @@ class Cable(Part):
         """A curve as points, and the law by its name."""
         if not isinstance(data, dict):
             return data
-        optional = ("start", "end", "points", "curve", "law", "strain", "curvature", "rest_length")
+        optional = ("start", "end", "points", "curve", "law", "library", "strain", "curvature", "rest_length")
         data = {name: value for name, value in data.items() if value is not None or name not in optional}
         if "curve" in data:
             if "points" in data:
@@ -86,7 +102,11 @@ class Cable(Part):
             if not callable(curve):
                 raise ValueError(f"curve must be a function of u from 0 to 1, got {curve!r}", "or give points")
             data["points"] = curves.sample(curve, min(elements, 1000) if isinstance(elements, int) else 1)
-        kind = built_in().get(str(data.get("element", "beam24")))
+        try:
+            known = of_library(_library(data.get("library")))
+        except ValueError:  # the check of the library says it
+            return data
+        kind = known.get(str(data.get("element", "beam24")))
         if kind is not None:
             data["law"] = _law(kind, data)
         return data
@@ -184,7 +204,7 @@ class Cable(Part):
     @property
     def kind_of_element(self) -> ElementKind:
         """What its element is."""
-        return built_in()[self.element]
+        return of_library(self.library)[self.element]
 
     @property
     def dim(self) -> int:
@@ -241,12 +261,12 @@ class Cable(Part):
         """
         if self._shape.straight:
             return self._shape.point(s * self.stretch)
-        from funicular.generated import kernels
+        from funicular.libraries import kernels_of
 
         length = self.length / self.elements
         element = int(np.clip(np.floor(s / length), 0, self.elements - 1))
         e = np.concatenate(self.nodal_vectors[element : element + 2])[:, : self.dim]
-        _, r = getattr(kernels, f"{self.element}_position")(length, np.array([s - element * length, 0, 0]), e)
+        _, r = getattr(kernels_of(self.library), f"{self.element}_position")(length, np.array([s - element * length, 0, 0]), e)
         return np.pad(r, (0, 3 - self.dim))
 
     def axes_at(self, s) -> np.ndarray:

@@ -125,11 +125,20 @@ def scenes() -> None:
 def derive(
     names: Names = None,
     check: Annotated[bool, typer.Option("--check", help="write nothing; fail if the files differ")] = False,
+    spec: Annotated[Path | None, typer.Option(help="a Python file with elements of your own, instead")] = None,
+    out: Annotated[Path | None, typer.Option(help="the directory for the library of --spec")] = None,
 ) -> None:
-    """Derive the equations and write generated/, or compare it with them."""
-    from funicular.derive.drift import main
+    """Derive the equations and write generated/, or compare it with them; or make a library of your own elements."""
+    if (spec is None) != (out is None) or (spec is not None and (names or check)):
+        raise typer.BadParameter("--spec FILE and --out DIR go together, and with nothing else")
+    if spec is None:
+        from funicular.derive.drift import main
 
-    raise typer.Exit(main(names or [], check))
+        raise typer.Exit(main(names or [], check))
+    from funicular.derive.own.command import main as make_library
+
+    with _told_without_traceback():
+        make_library(spec, out)
 
 
 @app.command()

@@ -1,15 +1,21 @@
-"""What scenes can be made of: the elements of this package."""
+"""What scenes can be made of: the elements of this package and of libraries, as their manifests tell."""
 
 from __future__ import annotations
 
+import json
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+
+MANIFEST = "manifest.json"
 
 
 @dataclass(frozen=True)
 class ElementKind:
     """Nodal vectors in the order of the coordinates, dimension, director, and laws.
 
-    ``laws`` maps each law to the one whose section stiffness it takes; the first is the default.
+    ``laws`` maps each law to the one of this package whose section stiffness it takes; the first is the default.
     """
 
     nodal_vectors: tuple[str, ...]
@@ -23,22 +29,39 @@ class ElementKind:
         return all(like.startswith(("green_", "engineering_")) for like in self.laws.values())
 
 
-def _laws(*names: str) -> dict[str, str]:
-    return {name: name.removesuffix("_curved") for name in names}
+@cache
+def manifest() -> dict:
+    """The manifest of this package's kernels."""
+    return json.loads((resources.files("funicular.generated") / MANIFEST).read_text(encoding="utf-8"))
 
 
-_BEAM = _laws("continuum", "continuum_curved", "structural")
-_CABLE = _laws("green_exact", "green_linear", "engineering_exact", "engineering_linear")
-
-_BUILT_IN = {
-    "beam24": ElementKind(("r", "r_x", "r_y", "r_z"), 3, "r_y", _BEAM),
-    "cable12": ElementKind(("r", "r_x"), 3, "", _CABLE | _laws("green_exact_curved", "engineering_exact_curved")),
-    "cable18": ElementKind(("r", "r_x", "r_xx"), 3, "", _laws("green_exact", "engineering_exact")),
-    "beam12p": ElementKind(("r", "r_x", "r_y"), 2, "r_y", _BEAM),
-    "cable8p": ElementKind(("r", "r_x"), 2, "", _CABLE),
-}
+def of_manifest(content: dict) -> dict[str, ElementKind]:
+    """The elements of a manifest by name."""
+    return {name: ElementKind(tuple(e["nodal_vectors"]), e["dim"], e["director"], e["laws"])
+            for name, e in content["elements"].items()}
 
 
+@cache
 def built_in() -> dict[str, ElementKind]:
     """The elements of this package by name."""
-    return _BUILT_IN
+    return of_manifest(manifest())
+
+
+def of_library(library: str | None) -> dict[str, ElementKind]:
+    """The elements of a library by name, of this package for None. Raises LibraryError."""
+    if library is None:
+        return built_in()
+    from funicular.libraries import load
+
+    return load(library).elements
+
+
+def gauge(vectors: tuple[str, ...], length: float, y: float, z: float) -> Iterator[float]:
+    """How far, in m, a unit of each nodal vector moves a point of an element of that length.
+
+    1 for positions; a unit of r_x moves the middle of an element by l/8, of r_xx by about l²/64; one of r_y or r_z
+    moves the surface by the section's radius of gyration ``y`` or ``z``.
+    """
+    for vector in vectors:
+        by = vector.partition("_")[2]
+        yield (length / 8) ** by.count("x") * y ** by.count("y") * z ** by.count("z")

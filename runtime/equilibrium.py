@@ -6,7 +6,6 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
-from funicular.parts import ELEMENTS
 from funicular.recording import body_state, end_points, join_force, spatial, support_reaction
 
 if TYPE_CHECKING:
@@ -67,7 +66,7 @@ class Equilibrium:
         for cable in model.cables:
             vectors = spatial(q[0, cable.coordinates].reshape(cable.shape))
             found[f"{cable.name}.nodal_vectors"] = vectors
-            found[f"{cable.name}.position"] = vectors[:, ELEMENTS[cable.element].index("r")]
+            found[f"{cable.name}.position"] = vectors[:, cable.vectors.index("r")]
         for body in model.rigids:
             found |= {f"{body.name}.{name}": value[0] for name, value in body_state(model, body, q).items()}
         for k, joint in enumerate(model.joints):

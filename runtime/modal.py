@@ -8,7 +8,6 @@ import numpy as np
 from funicular.equilibrium import Equilibrium
 from funicular.errors import SceneError
 from funicular.model import build
-from funicular.parts import ELEMENTS
 from funicular.recording import spatial
 from funicular.scene import Scene
 from scipy.linalg import eig, eigh, null_space
@@ -132,7 +131,7 @@ def _named(model, squares: np.ndarray, dofs: np.ndarray) -> Modes:
     for cable in model.cables:
         vectors = spatial(dofs[:, cable.coordinates].reshape(len(dofs), *cable.shape))
         shapes[f"{cable.name}.nodal_vectors"] = vectors
-        shapes[f"{cable.name}.displacement"] = vectors[:, :, ELEMENTS[cable.element].index("r")]
+        shapes[f"{cable.name}.displacement"] = vectors[:, :, cable.vectors.index("r")]
     for body in model.rigids:
         turn = dofs[:, body.dof + model.dim : body.dof + (6 if model.dim == 3 else 3)]
         shapes[f"{body.name}.displacement"] = spatial(dofs[:, body.dof : body.dof + model.dim])

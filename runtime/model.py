@@ -12,8 +12,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from funicular.actions import Actions, DeadLoad, LoadModel, SignalModel, SpringModel
+from funicular.elements import gauge
 from funicular.errors import FunicularWarning, SceneError
-from funicular.parts import ELEMENTS, Cable, RigidBody, Slide
+from funicular.libraries import kernels_of, tables_of
+from funicular.parts import Cable, RigidBody, Slide
 from funicular.recording import Recording, recorded
 from funicular.reduction import Node, half_width, supports
 from funicular.scene import Scene
@@ -41,6 +43,8 @@ class CableModel:
     m: np.ndarray
     A: np.ndarray
     shape: tuple[int, int, int]
+    vectors: tuple[str, ...]
+    library: str | None
 
     @property
     def coordinates(self) -> slice:
@@ -49,7 +53,7 @@ class CableModel:
 
     def kernel(self, name: str) -> Callable:
         """A kernel of its element."""
-        return _kernel(f"{self.element}_{name}")
+        return getattr(kernels_of(self.library), f"{self.element}_{name}")
 
 
 @dataclass
@@ -150,7 +154,7 @@ def build(scene: Scene) -> Model:
     rigids = [RigidModel(body.name, kernel, body.mass, np.array(body.inertia), n_flexible + n_configuration * k,
                          n_flexible + n_velocity * k) for k, body in enumerate(scene.bodies.values())]
     nodal = {c.name: part.nodal_vectors[..., :dim] for c, part in zip(cables, scene.cables.values(), strict=True)}
-    nodes = {c.name: [Node(scene.cables[c.name].where, ELEMENTS[c.element],
+    nodes = {c.name: [Node(scene.cables[c.name].where, c.vectors,
                            c.first + k * int(np.prod(c.shape[1:])), vectors)
                       for k, vectors in enumerate(nodal[c.name])] for c in cables}
     actions = Actions(scene, cables, rigids)
@@ -183,29 +187,24 @@ def build(scene: Scene) -> Model:
         n_multipliers=(dim - 1) * len(joints),
         width=half_width(reduction, elements),
         nodes=nodes,
+        tables=[tables_of(name) for name in {c.library for c in cables if c.library is not None}],
     )
-
-
-def _kernel(name: str) -> Callable:
-    from funicular.generated import kernels
-
-    return getattr(kernels, name)
 
 
 def _cable(cable: Cable, first: int) -> CableModel:
     element, law, length = cable.element, cable.kernel_law, cable.length / cable.elements
-    S = section_stiffness(cable.law, cable.section, cable.material, cable.dim)
-    stiffness = _kernel(f"{element}_{law}_stiffness")
-    if "e0" in stiffness.__doc__:
+    kernels, vectors = kernels_of(cable.library), cable.kind_of_element.nodal_vectors
+    S = section_stiffness(cable.stiffness_law, cable.section, cable.material, cable.dim)
+    stiffness = getattr(kernels, f"{element}_{law}_stiffness")
+    if law.endswith("_curved") or cable.stiffness_law == "structural":  # these know the stress-free shape e0
         rest = cable.rest_nodal_vectors[..., : cable.dim]
-        pairs = [rest[k : k + 2] for k in range(cable.elements if cable.is_curved else 1)]
-        A = np.array([stiffness(length, pair, S) for pair in pairs])
+        A = np.array([stiffness(length, rest[k : k + 2], S) for k in range(cable.elements if cable.is_curved else 1)])
     else:
         A = np.array([stiffness(length, S)])
+    m = getattr(kernels, f"{element}_mass")(length, cable.material.density, cable.section.moments())
     return CableModel(
         cable.name, element, law, cable.elements, first, length, cable.material.damping_time,
-        cable.material.mass_damping, m=_kernel(f"{element}_mass")(length, cable.material.density, cable.section.moments()),
-        A=A, shape=(cable.elements + 1, len(ELEMENTS[element]), cable.dim))
+        cable.material.mass_damping, m, A, (cable.elements + 1, len(vectors), cable.dim), vectors, cable.library)
 
 
 def _gravity(model: CableModel, cable: Cable, gravity: np.ndarray) -> np.ndarray:
@@ -219,15 +218,11 @@ def _gravity(model: CableModel, cable: Cable, gravity: np.ndarray) -> np.ndarray
 
 
 def _cable_weights(cable: Cable) -> np.ndarray:
-    """How far a unit of each nodal vector moves a point: 1 for positions, and lengths for the slopes.
-
-    A unit of r_x moves the middle of an element by l/8, of r_xx by about l^2/64; of r_y or r_z the surface by a
-    radius of gyration.
-    """
-    length = cable.length / cable.elements
+    """How far a unit of each nodal vector moves a point: 1 for positions, and lengths for the slopes."""
     area, iyy, izz = cable.section.moments()[:3]
-    unit = {"r": 1.0, "r_x": length / 8, "r_xx": length**2 / 64, "r_y": np.sqrt(iyy / area), "r_z": np.sqrt(izz / area)}
-    return np.repeat([unit[name] for _ in range(cable.elements + 1) for name in ELEMENTS[cable.element]], cable.dim)
+    unit = gauge(cable.kind_of_element.nodal_vectors, cable.length / cable.elements, np.sqrt(iyy / area),
+                 np.sqrt(izz / area))
+    return np.repeat(np.tile(list(unit), cable.elements + 1), cable.dim)
 
 
 def _attitude(body: RigidBody, dim: int) -> np.ndarray:
@@ -268,7 +263,7 @@ def _joint(slide: Slide, scene: Scene, cable: int, rider: int, number: int) -> J
         rider,
         (1 + dim) * number,
         (dim - 1) * number,
-        dim == 3 and "r_y" not in ELEMENTS[along.element],
+        dim == 3 and not along.kind_of_element.director,
         slide.at,
         body.mass,
         slide.s,

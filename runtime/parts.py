@@ -2,7 +2,6 @@
 
 from funicular.bodies import RigidBody
 from funicular.cables import EXACT, Cable
-from funicular.elements import built_in
 from funicular.loads import DistributedForce, Force, Moment
 from funicular.slides import Slide
 from funicular.springs import Spring
@@ -10,11 +9,10 @@ from funicular.supports import Clamp, Join, Motion, Pin
 
 KINDS = (Cable, Pin, Clamp, Motion, Join, RigidBody, Slide, Force, DistributedForce, Moment, Spring)
 
-ELEMENTS = {name: kind.nodal_vectors for name, kind in built_in().items()}
-"""The nodal vectors of each element, in the order of its coordinates."""
+
 
 PARTS = {part.kind: part for part in KINDS}
 """The kinds of parts by their names in scene files and in messages."""
 
-__all__ = ["ELEMENTS", "EXACT", "PARTS", "Cable", "Clamp", "DistributedForce", "Force", "Join", "Moment", "Motion",
+__all__ = ["EXACT", "PARTS", "Cable", "Clamp", "DistributedForce", "Force", "Join", "Moment", "Motion",
            "Pin", "RigidBody", "Slide", "Spring"]

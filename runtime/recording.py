@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from funicular.parts import ELEMENTS
 from funicular.rotations import rotate
 from funicular.scene import Scene
 from funicular.settings import RunSettings
@@ -110,7 +109,7 @@ def recorded(model: Model, scene: Scene, engine, settings: RunSettings, status: 
             "nodal_vectors": spatial(q[:, at].reshape(shape)),
             "nodal_velocity": spatial(v[:, at].reshape(shape)),
             "node_s": cable.length * np.arange(cable.shape[0]),
-            "vector_names": ELEMENTS[cable.element],
+            "vector_names": cable.vectors,
         }
     bodies = {}
     for body in model.rigids:

@@ -53,11 +53,14 @@ def load_scene(path: str | os.PathLike) -> Scene:
         text = file.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise SceneError(str(file), f"cannot be read as text: {error}") from None
-    return loads(text, str(file))
+    return loads(text, str(file), file.parent)
 
 
-def loads(text: str, origin: str) -> Scene:
-    """A scene from the text of a scene file; ``origin`` is what error messages call it. Raises SceneError."""
+def loads(text: str, origin: str, directory: str | os.PathLike = "") -> Scene:
+    """A scene from the text of a scene file; ``origin`` is what error messages call it.
+
+    directory: where paths in the text start from, by default the working directory. Raises SceneError.
+    """
     try:
         tables = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:  # its text gives line and column
@@ -69,7 +72,7 @@ def loads(text: str, origin: str) -> Scene:
         scene = Scene(**{name: tables[name] for name in ("gravity",) if name in tables})
         for kind, part in PARTS.items():
             for index, table in enumerate(_array(tables, kind), start=1):
-                scene.add(_part(part, table, index))
+                scene.add(_part(part, _placed(table, directory), index))
         for name in SETTINGS:
             if name in tables:
                 setattr(scene, f"{name}_settings", _settings(name, tables[name]))
@@ -83,6 +86,12 @@ def _array(tables: dict, kind: str) -> list:
     if not isinstance(array, list) or not all(isinstance(table, dict) for table in array):
         raise SceneError(f"[{kind}]", "must be an array of tables", f"write [[{kind}]], in two brackets")
     return array
+
+
+def _placed(table: dict, directory: str | os.PathLike) -> dict:
+    """A table with its library seen from the working directory, and not from the scene file's."""
+    library = table.get("library")
+    return table | {"library": os.path.join(directory, library)} if isinstance(library, str) else table
 
 
 def _part(part: type[Part], table: dict, index: int) -> Part:

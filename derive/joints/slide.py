@@ -73,6 +73,13 @@ class Slide:
         return np.array([self.program.define(f"{name}{entry}{suffix}", value)
                          for entry, value in zip(self.entries, values, strict=True)])
 
+    def by_arc_length(self) -> np.ndarray:
+        """C_s (eq 22). dr_p/ds = r_x is along i: along j and k it is zero, and would be nothing but rounding."""
+        dim = len(self.r_p)
+        C_s = self.C_cut[:, dim:].dot(self.by_s.array(np.array(self.cut[dim:], dtype=object)))
+        C_s[0] += self.A_t[:, 0].dot(self.t)
+        return C_s
+
     def through_cut(self, derivation: Derivation) -> np.ndarray:
         """Derivative of C along a derivation, by the chain rule through the cut."""
         return self.C_cut.dot(derivation.array(np.array(self.cut, dtype=object)))
@@ -89,7 +96,7 @@ def _constraint(name: str, element: Element, rider: ModuleType) -> Program:
     slide = Slide(p, element, rider)
     C = slide.constraint()
     p.stage("C_s (eq 22)")
-    C_s = slide.through_cut(slide.by_s)
+    C_s = slide.by_arc_length()
     p.output("C", C, "m", _C_DOC)
     p.output("C_s", C_s, "1", "derivative of C by s")
     p.output("s_step", [-C[0] / p.define("C_ls", C_s[0])], "m", "Newton step of C_l(s) = 0")
@@ -104,7 +111,7 @@ def _terms(name: str, element: Element, rider: ModuleType) -> Program:
     w = slide.rider.velocity(p)
     C = slide.constraint()
     p.stage("C_s and C_q (eq 22-23)")
-    C_s = slide.named("C_s", slide.through_cut(slide.by_s))
+    C_s = slide.named("C_s", slide.by_arc_length())
     by_q = slide.by_e + slide.by_rider
     C_q = np.stack([slide.named("C_q", slide.through_cut(d), f"_{k}") for k, d in enumerate(by_q)], axis=1)
     p.stage("G (eq 24) and the rate of s (eq 25)")

@@ -1,5 +1,6 @@
 """Elastic laws: energies as functions of Gram products, by name."""
 
+from collections.abc import Callable
 from functools import partial
 
 from funicular.derive.laws.cable import Cable
@@ -8,3 +9,18 @@ from funicular.derive.spec import CABLE_LAWS
 
 LAWS = {"continuum": Continuum} | {
     name: partial(Cable, **dict(zip(("strain", "curvature"), name.split("_"), strict=True))) for name in CABLE_LAWS}
+
+
+def law_name(law: str | type) -> str:
+    """Name of an entry of an element's `laws`."""
+    return law if isinstance(law, str) else law.name
+
+
+def law_like(law: str | type) -> str:
+    """The law in LAWS whose section stiffness an entry of an element's `laws` takes."""
+    return law if isinstance(law, str) else law.like
+
+
+def law_class(law: str | type) -> Callable:
+    """What makes the law of an entry of an element's `laws` from Gram products."""
+    return LAWS[law] if isinstance(law, str) else law
