@@ -6,10 +6,11 @@ import difflib
 from collections.abc import Iterable
 from functools import partial
 
-from funicular.derive import element_kernels, law_kernels
+from funicular.derive import element_kernels, law_kernels, structural_kernels
 from funicular.derive.bodies import rigid
 from funicular.derive.elements import ELEMENTS
 from funicular.derive.joints import slide
+from funicular.derive.laws import structural
 from funicular.derive.spec import Element, Family
 
 
@@ -22,8 +23,9 @@ def _element(element: Element) -> Family:
 
 
 def _law(element: Element, law: str) -> Family:
+    builder = structural_kernels if law == structural.NAME else law_kernels
     return Family(f"{element.name}_{law}", f"elastic law {law} on {element.name}",
-                  partial(law_kernels.build, element, law), (f"elements.{element.name}", "law_kernels"),
+                  partial(builder.build, element, law), (f"elements.{element.name}", builder.__name__.split(".")[-1]),
                   role="law", element=element, law=law)
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from funicular.derive.spec import Element, Family, x, y, z
+from funicular.derive.spec import CABLE_LAWS, Element, Family, x, y, z
 from funicular.derive.verify_motion import turned
 from funicular.derive.verify_numbers import EPS, Numbers, State
 from funicular.derive.verify_states import reference, rotation
@@ -75,7 +75,8 @@ def _rigid_motion(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
     for far, where in ((0.0, ""), (1e4, " at 10⁴ lengths")):
         chord = EPS * (1 + far)
         for _ in range(3):
-            e = reference(spec, float(s["l"])) @ rotation(random, spec.dim).T
+            at_rest = s["e0"] if family.law == "structural" else reference(spec, float(s["l"]))
+            e = at_rest @ rotation(random, spec.dim).T
             direction = random.normal(size=spec.dim)
             e[spec.is_position] += far * s["l"] * direction / np.linalg.norm(direction)
             U, f = k("energy", s, e=e)["U"], k("elastic_force", s, e=e)["f"]
@@ -87,6 +88,8 @@ def _stiffness(family: Family, s: State) -> float:
     """Energy of a strain of order one."""
     if family.law == "continuum":
         return float(np.max(np.abs(s["A"])))
+    if family.law == "structural":
+        return float(np.max(s["S"]) * max(s["l"], 1 / s["l"]))
     EA, EI = s["A"]
     return float(max(EA * s["l"], EI / s["l"]))
 
@@ -139,7 +142,7 @@ def _damping(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
     f = k("damping_force", s)["f"]
     scale_f = max(scale, np.max(np.abs(f)))
     yield "damping: no net force", relative(positions @ f, scale_f), 64 * EPS
-    twisted = spec.dim == 3 and family.law != "continuum"
+    twisted = spec.dim == 3 and family.law in CABLE_LAWS
     for spin in _spins(spec.dim):
         v = relative_e @ spin.T + np.outer(positions, s["g"])
         f_rigid, P = k("damping_force", s, v=v)["f"], k("dissipation", s, v=v)["P"]

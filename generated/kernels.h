@@ -55,6 +55,15 @@ void beam24_continuum_damping_force(fu_real l, const fu_real *e, const fu_real *
 void beam24_continuum_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void beam24_continuum_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 
+/* beam24_structural: elastic law structural on beam24 */
+void beam24_structural_stiffness(fu_real l, const fu_real *e0, const fu_real *S, fu_real *A);
+void beam24_structural_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void beam24_structural_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void beam24_structural_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void beam24_structural_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
+void beam24_structural_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
+void beam24_structural_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+
 /* cable12_green_exact: elastic law green_exact on cable12 */
 void cable12_green_exact_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void cable12_green_exact_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
@@ -117,6 +126,15 @@ void beam12p_continuum_elastic_tangent(fu_real l, const fu_real *e, const fu_rea
 void beam12p_continuum_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void beam12p_continuum_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void beam12p_continuum_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+
+/* beam12p_structural: elastic law structural on beam12p */
+void beam12p_structural_stiffness(fu_real l, const fu_real *e0, const fu_real *S, fu_real *A);
+void beam12p_structural_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void beam12p_structural_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void beam12p_structural_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void beam12p_structural_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
+void beam12p_structural_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
+void beam12p_structural_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 
 /* cable8p_green_exact: elastic law green_exact on cable8p */
 void cable8p_green_exact_stiffness(fu_real l, const fu_real *S, fu_real *A);
@@ -193,7 +211,6 @@ typedef struct {
 /* What the engine needs of a law. */
 typedef struct {
     const char *name;
-    void (*stiffness)(fu_real l, const fu_real *S, fu_real *A);
     void (*energy)(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
     void (*elastic_force)(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
     void (*elastic_tangent)(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);

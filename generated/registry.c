@@ -51,7 +51,6 @@ static const fu_element elements[] = {
 
 static const fu_law laws[] = {
     {"beam24_continuum",
-     beam24_continuum_stiffness,
      beam24_continuum_energy,
      beam24_continuum_elastic_force,
      beam24_continuum_elastic_tangent,
@@ -59,8 +58,15 @@ static const fu_law laws[] = {
      beam24_continuum_damping_tangent,
      beam24_continuum_dissipation
     },
+    {"beam24_structural",
+     beam24_structural_energy,
+     beam24_structural_elastic_force,
+     beam24_structural_elastic_tangent,
+     beam24_structural_damping_force,
+     beam24_structural_damping_tangent,
+     beam24_structural_dissipation
+    },
     {"cable12_green_exact",
-     cable12_green_exact_stiffness,
      cable12_green_exact_energy,
      cable12_green_exact_elastic_force,
      cable12_green_exact_elastic_tangent,
@@ -69,7 +75,6 @@ static const fu_law laws[] = {
      cable12_green_exact_dissipation
     },
     {"cable12_green_linear",
-     cable12_green_linear_stiffness,
      cable12_green_linear_energy,
      cable12_green_linear_elastic_force,
      cable12_green_linear_elastic_tangent,
@@ -78,7 +83,6 @@ static const fu_law laws[] = {
      cable12_green_linear_dissipation
     },
     {"cable12_engineering_exact",
-     cable12_engineering_exact_stiffness,
      cable12_engineering_exact_energy,
      cable12_engineering_exact_elastic_force,
      cable12_engineering_exact_elastic_tangent,
@@ -87,7 +91,6 @@ static const fu_law laws[] = {
      cable12_engineering_exact_dissipation
     },
     {"cable12_engineering_linear",
-     cable12_engineering_linear_stiffness,
      cable12_engineering_linear_energy,
      cable12_engineering_linear_elastic_force,
      cable12_engineering_linear_elastic_tangent,
@@ -96,7 +99,6 @@ static const fu_law laws[] = {
      cable12_engineering_linear_dissipation
     },
     {"cable18_green_exact",
-     cable18_green_exact_stiffness,
      cable18_green_exact_energy,
      cable18_green_exact_elastic_force,
      cable18_green_exact_elastic_tangent,
@@ -105,7 +107,6 @@ static const fu_law laws[] = {
      cable18_green_exact_dissipation
     },
     {"cable18_engineering_exact",
-     cable18_engineering_exact_stiffness,
      cable18_engineering_exact_energy,
      cable18_engineering_exact_elastic_force,
      cable18_engineering_exact_elastic_tangent,
@@ -114,7 +115,6 @@ static const fu_law laws[] = {
      cable18_engineering_exact_dissipation
     },
     {"beam12p_continuum",
-     beam12p_continuum_stiffness,
      beam12p_continuum_energy,
      beam12p_continuum_elastic_force,
      beam12p_continuum_elastic_tangent,
@@ -122,8 +122,15 @@ static const fu_law laws[] = {
      beam12p_continuum_damping_tangent,
      beam12p_continuum_dissipation
     },
+    {"beam12p_structural",
+     beam12p_structural_energy,
+     beam12p_structural_elastic_force,
+     beam12p_structural_elastic_tangent,
+     beam12p_structural_damping_force,
+     beam12p_structural_damping_tangent,
+     beam12p_structural_dissipation
+    },
     {"cable8p_green_exact",
-     cable8p_green_exact_stiffness,
      cable8p_green_exact_energy,
      cable8p_green_exact_elastic_force,
      cable8p_green_exact_elastic_tangent,
@@ -132,7 +139,6 @@ static const fu_law laws[] = {
      cable8p_green_exact_dissipation
     },
     {"cable8p_green_linear",
-     cable8p_green_linear_stiffness,
      cable8p_green_linear_energy,
      cable8p_green_linear_elastic_force,
      cable8p_green_linear_elastic_tangent,
@@ -141,7 +147,6 @@ static const fu_law laws[] = {
      cable8p_green_linear_dissipation
     },
     {"cable8p_engineering_exact",
-     cable8p_engineering_exact_stiffness,
      cable8p_engineering_exact_energy,
      cable8p_engineering_exact_elastic_force,
      cable8p_engineering_exact_elastic_tangent,
@@ -150,7 +155,6 @@ static const fu_law laws[] = {
      cable8p_engineering_exact_dissipation
     },
     {"cable8p_engineering_linear",
-     cable8p_engineering_linear_stiffness,
      cable8p_engineering_linear_energy,
      cable8p_engineering_linear_elastic_force,
      cable8p_engineering_linear_elastic_tangent,
@@ -186,6 +190,6 @@ static const fu_slide slides[] = {
 
 const fu_tables fu_all = {
     5, elements,
-    12, laws,
+    14, laws,
     3, slides
 };
