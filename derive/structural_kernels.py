@@ -16,7 +16,7 @@ from funicular.derive.gram_tangent import from_others
 from funicular.derive.laws.section_frame import spatial
 from funicular.derive.laws.structural import Configuration, Structural
 from funicular.derive.spec import Element
-from funicular.derive.stages import Derivation, Program, jacobian
+from funicular.derive.stages import Derivation, Program
 
 ZERO = sp.S.Zero
 
@@ -63,7 +63,7 @@ class Kernels:
         p = self._program("energy", "elastic energy")
         length, e, A = self._inputs(p, "e")
         strains = self.law.from_reference(p, A, self._configuration(p, e, length).strains)
-        resultants = self.law.resultants(self.law.scaled(p, A, length), strains)
+        resultants = self.law.resultants(self._stiffness(p, A, length), strains)
         p.output("U", [sum(s * r for s, r in zip(strains, resultants, strict=True)) / 2], "J", "elastic energy")
         return p
 
@@ -72,7 +72,7 @@ class Kernels:
         p = self._program("elastic_force", "dU/de, minus the elastic force Q_k")
         length, e, A = self._inputs(p, "e")
         configuration = self._configuration(p, e, length)
-        forces = Forces(configuration, self._elastic(p, A, length, configuration))
+        forces = Forces(configuration, self._elastic(p, A, self._stiffness(p, A, length), configuration))
         p.output("f", forces.nodal(), "N, N m", "dU/de")
         return p
 
@@ -81,8 +81,9 @@ class Kernels:
         p = self._program("elastic_tangent", "d2U/de2")
         length, e, A = self._inputs(p, "e")
         configuration = self._configuration(p, e, length)
-        tangent = Tangent(configuration, self._elastic(p, A, length, configuration))
-        tangent.add_material(self.law.scaled(p, A, length))
+        stiffness = self._stiffness(p, A, length)
+        tangent = Tangent(configuration, self._elastic(p, A, stiffness, configuration))
+        tangent.add_material(stiffness)
         p.output("K", tangent.nodal(), "N/m, N, N m", "d2U/de2, symmetric")
         return p
 
@@ -92,7 +93,7 @@ class Kernels:
         length, e, v, A = self._inputs(p, "e", "v")
         configuration = self._configuration(p, e, length)
         rates = Velocity(configuration, v).strains()
-        resultants = self._viscous(p, A, self._tau(p) * length, rates)
+        resultants = self._resultants(p, self._stiffness(p, A, self._tau(p) * length), rates)
         p.output("f", Forces(configuration, resultants).nodal(), "N, N m", "-Q_d")
         return p
 
@@ -104,8 +105,9 @@ class Kernels:
         rate = p.input("rate", (), "1/s", "dv/de of the integrator")
         configuration = self._configuration(p, e, length)
         velocity = Velocity(configuration, v)
-        tangent = Tangent(configuration, self._viscous(p, A, tau * length, velocity.strains()))
-        tangent.add_material(self.law.scaled(p, A, tau * length), velocity, rate)
+        stiffness = self._stiffness(p, A, tau * length)
+        tangent = Tangent(configuration, self._resultants(p, stiffness, velocity.strains()))
+        tangent.add_material(stiffness, velocity, rate)
         p.output("K", tangent.nodal(), "N/m, N, N m", "df/de + rate df/dv")
         return p
 
@@ -114,16 +116,17 @@ class Kernels:
         p = self._program("dissipation", "power dissipated by the damping force")
         length, e, v, A = self._inputs(p, "e", "v")
         rates = Velocity(self._configuration(p, e, length), v).strains()
-        power = self._viscous(p, A, self._tau(p) * length, rates)
+        power = self._resultants(p, self._stiffness(p, A, self._tau(p) * length), rates)
         p.output("P", [sum(a * b for a, b in zip(rates, power, strict=True))], "W", "dissipated power, never negative")
         return p
 
-    def _elastic(self, program, A, length, configuration: Configuration) -> list[sp.Expr]:
-        strains = self.law.from_reference(program, A, configuration.strains)
-        return self._resultants(program, self.law.scaled(program, A, length), strains)
+    def _stiffness(self, program: Program, A: np.ndarray, scale: sp.Expr) -> list[sp.Expr]:
+        """Stage: section stiffness, and what the bubbles take off, times l, or another scale."""
+        program.stage("stiffness of the element")
+        return [program.define(f"S_{i}", scale * A[i]) for i in range(self.law.n_stiffness)]
 
-    def _viscous(self, program, A, scale, rates) -> list[sp.Expr]:
-        return self._resultants(program, self.law.scaled(program, A, scale), rates)
+    def _elastic(self, program: Program, A: np.ndarray, stiffness, configuration: Configuration) -> list[sp.Expr]:
+        return self._resultants(program, stiffness, self.law.from_reference(program, A, configuration.strains))
 
     def _resultants(self, program: Program, stiffness, strains) -> list[sp.Expr]:
         program.stage("resultants")
@@ -181,11 +184,13 @@ class Forces:
         self.configuration, self.program, self.law = configuration, configuration.program, configuration.law
         self.resultants, n = resultants, len(self.law.axes)
         self.program.stage("forces on the parts")
-        middle = [*resultants[n:2 * n], *resultants[3 * n:3 * n + len(self.law.spins)]]
-        work = sum(r * s for r, s in zip(middle, configuration.middle, strict=True))
+        middle = np.array([*resultants[n:2 * n], *resultants[3 * n:3 * n + len(self.law.spins)]])
         self.scalars = [s for s in (*configuration.mean, *configuration.gibbs) if s.is_Symbol]
+        self.middle = np.array([[self.program.define(f"d_{strain}_{s.name}", d)
+                                 for s, d in zip(self.scalars, row, strict=True)] for strain, row in
+                                zip(configuration.middle, self.by(self.scalars, configuration.middle), strict=True)])
         self.by_scalar = [self.program.define(f"V_{s.name}", d)
-                          for s, d in zip(self.scalars, self.by(self.scalars, [work])[0], strict=True)]
+                          for s, d in zip(self.scalars, middle.dot(self.middle), strict=True)]
         self.by_part = self._by_part()
         along = [sum((d * motion[s] for s, d in self.by_part.items()), ZERO) for motion in configuration.motions]
         self.slopes = [self.program.vector(f"f_x{tag}", along[place * n:(place + 1) * n])
@@ -264,10 +269,22 @@ class Tangent(Forces):
             by_scalar = {v: self.program.define(f"dV_{s.name}_{column}", sum(h * m for h, m in zip(row, moved, strict=True)))
                          for v, s, row in zip(self.by_scalar, self.scalars, hessian, strict=True)}
             rate = Derivation(self.program, f"turn{column}", self.held | motion | by_scalar)
-            self.parts[:, column] = [self.program.define(f"P_{row}_{column}", rate(f)) for row, f in enumerate(forces)]
-        self.parts[first:, :first] = self.parts[:first, first:].T
-        self.late = None
-        self.velocity, self.across = None, {}
+            for row in range(column + 1):
+                self.parts[row, column] = self.program.define(f"P_{row}_{column}", rate(forces[row]))
+        self._mirror(first)
+        self.velocity, self.late, self.across = None, None, {}
+
+    def _mirror(self, first: int) -> None:
+        """Motions commute but for the spins of one frame, of which (k, l) and (l, k) differ by the third."""
+        for row in range(len(self.parts)):
+            for column in range(max(first, row + 1), len(self.parts)):
+                self.parts[column, row] = self.parts[row, column]
+        if len(self.law.spins) == 3:
+            for node, moment in enumerate(self.moments):
+                for k in range(3):
+                    row, column = sorted((self.configuration.turn(node, k), self.configuration.turn(node, (k + 1) % 3)))
+                    sign = 1 if k < 2 else -1
+                    self.parts[column, row] = self.parts[row, column] + sign * moment[(k + 2) % 3]
 
     def _hessian(self) -> np.ndarray:
         """Of V by the scalars; it is linear in the mean components."""
@@ -324,15 +341,12 @@ class Tangent(Forces):
     def _strain_motions(self) -> np.ndarray:
         """Strains by motions of the parts: (strains, motions); those of the section do not see them."""
         configuration, n = self.configuration, len(self.law.axes)
-        middle = np.array(self.by(self.scalars, configuration.middle))
-        middle = np.array([[self.program.define(f"E_{s}_{t.name}", d) for t, d in zip(self.scalars, row, strict=True)]
-                           for s, row in enumerate(middle)])
         B = np.full((self.law.n_strains, len(configuration.motions)), ZERO, dtype=object)
         for column, motion in enumerate(configuration.motions):
             of_mean = [self.program.define("moved", (motion[a] + motion[b]) / 2)
                        for a, b in zip(*configuration.between, strict=True) if a.is_Symbol]
             moved = [*of_mean, *(motion[g] for g in configuration.gibbs if g.is_Symbol)]
-            values = [self.program.define(f"B_{row}_{column}", v) for row, v in enumerate(middle.dot(np.array(moved)))]
+            values = [self.program.define(f"B_{row}_{column}", v) for row, v in enumerate(self.middle.dot(np.array(moved)))]
             for i in self.law.axes:
                 for node in range(2):
                     B[2 * n * node + i, column] = motion[configuration.along[node][i]]

@@ -78,6 +78,11 @@ class Structural:
         return len(self.axes) + len(self.spins) + len(self.across)
 
     @property
+    def n_stiffness(self) -> int:
+        """S, and what the bubble takes off each shear."""
+        return self.n_section + len(self.shears)
+
+    @property
     def n_strains(self) -> int:
         """Stretch and shears at three places, curvatures, strains of the section at both nodes."""
         return 3 * len(self.axes) + len(self.spins) + 2 * len(self.across)
@@ -92,7 +97,7 @@ class Structural:
 
     def constants(self, program: Program) -> np.ndarray:
         """Input A: S, stiffness that the bubble takes off the shears, reference strains."""
-        return program.input("A", self.n_section + len(self.shears) + self.n_strains, "N, N m^2, 1, 1/m",
+        return program.input("A", self.n_stiffness + self.n_strains, "N, N m^2, 1, 1/m",
                              f"constants from {self.element.name}_{NAME}_stiffness")
 
     def set_up(self, program: Program) -> None:
@@ -128,8 +133,7 @@ class Structural:
     def from_reference(self, program: Program, A: np.ndarray, strains: Sequence[sp.Expr]) -> list[sp.Expr]:
         """Stage: strains less those of the reference."""
         program.stage("strains from the reference")
-        first = len(A) - self.n_strains
-        return [program.define(f"d_{name}", s - A[first + i])
+        return [program.define(f"d_{name}", s - A[self.n_stiffness + i])
                 for i, (name, s) in enumerate(zip(self.names, strains, strict=True))]
 
     @cached_property
@@ -138,11 +142,6 @@ class Structural:
         return ([f"e{i + 1}_{place}" for place in ("1", "m", "2") for i in self.axes]
                 + [f"k{k + 1}" for k in self.spins]
                 + [f"e{'xyz'[i]}{'xyz'[j]}_{n}" for n in (1, 2) for i, j in self.across])
-
-    def scaled(self, program: Program, A: np.ndarray, scale: sp.Expr) -> list[sp.Expr]:
-        """Stage: S and the bubbles' stiffness times l, or another scale."""
-        program.stage("stiffness of the element")
-        return [program.define(f"S_{i}", scale * A[i]) for i in range(self.n_section + len(self.shears))]
 
     def resultants(self, stiffness: Sequence[sp.Expr], strains: Sequence[sp.Expr]) -> list[sp.Expr]:
         """Derivatives of the form by the strains, times l; linear in the strains."""
