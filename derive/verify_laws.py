@@ -21,6 +21,11 @@ from funicular.derive.verify_reference import Shape, gauss
 mp = mpmath.mp
 
 
+def is_cable(law: str) -> bool:
+    """Whether a law is along an axis alone, with S = EA, EI."""
+    return not law.startswith("continuum")
+
+
 def energy(element: Element, law: str, s):
     """Elastic energy."""
     roots = {"continuum": continuum_energy, "structural": verify_structural.energy}
@@ -113,8 +118,9 @@ def _along(element: Element, s, n: int) -> Iterator[tuple]:
     for t, weight in gauss(n):
         at = (half * (1 + t), 0, 0)
         N_x, N_xx = shape(at, (1, 0, 0)), shape(at, (2, 0, 0))
-        yield weight * half, *(_spatial(N.dot(d)) for d in (s["e"], s["v"]) for N in (N_x, N_xx))
+        yield weight * half, *(spatial(N.dot(d)) for d in (s["e"], s["v"]) for N in (N_x, N_xx))
 
 
-def _spatial(vector: np.ndarray) -> np.ndarray:
+def spatial(vector: np.ndarray) -> np.ndarray:
+    """In three dimensions."""
     return np.concatenate([vector, [mp.mpf(0)] * (3 - len(vector))])

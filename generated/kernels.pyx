@@ -37,13 +37,7 @@ cdef extern from "kernels.h" nogil:
     void c_beam24_continuum_damping_force "beam24_continuum_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_beam24_continuum_damping_tangent "beam24_continuum_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_beam24_continuum_dissipation "beam24_continuum_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
-    void c_beam24_structural_stiffness "beam24_structural_stiffness"(double l, const double *e0, const double *S, double *A)
-    void c_beam24_structural_energy "beam24_structural_energy"(double l, const double *e, const double *A, double *U)
-    void c_beam24_structural_elastic_force "beam24_structural_elastic_force"(double l, const double *e, const double *A, double *f)
-    void c_beam24_structural_elastic_tangent "beam24_structural_elastic_tangent"(double l, const double *e, const double *A, double *K)
-    void c_beam24_structural_damping_force "beam24_structural_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
-    void c_beam24_structural_damping_tangent "beam24_structural_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
-    void c_beam24_structural_dissipation "beam24_structural_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_beam24_continuum_section_forces "beam24_continuum_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
     void c_cable12_green_exact_stiffness "cable12_green_exact_stiffness"(double l, const double *S, double *A)
     void c_cable12_green_exact_energy "cable12_green_exact_energy"(double l, const double *e, const double *A, double *U)
     void c_cable12_green_exact_elastic_force "cable12_green_exact_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -51,6 +45,7 @@ cdef extern from "kernels.h" nogil:
     void c_cable12_green_exact_damping_force "cable12_green_exact_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable12_green_exact_damping_tangent "cable12_green_exact_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable12_green_exact_dissipation "cable12_green_exact_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable12_green_exact_section_forces "cable12_green_exact_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
     void c_cable12_green_linear_stiffness "cable12_green_linear_stiffness"(double l, const double *S, double *A)
     void c_cable12_green_linear_energy "cable12_green_linear_energy"(double l, const double *e, const double *A, double *U)
     void c_cable12_green_linear_elastic_force "cable12_green_linear_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -58,6 +53,7 @@ cdef extern from "kernels.h" nogil:
     void c_cable12_green_linear_damping_force "cable12_green_linear_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable12_green_linear_damping_tangent "cable12_green_linear_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable12_green_linear_dissipation "cable12_green_linear_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable12_green_linear_section_forces "cable12_green_linear_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
     void c_cable12_engineering_exact_stiffness "cable12_engineering_exact_stiffness"(double l, const double *S, double *A)
     void c_cable12_engineering_exact_energy "cable12_engineering_exact_energy"(double l, const double *e, const double *A, double *U)
     void c_cable12_engineering_exact_elastic_force "cable12_engineering_exact_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -65,6 +61,7 @@ cdef extern from "kernels.h" nogil:
     void c_cable12_engineering_exact_damping_force "cable12_engineering_exact_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable12_engineering_exact_damping_tangent "cable12_engineering_exact_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable12_engineering_exact_dissipation "cable12_engineering_exact_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable12_engineering_exact_section_forces "cable12_engineering_exact_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
     void c_cable12_engineering_linear_stiffness "cable12_engineering_linear_stiffness"(double l, const double *S, double *A)
     void c_cable12_engineering_linear_energy "cable12_engineering_linear_energy"(double l, const double *e, const double *A, double *U)
     void c_cable12_engineering_linear_elastic_force "cable12_engineering_linear_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -72,6 +69,7 @@ cdef extern from "kernels.h" nogil:
     void c_cable12_engineering_linear_damping_force "cable12_engineering_linear_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable12_engineering_linear_damping_tangent "cable12_engineering_linear_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable12_engineering_linear_dissipation "cable12_engineering_linear_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable12_engineering_linear_section_forces "cable12_engineering_linear_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
     void c_cable18_green_exact_stiffness "cable18_green_exact_stiffness"(double l, const double *S, double *A)
     void c_cable18_green_exact_energy "cable18_green_exact_energy"(double l, const double *e, const double *A, double *U)
     void c_cable18_green_exact_elastic_force "cable18_green_exact_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -79,6 +77,7 @@ cdef extern from "kernels.h" nogil:
     void c_cable18_green_exact_damping_force "cable18_green_exact_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable18_green_exact_damping_tangent "cable18_green_exact_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable18_green_exact_dissipation "cable18_green_exact_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable18_green_exact_section_forces "cable18_green_exact_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
     void c_cable18_engineering_exact_stiffness "cable18_engineering_exact_stiffness"(double l, const double *S, double *A)
     void c_cable18_engineering_exact_energy "cable18_engineering_exact_energy"(double l, const double *e, const double *A, double *U)
     void c_cable18_engineering_exact_elastic_force "cable18_engineering_exact_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -86,6 +85,7 @@ cdef extern from "kernels.h" nogil:
     void c_cable18_engineering_exact_damping_force "cable18_engineering_exact_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable18_engineering_exact_damping_tangent "cable18_engineering_exact_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable18_engineering_exact_dissipation "cable18_engineering_exact_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable18_engineering_exact_section_forces "cable18_engineering_exact_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
     void c_beam12p_continuum_stiffness "beam12p_continuum_stiffness"(double l, const double *S, double *A)
     void c_beam12p_continuum_energy "beam12p_continuum_energy"(double l, const double *e, const double *A, double *U)
     void c_beam12p_continuum_elastic_force "beam12p_continuum_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -93,13 +93,7 @@ cdef extern from "kernels.h" nogil:
     void c_beam12p_continuum_damping_force "beam12p_continuum_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_beam12p_continuum_damping_tangent "beam12p_continuum_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_beam12p_continuum_dissipation "beam12p_continuum_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
-    void c_beam12p_structural_stiffness "beam12p_structural_stiffness"(double l, const double *e0, const double *S, double *A)
-    void c_beam12p_structural_energy "beam12p_structural_energy"(double l, const double *e, const double *A, double *U)
-    void c_beam12p_structural_elastic_force "beam12p_structural_elastic_force"(double l, const double *e, const double *A, double *f)
-    void c_beam12p_structural_elastic_tangent "beam12p_structural_elastic_tangent"(double l, const double *e, const double *A, double *K)
-    void c_beam12p_structural_damping_force "beam12p_structural_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
-    void c_beam12p_structural_damping_tangent "beam12p_structural_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
-    void c_beam12p_structural_dissipation "beam12p_structural_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_beam12p_continuum_section_forces "beam12p_continuum_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
     void c_cable8p_green_exact_stiffness "cable8p_green_exact_stiffness"(double l, const double *S, double *A)
     void c_cable8p_green_exact_energy "cable8p_green_exact_energy"(double l, const double *e, const double *A, double *U)
     void c_cable8p_green_exact_elastic_force "cable8p_green_exact_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -107,6 +101,7 @@ cdef extern from "kernels.h" nogil:
     void c_cable8p_green_exact_damping_force "cable8p_green_exact_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable8p_green_exact_damping_tangent "cable8p_green_exact_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable8p_green_exact_dissipation "cable8p_green_exact_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable8p_green_exact_section_forces "cable8p_green_exact_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
     void c_cable8p_green_linear_stiffness "cable8p_green_linear_stiffness"(double l, const double *S, double *A)
     void c_cable8p_green_linear_energy "cable8p_green_linear_energy"(double l, const double *e, const double *A, double *U)
     void c_cable8p_green_linear_elastic_force "cable8p_green_linear_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -114,6 +109,7 @@ cdef extern from "kernels.h" nogil:
     void c_cable8p_green_linear_damping_force "cable8p_green_linear_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable8p_green_linear_damping_tangent "cable8p_green_linear_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable8p_green_linear_dissipation "cable8p_green_linear_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable8p_green_linear_section_forces "cable8p_green_linear_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
     void c_cable8p_engineering_exact_stiffness "cable8p_engineering_exact_stiffness"(double l, const double *S, double *A)
     void c_cable8p_engineering_exact_energy "cable8p_engineering_exact_energy"(double l, const double *e, const double *A, double *U)
     void c_cable8p_engineering_exact_elastic_force "cable8p_engineering_exact_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -121,6 +117,7 @@ cdef extern from "kernels.h" nogil:
     void c_cable8p_engineering_exact_damping_force "cable8p_engineering_exact_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable8p_engineering_exact_damping_tangent "cable8p_engineering_exact_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable8p_engineering_exact_dissipation "cable8p_engineering_exact_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable8p_engineering_exact_section_forces "cable8p_engineering_exact_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
     void c_cable8p_engineering_linear_stiffness "cable8p_engineering_linear_stiffness"(double l, const double *S, double *A)
     void c_cable8p_engineering_linear_energy "cable8p_engineering_linear_energy"(double l, const double *e, const double *A, double *U)
     void c_cable8p_engineering_linear_elastic_force "cable8p_engineering_linear_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -128,6 +125,7 @@ cdef extern from "kernels.h" nogil:
     void c_cable8p_engineering_linear_damping_force "cable8p_engineering_linear_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
     void c_cable8p_engineering_linear_damping_tangent "cable8p_engineering_linear_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_cable8p_engineering_linear_dissipation "cable8p_engineering_linear_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_cable8p_engineering_linear_section_forces "cable8p_engineering_linear_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
     void c_rigid_point "rigid_point"(const double *b, const double *u, const double *w, double *p, double *p_q, double *v, double *bias)
     void c_rigid_inertia_force "rigid_inertia_force"(double mass, const double *J, const double *w, const double *a, double *f)
     void c_rigid_inertia_tangent "rigid_inertia_tangent"(double mass, const double *J, const double *w, double *M, double *D)
@@ -697,151 +695,34 @@ def beam24_continuum_dissipation(l, e, v, A, tau):
     return P_out
 
 
-def beam24_structural_stiffness(l, e0, S):
-    """constants of the law from the stiffness of the section and the reference (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
+def beam24_continuum_section_forces(l, x, e, S):
+    """force and moment resultants of a section (eq 6-8 at a section; eq 5-8).
 
     l () [m]: length of the element
-    e0 (8, 3) [m, 1]: nodal vectors of the stress-free reference
-    S (9,) [N, N m^2]: section stiffness: EA, GA_y, GA_z, GJ, EI_yy, EI_zz; against r_y.r_y/2, r_z.r_z/2, r_y.r_z
-    Returns
-    A (29,) [N, N m^2, 1, 1/m]: S, stiffness that the bubble takes off the shears, reference strains
-    """
-    cdef double l_ = l
-    cdef const double[::1] e0_ = _array(e0, (8, 3), "beam24_structural_stiffness", "e0")
-    cdef const double[::1] S_ = _array(S, (9,), "beam24_structural_stiffness", "S")
-    A_out = np.empty((29,))
-    cdef double[::1] A__ = A_out.reshape(-1)
-    with nogil:
-        c_beam24_structural_stiffness(l_, &e0_[0], &S_[0], &A__[0])
-    return A_out
-
-
-def beam24_structural_energy(l, e, A):
-    """elastic energy (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
-
-    l () [m]: length of the element
+    x () [m]: arc-length from its start
     e (8, 3) [m, 1]: nodal vectors (eq 1)
-    A (29,) [N, N m^2, 1, 1/m]: constants from beam24_structural_stiffness
+    S (9, 6) [N, N m^2, N m^2, N m^4, N m^4, N m^4]: section stiffness: integrals over A of D11, D22, D33, D12, D13, D23, G12, G13, G23 (rows; orthotropic, axes x, y, z) times 1, y^2, z^2, y^4, y^2 z^2, z^4 (columns)
     Returns
-    U (1,) [J]: elastic energy
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
     """
     cdef double l_ = l
-    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_structural_energy", "e")
-    cdef const double[::1] A_ = _array(A, (29,), "beam24_structural_energy", "A")
-    U_out = np.empty((1,))
-    cdef double[::1] U__ = U_out.reshape(-1)
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_continuum_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (9, 6), "beam24_continuum_section_forces", "S")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
     with nogil:
-        c_beam24_structural_energy(l_, &e_[0], &A_[0], &U__[0])
-    return U_out
-
-
-def beam24_structural_elastic_force(l, e, A):
-    """dU/de, minus the elastic force Q_k (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
-
-    l () [m]: length of the element
-    e (8, 3) [m, 1]: nodal vectors (eq 1)
-    A (29,) [N, N m^2, 1, 1/m]: constants from beam24_structural_stiffness
-    Returns
-    f (8, 3) [N, N m]: dU/de
-    """
-    cdef double l_ = l
-    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_structural_elastic_force", "e")
-    cdef const double[::1] A_ = _array(A, (29,), "beam24_structural_elastic_force", "A")
-    f_out = np.empty((8, 3))
-    cdef double[::1] f__ = f_out.reshape(-1)
-    with nogil:
-        c_beam24_structural_elastic_force(l_, &e_[0], &A_[0], &f__[0])
-    return f_out
-
-
-def beam24_structural_elastic_tangent(l, e, A):
-    """d2U/de2 (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
-
-    l () [m]: length of the element
-    e (8, 3) [m, 1]: nodal vectors (eq 1)
-    A (29,) [N, N m^2, 1, 1/m]: constants from beam24_structural_stiffness
-    Returns
-    K (24, 24) [N/m, N, N m]: d2U/de2, symmetric
-    """
-    cdef double l_ = l
-    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_structural_elastic_tangent", "e")
-    cdef const double[::1] A_ = _array(A, (29,), "beam24_structural_elastic_tangent", "A")
-    K_out = np.empty((24, 24))
-    cdef double[::1] K__ = K_out.reshape(-1)
-    with nogil:
-        c_beam24_structural_elastic_tangent(l_, &e_[0], &A_[0], &K__[0])
-    return K_out
-
-
-def beam24_structural_damping_force(l, e, v, A, tau):
-    """minus the Kelvin-Voigt damping force Q_d (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
-
-    l () [m]: length of the element
-    e (8, 3) [m, 1]: nodal vectors (eq 1)
-    v (8, 3) [m/s, 1/s]: rates of the nodal vectors
-    A (29,) [N, N m^2, 1, 1/m]: constants from beam24_structural_stiffness
-    tau () [s]: retardation time of the Kelvin-Voigt law
-    Returns
-    f (8, 3) [N, N m]: -Q_d
-    """
-    cdef double l_ = l
-    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_structural_damping_force", "e")
-    cdef const double[::1] v_ = _array(v, (8, 3), "beam24_structural_damping_force", "v")
-    cdef const double[::1] A_ = _array(A, (29,), "beam24_structural_damping_force", "A")
-    cdef double tau_ = tau
-    f_out = np.empty((8, 3))
-    cdef double[::1] f__ = f_out.reshape(-1)
-    with nogil:
-        c_beam24_structural_damping_force(l_, &e_[0], &v_[0], &A_[0], tau_, &f__[0])
-    return f_out
-
-
-def beam24_structural_damping_tangent(l, e, v, A, tau, rate):
-    """df/de + rate df/dv of the damping force f = -Q_d (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
-
-    l () [m]: length of the element
-    e (8, 3) [m, 1]: nodal vectors (eq 1)
-    v (8, 3) [m/s, 1/s]: rates of the nodal vectors
-    A (29,) [N, N m^2, 1, 1/m]: constants from beam24_structural_stiffness
-    tau () [s]: retardation time of the Kelvin-Voigt law
-    rate () [1/s]: dv/de of the integrator
-    Returns
-    K (24, 24) [N/m, N, N m]: df/de + rate df/dv
-    """
-    cdef double l_ = l
-    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_structural_damping_tangent", "e")
-    cdef const double[::1] v_ = _array(v, (8, 3), "beam24_structural_damping_tangent", "v")
-    cdef const double[::1] A_ = _array(A, (29,), "beam24_structural_damping_tangent", "A")
-    cdef double tau_ = tau
-    cdef double rate_ = rate
-    K_out = np.empty((24, 24))
-    cdef double[::1] K__ = K_out.reshape(-1)
-    with nogil:
-        c_beam24_structural_damping_tangent(l_, &e_[0], &v_[0], &A_[0], tau_, rate_, &K__[0])
-    return K_out
-
-
-def beam24_structural_dissipation(l, e, v, A, tau):
-    """power dissipated by the damping force (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
-
-    l () [m]: length of the element
-    e (8, 3) [m, 1]: nodal vectors (eq 1)
-    v (8, 3) [m/s, 1/s]: rates of the nodal vectors
-    A (29,) [N, N m^2, 1, 1/m]: constants from beam24_structural_stiffness
-    tau () [s]: retardation time of the Kelvin-Voigt law
-    Returns
-    P (1,) [W]: dissipated power, never negative
-    """
-    cdef double l_ = l
-    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_structural_dissipation", "e")
-    cdef const double[::1] v_ = _array(v, (8, 3), "beam24_structural_dissipation", "v")
-    cdef const double[::1] A_ = _array(A, (29,), "beam24_structural_dissipation", "A")
-    cdef double tau_ = tau
-    P_out = np.empty((1,))
-    cdef double[::1] P__ = P_out.reshape(-1)
-    with nogil:
-        c_beam24_structural_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
-    return P_out
+        c_beam24_continuum_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
 
 
 def cable12_green_exact_stiffness(l, S):
@@ -989,6 +870,36 @@ def cable12_green_exact_dissipation(l, e, v, A, tau):
     return P_out
 
 
+def cable12_green_exact_section_forces(l, x, e, S):
+    """force and moment resultants of a section (eq 6-8 at a section; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_green_exact_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (2,), "cable12_green_exact_section_forces", "S")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_cable12_green_exact_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
+
+
 def cable12_green_linear_stiffness(l, S):
     """constants of the law from the stiffness of the section (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
 
@@ -1132,6 +1043,36 @@ def cable12_green_linear_dissipation(l, e, v, A, tau):
     with nogil:
         c_cable12_green_linear_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
     return P_out
+
+
+def cable12_green_linear_section_forces(l, x, e, S):
+    """force and moment resultants of a section (eq 6-8 at a section; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_green_linear_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (2,), "cable12_green_linear_section_forces", "S")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_cable12_green_linear_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
 
 
 def cable12_engineering_exact_stiffness(l, S):
@@ -1279,6 +1220,36 @@ def cable12_engineering_exact_dissipation(l, e, v, A, tau):
     return P_out
 
 
+def cable12_engineering_exact_section_forces(l, x, e, S):
+    """force and moment resultants of a section (eq 6-8 at a section; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_engineering_exact_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (2,), "cable12_engineering_exact_section_forces", "S")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_cable12_engineering_exact_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
+
+
 def cable12_engineering_linear_stiffness(l, S):
     """constants of the law from the stiffness of the section (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
 
@@ -1422,6 +1393,36 @@ def cable12_engineering_linear_dissipation(l, e, v, A, tau):
     with nogil:
         c_cable12_engineering_linear_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
     return P_out
+
+
+def cable12_engineering_linear_section_forces(l, x, e, S):
+    """force and moment resultants of a section (eq 6-8 at a section; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (4, 3) [m, 1]: nodal vectors (eq 1)
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 3), "cable12_engineering_linear_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (2,), "cable12_engineering_linear_section_forces", "S")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_cable12_engineering_linear_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
 
 
 def cable18_green_exact_stiffness(l, S):
@@ -1569,6 +1570,36 @@ def cable18_green_exact_dissipation(l, e, v, A, tau):
     return P_out
 
 
+def cable18_green_exact_section_forces(l, x, e, S):
+    """force and moment resultants of a section (eq 6-8 at a section; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (6, 3) [m, 1]: nodal vectors (eq 1)
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (6, 3), "cable18_green_exact_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (2,), "cable18_green_exact_section_forces", "S")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_cable18_green_exact_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
+
+
 def cable18_engineering_exact_stiffness(l, S):
     """constants of the law from the stiffness of the section (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
 
@@ -1712,6 +1743,36 @@ def cable18_engineering_exact_dissipation(l, e, v, A, tau):
     with nogil:
         c_cable18_engineering_exact_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
     return P_out
+
+
+def cable18_engineering_exact_section_forces(l, x, e, S):
+    """force and moment resultants of a section (eq 6-8 at a section; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (6, 3) [m, 1]: nodal vectors (eq 1)
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (6, 3), "cable18_engineering_exact_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (2,), "cable18_engineering_exact_section_forces", "S")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_cable18_engineering_exact_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
 
 
 def beam12p_continuum_stiffness(l, S):
@@ -1859,151 +1920,34 @@ def beam12p_continuum_dissipation(l, e, v, A, tau):
     return P_out
 
 
-def beam12p_structural_stiffness(l, e0, S):
-    """constants of the law from the stiffness of the section and the reference (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
+def beam12p_continuum_section_forces(l, x, e, S):
+    """force and moment resultants of a section (eq 6-8 at a section; eq 5-8).
 
     l () [m]: length of the element
-    e0 (6, 2) [m, 1]: nodal vectors of the stress-free reference
-    S (4,) [N, N m^2]: section stiffness: EA, GA, EI; against r_y.r_y/2
-    Returns
-    A (14,) [N, N m^2, 1, 1/m]: S, stiffness that the bubble takes off the shears, reference strains
-    """
-    cdef double l_ = l
-    cdef const double[::1] e0_ = _array(e0, (6, 2), "beam12p_structural_stiffness", "e0")
-    cdef const double[::1] S_ = _array(S, (4,), "beam12p_structural_stiffness", "S")
-    A_out = np.empty((14,))
-    cdef double[::1] A__ = A_out.reshape(-1)
-    with nogil:
-        c_beam12p_structural_stiffness(l_, &e0_[0], &S_[0], &A__[0])
-    return A_out
-
-
-def beam12p_structural_energy(l, e, A):
-    """elastic energy (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
-
-    l () [m]: length of the element
+    x () [m]: arc-length from its start
     e (6, 2) [m, 1]: nodal vectors (eq 1)
-    A (14,) [N, N m^2, 1, 1/m]: constants from beam12p_structural_stiffness
+    S (4, 6) [N, N m^2, N m^2, N m^4, N m^4, N m^4]: section stiffness: integrals over A of D11, D22, D12, G12 (rows; orthotropic, axes x, y, z) times 1, y^2, z^2, y^4, y^2 z^2, z^4 (columns)
     Returns
-    U (1,) [J]: elastic energy
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
     """
     cdef double l_ = l
-    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_structural_energy", "e")
-    cdef const double[::1] A_ = _array(A, (14,), "beam12p_structural_energy", "A")
-    U_out = np.empty((1,))
-    cdef double[::1] U__ = U_out.reshape(-1)
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_continuum_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (4, 6), "beam12p_continuum_section_forces", "S")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
     with nogil:
-        c_beam12p_structural_energy(l_, &e_[0], &A_[0], &U__[0])
-    return U_out
-
-
-def beam12p_structural_elastic_force(l, e, A):
-    """dU/de, minus the elastic force Q_k (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
-
-    l () [m]: length of the element
-    e (6, 2) [m, 1]: nodal vectors (eq 1)
-    A (14,) [N, N m^2, 1, 1/m]: constants from beam12p_structural_stiffness
-    Returns
-    f (6, 2) [N, N m]: dU/de
-    """
-    cdef double l_ = l
-    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_structural_elastic_force", "e")
-    cdef const double[::1] A_ = _array(A, (14,), "beam12p_structural_elastic_force", "A")
-    f_out = np.empty((6, 2))
-    cdef double[::1] f__ = f_out.reshape(-1)
-    with nogil:
-        c_beam12p_structural_elastic_force(l_, &e_[0], &A_[0], &f__[0])
-    return f_out
-
-
-def beam12p_structural_elastic_tangent(l, e, A):
-    """d2U/de2 (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
-
-    l () [m]: length of the element
-    e (6, 2) [m, 1]: nodal vectors (eq 1)
-    A (14,) [N, N m^2, 1, 1/m]: constants from beam12p_structural_stiffness
-    Returns
-    K (12, 12) [N/m, N, N m]: d2U/de2, symmetric
-    """
-    cdef double l_ = l
-    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_structural_elastic_tangent", "e")
-    cdef const double[::1] A_ = _array(A, (14,), "beam12p_structural_elastic_tangent", "A")
-    K_out = np.empty((12, 12))
-    cdef double[::1] K__ = K_out.reshape(-1)
-    with nogil:
-        c_beam12p_structural_elastic_tangent(l_, &e_[0], &A_[0], &K__[0])
-    return K_out
-
-
-def beam12p_structural_damping_force(l, e, v, A, tau):
-    """minus the Kelvin-Voigt damping force Q_d (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
-
-    l () [m]: length of the element
-    e (6, 2) [m, 1]: nodal vectors (eq 1)
-    v (6, 2) [m/s, 1/s]: rates of the nodal vectors
-    A (14,) [N, N m^2, 1, 1/m]: constants from beam12p_structural_stiffness
-    tau () [s]: retardation time of the Kelvin-Voigt law
-    Returns
-    f (6, 2) [N, N m]: -Q_d
-    """
-    cdef double l_ = l
-    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_structural_damping_force", "e")
-    cdef const double[::1] v_ = _array(v, (6, 2), "beam12p_structural_damping_force", "v")
-    cdef const double[::1] A_ = _array(A, (14,), "beam12p_structural_damping_force", "A")
-    cdef double tau_ = tau
-    f_out = np.empty((6, 2))
-    cdef double[::1] f__ = f_out.reshape(-1)
-    with nogil:
-        c_beam12p_structural_damping_force(l_, &e_[0], &v_[0], &A_[0], tau_, &f__[0])
-    return f_out
-
-
-def beam12p_structural_damping_tangent(l, e, v, A, tau, rate):
-    """df/de + rate df/dv of the damping force f = -Q_d (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
-
-    l () [m]: length of the element
-    e (6, 2) [m, 1]: nodal vectors (eq 1)
-    v (6, 2) [m/s, 1/s]: rates of the nodal vectors
-    A (14,) [N, N m^2, 1, 1/m]: constants from beam12p_structural_stiffness
-    tau () [s]: retardation time of the Kelvin-Voigt law
-    rate () [1/s]: dv/de of the integrator
-    Returns
-    K (12, 12) [N/m, N, N m]: df/de + rate df/dv
-    """
-    cdef double l_ = l
-    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_structural_damping_tangent", "e")
-    cdef const double[::1] v_ = _array(v, (6, 2), "beam12p_structural_damping_tangent", "v")
-    cdef const double[::1] A_ = _array(A, (14,), "beam12p_structural_damping_tangent", "A")
-    cdef double tau_ = tau
-    cdef double rate_ = rate
-    K_out = np.empty((12, 12))
-    cdef double[::1] K__ = K_out.reshape(-1)
-    with nogil:
-        c_beam12p_structural_damping_tangent(l_, &e_[0], &v_[0], &A_[0], tau_, rate_, &K__[0])
-    return K_out
-
-
-def beam12p_structural_dissipation(l, e, v, A, tau):
-    """power dissipated by the damping force (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
-
-    l () [m]: length of the element
-    e (6, 2) [m, 1]: nodal vectors (eq 1)
-    v (6, 2) [m/s, 1/s]: rates of the nodal vectors
-    A (14,) [N, N m^2, 1, 1/m]: constants from beam12p_structural_stiffness
-    tau () [s]: retardation time of the Kelvin-Voigt law
-    Returns
-    P (1,) [W]: dissipated power, never negative
-    """
-    cdef double l_ = l
-    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_structural_dissipation", "e")
-    cdef const double[::1] v_ = _array(v, (6, 2), "beam12p_structural_dissipation", "v")
-    cdef const double[::1] A_ = _array(A, (14,), "beam12p_structural_dissipation", "A")
-    cdef double tau_ = tau
-    P_out = np.empty((1,))
-    cdef double[::1] P__ = P_out.reshape(-1)
-    with nogil:
-        c_beam12p_structural_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
-    return P_out
+        c_beam12p_continuum_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
 
 
 def cable8p_green_exact_stiffness(l, S):
@@ -2151,6 +2095,36 @@ def cable8p_green_exact_dissipation(l, e, v, A, tau):
     return P_out
 
 
+def cable8p_green_exact_section_forces(l, x, e, S):
+    """force and moment resultants of a section (eq 6-8 at a section; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_green_exact_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (2,), "cable8p_green_exact_section_forces", "S")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_cable8p_green_exact_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
+
+
 def cable8p_green_linear_stiffness(l, S):
     """constants of the law from the stiffness of the section (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
 
@@ -2294,6 +2268,36 @@ def cable8p_green_linear_dissipation(l, e, v, A, tau):
     with nogil:
         c_cable8p_green_linear_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
     return P_out
+
+
+def cable8p_green_linear_section_forces(l, x, e, S):
+    """force and moment resultants of a section (eq 6-8 at a section; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_green_linear_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (2,), "cable8p_green_linear_section_forces", "S")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_cable8p_green_linear_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
 
 
 def cable8p_engineering_exact_stiffness(l, S):
@@ -2441,6 +2445,36 @@ def cable8p_engineering_exact_dissipation(l, e, v, A, tau):
     return P_out
 
 
+def cable8p_engineering_exact_section_forces(l, x, e, S):
+    """force and moment resultants of a section (eq 6-8 at a section; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_engineering_exact_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (2,), "cable8p_engineering_exact_section_forces", "S")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_cable8p_engineering_exact_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
+
+
 def cable8p_engineering_linear_stiffness(l, S):
     """constants of the law from the stiffness of the section (eq 7; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
 
@@ -2584,6 +2618,36 @@ def cable8p_engineering_linear_dissipation(l, e, v, A, tau):
     with nogil:
         c_cable8p_engineering_linear_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
     return P_out
+
+
+def cable8p_engineering_linear_section_forces(l, x, e, S):
+    """force and moment resultants of a section (eq 6-8 at a section; DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (4, 2) [m, 1]: nodal vectors (eq 1)
+    S (2,) [N, N m^2]: axial and bending stiffness EA, EI
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: tangent t, y along the director's part across t, z = t x y; zero without
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z (cable: size)
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (4, 2), "cable8p_engineering_linear_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (2,), "cable8p_engineering_linear_section_forces", "S")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_cable8p_engineering_linear_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
 
 
 def rigid_point(b, u, w):
