@@ -13,8 +13,9 @@ import numpy as np
 import sympy as sp
 from funicular.derive.gram import DIRECTIONS
 from funicular.derive.gram_tangent import from_others
-from funicular.derive.laws.section_frame import spatial
-from funicular.derive.laws.structural import Configuration, Structural
+from funicular.derive import spec as sym
+from funicular.derive.laws.section_frame import SectionFrame, spatial
+from funicular.derive.laws.structural import REFERENCE_DOC, Configuration, Structural
 from funicular.derive.spec import Element
 from funicular.derive.stages import Derivation, Program
 
@@ -25,7 +26,7 @@ def build(element: Element, law: str) -> list[Program]:
     """Every kernel of the law on an element."""
     kernels = Kernels(element)
     return [kernels.stiffness(), kernels.energy(), kernels.elastic_force(), kernels.elastic_tangent(),
-            kernels.damping_force(), kernels.damping_tangent(), kernels.dissipation()]
+            kernels.damping_force(), kernels.damping_tangent(), kernels.dissipation(), kernels.section_forces()]
 
 
 class Kernels:
@@ -118,6 +119,32 @@ class Kernels:
         rates = Velocity(self._configuration(p, e, length), v).strains()
         power = self._resultants(p, self._stiffness(p, A, self._tau(p) * length), rates)
         p.output("P", [sum(a * b for a, b in zip(rates, power, strict=True))], "W", "dissipated power, never negative")
+        return p
+
+    def section_forces(self) -> Program:
+        """What passes through the section at x from the side of greater x."""
+        p = self._program("section_forces", "force and moment resultants of a section")
+        length, x = p.input("l", (), "m", "length of the element"), p.input("x", (), "m", "arc-length from its start")
+        shape = (self.element.n_vectors, self.element.dim)
+        e, S = p.input("e", shape, "m, 1", "nodal vectors (eq 1)"), self.law.section_stiffness(p)
+        e0 = p.input("e0", shape, "m, 1", REFERENCE_DOC)
+        now, before = self._configuration(p, e, length).strains, self._configuration(p, e0, length).strains
+        p.stage("strains from the reference")
+        strains = [p.define(f"d_{name}", a - b) for name, a, b in zip(self.law.names, now, before, strict=True)]
+        p.stage("strains at x")
+        strain = self.law.at(p, S, length, p.define("X", 2 * x / length - 1), strains)
+        p.stage("axes of the section")
+        shapes = [N.subs({sym.x: x, sym.l: length}) for N in self.law.director_shapes]
+        nodal = {name.partition("_")[2]: spatial(e[k]) for k, name in enumerate(self.element.names)}
+        directors = [sum((N * nodal.get(f"{d}{n + 1}", spatial([0, 0, 1])) for n, N in enumerate(shapes)), spatial([]))
+                     for d in "yz"]
+        axes = SectionFrame(p, "", *(p.vector(f"r_{d}", v) for d, v in zip("yz", directors, strict=True))).t
+        stiffness = self.law.spatial_stiffness(S)
+        resultant = [p.define(f"N{i + 1}", k * s) for i, (k, s) in enumerate(zip(stiffness, strain, strict=True))]
+        p.output("force", np.array(resultant[:3]).dot(axes), "N", "resultant of the stress, global axes")
+        p.output("moment", np.array(resultant[3:]).dot(axes), "N m", "its moment about the axis, global axes")
+        p.output("axes", axes, "1", "rows: normal of the section t1, t2 along r_y, t3 = t1 x t2")
+        p.output("strain", strain, "1, 1/m", "axial, shear along y and z, twist, curvature about y and z")
         return p
 
     def _stiffness(self, program: Program, A: np.ndarray, scale: sp.Expr) -> list[sp.Expr]:

@@ -34,6 +34,25 @@ def dissipation(element: Element, law: str, s):
     return s["tau"].item() * _form(s["S"], s["l"].item(), rates)
 
 
+def section(element: Element, law: str, s) -> dict[str, np.ndarray]:
+    """Resultants, axes and strains of the section at x."""
+    l, at = s["l"].item(), 2 * s["x"].item() / s["l"].item() - 1
+    now, before = (_strains(element, l, s[name]) for name in ("e", "e0"))
+    strains = {name: now[name] - before[name] for name in now}
+    EA, GAy, GAz, GJ, EIyy, EIzz, *_ = _spatial_stiffness(s["S"])
+    here = [_interpolated(strains["along"][:, axis])(at) for axis in range(3)] + list(strains["curvature"])
+    for axis, shear, bending, sign in ((1, GAy, EIzz, 1), (2, GAz, EIyy, -1)):
+        if shear:
+            gamma = _interpolated(strains["along"][:, axis])
+            beta = _least(_with_bubble(gamma, here[6 - axis], shear, bending, sign, l))
+            here[axis] -= sign * beta * (1 - at**2)
+            here[6 - axis] -= beta * 2 * at * 2 / l
+    F = _spatial(s["e"].T.dot(Shape(element, l).gradient((s["x"].item(), 0, 0))))
+    axes = _frame(F[:, 1], F[:, 2]).T
+    local = np.array([k * strain for k, strain in zip((EA, GAy, GAz, GJ, EIyy, EIzz), here, strict=True)])
+    return {"force": axes.T.dot(local[:3]), "moment": axes.T.dot(local[3:]), "axes": axes, "strain": np.array(here)}
+
+
 def _strains(element: Element, l, e: np.ndarray) -> dict[str, np.ndarray]:
     """Stretch and shears at nodes and half way (3, 3), curvatures (3,), strains of the section at nodes (2, 3)."""
     shape = Shape(element, l)
@@ -49,30 +68,39 @@ def _strains(element: Element, l, e: np.ndarray) -> dict[str, np.ndarray]:
             "across": np.array([[G[1, 1] / 2, G[2, 2] / 2, G[1, 2]] for G in products])}
 
 
+def _spatial_stiffness(S: np.ndarray):
+    """A planar section leaves the third direction at rest."""
+    if len(S) == 9:
+        return S
+    EA, GAy, EIzz, thickness = S
+    zero = mp.mpf(0)
+    return EA, GAy, zero, zero, zero, EIzz, thickness, zero, zero
+
+
 def _form(S: np.ndarray, l, strains: dict[str, np.ndarray]):
-    """Twice the energy; planar elements leave the third direction at rest."""
-    if len(S) == 4:
-        EA, GAy, EIzz, thickness = S
-        GAz = GJ = EIyy = GAyz = mp.mpf(0)
-        S = EA, GAy, GAz, GJ, EIyy, EIzz, thickness, thickness, GAyz
-    EA, GAy, GAz, GJ, EIyy, EIzz, *across = S
-    kappa = strains["curvature"]
-    total = l * (EA * _square(_interpolated(strains["along"][:, 0])) + GJ * kappa[0] ** 2)
-    total += sum(l * k * _square(lambda t, p=p: ((1 - t) * strains["across"][0, p] + (1 + t) * strains["across"][1, p]) / 2)
-                 for p, k in enumerate(across))
+    """Twice the energy."""
+    EA, GAy, GAz, GJ, EIyy, EIzz, *across = _spatial_stiffness(S)
+    along, kappa = strains["along"], strains["curvature"]
+    total = EA * _square(_interpolated(along[:, 0])) + GJ * kappa[0] ** 2
+    for k, at in zip(across, strains["across"].T, strict=True):
+        total += k * _square(lambda t, at=at: ((1 - t) * at[0] + (1 + t) * at[1]) / 2)
     for axis, shear, bending, sign in ((1, GAy, EIzz, 1), (2, GAz, EIyy, -1)):
-        total += l * _with_bubble(_interpolated(strains["along"][:, axis]), kappa[3 - axis], shear, bending, sign, l)
-    return total
+        value = _with_bubble(_interpolated(along[:, axis]), kappa[3 - axis], shear, bending, sign, l)
+        total += value(_least(value))
+    return l * total
 
 
-def _with_bubble(gamma: Callable, kappa, shear, bending, sign: int, l):
-    """Least over beta of shear (gamma - sign theta)^2 + bending (kappa + theta')^2, theta = beta (1 - t^2): a parabola."""
-    def value(beta):
-        return (shear * _square(lambda t: gamma(t) - sign * beta * (1 - t * t))
-                + bending * _square(lambda t: kappa - beta * 2 * t * 2 / l))
-    at = [value(mp.mpf(beta)) for beta in (-1, 0, 1)]
-    slope, curvature = (at[2] - at[0]) / 2, at[2] - 2 * at[1] + at[0]
-    return at[1] if curvature == 0 else at[1] - slope**2 / (2 * curvature)
+def _with_bubble(gamma: Callable, kappa, shear, bending, sign: int, l) -> Callable:
+    """shear (gamma - sign theta)^2 + bending (kappa + theta')^2 with theta = beta (1 - t^2), a parabola in beta."""
+    return lambda beta: (shear * _square(lambda t: gamma(t) - sign * beta * (1 - t * t))
+                         + bending * _square(lambda t: kappa - beta * 2 * t * 2 / l))
+
+
+def _least(parabola: Callable):
+    """Where it is least; 0 where it is flat."""
+    below, here, above = (parabola(mp.mpf(beta)) for beta in (-1, 0, 1))
+    curvature = above - 2 * here + below
+    return mp.mpf(0) if curvature == 0 else (below - above) / (2 * curvature)
 
 
 def _interpolated(at: np.ndarray) -> Callable:

@@ -38,6 +38,14 @@ cdef extern from "kernels.h" nogil:
     void c_beam24_continuum_damping_tangent "beam24_continuum_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_beam24_continuum_dissipation "beam24_continuum_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
     void c_beam24_continuum_section_forces "beam24_continuum_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
+    void c_beam24_structural_stiffness "beam24_structural_stiffness"(double l, const double *e0, const double *S, double *A)
+    void c_beam24_structural_energy "beam24_structural_energy"(double l, const double *e, const double *A, double *U)
+    void c_beam24_structural_elastic_force "beam24_structural_elastic_force"(double l, const double *e, const double *A, double *f)
+    void c_beam24_structural_elastic_tangent "beam24_structural_elastic_tangent"(double l, const double *e, const double *A, double *K)
+    void c_beam24_structural_damping_force "beam24_structural_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
+    void c_beam24_structural_damping_tangent "beam24_structural_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
+    void c_beam24_structural_dissipation "beam24_structural_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_beam24_structural_section_forces "beam24_structural_section_forces"(double l, double x, const double *e, const double *S, const double *e0, double *force, double *moment, double *axes, double *strain)
     void c_cable12_green_exact_stiffness "cable12_green_exact_stiffness"(double l, const double *S, double *A)
     void c_cable12_green_exact_energy "cable12_green_exact_energy"(double l, const double *e, const double *A, double *U)
     void c_cable12_green_exact_elastic_force "cable12_green_exact_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -94,6 +102,14 @@ cdef extern from "kernels.h" nogil:
     void c_beam12p_continuum_damping_tangent "beam12p_continuum_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
     void c_beam12p_continuum_dissipation "beam12p_continuum_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
     void c_beam12p_continuum_section_forces "beam12p_continuum_section_forces"(double l, double x, const double *e, const double *S, double *force, double *moment, double *axes, double *strain)
+    void c_beam12p_structural_stiffness "beam12p_structural_stiffness"(double l, const double *e0, const double *S, double *A)
+    void c_beam12p_structural_energy "beam12p_structural_energy"(double l, const double *e, const double *A, double *U)
+    void c_beam12p_structural_elastic_force "beam12p_structural_elastic_force"(double l, const double *e, const double *A, double *f)
+    void c_beam12p_structural_elastic_tangent "beam12p_structural_elastic_tangent"(double l, const double *e, const double *A, double *K)
+    void c_beam12p_structural_damping_force "beam12p_structural_damping_force"(double l, const double *e, const double *v, const double *A, double tau, double *f)
+    void c_beam12p_structural_damping_tangent "beam12p_structural_damping_tangent"(double l, const double *e, const double *v, const double *A, double tau, double rate, double *K)
+    void c_beam12p_structural_dissipation "beam12p_structural_dissipation"(double l, const double *e, const double *v, const double *A, double tau, double *P)
+    void c_beam12p_structural_section_forces "beam12p_structural_section_forces"(double l, double x, const double *e, const double *S, const double *e0, double *force, double *moment, double *axes, double *strain)
     void c_cable8p_green_exact_stiffness "cable8p_green_exact_stiffness"(double l, const double *S, double *A)
     void c_cable8p_green_exact_energy "cable8p_green_exact_energy"(double l, const double *e, const double *A, double *U)
     void c_cable8p_green_exact_elastic_force "cable8p_green_exact_elastic_force"(double l, const double *e, const double *A, double *f)
@@ -722,6 +738,185 @@ def beam24_continuum_section_forces(l, x, e, S):
     cdef double[::1] strain__ = strain_out.reshape(-1)
     with nogil:
         c_beam24_continuum_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
+
+
+def beam24_structural_stiffness(l, e0, S):
+    """constants of the law from the stiffness of the section and the reference (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
+
+    l () [m]: length of the element
+    e0 (8, 3) [m, 1]: nodal vectors of the stress-free reference
+    S (9,) [N, N m^2]: section stiffness: EA, GA_y, GA_z, GJ, EI_yy, EI_zz; against r_y.r_y/2, r_z.r_z/2, r_y.r_z
+    Returns
+    A (29,) [N, N m^2, 1, 1/m]: S, stiffness that the bubble takes off the shears, reference strains
+    """
+    cdef double l_ = l
+    cdef const double[::1] e0_ = _array(e0, (8, 3), "beam24_structural_stiffness", "e0")
+    cdef const double[::1] S_ = _array(S, (9,), "beam24_structural_stiffness", "S")
+    A_out = np.empty((29,))
+    cdef double[::1] A__ = A_out.reshape(-1)
+    with nogil:
+        c_beam24_structural_stiffness(l_, &e0_[0], &S_[0], &A__[0])
+    return A_out
+
+
+def beam24_structural_energy(l, e, A):
+    """elastic energy (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
+
+    l () [m]: length of the element
+    e (8, 3) [m, 1]: nodal vectors (eq 1)
+    A (29,) [N, N m^2, 1, 1/m]: constants from beam24_structural_stiffness
+    Returns
+    U (1,) [J]: elastic energy
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_structural_energy", "e")
+    cdef const double[::1] A_ = _array(A, (29,), "beam24_structural_energy", "A")
+    U_out = np.empty((1,))
+    cdef double[::1] U__ = U_out.reshape(-1)
+    with nogil:
+        c_beam24_structural_energy(l_, &e_[0], &A_[0], &U__[0])
+    return U_out
+
+
+def beam24_structural_elastic_force(l, e, A):
+    """dU/de, minus the elastic force Q_k (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
+
+    l () [m]: length of the element
+    e (8, 3) [m, 1]: nodal vectors (eq 1)
+    A (29,) [N, N m^2, 1, 1/m]: constants from beam24_structural_stiffness
+    Returns
+    f (8, 3) [N, N m]: dU/de
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_structural_elastic_force", "e")
+    cdef const double[::1] A_ = _array(A, (29,), "beam24_structural_elastic_force", "A")
+    f_out = np.empty((8, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_beam24_structural_elastic_force(l_, &e_[0], &A_[0], &f__[0])
+    return f_out
+
+
+def beam24_structural_elastic_tangent(l, e, A):
+    """d2U/de2 (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
+
+    l () [m]: length of the element
+    e (8, 3) [m, 1]: nodal vectors (eq 1)
+    A (29,) [N, N m^2, 1, 1/m]: constants from beam24_structural_stiffness
+    Returns
+    K (24, 24) [N/m, N, N m]: d2U/de2, symmetric
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_structural_elastic_tangent", "e")
+    cdef const double[::1] A_ = _array(A, (29,), "beam24_structural_elastic_tangent", "A")
+    K_out = np.empty((24, 24))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_beam24_structural_elastic_tangent(l_, &e_[0], &A_[0], &K__[0])
+    return K_out
+
+
+def beam24_structural_damping_force(l, e, v, A, tau):
+    """minus the Kelvin-Voigt damping force Q_d (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
+
+    l () [m]: length of the element
+    e (8, 3) [m, 1]: nodal vectors (eq 1)
+    v (8, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (29,) [N, N m^2, 1, 1/m]: constants from beam24_structural_stiffness
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    f (8, 3) [N, N m]: -Q_d
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_structural_damping_force", "e")
+    cdef const double[::1] v_ = _array(v, (8, 3), "beam24_structural_damping_force", "v")
+    cdef const double[::1] A_ = _array(A, (29,), "beam24_structural_damping_force", "A")
+    cdef double tau_ = tau
+    f_out = np.empty((8, 3))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_beam24_structural_damping_force(l_, &e_[0], &v_[0], &A_[0], tau_, &f__[0])
+    return f_out
+
+
+def beam24_structural_damping_tangent(l, e, v, A, tau, rate):
+    """df/de + rate df/dv of the damping force f = -Q_d (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
+
+    l () [m]: length of the element
+    e (8, 3) [m, 1]: nodal vectors (eq 1)
+    v (8, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (29,) [N, N m^2, 1, 1/m]: constants from beam24_structural_stiffness
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    rate () [1/s]: dv/de of the integrator
+    Returns
+    K (24, 24) [N/m, N, N m]: df/de + rate df/dv
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_structural_damping_tangent", "e")
+    cdef const double[::1] v_ = _array(v, (8, 3), "beam24_structural_damping_tangent", "v")
+    cdef const double[::1] A_ = _array(A, (29,), "beam24_structural_damping_tangent", "A")
+    cdef double tau_ = tau
+    cdef double rate_ = rate
+    K_out = np.empty((24, 24))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_beam24_structural_damping_tangent(l_, &e_[0], &v_[0], &A_[0], tau_, rate_, &K__[0])
+    return K_out
+
+
+def beam24_structural_dissipation(l, e, v, A, tau):
+    """power dissipated by the damping force (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
+
+    l () [m]: length of the element
+    e (8, 3) [m, 1]: nodal vectors (eq 1)
+    v (8, 3) [m/s, 1/s]: rates of the nodal vectors
+    A (29,) [N, N m^2, 1, 1/m]: constants from beam24_structural_stiffness
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    P (1,) [W]: dissipated power, never negative
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_structural_dissipation", "e")
+    cdef const double[::1] v_ = _array(v, (8, 3), "beam24_structural_dissipation", "v")
+    cdef const double[::1] A_ = _array(A, (29,), "beam24_structural_dissipation", "A")
+    cdef double tau_ = tau
+    P_out = np.empty((1,))
+    cdef double[::1] P__ = P_out.reshape(-1)
+    with nogil:
+        c_beam24_structural_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
+    return P_out
+
+
+def beam24_structural_section_forces(l, x, e, S, e0):
+    """force and moment resultants of a section (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (8, 3) [m, 1]: nodal vectors (eq 1)
+    S (9,) [N, N m^2]: section stiffness: EA, GA_y, GA_z, GJ, EI_yy, EI_zz; against r_y.r_y/2, r_z.r_z/2, r_y.r_z
+    e0 (8, 3) [m, 1]: nodal vectors of the stress-free reference
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: normal of the section t1, t2 along r_y, t3 = t1 x t2
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (8, 3), "beam24_structural_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (9,), "beam24_structural_section_forces", "S")
+    cdef const double[::1] e0_ = _array(e0, (8, 3), "beam24_structural_section_forces", "e0")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_beam24_structural_section_forces(l_, x_, &e_[0], &S_[0], &e0_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
     return force_out, moment_out, axes_out, strain_out
 
 
@@ -1947,6 +2142,185 @@ def beam12p_continuum_section_forces(l, x, e, S):
     cdef double[::1] strain__ = strain_out.reshape(-1)
     with nogil:
         c_beam12p_continuum_section_forces(l_, x_, &e_[0], &S_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
+    return force_out, moment_out, axes_out, strain_out
+
+
+def beam12p_structural_stiffness(l, e0, S):
+    """constants of the law from the stiffness of the section and the reference (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
+
+    l () [m]: length of the element
+    e0 (6, 2) [m, 1]: nodal vectors of the stress-free reference
+    S (4,) [N, N m^2]: section stiffness: EA, GA, EI; against r_y.r_y/2
+    Returns
+    A (14,) [N, N m^2, 1, 1/m]: S, stiffness that the bubble takes off the shears, reference strains
+    """
+    cdef double l_ = l
+    cdef const double[::1] e0_ = _array(e0, (6, 2), "beam12p_structural_stiffness", "e0")
+    cdef const double[::1] S_ = _array(S, (4,), "beam12p_structural_stiffness", "S")
+    A_out = np.empty((14,))
+    cdef double[::1] A__ = A_out.reshape(-1)
+    with nogil:
+        c_beam12p_structural_stiffness(l_, &e0_[0], &S_[0], &A__[0])
+    return A_out
+
+
+def beam12p_structural_energy(l, e, A):
+    """elastic energy (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
+
+    l () [m]: length of the element
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    A (14,) [N, N m^2, 1, 1/m]: constants from beam12p_structural_stiffness
+    Returns
+    U (1,) [J]: elastic energy
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_structural_energy", "e")
+    cdef const double[::1] A_ = _array(A, (14,), "beam12p_structural_energy", "A")
+    U_out = np.empty((1,))
+    cdef double[::1] U__ = U_out.reshape(-1)
+    with nogil:
+        c_beam12p_structural_energy(l_, &e_[0], &A_[0], &U__[0])
+    return U_out
+
+
+def beam12p_structural_elastic_force(l, e, A):
+    """dU/de, minus the elastic force Q_k (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
+
+    l () [m]: length of the element
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    A (14,) [N, N m^2, 1, 1/m]: constants from beam12p_structural_stiffness
+    Returns
+    f (6, 2) [N, N m]: dU/de
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_structural_elastic_force", "e")
+    cdef const double[::1] A_ = _array(A, (14,), "beam12p_structural_elastic_force", "A")
+    f_out = np.empty((6, 2))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_beam12p_structural_elastic_force(l_, &e_[0], &A_[0], &f__[0])
+    return f_out
+
+
+def beam12p_structural_elastic_tangent(l, e, A):
+    """d2U/de2 (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
+
+    l () [m]: length of the element
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    A (14,) [N, N m^2, 1, 1/m]: constants from beam12p_structural_stiffness
+    Returns
+    K (12, 12) [N/m, N, N m]: d2U/de2, symmetric
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_structural_elastic_tangent", "e")
+    cdef const double[::1] A_ = _array(A, (14,), "beam12p_structural_elastic_tangent", "A")
+    K_out = np.empty((12, 12))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_beam12p_structural_elastic_tangent(l_, &e_[0], &A_[0], &K__[0])
+    return K_out
+
+
+def beam12p_structural_damping_force(l, e, v, A, tau):
+    """minus the Kelvin-Voigt damping force Q_d (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
+
+    l () [m]: length of the element
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    v (6, 2) [m/s, 1/s]: rates of the nodal vectors
+    A (14,) [N, N m^2, 1, 1/m]: constants from beam12p_structural_stiffness
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    f (6, 2) [N, N m]: -Q_d
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_structural_damping_force", "e")
+    cdef const double[::1] v_ = _array(v, (6, 2), "beam12p_structural_damping_force", "v")
+    cdef const double[::1] A_ = _array(A, (14,), "beam12p_structural_damping_force", "A")
+    cdef double tau_ = tau
+    f_out = np.empty((6, 2))
+    cdef double[::1] f__ = f_out.reshape(-1)
+    with nogil:
+        c_beam12p_structural_damping_force(l_, &e_[0], &v_[0], &A_[0], tau_, &f__[0])
+    return f_out
+
+
+def beam12p_structural_damping_tangent(l, e, v, A, tau, rate):
+    """df/de + rate df/dv of the damping force f = -Q_d (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
+
+    l () [m]: length of the element
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    v (6, 2) [m/s, 1/s]: rates of the nodal vectors
+    A (14,) [N, N m^2, 1, 1/m]: constants from beam12p_structural_stiffness
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    rate () [1/s]: dv/de of the integrator
+    Returns
+    K (12, 12) [N/m, N, N m]: df/de + rate df/dv
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_structural_damping_tangent", "e")
+    cdef const double[::1] v_ = _array(v, (6, 2), "beam12p_structural_damping_tangent", "v")
+    cdef const double[::1] A_ = _array(A, (14,), "beam12p_structural_damping_tangent", "A")
+    cdef double tau_ = tau
+    cdef double rate_ = rate
+    K_out = np.empty((12, 12))
+    cdef double[::1] K__ = K_out.reshape(-1)
+    with nogil:
+        c_beam12p_structural_damping_tangent(l_, &e_[0], &v_[0], &A_[0], tau_, rate_, &K__[0])
+    return K_out
+
+
+def beam12p_structural_dissipation(l, e, v, A, tau):
+    """power dissipated by the damping force (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
+
+    l () [m]: length of the element
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    v (6, 2) [m/s, 1/s]: rates of the nodal vectors
+    A (14,) [N, N m^2, 1, 1/m]: constants from beam12p_structural_stiffness
+    tau () [s]: retardation time of the Kelvin-Voigt law
+    Returns
+    P (1,) [W]: dissipated power, never negative
+    """
+    cdef double l_ = l
+    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_structural_dissipation", "e")
+    cdef const double[::1] v_ = _array(v, (6, 2), "beam12p_structural_dissipation", "v")
+    cdef const double[::1] A_ = _array(A, (14,), "beam12p_structural_dissipation", "A")
+    cdef double tau_ = tau
+    P_out = np.empty((1,))
+    cdef double[::1] P__ = P_out.reshape(-1)
+    with nogil:
+        c_beam12p_structural_dissipation(l_, &e_[0], &v_[0], &A_[0], tau_, &P__[0])
+    return P_out
+
+
+def beam12p_structural_section_forces(l, x, e, S, e0):
+    """force and moment resultants of a section (Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 (1999) 1125-1147).
+
+    l () [m]: length of the element
+    x () [m]: arc-length from its start
+    e (6, 2) [m, 1]: nodal vectors (eq 1)
+    S (4,) [N, N m^2]: section stiffness: EA, GA, EI; against r_y.r_y/2
+    e0 (6, 2) [m, 1]: nodal vectors of the stress-free reference
+    Returns
+    force (3,) [N]: resultant of the stress, global axes
+    moment (3,) [N m]: its moment about the axis, global axes
+    axes (3, 3) [1]: rows: normal of the section t1, t2 along r_y, t3 = t1 x t2
+    strain (6,) [1, 1/m]: axial, shear along y and z, twist, curvature about y and z
+    """
+    cdef double l_ = l
+    cdef double x_ = x
+    cdef const double[::1] e_ = _array(e, (6, 2), "beam12p_structural_section_forces", "e")
+    cdef const double[::1] S_ = _array(S, (4,), "beam12p_structural_section_forces", "S")
+    cdef const double[::1] e0_ = _array(e0, (6, 2), "beam12p_structural_section_forces", "e0")
+    force_out = np.empty((3,))
+    cdef double[::1] force__ = force_out.reshape(-1)
+    moment_out = np.empty((3,))
+    cdef double[::1] moment__ = moment_out.reshape(-1)
+    axes_out = np.empty((3, 3))
+    cdef double[::1] axes__ = axes_out.reshape(-1)
+    strain_out = np.empty((6,))
+    cdef double[::1] strain__ = strain_out.reshape(-1)
+    with nogil:
+        c_beam12p_structural_section_forces(l_, x_, &e_[0], &S_[0], &e0_[0], &force__[0], &moment__[0], &axes__[0], &strain__[0])
     return force_out, moment_out, axes_out, strain_out
 
 

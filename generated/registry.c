@@ -56,8 +56,7 @@ static const fu_law laws[] = {
      beam24_continuum_elastic_tangent,
      beam24_continuum_damping_force,
      beam24_continuum_damping_tangent,
-     beam24_continuum_dissipation,
-     beam24_continuum_section_forces
+     beam24_continuum_dissipation
     },
     {"beam24_structural",
      beam24_structural_energy,
@@ -73,8 +72,7 @@ static const fu_law laws[] = {
      cable12_green_exact_elastic_tangent,
      cable12_green_exact_damping_force,
      cable12_green_exact_damping_tangent,
-     cable12_green_exact_dissipation,
-     cable12_green_exact_section_forces
+     cable12_green_exact_dissipation
     },
     {"cable12_green_linear",
      cable12_green_linear_energy,
@@ -82,8 +80,7 @@ static const fu_law laws[] = {
      cable12_green_linear_elastic_tangent,
      cable12_green_linear_damping_force,
      cable12_green_linear_damping_tangent,
-     cable12_green_linear_dissipation,
-     cable12_green_linear_section_forces
+     cable12_green_linear_dissipation
     },
     {"cable12_engineering_exact",
      cable12_engineering_exact_energy,
@@ -91,8 +88,7 @@ static const fu_law laws[] = {
      cable12_engineering_exact_elastic_tangent,
      cable12_engineering_exact_damping_force,
      cable12_engineering_exact_damping_tangent,
-     cable12_engineering_exact_dissipation,
-     cable12_engineering_exact_section_forces
+     cable12_engineering_exact_dissipation
     },
     {"cable12_engineering_linear",
      cable12_engineering_linear_energy,
@@ -100,8 +96,7 @@ static const fu_law laws[] = {
      cable12_engineering_linear_elastic_tangent,
      cable12_engineering_linear_damping_force,
      cable12_engineering_linear_damping_tangent,
-     cable12_engineering_linear_dissipation,
-     cable12_engineering_linear_section_forces
+     cable12_engineering_linear_dissipation
     },
     {"cable18_green_exact",
      cable18_green_exact_energy,
@@ -109,8 +104,7 @@ static const fu_law laws[] = {
      cable18_green_exact_elastic_tangent,
      cable18_green_exact_damping_force,
      cable18_green_exact_damping_tangent,
-     cable18_green_exact_dissipation,
-     cable18_green_exact_section_forces
+     cable18_green_exact_dissipation
     },
     {"cable18_engineering_exact",
      cable18_engineering_exact_energy,
@@ -118,8 +112,7 @@ static const fu_law laws[] = {
      cable18_engineering_exact_elastic_tangent,
      cable18_engineering_exact_damping_force,
      cable18_engineering_exact_damping_tangent,
-     cable18_engineering_exact_dissipation,
-     cable18_engineering_exact_section_forces
+     cable18_engineering_exact_dissipation
     },
     {"beam12p_continuum",
      beam12p_continuum_energy,
@@ -127,8 +120,7 @@ static const fu_law laws[] = {
      beam12p_continuum_elastic_tangent,
      beam12p_continuum_damping_force,
      beam12p_continuum_damping_tangent,
-     beam12p_continuum_dissipation,
-     beam12p_continuum_section_forces
+     beam12p_continuum_dissipation
     },
     {"beam12p_structural",
      beam12p_structural_energy,
@@ -144,8 +136,7 @@ static const fu_law laws[] = {
      cable8p_green_exact_elastic_tangent,
      cable8p_green_exact_damping_force,
      cable8p_green_exact_damping_tangent,
-     cable8p_green_exact_dissipation,
-     cable8p_green_exact_section_forces
+     cable8p_green_exact_dissipation
     },
     {"cable8p_green_linear",
      cable8p_green_linear_energy,
@@ -153,8 +144,7 @@ static const fu_law laws[] = {
      cable8p_green_linear_elastic_tangent,
      cable8p_green_linear_damping_force,
      cable8p_green_linear_damping_tangent,
-     cable8p_green_linear_dissipation,
-     cable8p_green_linear_section_forces
+     cable8p_green_linear_dissipation
     },
     {"cable8p_engineering_exact",
      cable8p_engineering_exact_energy,
@@ -162,8 +152,7 @@ static const fu_law laws[] = {
      cable8p_engineering_exact_elastic_tangent,
      cable8p_engineering_exact_damping_force,
      cable8p_engineering_exact_damping_tangent,
-     cable8p_engineering_exact_dissipation,
-     cable8p_engineering_exact_section_forces
+     cable8p_engineering_exact_dissipation
     },
     {"cable8p_engineering_linear",
      cable8p_engineering_linear_energy,
@@ -171,8 +160,7 @@ static const fu_law laws[] = {
      cable8p_engineering_linear_elastic_tangent,
      cable8p_engineering_linear_damping_force,
      cable8p_engineering_linear_damping_tangent,
-     cable8p_engineering_linear_dissipation,
-     cable8p_engineering_linear_section_forces
+     cable8p_engineering_linear_dissipation
     }
 };
 

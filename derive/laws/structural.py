@@ -32,6 +32,8 @@ SOURCE = ("Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachba
           "J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 "
           "(1999) 1125-1147")
 
+REFERENCE_DOC = "nodal vectors of the stress-free reference"
+
 X = sp.Symbol("X")
 PLACES = (-1, 0, 1)  # X of the first node, half way, the second node
 LAGRANGE = [sp.interpolate([(p, int(p == q)) for p in PLACES], X) for q in PLACES]
@@ -103,8 +105,7 @@ class Structural:
     def set_up(self, program: Program) -> None:
         """Inputs l, e0, S and output A."""
         length = program.input("l", (), "m", "length of the element")
-        e0 = program.input("e0", (self.element.n_vectors, self.element.dim), "m, 1",
-                           "nodal vectors of the stress-free reference")
+        e0 = program.input("e0", (self.element.n_vectors, self.element.dim), "m, 1", REFERENCE_DOC)
         S = self.section_stiffness(program)
         program.stage("strains of the reference")
         configuration = Configuration(self, program, e0, program.define("w", 1 / length))
@@ -162,6 +163,33 @@ class Structural:
             for node in range(2):
                 found[3 * n + m + node * len(self.across) + p] = stiffness[n + m + p] * _times(LINEAR.row(node), at)
         return found
+
+    def at(self, program: Program, S, length: sp.Expr, at: sp.Expr, strains: Sequence[sp.Expr]) -> list[sp.Expr]:
+        """Axial strain, shears, twist, curvatures at X, the bubble's among them; zero out of the plane."""
+        n = len(self.axes)
+        found = [sp.S.Zero] * 6
+        for k in self.spins:
+            found[3 + k] = strains[3 * n + list(self.spins).index(k)]
+        for i in self.axes:
+            places = strains[i:3 * n:n]
+            found[i] = _times([f.subs(X, at) for f in LAGRANGE], places)
+            if i in self.shears:
+                # a rotation about z takes from the shear along y, one about y adds to that along z
+                sign = 1 if i == 1 else -1
+                bubble = program.define(f"bubble_{i}", self.bubble(S, i, length, places))
+                found[i] -= bubble * BUBBLE.subs(X, at)
+                found[6 - i] += sign * bubble * (2 / length) * BUBBLE.diff(X).subs(X, at)
+        return [program.define(f"at_{name}", f) for name, f in zip(("e1", "e2", "e3", "k1", "k2", "k3"), found, strict=True)]
+
+    def spatial_stiffness(self, S: Sequence[sp.Expr]) -> list[sp.Expr]:
+        """EA, GA_y, GA_z, GJ, EI_yy, EI_zz; of a planar element those that it has."""
+        return list(S[:6]) if self.element.dim == 3 else [S[0], S[1], *[sp.S.Zero] * 3, S[2]]
+
+    @property
+    def director_shapes(self) -> list[sp.Expr]:
+        """Shape functions of r_y at the nodes, as they stand at r_y: linear in x."""
+        return [sp.diff(N, y) for name, N in zip(self.element.names, self.element.shape_functions, strict=True)
+                if name.startswith("r_y")]
 
     @cached_property
     def half_way(self) -> list[sp.Expr]:
