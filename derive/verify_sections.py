@@ -10,6 +10,7 @@ from itertools import product
 
 import mpmath
 import numpy as np
+from funicular.derive import verify_structural
 from funicular.derive.spec import Element
 from funicular.derive.verify_laws import is_cable, spatial
 from funicular.derive.verify_motion import cross, frame
@@ -24,6 +25,8 @@ STEP = mpmath.mpf(10) ** -12  # of differences of second order: errors 1e-24, ro
 def resultant(output: str) -> Callable:
     """Function of (element, law, state) for an output of the kernel."""
     def value(element: Element, law: str, s):
+        if law == "structural":
+            return verify_structural.section(element, law, s)[output]
         if output == "axes":
             return axes(element, s)
         return (_cable if is_cable(law) else _continuum)(element, law, s)[output]

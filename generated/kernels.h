@@ -71,6 +71,16 @@ void beam24_continuum_damping_tangent(fu_real l, const fu_real *e, const fu_real
 void beam24_continuum_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 void beam24_continuum_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
+/* beam24_structural: elastic law structural on beam24 */
+void beam24_structural_stiffness(fu_real l, const fu_real *e0, const fu_real *S, fu_real *A);
+void beam24_structural_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void beam24_structural_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void beam24_structural_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void beam24_structural_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
+void beam24_structural_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
+void beam24_structural_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+void beam24_structural_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
+
 /* cable12_green_exact: elastic law green_exact on cable12 */
 void cable12_green_exact_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void cable12_green_exact_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
@@ -140,6 +150,16 @@ void beam12p_continuum_damping_force(fu_real l, const fu_real *e, const fu_real 
 void beam12p_continuum_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void beam12p_continuum_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 void beam12p_continuum_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
+
+/* beam12p_structural: elastic law structural on beam12p */
+void beam12p_structural_stiffness(fu_real l, const fu_real *e0, const fu_real *S, fu_real *A);
+void beam12p_structural_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void beam12p_structural_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void beam12p_structural_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void beam12p_structural_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
+void beam12p_structural_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
+void beam12p_structural_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+void beam12p_structural_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable8p_green_exact: elastic law green_exact on cable8p */
 void cable8p_green_exact_stiffness(fu_real l, const fu_real *S, fu_real *A);
@@ -249,7 +269,6 @@ typedef struct {
     void (*damping_force)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
     void (*damping_tangent)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
     void (*dissipation)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
-    void (*section_forces)(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 } fu_law;
 
 /* What the engine needs of a body. */

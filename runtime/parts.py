@@ -9,8 +9,6 @@ from funicular.supports import Clamp, Join, Motion, Pin
 
 KINDS = (Cable, Pin, Clamp, Motion, Join, RigidBody, Slide, Force, DistributedForce, Moment, Spring)
 
-
-
 PARTS = {part.kind: part for part in KINDS}
 """The kinds of parts by their names in scene files and in messages."""
 
