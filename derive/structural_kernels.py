@@ -11,9 +11,9 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 import sympy as sp
+from funicular.derive import spec as sym
 from funicular.derive.gram import DIRECTIONS
 from funicular.derive.gram_tangent import from_others
-from funicular.derive import spec as sym
 from funicular.derive.laws.section_frame import SectionFrame, spatial
 from funicular.derive.laws.structural import REFERENCE_DOC, Configuration, Structural
 from funicular.derive.spec import Element
@@ -293,7 +293,8 @@ class Tangent(Forces):
             motion = configuration.motions[column]
             of_mean = [(motion[a] + motion[b]) / 2 for a, b in zip(*configuration.between, strict=True) if a.is_Symbol]
             moved = [*of_mean, *(motion[g] for g in configuration.gibbs if g.is_Symbol)]
-            by_scalar = {v: self.program.define(f"dV_{s.name}_{column}", sum(h * m for h, m in zip(row, moved, strict=True)))
+            by_scalar = {v: self.program.define(f"dV_{s.name}_{column}",
+                                                sum(h * m for h, m in zip(row, moved, strict=True)))
                          for v, s, row in zip(self.by_scalar, self.scalars, hessian, strict=True)}
             rate = Derivation(self.program, f"turn{column}", self.held | motion | by_scalar)
             for row in range(column + 1):
@@ -373,7 +374,8 @@ class Tangent(Forces):
             of_mean = [self.program.define("moved", (motion[a] + motion[b]) / 2)
                        for a, b in zip(*configuration.between, strict=True) if a.is_Symbol]
             moved = [*of_mean, *(motion[g] for g in configuration.gibbs if g.is_Symbol)]
-            values = [self.program.define(f"B_{row}_{column}", v) for row, v in enumerate(self.middle.dot(np.array(moved)))]
+            values = [self.program.define(f"B_{row}_{column}", v)
+                      for row, v in enumerate(self.middle.dot(np.array(moved)))]
             for i in self.law.axes:
                 for node in range(2):
                     B[2 * n * node + i, column] = motion[configuration.along[node][i]]
@@ -396,7 +398,7 @@ class Tangent(Forces):
         return self._over_nodes(K, symmetric)
 
     def _turning(self, slot: tuple[str, int], j: int) -> dict:
-        """A unit motion of r_x or a director: rates of the frame it belongs to, derivatives of the forces on the parts."""
+        """A unit motion of r_x or a director: rates of the frame it is of, derivatives of the forces on the parts."""
         configuration, program = self.configuration, self.program
         vector, n = slot
         if vector == "x":
@@ -405,7 +407,8 @@ class Tangent(Forces):
             unit = spatial([int(i == j) for i in range(3)])
             pair = (unit, 0 * unit) if vector == "y" else (0 * unit, unit)
             spin = configuration.frames[n].spin(*pair)
-            spin = np.array([program.define(f"W{k + 1}_{vector}{n + 1}_{DIRECTIONS[j]}", s) for k, s in enumerate(spin)])
+            spin = np.array([program.define(f"W{k + 1}_{vector}{n + 1}_{DIRECTIONS[j]}", s)
+                             for k, s in enumerate(spin)])
             columns = [configuration.turn(n, k) for k in self.law.spins]
             changes = self.parts[:, columns].dot(spin[list(self.law.spins)])
             if self.velocity:
@@ -427,7 +430,8 @@ class Tangent(Forces):
             if moved["frame"] and moved["node"] == node:
                 rates |= moved["frame"]
             rates |= {self.moments[node][k]: moved["changes"][configuration.turn(node, k)] for k in self.law.spins}
-            rate = moved.setdefault("rate", {}).setdefault(node, Derivation(program, f"by_{to[0]}{to[1] + 1}_{j}", rates))
+            rate = moved.setdefault("rate", {}).setdefault(
+                node, Derivation(program, f"by_{to[0]}{to[1] + 1}_{j}", rates))
             force = self.directors[node]["yz".index(of[0])]
             block[:, j] = [rate(force[i]) for i in range(dim)]
         block = block + self.across.get((of, to), np.zeros((dim, dim), dtype=int))

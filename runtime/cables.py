@@ -266,7 +266,8 @@ class Cable(Part):
         length = self.length / self.elements
         element = int(np.clip(np.floor(s / length), 0, self.elements - 1))
         e = np.concatenate(self.nodal_vectors[element : element + 2])[:, : self.dim]
-        _, r = getattr(kernels_of(self.library), f"{self.element}_position")(length, np.array([s - element * length, 0, 0]), e)
+        position = getattr(kernels_of(self.library), f"{self.element}_position")
+        _, r = position(length, np.array([s - element * length, 0, 0]), e)
         return np.pad(r, (0, 3 - self.dim))
 
     def axes_at(self, s) -> np.ndarray:

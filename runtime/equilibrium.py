@@ -18,10 +18,9 @@ class Equilibrium:
     """A state of rest of a scene.
 
     Quantities by name as in a `Run`, without the time: ``state["wire.nodal_vectors"]`` (node, vector, 3),
-    ``state["A.position"]``, ``state["trolley.s"]``, ``state["wire@0.force"]`` ... load_fraction: how much of the load is
-    on, 1 but in the `EquilibriumError` that says how far it got; iterations of Newton; residual: the largest force left
-    over, in N.
-    """
+    ``state["A.position"]``, ``state["trolley.s"]``, ``state["wire@0.force"]`` ... load_fraction: how much of the load
+    is on, 1 but in the `EquilibriumError` that says how far it got; iterations of Newton; residual: the largest force
+    left over, in N. """
 
     scene: Scene
     model: Model

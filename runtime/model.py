@@ -173,7 +173,8 @@ def build(scene: Scene) -> Model:
         dim, cables, rigids, joints, springs, actions.signals,
         [MotionModel(dof, p.signal, p.base, p.linear, p.cosine, p.sine) for dof, p in reduction.prescribed],
         actions.dead, actions.turning,
-        q=np.concatenate([n.ravel() for n in nodal.values()] + [_attitude(b, dim) for b in scene.bodies.values()] + [[]]),
+        q=np.concatenate([n.ravel() for n in nodal.values()] + [_attitude(b, dim) for b in scene.bodies.values()]
+                         + [[]]),
         v=np.concatenate([np.zeros(n_flexible)] + [_velocity(b, dim) for b in scene.bodies.values()]),
         weight=np.concatenate([_cable_weights(c) for c in scene.cables.values()]
                               + [_rigid_weights(b, dim) for b in scene.bodies.values()] + [[]]),
@@ -234,7 +235,7 @@ def _attitude(body: RigidBody, dim: int) -> np.ndarray:
 
 
 def _velocity(body: RigidBody, dim: int) -> list[float]:
-    return [*body.velocity[:dim], *body.angular_velocity[dim == 2 and 2 or 0 :]]
+    return [*body.velocity[:dim], *body.angular_velocity[(dim == 2 and 2) or 0 :]]
 
 
 def _rigid_weights(body: RigidBody, dim: int) -> np.ndarray:

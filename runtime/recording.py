@@ -94,7 +94,8 @@ def body_state(model: Model, body, q: np.ndarray) -> dict[str, np.ndarray]:
         return {"position": q[:, b : b + 3], "orientation": q[:, b + 3 : b + 7]}
     half = np.arctan2(q[:, b + 3], q[:, b + 2]) / 2
     zero = np.zeros_like(half)
-    return {"position": spatial(q[:, b : b + 2]), "orientation": np.stack([np.cos(half), zero, zero, np.sin(half)], axis=1)}
+    return {"position": spatial(q[:, b : b + 2]),
+            "orientation": np.stack([np.cos(half), zero, zero, np.sin(half)], axis=1)}
 
 
 def recorded(model: Model, scene: Scene, engine, settings: RunSettings, status: str, messages: list[str],
@@ -150,7 +151,8 @@ def recorded(model: Model, scene: Scene, engine, settings: RunSettings, status: 
         clamps={clamp.label: held(clamp) for clamp in scene.clamps},
         motions={motion.label: held(motion) for motion in scene.motions},
         joins={name: join_force(model, scene, join, rows["reaction"], q) for name, join in scene.joins.items()},
-        springs={spring.name: _spring(model, spring, rows["spring"][:, k], q) for k, spring in enumerate(model.springs)},
+        springs={spring.name: _spring(model, spring, rows["spring"][:, k], q)
+                 for k, spring in enumerate(model.springs)},
         energy={name: rows[name] for name in ("kinetic", "elastic", "potential", "dissipated", "external")},
         report=report,
     )

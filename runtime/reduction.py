@@ -1,8 +1,9 @@
 """From supports and joins to unknowns: every dof of the cables is linear in unknowns and in what motions prescribe.
 
-Pins and clamps hold dofs; a cable clamped at a node keeps the direction of its slope and one unknown, its length; joined
-nodes share the position, and rigidly joined ones the gradient of the deformation, so that slopes of one are constant
-combinations of those of the other (Shabana, Computational Continuum Mechanics, ch. 6: structural discontinuities).
+Pins and clamps hold dofs; a cable clamped at a node keeps the direction of its slope and one unknown, its length;
+joined nodes share the position, and rigidly joined ones the gradient of the deformation, so that slopes of one are
+constant combinations of those of the other (Shabana, Computational Continuum Mechanics, ch. 6: structural
+discontinuities).
 """
 
 from __future__ import annotations

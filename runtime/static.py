@@ -1,7 +1,8 @@
 """Equilibrium: a scene's rest under its loads, by Newton and relaxation in load steps, or along the equilibrium path.
 
-R(x) is what forces and constraints leave over. From the drawn state x0 the path R(x) = (1 - p) R(x0) leads from p = 0 to
-equilibrium at p = 1: for a drawn state without stress that is loading in proportion, and any other state will do too.
+R(x) is what forces and constraints leave over. From the drawn state x0 the path R(x) = (1 - p) R(x0) leads from p = 0
+to equilibrium at p = 1: for a drawn state without stress that is loading in proportion, and any other state will do
+too.
 """
 
 from __future__ import annotations
@@ -89,8 +90,8 @@ class Path:
     def newton(self, fraction: float) -> bool:
         """Newton at a load fraction, full steps.
 
-        Corrections may grow for a while: the second order of a turn stretches what is stiff along its axis, and the next
-        correction takes that back. A line search makes hundreds of small steps of it; `relax` does better.
+        Corrections may grow for a while: the second order of a turn stretches what is stiff along its axis, and the
+        next correction takes that back. A line search makes hundreds of small steps of it; `relax` does better.
         """
         least = np.inf
         for _ in range(self.settings.max_iterations):
@@ -152,13 +153,14 @@ def equilibrium(scene: Scene, settings: EquilibriumSettings) -> Equilibrium:
     if reached < 1.0:
         near = " (a limit point: beyond it no equilibrium is near)" if settings.method == "newton" else ""
         raise EquilibriumError(
-            f"no equilibrium was reached: the path from the drawn state ends at {100 * reached:.4g} % of the load{near}; "
+            f"no equilibrium was reached: the path from the drawn state ends at {100 * reached:.4g} % of the load"
+            f"{near}; "
             "the state there is kept in .state", state, reached)
     return state
 
 
 def _load(path: Path) -> float:
-    """Load steps, halved where neither Newton nor relaxation ends; returns the fraction of the load that was reached."""
+    """Load steps, halved where neither Newton nor relaxation ends; returns the fraction of the load reached."""
     reached, step = 0.0, 1.0 / path.settings.load_steps
     while reached < 1.0:
         kept, target = path.keep(), min(1.0, reached + step)
@@ -175,8 +177,8 @@ def _load(path: Path) -> float:
 
 
 def _follow(path: Path) -> float:
-    """Arc-length continuation (Riks 1979; Crisfield 1981): the load fraction is an unknown more, so that limit points are
-    passed; returns the fraction reached, 1 where the path got there.
+    """Arc-length continuation (Riks 1979; Crisfield 1981): the load fraction is an unknown more, so that limit points
+    are passed; returns the fraction reached, 1 where the path got there.
     """
     reached, tangent_before = 0.0, None
     step = None

@@ -23,7 +23,8 @@ def rider() -> Scene:
 def loaded() -> Scene:
     """Loads that turn, springs between points of cables, bodies and the ground, a body that turns fast."""
     scene = rider()
-    scene.force("wire", s=1.2, value=(3, -20, 5), follower=True, scale=Harmonic(amplitude=1.0, frequency=3.0, offset=2.0))
+    scene.force("wire", s=1.2, value=(3, -20, 5), follower=True,
+                scale=Harmonic(amplitude=1.0, frequency=3.0, offset=2.0))
     scene.distributed_force("wire", value=(0, 4, 8), start=0.2, stop=1.1, follower=True)
     scene.moment("wire", s=1.5, value=(1.0, 2.0, -3.0))
     scene.force("A", at=(0.1, 0.2, -0.1), value=(10, 20, -5))
@@ -63,7 +64,8 @@ def frame() -> Scene:
     scene.cable("arm", start=(0, 1, 0), end=(1, 1.2, 0.3), elements=2, section=square, material=steel)
     scene.cable("rope", start=(0.2, 0.1, 1), end=(1, 1.2, 0.3), elements=3, element="cable12", section=square,
                 material=steel)
-    scene.motion("leg", s=0.0, displacement=(0, Ramp(start=0, end=0.5, after=0.1), Harmonic(amplitude=0.1, frequency=2.0)),
+    scene.motion("leg", s=0.0,
+                 displacement=(0, Ramp(start=0, end=0.5, after=0.1), Harmonic(amplitude=0.1, frequency=2.0)),
                  rotation=((0, 1, 0), Ramp(start=0, end=1)))
     scene.join("leg", s=1.0, to="arm", at=0.0)
     scene.join("arm", s=scene.cables["arm"].length, to="rope", at=scene.cables["rope"].length, rotation="free")

@@ -52,7 +52,7 @@ LINEAR = sp.Matrix(2, 2, lambda i, j: _mean((1 + PLACES[2 * i] * X) * (1 + PLACE
 
 
 def arc(square: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
-    """arctan(t)/t as a quotient, from t^2: Gauss's continued fraction; off by 1e-6 at 45 degrees of angle, 2e-4 at 90."""
+    """arctan(t)/t as a quotient, from t^2: Gauss's continued fraction; off by 1e-6 at 45 degrees, 2e-4 at 90."""
     t2, fraction = sp.Symbol("t2"), sp.Integer(9)
     for n in (4, 3, 2, 1):
         fraction = 2 * n - 1 + n**2 * t2 / fraction
@@ -179,7 +179,8 @@ class Structural:
                 bubble = program.define(f"bubble_{i}", self.bubble(S, i, length, places))
                 found[i] -= bubble * BUBBLE.subs(X, at)
                 found[6 - i] += sign * bubble * (2 / length) * BUBBLE.diff(X).subs(X, at)
-        return [program.define(f"at_{name}", f) for name, f in zip(("e1", "e2", "e3", "k1", "k2", "k3"), found, strict=True)]
+        names = ("e1", "e2", "e3", "k1", "k2", "k3")
+        return [program.define(f"at_{name}", f) for name, f in zip(names, found, strict=True)]
 
     def spatial_stiffness(self, S: Sequence[sp.Expr]) -> list[sp.Expr]:
         """EA, GA_y, GA_z, GJ, EI_yy, EI_zz; of a planar element those that it has."""
@@ -301,7 +302,7 @@ class Configuration:
         return found
 
     def _gibbs_rate(self, node: int, k: int) -> np.ndarray:
-        """From the product of the quaternions (1, g) and (1, spin/2): (+-(spin + g (g.spin)) + g x spin)/2, - for node 1."""
+        """From a product of quaternions (1, g) and (1, spin/2): (+-(spin + g (g.spin)) + g x spin)/2; - at node 1."""
         g, sign = self.gibbs, 2 * node - 1
         unit = np.array([sp.Integer(i == k) for i in range(3)])
         rate = (sign * (unit + g[k] * g) + turned(k, g)) / 2
