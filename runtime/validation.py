@@ -157,7 +157,7 @@ class _TranslatingType(type(BaseModel)):
 class Part(BaseModel, metaclass=_TranslatingType):
     """Base of what a scene is described with: frozen, and strict about names."""
 
-    model_config = ConfigDict(frozen=True)
+    model_config = ConfigDict(frozen=True, defer_build=True)  # built when first used: the import stays quick
 
     kind: ClassVar[str] = ""
     """What messages call it; the class name when empty."""
