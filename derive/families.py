@@ -7,11 +7,11 @@ from collections.abc import Iterable
 from functools import partial
 from types import ModuleType
 
-from funicular.derive import body_kernels, element_kernels, law_kernels
+from funicular.derive import body_kernels, element_kernels, law_kernels, structural_kernels
 from funicular.derive.bodies import BODIES
 from funicular.derive.elements import ELEMENTS
 from funicular.derive.joints import slide
-from funicular.derive.laws import law_like, law_name
+from funicular.derive.laws import law_like, law_name, structural
 from funicular.derive.spec import Element, Family
 
 
@@ -25,8 +25,9 @@ def _element(element: Element) -> Family:
 
 def _law(element: Element, law: str | type) -> Family:
     name = law_name(law)
+    builder = structural_kernels if name == structural.NAME else law_kernels
     return Family(f"{element.name}_{name}", f"elastic law {name} on {element.name}",
-                  partial(law_kernels.build, element, law), (f"elements.{element.name}", "law_kernels"),
+                  partial(builder.build, element, law), (f"elements.{element.name}", builder.__name__.split(".")[-1]),
                   role="law", own=("stiffness",), element=element, law=name, like=law_like(law))
 
 

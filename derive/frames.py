@@ -20,6 +20,11 @@ def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
+def spatial(vector: np.ndarray) -> np.ndarray:
+    """In three dimensions."""
+    return np.concatenate([vector, np.full(3 - len(vector), sp.S.Zero)])
+
+
 def tangent_frame(program: Program, tangent: np.ndarray, director: np.ndarray | None) -> np.ndarray:
     """A_t = [i j k] (eq 18): i along the tangent, k normal to tangent and director.
 

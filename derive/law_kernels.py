@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 import sympy as sp
-from funicular.derive.gram import Gram
+from funicular.derive.frames import spatial, tangent_frame, unit
+from funicular.derive.gram import DIRECTIONS, Gram
+from funicular.derive.gram_point import axis, expansion
 from funicular.derive.gram_tangent import blocks, nodal_tangent
 from funicular.derive.laws import law_class, law_name
 from funicular.derive.spec import Element
@@ -18,7 +20,7 @@ def build(element: Element, law: str | type) -> list[Program]:
     """Every kernel of a law on an element."""
     kernels = Kernels(element, law)
     return [kernels.stiffness(), kernels.energy(), kernels.elastic_force(), kernels.elastic_tangent(),
-            kernels.damping_force(), kernels.damping_tangent(), kernels.dissipation()]
+            kernels.damping_force(), kernels.damping_tangent(), kernels.dissipation(), kernels.section_forces()]
 
 
 class Kernels:
@@ -110,6 +112,36 @@ class Kernels:
         w, A, tau, c, dc = self._rates(p)
         p.output("P", [sp.sympify(self.law.dissipation(p, A, tau, c, dc, w))], "W", "dissipated power, never negative")
         return p
+
+    def section_forces(self) -> Program:
+        """What passes through the section at x from the side of greater x."""
+        p = self._program("section_forces", "force and moment resultants of a section", "eq 6-8 at a section")
+        length, x = p.input("l", (), "m", "length of the element"), p.input("x", (), "m", "arc-length from its start")
+        e, S = self._coordinates(p), self.law.section_stiffness(p)
+        p.stage("strain vectors")
+        w = p.define("w", 1 / length)
+        X = p.define("X", 2 * w * x - 1)
+        c = self.gram.differences(p, e, w)
+        force, moment, strain = self.law.section_forces(p, S, c, X, w)
+        p.stage("axes of the section")
+        axes = self._axes(p, c, X, w)
+        p.output("force", force, "N", "resultant of the stress, global axes")
+        p.output("moment", moment, "N m", "its moment about the axis, global axes")
+        p.output("axes", axes, "1", "rows: tangent t, y along the director's part across t, z = t x y; zero without")
+        p.output("strain", strain, "1, 1/m", "axial, shear along y and z, twist, curvature about y and z (cable: size)")
+        return p
+
+    def _axes(self, program: Program, c: np.ndarray, X: sp.Expr, w: sp.Expr) -> np.ndarray:
+        """Rows t, y, z in space; z is out of the plane of a planar element."""
+        tangent = program.vector("t", axis(self.gram, c, X, w, 1))
+        if self.element.dim == 2:
+            i = unit(program, "i", tangent)
+            return np.array([spatial(i), [-i[1], i[0], 0], [0, 0, 1]])
+        if self.element.director:
+            column = DIRECTIONS.index(self.element.director[-1])
+            normal = expansion([g[column] for g in self.gram.gradient], c, X, w)[0, 0]
+            return tangent_frame(program, tangent, program.vector("director", normal)).T
+        return np.array([unit(program, "i", tangent), [0, 0, 0], [0, 0, 0]])
 
     def _nodal(self, program: Program, f: np.ndarray, w: sp.Expr) -> np.ndarray:
         program.stage("forces on nodal vectors")

@@ -1,9 +1,12 @@
 """Kinds of input on which rounding is measured, made from a family's sample states, whatever the element and the law.
 
 ordinary        the samples
-tiny strain     the stress-free shape (along the axes, and turned), coordinates off by 1e-9; riders at the cable, too
+tiny strain     the stress-free shape turned, coordinates off by 1e-9; riders at the cable, too
 large rotation  bent by 2.4 rad from end to end, turned by 3 rad; riders in any attitude
 far origin      the samples moved by 10⁴ lengths
+
+None lies along the axes: entries that are zero there by chance of the frame, 1 - i_x², would be held to digits that no
+other frame shows.
 """
 
 from __future__ import annotations
@@ -15,7 +18,7 @@ import numpy as np
 from funicular.derive.spec import Element, Family
 from funicular.derive.verify_motion import RIDERS
 from funicular.derive.verify_numbers import State
-from funicular.derive.verify_states import director, on_axis, reference, rotation
+from funicular.derive.verify_states import SEEDS, director, on_axis, reference, rotation
 
 KINDS = ("ordinary", "tiny strain", "large rotation", "far origin")
 TINY, FAR = 1e-9, 1e4
@@ -37,11 +40,10 @@ class Input:
 
 def inputs(family: Family, samples: list[State]) -> Iterator[tuple[Input, State]]:
     """Every input with the sample that it was made from."""
-    for sample in samples:
-        yield Input("ordinary", sample, sample), sample
-    for number, sample in enumerate(samples):
+    for number, sample in enumerate(samples[: len(SEEDS)]):  # the one after these is at rest along the axes
         random = np.random.default_rng(number)
-        for kind, changes in (("tiny strain", _tiny(family, sample, random, turn=number > 0)),
+        yield Input("ordinary", sample, sample), sample
+        for kind, changes in (("tiny strain", _tiny(family, sample, random)),
                               ("large rotation", _turned(family, sample, random))):
             state = sample | changes
             if family.element and "director" in sample:
@@ -50,12 +52,11 @@ def inputs(family: Family, samples: list[State]) -> Iterator[tuple[Input, State]
         yield Input("far origin", sample | _far(family, sample, random), sample), sample
 
 
-def _tiny(family: Family, s: State, random: np.random.Generator, turn: bool) -> dict[str, np.ndarray]:
+def _tiny(family: Family, s: State, random: np.random.Generator) -> dict[str, np.ndarray]:
     changes, near = {}, np.zeros(_dim(family))
     if element := family.element:
         e = s["e0"] if "e0" in s else reference(element, float(s["l"]))
-        if turn:
-            e = e @ rotation(random, element.dim).T
+        e = e @ rotation(random, element.dim).T
         changes["e"] = e + TINY * random.normal(size=e.shape)
         near = on_axis(element, s | changes)
     if family.rider:

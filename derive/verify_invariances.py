@@ -78,7 +78,8 @@ def _rigid_motion(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
     for far, where in ((0.0, ""), (1e4, " at 10⁴ lengths")):
         chord = EPS * (1 + far)
         for _ in range(3):
-            e = reference(spec, float(s["l"])) @ rotation(random, spec.dim).T
+            at_rest = s["e0"] if family.law == "structural" else reference(spec, float(s["l"]))
+            e = at_rest @ rotation(random, spec.dim).T
             direction = random.normal(size=spec.dim)
             e[spec.is_position] += far * s["l"] * direction / np.linalg.norm(direction)
             U, f = k("energy", s, e=e)["U"], k("elastic_force", s, e=e)["f"]
@@ -90,6 +91,8 @@ def _stiffness(family: Family, s: State) -> float:
     """Energy of a strain of order one."""
     if family.like == "continuum":
         return float(np.max(np.abs(s["A"])))
+    if family.law == "structural":
+        return float(np.max(s["S"]) * max(s["l"], 1 / s["l"]))
     EA, EI = s["A"]
     return float(max(EA * s["l"], EI / s["l"]))
 
@@ -142,7 +145,7 @@ def _damping(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
     f = k("damping_force", s)["f"]
     scale_f = max(scale, np.max(np.abs(f)))
     yield "damping: no net force", relative(positions @ f, scale_f), 64 * EPS
-    twisted = spec.dim == 3 and family.like != "continuum"
+    twisted = spec.dim == 3 and family.like not in ("continuum", "structural")
     for spin in spins(spec.dim):
         v = relative_e @ spin.T + np.outer(positions, s["g"])
         f_rigid, P = k("damping_force", s, v=v)["f"], k("dissipation", s, v=v)["P"]

@@ -11,23 +11,31 @@ from collections.abc import Iterator
 
 import mpmath
 import numpy as np
+from funicular.derive import verify_structural
 from funicular.derive.gram import Gram
 from funicular.derive.laws import LAWS
-from funicular.derive.spec import Element
+from funicular.derive.spec import CABLE_LAWS, Element
 from funicular.derive.verify_motion import cross
 from funicular.derive.verify_reference import Shape, gauss
 
 mp = mpmath.mp
 
 
+def is_cable(law: str) -> bool:
+    """Whether a law is along an axis alone, with S = EA, EI."""
+    return law in CABLE_LAWS
+
+
 def energy(element: Element, law: str, s):
     """Elastic energy."""
-    return (continuum_energy if law == "continuum" else cable_energy)(element, law, s)
+    roots = {"continuum": continuum_energy, "structural": verify_structural.energy}
+    return roots.get(law, cable_energy)(element, law, s)
 
 
 def dissipation(element: Element, law: str, s):
     """Power that Kelvin-Voigt damping takes out."""
-    return (continuum_dissipation if law == "continuum" else cable_dissipation)(element, law, s)
+    roots = {"continuum": continuum_dissipation, "structural": verify_structural.dissipation}
+    return roots.get(law, cable_dissipation)(element, law, s)
 
 
 def density(D, E: np.ndarray):
@@ -110,8 +118,9 @@ def _along(element: Element, s, n: int) -> Iterator[tuple]:
     for t, weight in gauss(n):
         at = (half * (1 + t), 0, 0)
         N_x, N_xx = shape(at, (1, 0, 0)), shape(at, (2, 0, 0))
-        yield weight * half, *(_spatial(N.dot(d)) for d in (s["e"], s["v"]) for N in (N_x, N_xx))
+        yield weight * half, *(spatial(N.dot(d)) for d in (s["e"], s["v"]) for N in (N_x, N_xx))
 
 
-def _spatial(vector: np.ndarray) -> np.ndarray:
+def spatial(vector: np.ndarray) -> np.ndarray:
+    """In three dimensions."""
     return np.concatenate([vector, [mp.mpf(0)] * (3 - len(vector))])

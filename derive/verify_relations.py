@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from funicular.derive import verify_laws
+from funicular.derive import verify_laws, verify_sections
 from funicular.derive import verify_reference as reference
 from funicular.derive.spec import Element, Family
 from funicular.derive.verify_methods import Relation
@@ -88,6 +88,8 @@ def law(family: Family) -> list[Relation]:
         Relation("damping_force", "f", "d(P/2)/dv", 1, _half(from_kernel("dissipation", "P", v=entry("v"))), n),
         Relation("damping_tangent", "K", "df/de + rate df/dv", 1, force_by_both, n),
         Relation("dissipation", "P", "the law's integral by quadrature", 0, power),
+        *(Relation("section_forces", output, text, 0, root(verify_sections.resultant(output), spec, family.law))
+          for output, text in verify_sections.TEXTS.items()),
     ]
 
 

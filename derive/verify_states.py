@@ -113,8 +113,10 @@ def element_state(element: Element, random: np.random.Generator) -> dict[str, np
         e[k * per_node : (k + 1) * per_node] @= rotation(random, dim, angle=0.4 * mild).T
     e += random.normal(size=(n, dim)) * 0.15 * mild**2
     e[element.is_position] += random.normal(size=dim)
+    e0 = reference(element, LENGTH) @ rotation(random, dim).T
+    e0 += random.normal(size=(n, dim)) * 0.1 * mild**2
     return {
-        "l": np.float64(LENGTH), "rectangle": np.array([HEIGHT, WIDTH]), "section": section(), "e": e,
+        "l": np.float64(LENGTH), "rectangle": np.array([HEIGHT, WIDTH]), "section": section(), "e": e, "e0": e0,
         "v": random.normal(size=(n, dim)), "vdot": random.normal(size=(n, dim)),
         "x": np.float64(LENGTH * random.uniform(0.2, 0.8)), "density": np.float64(2.9), "g": random.normal(size=dim),
         "tau": np.float64(0.37), "rate": np.float64(2.3),
@@ -136,6 +138,8 @@ def _constants(family: Family, exact: Numbers, state: dict, random: np.random.Ge
 
 def section_stiffness(law: str, dim: int, moments: np.ndarray, random: np.random.Generator) -> dict[str, np.ndarray]:
     """Argument S of a law; for a continuum also D, elastic constants over the section and on the axis alone."""
+    if law == "structural":
+        return {"S": random.uniform(1, 4, 9 if dim == 3 else 4)}
     if law != "continuum":
         return {"S": 53.0 * moments[:2]}
     pairs = dim * (dim - 1) // 2

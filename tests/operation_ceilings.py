@@ -25,51 +25,51 @@ CEILINGS = {
     },
     "beam24_continuum": {
         "stiffness": 217, "energy": 485, "elastic_force": 756, "elastic_tangent": 5124, "damping_force": 991,
-        "damping_tangent": 8797, "dissipation": 692
+        "damping_tangent": 8797, "dissipation": 692, "section_forces": 487
     },
     "cable12_green_exact": {
-        "stiffness": 0, "energy": 272, "elastic_force": 571, "elastic_tangent": 2178, "damping_force": 558,
-        "damping_tangent": 3813, "dissipation": 298
+        "stiffness": 0, "energy": 277, "elastic_force": 581, "elastic_tangent": 2203, "damping_force": 558,
+        "damping_tangent": 3813, "dissipation": 298, "section_forces": 264
     },
     "cable12_green_linear": {
         "stiffness": 0, "energy": 143, "elastic_force": 252, "elastic_tangent": 1164, "damping_force": 558,
-        "damping_tangent": 3813, "dissipation": 298
+        "damping_tangent": 3813, "dissipation": 298, "section_forces": 154
     },
     "cable12_engineering_exact": {
-        "stiffness": 0, "energy": 282, "elastic_force": 576, "elastic_tangent": 2193, "damping_force": 588,
-        "damping_tangent": 4068, "dissipation": 319
+        "stiffness": 0, "energy": 287, "elastic_force": 586, "elastic_tangent": 2218, "damping_force": 588,
+        "damping_tangent": 4068, "dissipation": 319, "section_forces": 257
     },
     "cable12_engineering_linear": {
         "stiffness": 0, "energy": 158, "elastic_force": 277, "elastic_tangent": 1239, "damping_force": 588,
-        "damping_tangent": 4068, "dissipation": 319
+        "damping_tangent": 4068, "dissipation": 319, "section_forces": 158
     },
     "cable18_green_exact": {
-        "stiffness": 0, "energy": 1008, "elastic_force": 2079, "elastic_tangent": 13392, "damping_force": 1771,
-        "damping_tangent": 15871, "dissipation": 1018
+        "stiffness": 0, "energy": 1015, "elastic_force": 2093, "elastic_tangent": 13427, "damping_force": 1771,
+        "damping_tangent": 15871, "dissipation": 1018, "section_forces": 522
     },
     "cable18_engineering_exact": {
-        "stiffness": 0, "energy": 1028, "elastic_force": 2096, "elastic_tangent": 13443, "damping_force": 1821,
-        "damping_tangent": 16296, "dissipation": 1053
+        "stiffness": 0, "energy": 1035, "elastic_force": 2110, "elastic_tangent": 13478, "damping_force": 1821,
+        "damping_tangent": 16296, "dissipation": 1053, "section_forces": 515
     },
     "beam12p_continuum": {
         "stiffness": 94, "energy": 218, "elastic_force": 302, "elastic_tangent": 1294, "damping_force": 395,
-        "damping_tangent": 2125, "dissipation": 296
+        "damping_tangent": 2125, "dissipation": 296, "section_forces": 142
     },
     "cable8p_green_exact": {
-        "stiffness": 0, "energy": 251, "elastic_force": 524, "elastic_tangent": 1767, "damping_force": 335,
-        "damping_tangent": 1511, "dissipation": 202
+        "stiffness": 0, "energy": 256, "elastic_force": 534, "elastic_tangent": 1792, "damping_force": 335,
+        "damping_tangent": 1511, "dissipation": 202, "section_forces": 188
     },
     "cable8p_green_linear": {
         "stiffness": 0, "energy": 122, "elastic_force": 205, "elastic_tangent": 753, "damping_force": 335,
-        "damping_tangent": 1511, "dissipation": 202
+        "damping_tangent": 1511, "dissipation": 202, "section_forces": 100
     },
     "cable8p_engineering_exact": {
-        "stiffness": 0, "energy": 261, "elastic_force": 529, "elastic_tangent": 1782, "damping_force": 356,
-        "damping_tangent": 1640, "dissipation": 217
+        "stiffness": 0, "energy": 266, "elastic_force": 539, "elastic_tangent": 1807, "damping_force": 356,
+        "damping_tangent": 1640, "dissipation": 217, "section_forces": 181
     },
     "cable8p_engineering_linear": {
         "stiffness": 0, "energy": 137, "elastic_force": 230, "elastic_tangent": 828, "damping_force": 356,
-        "damping_tangent": 1640, "dissipation": 217
+        "damping_tangent": 1640, "dissipation": 217, "section_forces": 104
     },
     "rigid": {"point": 207, "point_force": 183, "inertia_force": 45, "inertia_tangent": 48, "kinetic_energy": 31},
     "planar_rigid": {"point": 40, "point_force": 23, "inertia_force": 3, "inertia_tangent": 0, "kinetic_energy": 9},

@@ -16,6 +16,7 @@ import numpy as np
 import sympy as sp
 from funicular.derive import moments
 from funicular.derive.gram import Gram
+from funicular.derive.laws.cable_section import resultants
 from funicular.derive.stages import Derivation, Program, jacobian
 
 SOURCE = "DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)"
@@ -85,23 +86,28 @@ class Cable:
         program.input("l", (), "m", "length of the element")
         program.output("A", self.section_stiffness(program), "N, N m^2", STIFFNESS_DOC)
 
+    def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, w: sp.Expr) -> tuple:
+        """Stages: force and moment in space, and strain, at X."""
+        return resultants(self, program, S, c, X, w)
+
     # --- the energy through the invariants ------------------------------------------------------------------
 
-    def _axial_strain(self, program: Program, name: str, a1: sp.Expr) -> sp.Expr:
+    def axial_strain(self, program: Program, name: str, a1: sp.Expr) -> sp.Expr:
         """From a - 1, without losing the digits of a small strain."""
         if self.strain == "green":
             return program.define(name, a1 / 2)
         length = program.define("len", sp.sqrt(1 + a1))
         return program.define(name, a1 / (1 + length), moves_as=length)  # |r'| - 1
 
-    def _squared_curvature(self, program: Program, a1: sp.Expr, b: sp.Expr, c: sp.Expr) -> sp.Expr:
-        """In units of (2/l)^2."""
+    def curvature_scale(self, program: Program, a1: sp.Expr) -> sp.Expr | None:
+        """From |r' x r''|^2 to the squared curvature; None where it is |r''|^2."""
         if self.curvature == "linear":
-            return c
-        a = program.define("a", 1 + a1)
-        inverse = program.define("inv_a", 1 / a)
-        power = 3 if self.strain == "green" else 2
-        return (a * c - b * b) * inverse**power
+            return None
+        return program.define("inv_a", 1 / program.define("a", 1 + a1)) ** (3 if self.strain == "green" else 2)
+
+    def squared_curvature(self, scale: sp.Expr | None, a1: sp.Expr, b: sp.Expr, c: sp.Expr) -> sp.Expr:
+        """In the units of r''^2."""
+        return c if scale is None else ((1 + a1) * c - b * b) * scale
 
     def _terms(self, program: Program, A, G, w) -> Iterator[tuple[sp.Expr, sp.Expr, list, list]]:
         """At every point: weight times stiffness, half squared strain, its invariants, their rows over the pairs."""
@@ -110,7 +116,7 @@ class Cable:
         for g, point in enumerate(self.axial_points):
             rows = [self._row(point.value, point.value)]
             a1 = program.define(f"a1_{g}", _dot(rows[0], G))
-            strain = self._axial_strain(program, f"eps_{g}", a1)
+            strain = self.axial_strain(program, f"eps_{g}", a1)
             yield point.weight * half, strain**2 / 2, [a1], rows
         program.stage("curvature at the quadrature points")
         bending = program.define("EI_l", 2 * A[1] * w)
@@ -121,7 +127,8 @@ class Cable:
             names = ("c",) if self.curvature == "linear" else ("a1", "b", "c")
             invariants = [program.define(f"{name}_b{g}", _dot(row, G)) for name, row in zip(names, used, strict=True)]
             full = invariants if len(invariants) == 3 else [None, None, invariants[0]]
-            k2 = program.define(f"k2_{g}", self._squared_curvature(program, *full))
+            scale = self.curvature_scale(program, full[0])
+            k2 = program.define(f"k2_{g}", self.squared_curvature(scale, *full))
             yield point.weight * bending, k2 / 2, invariants, used
 
     def _row(self, f: Sequence, g: Sequence) -> list[sp.Expr]:

@@ -14,6 +14,7 @@ import sympy as sp
 from funicular.derive import moments
 from funicular.derive.gram import Gram
 from funicular.derive.gram_tangent import blocks
+from funicular.derive.laws.continuum_section import Resultants
 from funicular.derive.stages import Program
 
 NAME = "continuum"
@@ -112,6 +113,11 @@ class Continuum:
         program.stage("integrals of strain products")
         program.output("A", [program.define(f"A_{i}", a) for i, a in enumerate(A)], "N m",
                        "different non-zero entries of A")
+
+    def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, w: sp.Expr) -> tuple:
+        """Stages: force and moment in space, and strain, at X."""
+        section = Resultants(self.form, program, S, c, X, w)
+        return section.force(), section.moment(), section.strain()
 
     def energy(self, program: Program, A: np.ndarray, G: Sequence[sp.Expr], w: sp.Expr) -> sp.Expr:
         """U."""

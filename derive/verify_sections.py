@@ -1,0 +1,130 @@
+"""The roots of verification for section forces: the stress over a section, and variations of the energy of a cable.
+
+All at 50 digits from the shape functions of verify_reference.py; derivatives are differences at that precision.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from itertools import product
+
+import mpmath
+import numpy as np
+from funicular.derive import verify_structural
+from funicular.derive.spec import Element
+from funicular.derive.verify_laws import is_cable, spatial
+from funicular.derive.verify_motion import cross, frame
+from funicular.derive.verify_reference import Shape, gauss
+
+mp = mpmath.mp
+TEXTS = {"force": "∫ P e_x dA; of a cable W_r' - (W_r'')'", "moment": "∫ arm x P e_x dA; of a cable r' x W_r''",
+         "axes": "Gram-Schmidt on tangent and director", "strain": "from its definition"}
+STEP = mpmath.mpf(10) ** -12  # of differences of second order: errors 1e-24, rounding 1e-26
+
+
+def resultant(output: str) -> Callable:
+    """Function of (element, law, state) for an output of the kernel."""
+    def value(element: Element, law: str, s):
+        if law == "structural":
+            return verify_structural.section(element, law, s)[output]
+        if output == "axes":
+            return axes(element, s)
+        return (_cable if is_cable(law) else _continuum)(element, law, s)[output]
+    return value
+
+
+def axes(element: Element, s) -> np.ndarray:
+    """Rows t, y, z."""
+    shape, at = Shape(element, s["l"].item()), (s["x"].item(), 0, 0)
+    r_x = spatial(shape(at, (1, 0, 0)).dot(s["e"]))
+    if element.dim == 2:
+        return frame(mp, r_x, np.array([-r_x[1], r_x[0], mp.mpf(0)])).T
+    if element.director:
+        return frame(mp, r_x, shape(at, (0, 1, 0)).dot(s["e"])).T
+    return np.stack([r_x / mp.sqrt(r_x.dot(r_x)), *np.zeros((2, 3), dtype=object)])
+
+
+def _continuum(element: Element, law: str, s) -> dict[str, np.ndarray]:
+    shape, dim, x = Shape(element, s["l"].item()), element.dim, s["x"].item()
+    force, moment = np.zeros(3, dtype=object), np.zeros(3, dtype=object)
+    axis = shape((x, 0, 0)).dot(s["e"])
+    for at, weight, D in _section_points(s, x):
+        F = s["e"].T.dot(shape.gradient(at))
+        stress = stress_of(D, green(F))
+        traction = weight * spatial(F.dot(stress)[:, 0])
+        force = force + traction
+        moment = moment + cross(spatial(shape(at).dot(s["e"]) - axis), traction)
+
+    def strain(y, z):
+        F = s["e"].T.dot(shape.gradient((x, y, z)))
+        E = np.zeros((3, 3), dtype=object)
+        E[:dim, :dim] = green(F)
+        return E
+
+    h = mp.mpf(1)  # polynomials of the second degree in y and z: central differences are exact
+    here = strain(0, 0)
+    by_y, by_z = ((strain(h * (k == 0), h * k) - strain(-h * (k == 0), -h * k)) / (2 * h) for k in (0, 1))
+    measures = [here[0, 0], 2 * here[0, 1], 2 * here[0, 2], by_y[0, 2] - by_z[0, 1],
+                by_z[0, 0], -by_y[0, 0]]
+    return {"force": force, "moment": moment, "strain": np.array(measures)}
+
+
+def _section_points(s, x) -> Iterator[tuple]:
+    """Point, weight and elastic constants: D[0] over the section, D[1] on the axis alone."""
+    height, width = (mp.mpf(v) for v in s["rectangle"])
+    for (a, p), (b, q) in product(gauss(4), gauss(4)):
+        yield (x, a * height / 2, b * width / 2), p * q * height * width / 4, s["D"][0]
+    yield (x, 0, 0), height * width, s["D"][1]
+
+
+def green(F: np.ndarray) -> np.ndarray:
+    """Green's strain."""
+    return (F.T.dot(F) - np.eye(len(F), dtype=int)) / 2
+
+
+def stress_of(D, E: np.ndarray) -> np.ndarray:
+    """Second Piola-Kirchhoff stress of the orthotropic law."""
+    dim = len(E)
+    off = [(i, j) for i in range(dim) for j in range(i + 1, dim)]
+    law = np.diag(list(D[:dim]))
+    stress = np.zeros((dim, dim), dtype=object)
+    for k, (i, j) in enumerate(off):
+        law[i, j] = law[j, i] = D[dim + k]
+        stress[i, j] = stress[j, i] = 2 * D[dim + len(off) + k] * E[i, j]
+    normal = law.dot(np.diag(E))
+    for i in range(dim):
+        stress[i, i] = normal[i]
+    return stress
+
+
+def _cable(element: Element, law: str, s) -> dict[str, np.ndarray]:
+    strain, curvature = law.split("_")
+    shape, (EA, EI), x = Shape(element, s["l"].item()), s["S"], s["x"].item()
+
+    def derivatives(at):
+        return [spatial(shape((at, 0, 0), (k, 0, 0)).dot(s["e"])) for k in (1, 2)]
+
+    def measures(r1, r2):
+        length, normal = mp.sqrt(r1.dot(r1)), cross(r1, r2)
+        eps = (length**2 - 1) / 2 if strain == "green" else length - 1
+        kappa = mp.sqrt(r2.dot(r2)) if curvature == "linear" else (
+            mp.sqrt(normal.dot(normal)) / length ** (3 if strain == "green" else 2))
+        return eps, kappa
+
+    def variation(at, by):
+        """W_r' or W_r''."""
+        def energy(t, axis):
+            vectors = derivatives(at)
+            vectors[by] = vectors[by] + t * np.eye(3, dtype=int)[axis]
+            eps, kappa = measures(*vectors)
+            return (EA * eps**2 + EI * kappa**2) / 2
+
+        return np.array([(energy(STEP, i) - energy(-STEP, i)) / (2 * STEP) for i in range(3)])
+
+    h = mp.mpf(10) ** -8  # on differences good to 1e-24: 1e-16
+    change = (8 * (variation(x + h, 1) - variation(x - h, 1))
+              - (variation(x + 2 * h, 1) - variation(x - 2 * h, 1))) / (12 * h)
+    r1, r2 = derivatives(x)
+    eps, kappa = measures(r1, r2)
+    return {"force": variation(x, 0) - change, "moment": cross(r1, variation(x, 1)),
+            "strain": np.array([eps, 0, 0, 0, 0, kappa])}
