@@ -91,7 +91,7 @@ class Table:
 def tables(every: list[Derived], layout: dict | None = None) -> dict[str, Table]:
     """The engine's tables by role: laid out as these families allow, or as a manifest's "tables" has them.
 
-    Raises ValueError for a family without a kernel that the layout asks for.
+    Raises FamilyError for a family without a kernel that the layout asks for.
     """
     roles: dict[str, list[Derived]] = {} if layout is None else {role: [] for role in layout}
     for derived in every:
@@ -104,8 +104,8 @@ def tables(every: list[Derived], layout: dict | None = None) -> dict[str, Table]
             has = _signatures(derived)
             for kernel, parameters in layout[role]["kernels"].items():
                 if has.get(kernel) != parameters:
-                    raise ValueError(f"kernel {derived.family.name}_{kernel} must take ({parameters}), but "
-                                     + (f"takes ({has[kernel]})" if kernel in has else "there is none"))
+                    raise FamilyError(f"kernel {derived.family.name}_{kernel} must take ({parameters}), but "
+                                      + (f"takes ({has[kernel]})" if kernel in has else "there is none"))
     return {role: Table(of, **layout[role]) for role, of in roles.items()}
 
 

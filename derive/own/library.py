@@ -13,7 +13,7 @@ from funicular.derive.drift import MANIFEST
 from funicular.derive.emit import Derived
 from funicular.derive.own.load import SpecError
 from funicular.derive.spec import Family
-from funicular.derive.verify_compile import CompilerError, compiler
+from funicular.derive.verify_compile import compiler
 from funicular.elements import manifest
 
 LEVEL = "-O3"
@@ -57,33 +57,14 @@ def render(every: list[Derived]) -> dict[str, str]:
     return emit.render(every, [d.family.name for d in every], lambda _: None, like=manifest()["tables"])
 
 
-def compile_units(files: dict[str, str], folder: Path, work: Path) -> list[Path]:
-    """Compile the C files of a folder to object files in another, one process each. Raises CompilerError."""
-    started = []
-    for name in sorted(files):
-        if name.endswith(".c"):
-            command = [*compiler(), *FLAGS, f"-I{folder}", "-c", str(folder / name), "-o", str(work / f"{name}.o")]
-            started.append((name, subprocess.Popen(command, stderr=subprocess.PIPE, text=True)))
-    for name, process in started:
-        _finish(name, process)
-    return [work / f"{name}.o" for name, _ in started]
-
-
 def link_shared(units: list[Path], folder: Path) -> Path:
-    """Link object files to a shared library in a folder. Raises CompilerError.
+    """Link object files to a shared library in a folder.
 
     The name holds a hash of the file, since a process that has one of that name open gets no other.
     """
     linked = folder / "kernels.so"
-    _finish(linked.name, subprocess.Popen([*compiler(), "-shared", *map(str, units), "-lm", "-o", str(linked)],
-                                          stderr=subprocess.PIPE, text=True))
+    subprocess.run([*compiler(), "-shared", *units, "-lm", "-o", linked], check=True)
     return linked.rename(folder / f"kernels-{_digest(linked)[:12]}.so")
-
-
-def _finish(name: str, process: subprocess.Popen) -> None:
-    _, messages = process.communicate()
-    if process.returncode:
-        raise CompilerError(f"the C compiler refuses {name}:\n" + "\n".join(messages.splitlines()[:12]))
 
 
 def write_manifest(every: list[Derived], files: dict[str, str], spec: Path, shared: Path) -> dict:

@@ -11,13 +11,17 @@ The aims: the table's; the whole family derived in 120 s of one core; the build 
 """
 
 import json
+import re
+import sysconfig
 import tempfile
 from pathlib import Path
 from statistics import median
 
-import c_loop
 import making
-from funicular.derive import drift
+from funicular.derive import drift, timing
+from funicular.derive.families import families
+from funicular.derive.verify_compile import compile_units, compiler
+from funicular.generated import kernels as compiled
 from table import arguments, show
 
 AIMS = {
@@ -36,12 +40,19 @@ OTHERS = {
 }
 
 
+def options() -> list[str]:
+    """The optimisation of the package's own build."""
+    return ["-std=c11", *(re.findall(r"-O\w", sysconfig.get_config_var("CFLAGS") or "")[-1:] or ["-O2"])]
+
+
 def rows(repetitions: int) -> list[dict]:
     """The table of kernels."""
     manifest = json.loads((drift.folder() / "manifest.json").read_text(encoding="utf-8"))
     with tempfile.TemporaryDirectory() as folder:
-        program = c_loop.build(Path(folder), manifest)
-        times, sizes = c_loop.times(program, repetitions), c_loop.code_sizes(program)
+        flags = [*options(), f"-I{drift.folder()}"]
+        units = compile_units((drift.folder() / f"{name}.c" for name in manifest["families"]), flags, Path(folder))
+        program = timing.build(families().values(), manifest, compiled, units, flags, Path(folder))
+        times, sizes = timing.times(program, repetitions), timing.code_sizes(program)
     found = []
     for name, kernel in manifest["kernels"].items():
         of = kernel["family"].partition("_")[0], name.removeprefix(kernel["family"] + "_")
@@ -53,19 +64,19 @@ def rows(repetitions: int) -> list[dict]:
 
 def main() -> None:
     """Measure and print."""
-    options = arguments(__doc__, repetitions=(7, "of the round of kernels"),
+    given = arguments(__doc__, repetitions=(7, "of the round of kernels"),
                         derivations=(1, "of every family"), builds=(1, "of a clean clone"))
-    print("compiled with", *c_loop.options())
-    table = rows(options.repetitions)
-    show(table, options.out)
+    print("compiled with", *compiler(), *options())
+    table = rows(given.repetitions)
+    show(table, given.out)
     over = [f"{row['kernel']} {row['us'] / row['aim']:.2g}" for row in table if row["aim"] and row["us"] > row["aim"]]
     print("over its aim, times:", ", ".join(over) or "none")
-    if options.derivations:
-        taken = [making.derivation() for _ in range(options.derivations)]
+    if given.derivations:
+        taken = [making.derivation() for _ in range(given.derivations)]
         least = {name: min(times[name] for times in taken) for name in taken[0]}
         print("derived, CPU s:", ", ".join(f"{name} {value:.1f}" for name, value in least.items()))
         print(f"derived, all: {sum(least.values()):.0f} s of one core (aim 120)")
-    for _ in range(options.builds):
+    for _ in range(given.builds):
         wall, cpu = making.build()
         print(f"built: {wall:.0f} s, {cpu:.0f} s of CPU (aim 60)")
 
