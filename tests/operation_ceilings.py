@@ -56,6 +56,14 @@ CEILINGS = {
         "stiffness": 0, "energy": 137, "elastic_force": 230, "elastic_tangent": 828, "damping_force": 356,
         "damping_tangent": 1640, "dissipation": 217, "section_forces": 104
     },
+    "beam24_structural": {
+        "stiffness": 313, "energy": 510, "elastic_force": 997, "elastic_tangent": 6826, "damping_force": 1286,
+        "damping_tangent": 13079, "dissipation": 849, "section_forces": 724
+    },
+    "beam12p_structural": {
+        "stiffness": 105, "energy": 207, "elastic_force": 302, "elastic_tangent": 1081, "damping_force": 394,
+        "damping_tangent": 2006, "dissipation": 296, "section_forces": 263
+    },
     "rigid": {"point": 207, "inertia_force": 45, "inertia_tangent": 48, "kinetic_energy": 31},
     "slide_beam24_rigid": {"constraint": 615, "terms": 1673, "residual": 213, "tangent": 292},
     "slide_cable12_rigid": {"constraint": 488, "terms": 1456, "residual": 213, "tangent": 292},
