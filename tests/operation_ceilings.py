@@ -57,8 +57,8 @@ CEILINGS = {
         "damping_tangent": 1640, "dissipation": 217, "section_forces": 104
     },
     "beam24_structural": {
-        "stiffness": 313, "energy": 510, "elastic_force": 997, "elastic_tangent": 6826, "damping_force": 1286,
-        "damping_tangent": 13079, "dissipation": 849, "section_forces": 724
+        "stiffness": 313, "energy": 510, "elastic_force": 997, "elastic_tangent": 6802, "damping_force": 1286,
+        "damping_tangent": 13055, "dissipation": 849, "section_forces": 724
     },
     "beam12p_structural": {
         "stiffness": 105, "energy": 207, "elastic_force": 302, "elastic_tangent": 1081, "damping_force": 394,

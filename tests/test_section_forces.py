@@ -41,7 +41,8 @@ def test_a_bar_in_tension(name, law, stretch):
     F[0, 0] += stretch
     turn = rotation(np.random.default_rng(3), element.dim)
     e = reference(element, 0.8) @ (turn @ F).T
-    force, moment, axes, strain = kernel(name, law, "section_forces")(0.8, 0.3, e, stiffness(name, law), *at_rest(name, law, 0.8))
+    forces = kernel(name, law, "section_forces")
+    force, moment, axes, strain = forces(0.8, 0.3, e, stiffness(name, law), *at_rest(name, law, 0.8))
     t = np.zeros(3)
     t[: element.dim] = turn[:, 0]
     engineering = law.startswith(("engineering", "structural"))

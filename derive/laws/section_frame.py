@@ -6,17 +6,10 @@ in the plane drops out of the expressions by itself.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 import sympy as sp
 from funicular.derive.frames import cross
 from funicular.derive.stages import Program
-
-
-def spatial(vector: Sequence[sp.Expr]) -> np.ndarray:
-    """A planar or spatial vector with three components."""
-    return np.array([sp.sympify(v) for v in vector] + [sp.S.Zero] * (3 - len(vector)), dtype=object)
 
 
 def turned(k: int, values: np.ndarray) -> np.ndarray:
@@ -57,7 +50,7 @@ class SectionFrame:
 
     def rates(self, spin: np.ndarray, dy: np.ndarray, dz: np.ndarray) -> dict[sp.Symbol, sp.Expr]:
         """Of everything named here, when the directors move."""
-        t1, t2, t3 = self.t
+        _, t2, t3 = self.t
         db, dc = dz.dot(t2) + self.c * spin[0], dz.dot(t3) - self.b * spin[0]
         turn = sum((spin[k] * turned(k, self.t) for k in range(3)), np.zeros((3, 3), dtype=object))
         values = {self.inverse_a: -self.inverse_a**2 * t2.dot(dy), self.b: db, self.c: dc,

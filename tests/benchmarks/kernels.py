@@ -29,6 +29,11 @@ KERNELS = {
     "beam24_continuum_elastic_tangent": "l, e, A, out",
     "beam24_continuum_damping_force": "l, e, v, A, 1e-4, out",
     "beam24_continuum_damping_tangent": "l, e, v, A, 1e-4, 2e3, out",
+    "beam24_structural_elastic_force": "l, e, As, out",
+    "beam24_structural_elastic_tangent": "l, e, As, out",
+    "beam24_structural_damping_tangent": "l, e, v, As, 1e-4, 2e3, out",
+    "beam12p_structural_elastic_force": "l, ep, Ap, out",
+    "beam12p_structural_elastic_tangent": "l, ep, Ap, out",
     "cable12_engineering_exact_elastic_force": "l, ec, Ac, out",
     "cable12_engineering_exact_elastic_tangent": "l, ec, Ac, out",
     "cable12_green_linear_elastic_force": "l, ec, Ac, out",
@@ -42,7 +47,7 @@ PROGRAM = """
 #include <time.h>
 #include "kernels.h"
 static double now(void) { struct timespec t; clock_gettime(CLOCK_MONOTONIC, &t); return t.tv_sec + 1e-9 * t.tv_nsec; }
-static double m[64], A[61], e[24], v[24], out[2048], sum;
+static double m[64], A[61], As[29], Ap[14], e[24], e0[24], ep[12], ep0[12], v[24], out[2048], sum;
 int main(void)
 {
     const double l = 0.5, section[6] = {2.5e-3, 5.2083333e-7, 5.2083333e-7, 1.953125e-10, 1.0850694e-10, 1.953125e-10};
@@ -60,6 +65,17 @@ int main(void)
         e[12 * k + 4] = 0.2 * k;
         e[12 * k + 6] = -0.2 * k;
     }
+    const double Ss[9] = {1e6, 4e5, 4e5, 80, 208.333, 208.333, 1e6, 1e6, 4e5}, Sp[4] = {1e6, 4e5, 208.333, 1e6};
+    for (int k = 0; k < 2; ++k) {
+        e0[12 * k] = ep0[6 * k] = l * k;
+        for (int i = 0; i < 3; ++i) e0[12 * k + 3 + 4 * i] = 1;
+        for (int i = 0; i < 2; ++i) ep0[6 * k + 2 + 3 * i] = 1;
+        for (int i = 0; i < 6; ++i) ep[6 * k + i] = e[12 * k + 3 * (i / 2) + i % 2];
+    }
+    beam24_structural_stiffness(l, e0, Ss, As);
+    beam12p_structural_stiffness(l, ep0, Sp, Ap);
+    /* no zeros: what the loops add to them would underflow in products, which is slow */
+    for (int i = 0; i < 24; ++i) e[i] += 1e-3 * (1 + 7 * i % 11);
     for (int i = 0; i < 24; ++i) v[i] = 0.1 * i;
     @LOOPS@
     return sum == 1234.5;
