@@ -38,6 +38,9 @@ KERNELS = {
     "cable12_engineering_exact_elastic_tangent": "l, ec, Ac, out",
     "cable12_green_linear_elastic_force": "l, ec, Ac, out",
     "cable12_green_linear_elastic_tangent": "l, ec, Ac, out",
+    "cable18_engineering_exact_elastic_force": "l, eq, Ac, out",
+    "cable18_engineering_exact_elastic_tangent": "l, eq, Ac, out",
+    "cable18_engineering_exact_damping_tangent": "l, eq, v, Ac, 1e-4, 2e3, out",
     "slide_beam24_rigid_residual": "l, 0.2, e, b, u, f, out, out + 3",
     "slide_beam24_rigid_tangent": "l, 0.2, e, b, u, f, out, out + 93",
 }
@@ -54,6 +57,7 @@ int main(void)
     const double D[9] = {4e8, 4e8, 4e8, 0, 0, 0, 2e8, 2e8, 2e8};
     double S[54];
     const double ec[12] = {0, 0, 0, 1, 0, 0, 0.49, 0.05, 0, 1, 0.2, 0}, Ac[2] = {1e6, 208.333};
+    const double eq[18] = {0, 0, 0, 1, 0, 0, 0, 0.4, 0, 0.49, 0.05, 0, 1, 0.2, 0, 0, 0.4, 0};
     const double b[7] = {0.2, 0.01, 0, 1, 0, 0, 0}, u[3] = {0, 0, 0}, f[3] = {0.3, 10, 1};
     beam24_mass(l, 4200, section, m);
     for (int i = 0; i < 54; ++i) S[i] = D[i / 6] * section[i % 6];
