@@ -10,7 +10,7 @@ import sympy as sp
 from funicular.derive.frames import spatial, tangent_frame, unit
 from funicular.derive.gram import DIRECTIONS, Gram
 from funicular.derive.gram_point import axis, expansion
-from funicular.derive.gram_tangent import blocks, nodal_tangent
+from funicular.derive.gram_tangent import nodal_tangent
 from funicular.derive.laws import law_class, law_name
 from funicular.derive.spec import Element
 from funicular.derive.stages import Program
@@ -84,8 +84,7 @@ class Kernels:
         """Second derivative of the energy."""
         p = self._program("elastic_tangent", "d2U/de2", "derivative of eq 8")
         w, A, c, G = self._strain(p)
-        u, moduli = self.law.stress_and_moduli(p, A, G, w)
-        K = nodal_tangent(self.gram, p, blocks(self.gram, p, c, c, moduli, u), w, symmetric=True)
+        K = nodal_tangent(self.gram, p, self.law.tangent(p, A, G, c, w), w, symmetric=True)
         p.output("K", K, "N/m, N, N m", "d2U/de2, symmetric")
         return p
 

@@ -83,7 +83,7 @@ def cable_energy(element: Element, law: str, s):
     kernels = LAWS[law](Gram(element))
     n_axial, n_bending = len(kernels.axial_points), len(kernels.bending_points)
     # two points more, where the kernels' number is claimed to be exact
-    axial = _along(element, s, n_axial + 2 * (strain == "green"))
+    axial = _along(element, s, n_axial + 2 * (strain == "green" and n_axial >= 2 * kernels.degree - 1))
     bending = _along(element, s, n_bending + 2 * (curvature == "linear"))
     total = mp.mpf(0)
     for weight, r_x, _, _, _ in axial:

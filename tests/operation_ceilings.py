@@ -28,48 +28,56 @@ CEILINGS = {
         "damping_tangent": 8797, "dissipation": 692, "section_forces": 487
     },
     "cable12_green_exact": {
-        "stiffness": 0, "energy": 277, "elastic_force": 581, "elastic_tangent": 2203, "damping_force": 558,
-        "damping_tangent": 3813, "dissipation": 298, "section_forces": 264
+        "stiffness": 0, "energy": 229, "elastic_force": 485, "elastic_tangent": 2012, "damping_force": 558,
+        "damping_tangent": 3498, "dissipation": 298, "section_forces": 262
     },
     "cable12_green_linear": {
-        "stiffness": 0, "energy": 143, "elastic_force": 252, "elastic_tangent": 1164, "damping_force": 558,
-        "damping_tangent": 3813, "dissipation": 298, "section_forces": 154
+        "stiffness": 0, "energy": 143, "elastic_force": 252, "elastic_tangent": 766, "damping_force": 558,
+        "damping_tangent": 3498, "dissipation": 298, "section_forces": 154
     },
     "cable12_engineering_exact": {
-        "stiffness": 0, "energy": 287, "elastic_force": 586, "elastic_tangent": 2218, "damping_force": 588,
-        "damping_tangent": 4068, "dissipation": 319, "section_forces": 257
+        "stiffness": 0, "energy": 239, "elastic_force": 490, "elastic_tangent": 2027, "damping_force": 588,
+        "damping_tangent": 3753, "dissipation": 319, "section_forces": 257
     },
     "cable12_engineering_linear": {
-        "stiffness": 0, "energy": 158, "elastic_force": 277, "elastic_tangent": 1239, "damping_force": 588,
-        "damping_tangent": 4068, "dissipation": 319, "section_forces": 158
+        "stiffness": 0, "energy": 158, "elastic_force": 277, "elastic_tangent": 841, "damping_force": 588,
+        "damping_tangent": 3753, "dissipation": 319, "section_forces": 158
     },
     "cable18_green_exact": {
-        "stiffness": 0, "energy": 1015, "elastic_force": 2093, "elastic_tangent": 13427, "damping_force": 1771,
-        "damping_tangent": 15871, "dissipation": 1018, "section_forces": 522
+        "stiffness": 0, "energy": 591, "elastic_force": 1251, "elastic_tangent": 5776, "damping_force": 1771,
+        "damping_tangent": 12937, "dissipation": 1018, "section_forces": 520
     },
     "cable18_engineering_exact": {
-        "stiffness": 0, "energy": 1035, "elastic_force": 2110, "elastic_tangent": 13478, "damping_force": 1821,
-        "damping_tangent": 16296, "dissipation": 1053, "section_forces": 515
+        "stiffness": 0, "energy": 601, "elastic_force": 1256, "elastic_tangent": 5791, "damping_force": 1821,
+        "damping_tangent": 13362, "dissipation": 1053, "section_forces": 515
     },
     "beam12p_continuum": {
         "stiffness": 94, "energy": 218, "elastic_force": 302, "elastic_tangent": 1294, "damping_force": 395,
         "damping_tangent": 2125, "dissipation": 296, "section_forces": 142
     },
     "cable8p_green_exact": {
-        "stiffness": 0, "energy": 256, "elastic_force": 534, "elastic_tangent": 1792, "damping_force": 335,
-        "damping_tangent": 1511, "dissipation": 202, "section_forces": 188
+        "stiffness": 0, "energy": 208, "elastic_force": 438, "elastic_tangent": 1276, "damping_force": 335,
+        "damping_tangent": 1371, "dissipation": 202, "section_forces": 186
     },
     "cable8p_green_linear": {
-        "stiffness": 0, "energy": 122, "elastic_force": 205, "elastic_tangent": 753, "damping_force": 335,
-        "damping_tangent": 1511, "dissipation": 202, "section_forces": 100
+        "stiffness": 0, "energy": 122, "elastic_force": 205, "elastic_tangent": 433, "damping_force": 335,
+        "damping_tangent": 1371, "dissipation": 202, "section_forces": 100
     },
     "cable8p_engineering_exact": {
-        "stiffness": 0, "energy": 266, "elastic_force": 539, "elastic_tangent": 1807, "damping_force": 356,
-        "damping_tangent": 1640, "dissipation": 217, "section_forces": 181
+        "stiffness": 0, "energy": 218, "elastic_force": 443, "elastic_tangent": 1291, "damping_force": 356,
+        "damping_tangent": 1500, "dissipation": 217, "section_forces": 181
     },
     "cable8p_engineering_linear": {
-        "stiffness": 0, "energy": 137, "elastic_force": 230, "elastic_tangent": 828, "damping_force": 356,
-        "damping_tangent": 1640, "dissipation": 217, "section_forces": 104
+        "stiffness": 0, "energy": 137, "elastic_force": 230, "elastic_tangent": 508, "damping_force": 356,
+        "damping_tangent": 1500, "dissipation": 217, "section_forces": 104
+    },
+    "beam24_structural": {
+        "stiffness": 313, "energy": 510, "elastic_force": 997, "elastic_tangent": 6802, "damping_force": 1286,
+        "damping_tangent": 13055, "dissipation": 849, "section_forces": 724
+    },
+    "beam12p_structural": {
+        "stiffness": 105, "energy": 207, "elastic_force": 302, "elastic_tangent": 1081, "damping_force": 394,
+        "damping_tangent": 2006, "dissipation": 296, "section_forces": 263
     },
     "rigid": {"point": 207, "point_force": 183, "inertia_force": 45, "inertia_tangent": 48, "kinetic_energy": 31},
     "planar_rigid": {"point": 40, "point_force": 23, "inertia_force": 3, "inertia_tangent": 0, "kinetic_energy": 9},

@@ -6,12 +6,12 @@ import sympy as sp
 from funicular.derive.elements import ELEMENTS
 from funicular.derive.gram import Gram
 from funicular.derive.laws.continuum import Form
-from funicular.derive.spec import Element, l, x, y, z
+from funicular.derive.spec import CABLE_LAWS, Element, l, x, y, z
 from funicular.derive.verify_states import element_state, loads, reference, rotation, section
 from funicular.generated import kernels
 
 LAWS = [(name, law) for name, element in ELEMENTS.items() for law in element.laws]
-CABLES = [(name, law) for name, law in LAWS if law != "continuum"]
+CABLES = [(name, law) for name, law in LAWS if law in CABLE_LAWS]
 YOUNGS_MODULUS = 50.0
 
 
@@ -38,6 +38,12 @@ class Elastic:
             D = np.concatenate([np.full(self.element.dim, YOUNGS_MODULUS), np.full(pairs, 10.0), np.full(pairs, 20.0)])
             self.A = self("stiffness")(self.l, np.outer(D, self.section))
             self.energy_scale = np.abs(self.A).max()
+        elif law == "structural":
+            area, EI = YOUNGS_MODULUS * self.section[0], YOUNGS_MODULUS * self.section[1]
+            S = area * np.array([1, 0.4, 0.3, 0, 0, 0, 0.8, 0.9, 0.5]) + EI * np.array([0, 0, 0, 0.6, 0.7, 1, 0, 0, 0])
+            self.A = self("stiffness")(self.l, reference(self.element, self.l),
+                                       S if self.element.dim == 3 else S[[0, 1, 5, 6]])
+            self.energy_scale = max(area * self.l, EI / self.l)
         else:
             self.A = self("stiffness")(self.l, YOUNGS_MODULUS * self.section[:2])
             self.energy_scale = max(self.A[0] * self.l, self.A[1] / self.l)
@@ -207,7 +213,7 @@ def test_homogeneous_stretch_stores_what_the_law_says(elastic, stretch):
     F = np.eye(elastic.element.dim)
     F[0, 0] += stretch
     U = elastic.at("energy", reference(elastic.element, elastic.l) @ F.T)[0]
-    strain = stretch if elastic.law.startswith("engineering") else stretch + stretch**2 / 2
+    strain = stretch if elastic.law.startswith(("engineering", "structural")) else stretch + stretch**2 / 2
     assert U == pytest.approx(YOUNGS_MODULUS * strain**2 / 2 * elastic.section[0] * elastic.l, rel=1e-9)
 
 

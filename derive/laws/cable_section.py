@@ -21,8 +21,7 @@ def resultants(law, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, 
     program.stage("energy per length through its invariants")
     a1 = program.define("a1", r1.dot(r1) - 1)
     b, squared = program.define("b", r1.dot(r2)), program.define("c", r2.dot(r2))
-    strain, scale = law.axial_strain(program, "eps", a1), law.curvature_scale(program, a1)
-    k2 = law.squared_curvature(scale, a1, b, squared)
+    strain, k2, scale = law.measures(program, "", a1, b, squared)
     W = jacobian(program, np.array([S[0] * strain**2 / 2 + S[1] * k2 / 2]), [a1, b, squared])[0]
     by_a, by_b, by_c = (program.define(f"W_{name}", value) for name, value in zip("abc", W, strict=True))
     program.stage("forces on r' and r''")
@@ -32,5 +31,5 @@ def resultants(law, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, 
     force = 2 * by_a * r1 + by_b * r2 - change
     program.stage("moment and curvature")
     normal = program.vector("n", cross(spatial(r1), spatial(r2)))
-    kappa2 = squared if scale is None else normal.dot(normal) * scale
+    kappa2 = k2 if scale is None else normal.dot(normal) * scale
     return spatial(force), 2 * by_c * normal, [strain, 0, 0, 0, 0, sp.sqrt(program.define("kappa2", kappa2))]

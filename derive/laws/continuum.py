@@ -128,9 +128,9 @@ class Continuum:
         program.stage("u = A (G - G0)")
         return self._times(program, A, G)
 
-    def stress_and_moduli(self, program: Program, A: np.ndarray, G: Sequence[sp.Expr], w: sp.Expr):
-        """Stage: u, and d2U/dG2 by its non-zero entries."""
-        return self.stress(program, A, G, w), self._moduli(A)
+    def tangent(self, program: Program, A: np.ndarray, G: Sequence[sp.Expr], c: np.ndarray, w: sp.Expr) -> np.ndarray:
+        """Stages: d2U/dc2 over strain vectors."""
+        return blocks(self.gram, program, c, c, self._moduli(A), self.stress(program, A, G, w))
 
     def _moduli(self, A: np.ndarray) -> dict:
         return {pq: A[k] for pq, k in self.form.index.items()}

@@ -6,17 +6,10 @@ in the plane drops out of the expressions by itself.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 import sympy as sp
 from funicular.derive.frames import cross
 from funicular.derive.stages import Program
-
-
-def spatial(vector: Sequence[sp.Expr]) -> np.ndarray:
-    """A planar or spatial vector with three components."""
-    return np.array([sp.sympify(v) for v in vector] + [sp.S.Zero] * (3 - len(vector)), dtype=object)
 
 
 def turned(k: int, values: np.ndarray) -> np.ndarray:

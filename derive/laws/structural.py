@@ -22,7 +22,8 @@ from functools import cached_property
 
 import numpy as np
 import sympy as sp
-from funicular.derive.laws.section_frame import SectionFrame, spatial, turned
+from funicular.derive.frames import spatial
+from funicular.derive.laws.section_frame import SectionFrame, turned
 from funicular.derive.spec import Element, l, x, y, z
 from funicular.derive.stages import Program
 
@@ -179,8 +180,7 @@ class Structural:
                 bubble = program.define(f"bubble_{i}", self.bubble(S, i, length, places))
                 found[i] -= bubble * BUBBLE.subs(X, at)
                 found[6 - i] += sign * bubble * (2 / length) * BUBBLE.diff(X).subs(X, at)
-        names = ("e1", "e2", "e3", "k1", "k2", "k3")
-        return [program.define(f"at_{name}", f) for name, f in zip(names, found, strict=True)]
+        return [program.define(f"at_{'ek'[i // 3]}{i % 3 + 1}", f) for i, f in enumerate(found)]
 
     def spatial_stiffness(self, S: Sequence[sp.Expr]) -> list[sp.Expr]:
         """EA, GA_y, GA_z, GJ, EI_yy, EI_zz; of a planar element those that it has."""
@@ -302,7 +302,7 @@ class Configuration:
         return found
 
     def _gibbs_rate(self, node: int, k: int) -> np.ndarray:
-        """From a product of quaternions (1, g) and (1, spin/2): (+-(spin + g (g.spin)) + g x spin)/2; - at node 1."""
+        """From quaternions (1, g) and (1, spin/2): (+-(spin + g (g.spin)) + g x spin)/2, minus for the first node."""
         g, sign = self.gibbs, 2 * node - 1
         unit = np.array([sp.Integer(i == k) for i in range(3)])
         rate = (sign * (unit + g[k] * g) + turned(k, g)) / 2
