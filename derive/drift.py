@@ -9,6 +9,7 @@ from pathlib import Path
 
 from funicular.derive import emit
 from funicular.derive.families import families, named
+from funicular.derive.spec import FamilyError
 from rich.console import Console
 from rich.progress import Progress
 
@@ -22,14 +23,14 @@ def folder() -> Path:
 
 
 def generate(names: list[str] | None = None, show: bool = False) -> dict[str, str]:
-    """Text of every generated file, or of the named families' and the common ones, by file name.
+    """Text of every generated file, or (names not None) of the named families' and the common ones, by file name.
 
     With names, the other families stand in the common files as the manifest records them: as their files are.
     Raises KeyError for an unknown family, naming the near ones.
     """
     every = families()
-    wanted = named(names) if names else every
-    record = _record() if names else {}
+    wanted = every if names is None else named(names)
+    record = {} if names is None else _record()
     with Progress(disable=not show, console=Console(stderr=True), transient=True) as progress:
         task = progress.add_task("derive", total=2 * len(wanted))
         known = []
@@ -45,6 +46,16 @@ def generate(names: list[str] | None = None, show: bool = False) -> dict[str, st
     kept = {f"{d.family.name}.c": _current(f"{d.family.name}.c") for d in known if d.family.name not in wanted}
     files[MANIFEST] = emit.manifest(known, {n: text for n, text in kept.items() if text is not None} | files)
     return files
+
+
+def changed() -> list[str]:
+    """Names of the families whose specs, tools or files are not those that the manifest records."""
+    record = _record()
+    if record.get("tools") != emit.tools():
+        return list(families())
+    return [name for name, family in families().items()
+            if record.get("families", {}).get(name, {}).get("spec_hash") != emit.came_from(family)[1]
+            or record["files"].get(f"{name}.c") != emit.digest(_current(f"{name}.c") or "")]
 
 
 def _current(name: str) -> str | None:
@@ -87,10 +98,11 @@ def differences(files: dict[str, str]) -> list[str]:
     return found
 
 
-def extra(files: dict[str, str]) -> list[str]:
+def extra() -> list[str]:
     """A line for each file in generated/ that no spec makes."""
+    known = {MANIFEST, *emit.COMMON, *(f"{name}.c" for name in families())}
     return [f"extra: generated/{p.name} (no spec makes it: delete it)" for p in sorted(folder().iterdir())
-            if p.suffix in GENERATED_SUFFIXES and p.name not in files and not _is_built(p)]
+            if p.suffix in GENERATED_SUFFIXES and p.name not in known and not _is_built(p)]
 
 
 def _is_built(path: Path) -> bool:
@@ -103,16 +115,17 @@ def main(names: list[str], check: bool = False) -> int:
     out = Console(soft_wrap=True, highlight=False, markup=False)
     err = Console(stderr=True, soft_wrap=True, highlight=False, markup=False)
     try:
-        files = generate(names, show=err.is_terminal)
+        # a check believes no hash: it derives everything
+        files = generate(names or (None if check else changed()), show=err.is_terminal)
         if not check:
-            changed = write(files)
-    except (KeyError, OSError) as problem:
+            written = write(files)
+    except (KeyError, OSError, FamilyError) as problem:
         err.print(f"funicular derive: {problem.args[0] if isinstance(problem, KeyError) else problem}")
         return 1
-    unknown = [] if names else extra(files)
+    unknown = [] if names else extra()
     if not check:
-        out.print("\n".join([f"{len(files)} files, {len(changed)} written" + (": " if changed else "")
-                             + ", ".join(changed), *unknown]))
+        out.print("\n".join([f"{len(files)} files, {len(written)} written" + (": " if written else "")
+                             + ", ".join(written), *unknown]))
         return 0
     found = differences(files)
     for paragraph in [*found, *unknown]:

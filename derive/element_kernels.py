@@ -1,10 +1,10 @@
-"""The kernels of an element that no law enters (eq 2-4): position, mass, gravity."""
+"""The kernels of an element that no law enters (eq 2-4): position, mass, gravity, loads."""
 
 from __future__ import annotations
 
 import numpy as np
 import sympy as sp
-from funicular.derive import moments
+from funicular.derive import load_kernels, moments
 from funicular.derive.spec import Element, l, x, y, z
 from funicular.derive.stages import Program
 
@@ -27,7 +27,8 @@ def _integral(p, length, section) -> sp.Expr:
 def build(element: Element) -> list[Program]:
     """Every kernel of an element that no law enters."""
     shape = [_ring(n) for n in element.shape_functions]
-    return [mass(element, shape), gravity(element, shape), inertia_force(element, shape), position(element)]
+    return [mass(element, shape), gravity(element, shape), inertia_force(element, shape), position(element),
+            *load_kernels.build(element)]
 
 
 def _program(element: Element, kernel: str, doc: str, source: str) -> Program:

@@ -14,10 +14,12 @@ from importlib import metadata
 import jinja2
 from funicular.derive.printer import c_expression
 from funicular.derive.sources import deciding, spec_hash
-from funicular.derive.spec import Family
+from funicular.derive.spec import Family, FamilyError
 from funicular.derive.stages import Argument, Program
 
 TOOLS = ("sympy", "mpmath", "jinja2")
+HEADER, REGISTRY = "kernels.h", "registry.c"
+COMMON = (HEADER, REGISTRY, "kernels.pyx", "__init__.py")  # of all families; a library has the first two
 
 
 @dataclass(frozen=True)
@@ -48,8 +50,19 @@ class Derived:
 
 def derive(family: Family) -> Derived:
     """Run the derivation of one family."""
-    sources = list(deciding(family.modules))
-    return Derived(family, [p.prune() for p in family.build()], sources, spec_hash(sources))
+    return derived(family, family.build())
+
+
+def derived(family: Family, programs: list[Program]) -> Derived:
+    """A family with its programs, pruned, and where they came from."""
+    return Derived(family, [p.prune() for p in programs], *came_from(family))
+
+
+def came_from(family: Family) -> tuple[list[str], str]:
+    """The files that decide a family, and their hash."""
+    files = list(deciding(family.modules))
+    own = [family.spec.name] if family.spec else []
+    return own + files, spec_hash(files, family.spec)
 
 
 def recorded(family: Family, manifest: dict) -> Derived | None:
@@ -66,8 +79,52 @@ def _arguments(entries: list[dict]) -> list[Argument]:
     return [Argument(e["name"], tuple(e["shape"]), e["unit"], e["doc"]) for e in entries]
 
 
-def render(every: list[Derived], wanted: Iterable[str], done: Callable[[str], None]) -> dict[str, str]:
-    """Text of the wanted families' files and of the files common to all, by name; calls done(name) for each."""
+@dataclass(frozen=True)
+class Table:
+    """What the engine needs of the families of a role: names of their facts, kernels by suffix with C parameters."""
+
+    members: list[Derived]
+    facts: list[str]
+    kernels: dict[str, str]
+
+
+def tables(every: list[Derived], layout: dict | None = None) -> dict[str, Table]:
+    """The engine's tables by role: laid out as these families allow, or as a manifest's "tables" has them.
+
+    Raises FamilyError for a family without a kernel that the layout asks for.
+    """
+    roles: dict[str, list[Derived]] = {} if layout is None else {role: [] for role in layout}
+    for derived in every:
+        if derived.family.role:
+            roles.setdefault(derived.family.role, []).append(derived)
+    if layout is None:
+        return {role: Table(of, list(of[0].family.facts), _shared(of)) for role, of in roles.items()}
+    for role, members in roles.items():
+        for derived in members:
+            has = _signatures(derived)
+            for kernel, parameters in layout[role]["kernels"].items():
+                if has.get(kernel) != parameters:
+                    raise FamilyError(f"kernel {derived.family.name}_{kernel} must take ({parameters}), but "
+                                      + (f"takes ({has[kernel]})" if kernel in has else "there is none"))
+    return {role: Table(of, **layout[role]) for role, of in roles.items()}
+
+
+def layout(of: dict[str, Table]) -> dict[str, dict]:
+    """What a manifest keeps of tables, so that a library of the user's is laid out alike."""
+    return {role: {"facts": table.facts, "kernels": table.kernels} for role, table in of.items()}
+
+
+def interface(of: dict[str, dict]) -> str:
+    """Hash of a layout: engine and library fit each other where it is the same."""
+    return hashlib.sha256(json.dumps(of).encode()).hexdigest()[:16]
+
+
+def render(every: list[Derived], wanted: Iterable[str], done: Callable[[str], None],
+           like: dict | None = None) -> dict[str, str]:
+    """Text of the wanted families' files and of the files common to all, by name; calls done(name) for each.
+
+    like: the "tables" of the manifest whose layout a library of the user's must have; the Python face is left out.
+    """
     environment = jinja2.Environment(loader=jinja2.PackageLoader("funicular.derive"), trim_blocks=True,
                                      lstrip_blocks=True, keep_trailing_newline=True,
                                      undefined=jinja2.StrictUndefined)
@@ -79,32 +136,48 @@ def render(every: list[Derived], wanted: Iterable[str], done: Callable[[str], No
                                                                      operations=_operations_text)
             files[f"{derived.family.name}.c"] = text
             done(derived.family.name)
-    roles: dict[str, list[Derived]] = {}
-    for derived in every:
-        if derived.family.role:
-            roles.setdefault(derived.family.role, []).append(derived)
-    tables = {role: (members, _shared(members)) for role, members in roles.items()}
-    common = {"every": every, "tables": tables, "signature": signature, "call": _call}
-    for name in ("kernels.h", "registry.c", "kernels.pyx"):
+    common = {"every": every, "tables": tables(every, like), "signature": signature, "call": _call}
+    for name in COMMON if like is None else (HEADER, REGISTRY):
         files[name] = environment.get_template(f"{name}.jinja").render(**common)
-    files["__init__.py"] = environment.get_template("__init__.py.jinja").render(**common)
     return files
 
 
-def manifest(every: list[Derived], files: dict[str, str]) -> str:
-    """What was generated, from what, with which tools."""
+def digest(text: str) -> str:
+    """Hash of a file's text as the manifest keeps it."""
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def tools() -> dict[str, str]:
+    """Versions of what decides the generated text."""
+    return {name: metadata.version(name) for name in TOOLS}
+
+
+def manifest(every: list[Derived], files: dict[str, str], like: dict | None = None, more: dict | None = None) -> str:
+    """What was generated, from what, with which tools; `like` as in `render`, `more` is added."""
     def arguments(of: list[Argument]) -> list[dict]:
         return [{"name": a.name, "shape": list(a.shape), "unit": a.unit, "doc": a.doc} for a in of]
 
     kernels = {p.name: {"doc": p.doc, "source": p.source, "family": d.family.name, "inputs": arguments(p.inputs),
                         "outputs": arguments(p.outputs), "operations": p.operations()}
                for d in every for p in d.programs}
-    content = {"tools": {t: metadata.version(t) for t in TOOLS},
+    laid_out = layout(tables(every, like))
+    content = {"tools": tools(),
+               "interface": interface(laid_out),
+               "tables": laid_out,
+               "elements": {d.family.name: _element(d.family, every) for d in every if d.family.role == "element"},
                "families": {d.family.name: {"doc": d.family.doc, "spec_hash": d.spec_hash,
                                             "sources": d.sources} for d in every},
-               "files": {name: hashlib.sha256(text.encode()).hexdigest() for name, text in sorted(files.items())},
-               "kernels": kernels}
+               "files": {name: digest(text) for name, text in sorted(files.items())},
+               "kernels": kernels} | (more or {})
     return json.dumps(content, indent=1) + "\n"
+
+
+def _element(family: Family, every: list[Derived]) -> dict:
+    """What a scene needs to know of an element; `laws`: each with the one whose section stiffness it takes."""
+    element = family.element
+    laws = {d.family.law: d.family.like for d in every if d.family.role == "law" and d.family.element is element}
+    return {"nodal_vectors": list(element.nodal_vectors), "dim": element.dim, "director": element.director,
+            "laws": laws}
 
 
 def signature(program: Program | Recorded) -> str:
@@ -118,11 +191,31 @@ def _operations_text(program: Program) -> str:
 
 
 def _shared(members: list[Derived]) -> dict[str, str]:
-    """Kernels by suffix, with their parameters, that all families of a role have with the same parameters."""
-    each = [{p.name.removeprefix(d.family.name + "_"): signature(p) for p in d.programs} for d in members]
-    return {name: text for name, text in each[0].items() if all(other.get(name) == text for other in each)}
+    """Kernels of a role by suffix, with their parameters, but for each family's own.
+
+    Raises FamilyError where two families do not agree on them.
+    """
+    first, *others = members
+    kernels = _signatures(first)
+    for other in others:
+        theirs = _signatures(other)
+        for suffix in [*kernels, *theirs]:
+            here, there = kernels.get(suffix, "none"), theirs.get(suffix, "none")
+            if here != there:
+                raise FamilyError(f'role "{first.family.role}": the engine\'s table needs the kernel {suffix} of every '
+                                f"family with the same parameters; {first.family.name} has ({here}), "
+                                f"{other.family.name} has ({there}): derive all families where it is new, or list it "
+                                "in Family.own to keep it out of the table")
+    return kernels
+
+
+def _signatures(derived: Derived) -> dict[str, str]:
+    """C parameters by kernel, of those that belong in the table."""
+    every = {p.name.removeprefix(derived.family.name + "_"): signature(p) for p in derived.programs}
+    return {suffix: text for suffix, text in every.items() if suffix not in derived.family.own}
 
 
 def _call(program: Program | Recorded) -> str:
-    inputs = [f"{a.name}_" if a.shape == () else f"&{a.name}_[0]" for a in program.inputs]
-    return ", ".join([*inputs, *(f"&{a.name}__[0]" for a in program.outputs)])
+    """The arguments of a C call, from arrays of pointers `a` and `out`."""
+    inputs = [f"*a[{i}]" if a.shape == () else f"a[{i}]" for i, a in enumerate(program.inputs)]
+    return ", ".join([*inputs, *(f"out[{i}]" for i in range(len(program.outputs)))])

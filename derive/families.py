@@ -5,11 +5,13 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 from functools import partial
+from types import ModuleType
 
-from funicular.derive import element_kernels, law_kernels
-from funicular.derive.bodies import rigid
+from funicular.derive import body_kernels, element_kernels, law_kernels, structural_kernels
+from funicular.derive.bodies import BODIES
 from funicular.derive.elements import ELEMENTS
 from funicular.derive.joints import slide
+from funicular.derive.laws import law_like, law_name, structural
 from funicular.derive.spec import Element, Family
 
 
@@ -21,27 +23,45 @@ def _element(element: Element) -> Family:
                   element=element)
 
 
-def _law(element: Element, law: str) -> Family:
-    return Family(f"{element.name}_{law}", f"elastic law {law} on {element.name}",
-                  partial(law_kernels.build, element, law), (f"elements.{element.name}", "law_kernels"),
-                  role="law", element=element, law=law)
+def _law(element: Element, law: str | type) -> Family:
+    name = law_name(law)
+    builder = structural_kernels if name == structural.NAME else law_kernels
+    return Family(f"{element.name}_{name}", f"elastic law {name} on {element.name}",
+                  partial(builder.build, element, law), (f"elements.{element.name}", builder.__name__.split(".")[-1]),
+                  role="law", own=("stiffness", "stiffness_at", "section_forces"), element=element, law=name,
+                  like=law_like(law))
 
 
-def _slide(element: Element) -> Family:
-    return Family(f"slide_{element.name}_{rigid.NAME}",
-                  f"sliding joint of a {rigid.NAME} rider on a {element.name} cable",
-                  partial(slide.build, element),
-                  ("joints.slide", f"elements.{element.name}", f"bodies.{rigid.NAME}"),
-                  role="slide", facts={"coordinates": element.n_coordinates + rigid.N_VELOCITY},
-                  element=element, rider=rigid.NAME)
+def _body(body: ModuleType) -> Family:
+    return Family(body.NAME, body.DOC, partial(body_kernels.build, body), (f"bodies.{body.NAME}", "body_kernels"),
+                  role="body",
+                  facts={"dim": body.DIM, "configuration": body.N_CONFIGURATION, "velocity": body.N_VELOCITY},
+                  rider=body.NAME)
+
+
+def _slide(element: Element, rider: ModuleType) -> Family:
+    return Family(f"slide_{element.name}_{rider.NAME}",
+                  f"sliding joint of a {rider.NAME} rider on a {element.name} cable",
+                  partial(slide.build, element, rider),
+                  ("joints.slide", f"elements.{element.name}", f"bodies.{rider.NAME}"),
+                  role="slide",
+                  facts={"coordinates": element.n_coordinates + rider.N_VELOCITY, "dim": element.dim},
+                  element=element, rider=rider.NAME)
+
+
+def of_element(element: Element) -> list[Family]:
+    """An element's own kernels, its laws, and the slide of each rider of its dimension."""
+    return [_element(element), *(_law(element, law) for law in element.laws),
+            *(_slide(element, rider) for rider in BODIES.values() if rider.DIM == element.dim)]
 
 
 def families() -> dict[str, Family]:
     """Every family by name: elements, their laws, bodies, and the slide for each pair of element and rider."""
-    every = [*map(_element, ELEMENTS.values()),
-             *(_law(element, law) for element in ELEMENTS.values() for law in element.laws),
-             Family(rigid.NAME, "rigid body", rigid.build, (f"bodies.{rigid.NAME}",), rider=rigid.NAME),
-             *(_slide(element) for element in ELEMENTS.values() if element.dim == rigid.DIM)]
+    of_role: dict[str, list[Family]] = {"element": [], "law": [], "slide": []}
+    for element in ELEMENTS.values():
+        for family in of_element(element):
+            of_role[family.role].append(family)
+    every = [*of_role["element"], *of_role["law"], *map(_body, BODIES.values()), *of_role["slide"]]
     return {f.name: f for f in every}
 
 

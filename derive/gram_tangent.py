@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import sympy as sp
 from funicular.derive.gram import DIRECTIONS, Gram
+from funicular.derive.spec import Element
 from funicular.derive.stages import Program
 
 Moduli = Mapping[tuple[int, int], sp.Expr]
@@ -79,11 +80,17 @@ def nodal_tangent(gram: Gram, program: Program, block: np.ndarray, w: sp.Expr, s
                 if j == k:
                     K[j, j] = np.triu(K[j, j]) + np.triu(K[j, j], 1).T
                 K[k, j] = K[j, k].T
+    return from_others(gram.element, program, K, symmetric)
+
+
+def from_others(element: Element, program: Program, K: np.ndarray, symmetric: bool) -> np.ndarray:
+    """Stage: rows and columns of the first position from the others: blocks (k, k, dim, dim) -> (n, n)."""
+    position, count, dim = element.is_position, element.n_vectors, element.dim
     others = [k for k in range(1, count) if position[k]]
     program.stage("the first position: rigid translation makes no force")
     for k in range(1, count):
         value = -sum(K[j, k] for j in others)
-        K[0, k] = _define_block(program, f"K_{gram.element.names[0]}_{gram.element.names[k]}", value)
+        K[0, k] = _define_block(program, f"K_{element.names[0]}_{element.names[k]}", value)
         K[k, 0] = K[0, k].T if symmetric else -sum(K[k, j] for j in others)
     K[0, 0] = -sum(K[0, j] for j in others)
     return K.transpose(0, 2, 1, 3).reshape(count * dim, count * dim)

@@ -11,27 +11,27 @@ from funicular.derive.frames import spatial, tangent_frame, unit
 from funicular.derive.gram import DIRECTIONS, Gram
 from funicular.derive.gram_point import axis, expansion
 from funicular.derive.gram_tangent import nodal_tangent
-from funicular.derive.laws import LAWS
+from funicular.derive.laws import law_class, law_name
 from funicular.derive.spec import Element
 from funicular.derive.stages import Program
 
 
-def build(element: Element, law: str) -> list[Program]:
+def build(element: Element, law: str | type) -> list[Program]:
     """Every kernel of a law on an element."""
     kernels = Kernels(element, law)
-    return [*kernels.set_up(), kernels.energy(), kernels.elastic_force(), kernels.elastic_tangent(),
+    return [kernels.set_up(), kernels.energy(), kernels.elastic_force(), kernels.elastic_tangent(),
             kernels.damping_force(), kernels.damping_tangent(), kernels.dissipation(), kernels.section_forces()]
 
 
 class Kernels:
     """An element's Gram products with a law over them."""
 
-    def __init__(self, element: Element, law: str):
+    def __init__(self, element: Element, law: str | type):
         self.element, self.gram = element, Gram(element)
-        self.law = LAWS[law](self.gram)
+        self.law, self.name = law_class(law)(self.gram), f"{element.name}_{law_name(law)}"
 
     def _program(self, kernel: str, doc: str, source: str) -> Program:
-        return Program(f"{self.element.name}_{self.law.name}_{kernel}", doc, f"{source}; {self.law.source}")
+        return Program(f"{self.name}_{kernel}", doc, f"{source}; {self.law.source}")
 
     def _coordinates(self, program: Program, name="e", unit="m, 1", doc="nodal vectors (eq 1)") -> np.ndarray:
         return program.input(name, (self.element.n_vectors, self.element.dim), unit, doc)
@@ -57,13 +57,11 @@ class Kernels:
         w = program.define("w", 1 / length)
         return w, A, tau, self.gram.differences(program, e, w), self.gram.differences(program, v, w, "d")
 
-    def set_up(self) -> list[Program]:
+    def set_up(self) -> Program:
         """The law's constants."""
-        programs = []
-        for name, build in self.law.set_up().items():
-            programs.append(self._program(name, "constants of the law from the stiffness of the section", "eq 7"))
-            build(programs[-1])
-        return programs
+        p = self._program(self.law.set_up_kernel, "constants of the law from the stiffness of the section", "eq 7")
+        self.law.set_up(p)
+        return p
 
     def energy(self) -> Program:
         """eq 7."""
@@ -119,13 +117,13 @@ class Kernels:
         p = self._program("section_forces", "force and moment resultants of a section", "eq 6-8 at a section")
         length, x = p.input("l", (), "m", "length of the element"), p.input("x", (), "m", "arc-length from its start")
         e, S = self._coordinates(p), self.law.section_stiffness(p)
-        e0 = self.law.reference_input(p) if self.law.curved else None
+        e0 = [self.law.reference_input(p)] if self.law.curved else []
         p.stage("strain vectors")
         w = p.define("w", 1 / length)
         X = p.define("X", 2 * w * x - 1)
         c = self.gram.differences(p, e, w)
-        c0 = self.gram.differences(p, e0, w, "r0_") if self.law.curved else None
-        force, moment, strain = self.law.section_forces(p, S, c, X, w, c0)
+        c0 = [self.gram.differences(p, vectors, w, "r0_") for vectors in e0]
+        force, moment, strain = self.law.section_forces(p, S, c, X, w, *c0)
         p.stage("axes of the section")
         axes = self._axes(p, c, X, w)
         p.output("force", force, "N", "resultant of the stress, global axes")

@@ -7,6 +7,7 @@ import hashlib
 from collections.abc import Iterable, Iterator
 from functools import cache
 from importlib import resources
+from pathlib import Path
 
 PACKAGE = "funicular.derive"
 PRINTING = ("printer", "emit")
@@ -25,11 +26,13 @@ def deciding(roots: Iterable[str]) -> tuple[str, ...]:
     return (*(_file(m) for m in found), TEMPLATE)
 
 
-def spec_hash(files: Iterable[str]) -> str:
-    """SHA-256 over the files' text, shortened."""
+def spec_hash(files: Iterable[str], spec: Path | None = None) -> str:
+    """SHA-256 over the text of files here and of the user's file, shortened."""
     digest = hashlib.sha256()
     for file in files:
         digest.update(_read(file))
+    if spec is not None:
+        digest.update(spec.read_bytes())
     return digest.hexdigest()[:16]
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
+from pathlib import Path
 
 import sympy as sp
 from funicular.derive.stages import Program
@@ -17,12 +18,16 @@ COORDINATES = {"x": x, "y": y, "z": z}
 CABLE_LAWS = ("green_exact", "green_linear", "engineering_exact", "engineering_linear")
 
 
+class FamilyError(ValueError):
+    """Families of one role whose kernels do not fit one table."""
+
+
 @dataclass(frozen=True)
 class Element:
     """r(x, y, z) = sum_k N_k d_k (eq 2): monomials, nodes, and which vectors the nodes carry.
 
     `director` names the nodal vector from which the tangent frame takes its normal (eq 16); empty where there is
-    none. `laws` names the energies (laws/) that it comes with.
+    none. `laws` are the energies that it comes with: names in laws/, or classes of the same interface.
     """
 
     name: str
@@ -30,7 +35,7 @@ class Element:
     basis: tuple[sp.Expr, ...]
     nodal_vectors: tuple[str, ...]
     director: str
-    laws: tuple[str, ...]
+    laws: tuple[str | type, ...]
     doc: str
     source: str
     nodes: tuple[sp.Expr, ...] = (sp.S.Zero, l)
@@ -90,9 +95,11 @@ class Family:
     """The kernels of one generated file.
 
     `modules` are its specs: their text, and all that they import here, is in the spec hash. Families of one `role` have
-    kernels of the same signatures; the engine reaches them through a table, each with its `facts` (integers).
-    `element`, `law` (a name in laws/) and `rider` (the name of a body) are what the kernels are about: verification
-    samples their states.
+    kernels of the same signatures, but for those in `own`; the engine reaches them through a table, each with its
+    `facts` (integers).
+    `element`, `law` and `rider` (the name of a body) are what the kernels are about: verification samples their states.
+    `like` is the law in laws/ whose section stiffness and scale the law shares: itself, but for a law of the user's.
+    `spec` is the user's file that the element stands in, None for those of this package.
     """
 
     name: str
@@ -101,6 +108,9 @@ class Family:
     modules: tuple[str, ...]
     role: str = ""
     facts: dict[str, int] = field(default_factory=dict)
+    own: tuple[str, ...] = ()
     element: Element | None = None
     law: str | None = None
+    like: str | None = None
     rider: str | None = None
+    spec: Path | None = None

@@ -1,8 +1,8 @@
-"""`funicular verify`: every derivative in the generated C, tried by independent methods, and the invariances.
+"""`funicular verify`: every derivative in the generated C, tried by independent methods, rounding, and the invariances.
 
 The files of generated/ are compiled as they stand: a sign changed by hand shows at once. Relations are in
-verify_relations.py and verify_slide.py, methods and their ceilings in verify_methods.py; families come from the
-list in families.py, so a new element or rider is covered by being there.
+verify_relations.py and verify_slide.py, methods and their ceilings in verify_methods.py, rounding and its ceilings in
+verify_rounding.py; families come from the list in families.py, so a new element or rider is covered by being there.
 """
 
 from __future__ import annotations
@@ -30,7 +30,10 @@ from funicular.derive.verify_invariances import invariances
 from funicular.derive.verify_methods import Finding, examine
 from funicular.derive.verify_relations import relations
 from funicular.derive.verify_report import Report
+from funicular.derive.verify_rounding import Rounding, roundings
 from funicular.derive.verify_states import states
+
+Item = Finding | Rounding | tuple[str, float, float]
 
 
 @dataclass(frozen=True)
@@ -63,12 +66,13 @@ def uncovered(family: Family, programs: list[Program]) -> list[str]:
     return [f"{p.name}: {a.name}" for p in programs for a in p.outputs if (p.name, a.name) not in known]
 
 
-def verify(subject: Subject) -> Iterator[Finding | tuple[str, float, float]]:
-    """Findings of a family's relations, then its invariances, each the worst over the sample states."""
+def verify(subject: Subject) -> Iterator[Item]:
+    """Findings of a family's relations, rounding of its kernels, its invariances: the worst over the sample states."""
     kinds = subject.kinds()
     samples = states(subject.family, kinds["exact"])
     for relation in relations(subject.family):
         yield examine(f"{subject.family.name}_{relation.kernel}", relation, kinds, samples)
+    yield from roundings(subject.family, kinds, samples)
     real = kinds["real"]
     worst: dict[str, tuple[float, float]] = {}
     for text, error, ceiling in invariances(subject.family, real, [real.state(s) for s in samples]):
@@ -87,7 +91,7 @@ def main(names: list[str], generated: Path | None = None) -> int:
         print(f"funicular verify: {unknown.args[0]}", file=sys.stderr)
         return 1
     try:
-        failures = _run(list(wanted.values()), generated or folder())
+        failures = examined(list(wanted.values()), generated or folder()).show()
     except CompilerError as problem:
         print(f"funicular verify: {problem}", file=sys.stderr)
         return 1
@@ -95,31 +99,33 @@ def main(names: list[str], generated: Path | None = None) -> int:
     return 1 if failures else 0
 
 
-def _run(wanted: list[Family], generated: Path) -> int:
+Catalogue = Callable[[], dict[str, Family]]
+
+
+def examined(wanted: list[Family], generated: Path, catalogue: Catalogue = families) -> Report:
+    """Everything found about families whose C is in `generated`; `catalogue` finds them by name in other processes."""
     report = Report()
     with report.progress(len(wanted)) as progress:
-        for name, (outputs, items) in _results(wanted, generated, progress).items():
+        for name, (outputs, items) in _results(wanted, generated, catalogue, progress).items():
             report.missing(outputs)
             for item in items:
                 report.add(name, item)
-    return report.show()
+    return report
 
 
-Items = list[Finding | tuple[str, float, float]]
-
-
-def _results(wanted: list[Family], generated: Path, progress: Callable[[], None]) -> dict[str, tuple[list[str], Items]]:
+def _results(wanted: list[Family], generated: Path, catalogue: Catalogue,
+             progress: Callable[[], None]) -> dict[str, tuple[list[str], list[Item]]]:
     """What `_examined` returns, by family in the order wanted; one process a core, the longest files first."""
     names = [family.name for family in wanted]
     found = {}
     workers = min(os.cpu_count() or 1, len(names))
     if workers == 1:
         for name in names:
-            found[name] = _examined(name, generated)
+            found[name] = _examined(name, generated, catalogue)
             progress()
         return found
     with ProcessPoolExecutor(workers, get_context("spawn")) as pool:
-        waiting = {pool.submit(_examined, name, generated): name for name in
+        waiting = {pool.submit(_examined, name, generated, catalogue): name for name in
                    sorted(names, key=lambda name: -_size(generated / f"{name}.c"))}
         try:
             for future in as_completed(waiting):
@@ -135,11 +141,11 @@ def _size(path: Path) -> int:
     return path.stat().st_size if path.is_file() else 0
 
 
-def _examined(name: str, generated: Path) -> tuple[list[str], Items]:
+def _examined(name: str, generated: Path, catalogue: Catalogue) -> tuple[list[str], list[Item]]:
     """Outputs of a family that no relation is about, findings and invariances."""
     # what a broken kernel returns is a finding, not a warning
     with (tempfile.TemporaryDirectory(prefix="funicular-verify-") as work, mpmath.workdps(DIGITS),
           np.errstate(all="ignore")):
-        subject = prepare(families()[name], generated, Path(work))
+        subject = prepare(catalogue()[name], generated, Path(work))
         return uncovered(subject.family, subject.programs), [
             item.plain() if isinstance(item, Finding) else item for item in verify(subject)]

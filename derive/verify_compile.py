@@ -12,6 +12,7 @@ import shutil
 import subprocess
 import sysconfig
 from collections.abc import Iterable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -32,6 +33,21 @@ def compiler() -> list[str]:
         if words and shutil.which(words[0]):
             return words
     raise CompilerError("no C compiler found (tried $CC, cc, gcc, clang): install one, or set CC to its command")
+
+
+def compile_units(sources: Iterable[Path], flags: Iterable[str], work: Path) -> list[Path]:
+    """Object files in a folder from C files, compiled side by side. Raises CompilerError with the first messages."""
+    def start(source: Path) -> subprocess.CompletedProcess:
+        command = [*compiler(), *flags, "-c", str(source), "-o", str(work / f"{source.stem}.o")]
+        return subprocess.run(command, stderr=subprocess.PIPE, text=True)
+
+    sources = list(sources)
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        for source, done in zip(sources, pool.map(start, sources), strict=True):
+            if done.returncode:
+                raise CompilerError(f"the C compiler refuses {source.name}:\n"
+                                    + "\n".join(done.stderr.splitlines()[:12]))
+    return [work / f"{source.stem}.o" for source in sources]
 
 
 class Library:

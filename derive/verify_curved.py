@@ -105,7 +105,8 @@ def section(element: Element, law: str, s) -> dict[str, np.ndarray]:
 def cable_measures(strain: str, r, r0) -> tuple:
     """Strain, and what the curvature has more than the stress-free one, both by the stress-free arc-length."""
     stretch = mp.sqrt(r[0].dot(r[0]) / r0[0].dot(r0[0]))
-    return (stretch**2 - 1) / 2 if strain == "green" else stretch - 1, _curvature(strain, r, r0) - _curvature("", r0, r0)
+    change = _curvature(strain, r, r0) - _curvature("", r0, r0)
+    return (stretch**2 - 1) / 2 if strain == "green" else stretch - 1, change
 
 
 def _curvature(strain: str, r, r0):
@@ -115,8 +116,8 @@ def _curvature(strain: str, r, r0):
 
 
 def cable_density(strain: str, r, r0, EA, EI, l):
-    """Energy per x; kappa and kappa0 are rounded to sqrt(kappa^2 + 1e-6 kappa0^2 + floor), and a kappa0 below the floor,
-    (2e-6/l)^2, is none.
+    """Energy per x; kappa and kappa0 are rounded to sqrt(kappa^2 + 1e-6 kappa0^2 + floor), floor = (2e-6/l)^2, and a
+    kappa0^2 below the floor is none.
     """
     eps, _ = cable_measures(strain, r, r0)
     kappa, kappa0, floor = _curvature(strain, r, r0), _curvature("", r0, r0), 4 / mp.mpf(10) ** 12 / mp.mpf(l) ** 2

@@ -1,4 +1,4 @@
-"""What no motion of the frame may change: invariances of an element's and a rigid body's kernels in C.
+"""What no motion of the frame may change: invariances of an element's and a body's kernels in C.
 
 Each is (text, error, ceiling), the error relative to the scale that the text's quantity has in the sample.
 """
@@ -10,7 +10,7 @@ from collections.abc import Iterator
 import numpy as np
 from funicular.derive.gram import Gram
 from funicular.derive.spec import Element, Family, x, y, z
-from funicular.derive.verify_motion import turned
+from funicular.derive.verify_motion import RIDERS
 from funicular.derive.verify_numbers import EPS, Numbers, State
 from funicular.derive.verify_states import reference, rotation
 
@@ -22,9 +22,9 @@ def invariances(family: Family, k: Numbers, states: list[State]) -> Iterator[Inv
     """The invariances of a family; the worst of each over its states is up to the caller."""
     from funicular.derive.verify_slide_invariances import slide
 
-    table = {"element": element, "law": law, "slide": slide, "rigid": rigid}
+    table = {"element": element, "law": law, "slide": slide, "body": body}
     for s in states:
-        yield from table[family.role or family.name](family, k, s)
+        yield from table[family.role](family, k, s)
 
 
 def quantised(values: np.ndarray) -> np.ndarray:
@@ -38,8 +38,11 @@ def relative(value, scale) -> float:
 
 
 def element(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
-    """Partition of unity and totals."""
+    """Partition of unity, totals, loads."""
+    from funicular.derive.verify_loads import invariances
+
     yield from _shape_and_mass(family, k, s)
+    yield from invariances(family.element, k, s)
 
 
 def law(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
@@ -76,7 +79,7 @@ def _rigid_motion(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
     for far, where in ((0.0, ""), (1e4, " at 10⁴ lengths")):
         chord = EPS * (1 + far)
         for _ in range(3):
-            at_rest = s["e0"] if _has_shape(family) else reference(spec, float(s["l"]))
+            at_rest = s["e0"] if _knows_shape(family) else reference(spec, float(s["l"]))
             e = at_rest @ rotation(random, spec.dim).T
             direction = random.normal(size=spec.dim)
             e[spec.is_position] += far * s["l"] * direction / np.linalg.norm(direction)
@@ -85,19 +88,21 @@ def _rigid_motion(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
             yield f"rigid motion makes no force{where}", relative(f, stiff / s["l"]), 20 * chord
 
 
-def _has_shape(family: Family) -> bool:
-    """Whether the stress-free shape is an argument, e0."""
-    return family.law.endswith("_curved")
+def _knows_shape(family: Family) -> bool:
+    """Whether the law takes the stress-free shape, e0."""
+    return family.law == "structural" or family.law.endswith("_curved")
 
 
 def _stiffness(family: Family, s: State) -> float:
     """Energy of a strain of order one."""
-    if family.law == "continuum":
+    if family.like == "continuum":
         return float(np.max(np.abs(s["A"])))
     if family.law == "continuum_curved":
         n = len(Gram(family.element).pairs)
         return float(np.max(np.abs(s["A"][: n * (n + 1) // 2])))
-    EA, EI = s["S"]
+    if family.law == "structural":
+        return float(np.max(s["S"]) * max(s["l"], 1 / s["l"]))
+    EA, EI = s["A"][:2]
     return float(max(EA * s["l"], EI / s["l"]))
 
 
@@ -122,7 +127,7 @@ def _deformed(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
     yield "force, tangent: same digits at 10⁴ lengths", max(
         relative(k("elastic_force", s, e=away)["f"] - f, K), relative(k("elastic_tangent", s, e=away)["K"] - K, K)), 0.0
     yield "tangent symmetric", relative(K - K.T, K), 0.0
-    for spin in _spins(spec.dim):
+    for spin in spins(spec.dim):
         turn = (e - np.outer(positions, e[0])) @ spin.T
         yield "tangent turns the force", relative(K @ turn.ravel() - (f @ spin.T).ravel(), K), 32 * EPS
     for i in range(spec.dim):
@@ -130,7 +135,7 @@ def _deformed(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
         yield "tangent null on translation", relative(K @ shift, K), 8 * EPS
 
 
-def _spins(dim: int) -> list[np.ndarray]:
+def spins(dim: int) -> list[np.ndarray]:
     """Infinitesimal rotations in every coordinate plane."""
     found = []
     for i in range(dim):
@@ -149,8 +154,8 @@ def _damping(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
     f = k("damping_force", s)["f"]
     scale_f = max(scale, np.max(np.abs(f)))
     yield "damping: no net force", relative(positions @ f, scale_f), 64 * EPS
-    twisted = spec.dim == 3 and not family.law.startswith("continuum")
-    for spin in _spins(spec.dim):
+    twisted = spec.dim == 3 and family.like not in ("continuum", "continuum_curved", "structural")
+    for spin in spins(spec.dim):
         v = relative_e @ spin.T + np.outer(positions, s["g"])
         f_rigid, P = k("damping_force", s, v=v)["f"], k("dissipation", s, v=v)["P"]
         if twisted:
@@ -178,20 +183,26 @@ def _spun(spec: Element, s: State, spin: np.ndarray) -> float:
     return float(s["tau"] * s["A"][1]) * total
 
 
-def rigid(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
+def body(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
     """Lengths, power, digits far away."""
-    out = k("point", s)
-    distance = np.linalg.norm(out["p"] - s["b"][:3])
+    rider = RIDERS[family.rider]
+    dim, n = rider.dim, rider.n_velocity
+    out, force = k("point", s), k("point_force", s)
+    distance = np.linalg.norm(out["p"] - s["b"][:dim])
     yield "the point keeps its distance", abs(distance / np.linalg.norm(s["u"]) - 1), 8 * EPS
     yield "velocity is p_q w", relative(out["v"] - out["p_q"] @ s["w"], out["v"]), 8 * EPS
-    b = np.concatenate([quantised(s["b"][:3]) + FAR, s["b"][3:]])
+    b = np.concatenate([quantised(s["b"][:dim]) + FAR, s["b"][dim:]])
     away = k("point", s, b=b)
-    arm = turned(s["b"][3:], s["u"])
-    yield "position at 10⁴ lengths", relative(away["p"] - b[:3] - arm, b[:3]), 2 * EPS
+    arm = rider.point(np.concatenate([np.zeros(dim), s["b"][dim:]]), s["u"])
+    yield "position at 10⁴ lengths", relative(away["p"] - b[:dim] - arm, b[:dim]), 2 * EPS
     yield "derivatives: same digits at 10⁴ lengths", max(
-        relative(away[name] - out[name], out[name]) for name in ("p_q", "v", "bias")), 0.0
+        *(relative(away[name] - out[name], out[name]) for name in ("p_q", "v", "bias")),
+        relative(k("point_force", s, b=b)["K"] - force["K"], force["K"])), 0.0
+    turning = force["K"][dim:, dim:]
+    bracket = rider.bracket((force["p_q"].T @ s["f"])[dim:])
+    yield "K symmetric, but for the bracket of rotations", relative(turning - turning.T - bracket, turning), 16 * EPS
     f = k("inertia_force", s)["f"]
-    still = k("inertia_force", s, a=np.zeros(6))["f"]
+    still = k("inertia_force", s, a=np.zeros(n))["f"]
     M = k("inertia_tangent", s)["M"]
     yield "the gyroscopic moment does no work", abs(still @ s["w"]) / relative(f, 1), 32 * EPS
     yield "f . w is the rate of the kinetic energy", abs(f @ s["w"] - s["w"] @ M @ s["a"]) / relative(f, 1), 64 * EPS

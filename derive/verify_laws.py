@@ -11,25 +11,33 @@ from collections.abc import Iterator
 
 import mpmath
 import numpy as np
-from funicular.derive import verify_curved
+from funicular.derive import verify_curved, verify_structural
 from funicular.derive.gram import Gram
 from funicular.derive.laws import LAWS
-from funicular.derive.spec import Element
+from funicular.derive.spec import CABLE_LAWS, Element
 from funicular.derive.verify_motion import cross
 from funicular.derive.verify_reference import Shape, density, gauss, spatial
 
 mp = mpmath.mp
 
 
+def is_cable(law: str) -> bool:
+    """Whether a law is along an axis alone, with S = EA, EI."""
+    return law.removesuffix("_curved") in CABLE_LAWS
+
+
 def energy(element: Element, law: str, s):
     """Elastic energy."""
-    roots = {"continuum": continuum_energy, "continuum_curved": verify_curved.energy}
+    roots = {"continuum": continuum_energy, "continuum_curved": verify_curved.energy,
+             "structural": verify_structural.energy}
     return roots.get(law, cable_energy)(element, law, s)
 
 
 def dissipation(element: Element, law: str, s):
     """Power that Kelvin-Voigt damping takes out."""
-    return (continuum_dissipation if law.startswith("continuum") else cable_dissipation)(element, law, s)
+    roots = {"continuum": continuum_dissipation, "continuum_curved": continuum_dissipation,
+             "structural": verify_structural.dissipation}
+    return roots.get(law, cable_dissipation)(element, law, s)
 
 
 def continuum_energy(element: Element, law: str, s):

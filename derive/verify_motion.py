@@ -1,17 +1,22 @@
 """Finite motions of riders and the frame of a curve, in any kind of number: the paths of verification.
 
-A planar or modal rider joins by an entry in RIDERS with the same members.
+A modal rider joins by an entry in RIDERS with the same members.
 """
 
 from __future__ import annotations
 
 import numpy as np
-from funicular.derive.bodies import rigid
+from funicular.derive.bodies import planar_rigid, rigid
 
 
 def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Vector product in any kind of number."""
     return np.array([a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(3)])
+
+
+def complex_product(p: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """Product of complex numbers, real part first."""
+    return np.array([p[0] * q[0] - p[1] * q[1], p[0] * q[1] + p[1] * q[0]])
 
 
 def quaternion_product(p: np.ndarray, q: np.ndarray) -> np.ndarray:
@@ -37,7 +42,7 @@ def exponential(numbers, theta: np.ndarray) -> np.ndarray:
 class Rigid:
     """bodies/rigid.py: b = (R, quaternion), velocities (R', body-axis omega)."""
 
-    n_velocity = rigid.N_VELOCITY
+    dim, n_velocity = rigid.DIM, rigid.N_VELOCITY
     rotations = slice(3, 6)
 
     @staticmethod
@@ -79,14 +84,69 @@ class Rigid:
         return np.array([[g @ cross(units[j], units[i]) for j in range(3)] for i in range(3)])
 
 
-RIDERS = {rigid.NAME: Rigid}
+class PlanarRigid:
+    """bodies/planar_rigid.py: b = (R, cosine, sine), velocities (R', omega)."""
+
+    dim, n_velocity = planar_rigid.DIM, planar_rigid.N_VELOCITY
+    rotations = slice(2, 3)
+
+    @staticmethod
+    def sample(random: np.random.Generator, near: np.ndarray) -> dict[str, np.ndarray]:
+        """An attitude, a point and velocities, the point not far from `near` and off it."""
+        angle, u = random.uniform(-np.pi, np.pi), random.normal(size=2) / 3
+        turn = np.array([np.cos(angle), np.sin(angle)])
+        R = near - complex_product(turn, u) + random.normal(size=2) / 8
+        return {"b": np.concatenate([R, turn]), "u": u, "w": random.normal(size=3), "wdot": random.normal(size=3)}
+
+    @staticmethod
+    def at_rest(point: np.ndarray) -> dict[str, np.ndarray]:
+        """Unturned, holding a point."""
+        u = np.array([0.0, 0.25])
+        return {"b": np.concatenate([point - u, [1.0, 0.0]]), "u": u}
+
+    @staticmethod
+    def point(b: np.ndarray, u: np.ndarray) -> np.ndarray:
+        """The rider's point in global axes."""
+        return b[:2] + complex_product(b[2:], u)
+
+    @staticmethod
+    def moved(numbers, b: np.ndarray, motion: np.ndarray) -> np.ndarray:
+        """Configuration after the translation motion[:2] and the rotation by the angle motion[2]."""
+        turn = np.array([numbers.cos(motion[2]), numbers.sin(motion[2])])
+        return np.concatenate([b[:2] + motion[:2], complex_product(b[2:], turn)])
+
+    @staticmethod
+    def frame(random: np.random.Generator) -> tuple:
+        """A turn of the global frame: its matrix, and what it makes of a configuration."""
+        angle = random.uniform(-np.pi, np.pi)
+        p = np.array([np.cos(angle), np.sin(angle)])
+        Q = np.array([[p[0], -p[1]], [p[1], p[0]]])
+        return Q, lambda b: np.concatenate([Q @ b[:2], complex_product(p, b[2:])])
+
+    @staticmethod
+    def bracket(g: np.ndarray) -> np.ndarray:
+        """One rotation commutes with itself."""
+        return np.zeros((1, 1))
 
 
-def frame(numbers, tangent: np.ndarray, director: np.ndarray) -> np.ndarray:
-    """Tangent frame by Gram-Schmidt: i along the tangent, j in the plane of tangent and director, k = i x j."""
+RIDERS = {rigid.NAME: Rigid, planar_rigid.NAME: PlanarRigid}
+
+
+def spin(w: np.ndarray, dim: int) -> np.ndarray:
+    """Angular velocity, with zeros for the axes about which nothing turns in the plane."""
+    return np.concatenate([w[:1] * 0] * (3 - len(w[dim:])) + [w[dim:]])
+
+
+def frame(numbers, tangent: np.ndarray, director: np.ndarray | None) -> np.ndarray:
+    """Tangent frame by Gram-Schmidt: i along the tangent, j in the plane of tangent and director, k = i x j.
+
+    In the plane i and j; in space without a director i alone.
+    """
     i = tangent / numbers.sqrt(tangent.dot(tangent))
     if len(tangent) == 2:
         return np.stack([i, np.array([-i[1], i[0]])], axis=1)
+    if director is None:
+        return i[:, None]
     j = director - i.dot(director) * i
     j = j / numbers.sqrt(j.dot(j))
     return np.stack([i, j, cross(i, j)], axis=1)

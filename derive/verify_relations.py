@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from funicular.derive import verify_curved, verify_laws, verify_sections
 from funicular.derive import verify_reference as reference
 from funicular.derive.spec import Element, Family
 from funicular.derive.verify_methods import Relation
-from funicular.derive.verify_motion import RIDERS, cross, turned
+from funicular.derive.verify_motion import RIDERS, cross, exponential, spin, turned
 
 
 def relations(family: Family) -> list[Relation]:
@@ -17,8 +18,8 @@ def relations(family: Family) -> list[Relation]:
     from funicular.derive.verify_slide import slide
 
     table: dict[str, Callable[[Family], list[Relation]]] = {"element": element, "law": law, "slide": slide,
-                                                               "rigid": rigid}
-    return table[family.role or family.name](family)
+                                                               "body": body}
+    return table[family.role](family)
 
 
 def unit(like: np.ndarray, j: int) -> np.ndarray:
@@ -46,7 +47,9 @@ def root(function: Callable, *about) -> Callable:
 
 
 def element(family: Family) -> list[Relation]:
-    """eq 2-4."""
+    """eq 2-4, and loads."""
+    from funicular.derive.verify_loads import loads
+
     spec: Element = family.element
 
     def shape(s):
@@ -58,6 +61,7 @@ def element(family: Family) -> list[Relation]:
         Relation("inertia_force", "f", "(m ⊗ I) a", 0, root(lambda s: np.asarray(s["m"]).dot(s["a"]))),
         Relation("position", "N", "nodal conditions solved at 50 digits", 0, root(shape)),
         Relation("position", "r", "Σ N d", 0, root(lambda s: shape(s).dot(s["e"]))),
+        *loads(spec),
     ]
 
 
@@ -69,7 +73,10 @@ def law(family: Family) -> list[Relation]:
     def energy_of_constants(k, s):
         return k("energy", s, A=k("stiffness", s)["A"])["U"]
 
-    energy, power = (root(f, spec, family.law) for f in (verify_laws.energy, verify_laws.dissipation))
+    if family.law == family.like:
+        energy, power = (root(f, spec, family.law) for f in (verify_laws.energy, verify_laws.dissipation))
+    else:  # a law of the user's is what its energy and its dissipated power say
+        energy, power = from_kernel("energy", "U"), from_kernel("dissipation", "P")
     force_by_both = from_kernel("damping_force", "f", e=entry("e"), v=lambda s, j: s["rate"] * unit(s["v"], j))
     stiffness = [
         Relation("stiffness", "A", "the law's constants at 50 digits", 0, from_kernel("stiffness", "A")),
@@ -93,7 +100,8 @@ def _stiffness_at(spec: Element) -> list[Relation]:
     """A point of the volume, tried by the energy that it adds in many states."""
     def shares(k, s):
         point = k("stiffness_at", s, D=s["D"][0])
-        A = np.concatenate([point["A"], point["G0"], k("straight_stiffness", s)["A"]])
+        A = s["A"].copy()
+        A[: point["A"].size + point["G0"].size] = [*point["A"], *point["G0"]]
         return [k("energy", s, A=A, e=e)["U"][0] for e in near(s)]
 
     def densities(k, s, t, j):
@@ -108,8 +116,6 @@ def _stiffness_at(spec: Element) -> list[Relation]:
         return lambda k, s, *_: k("stiffness_at", s, D=s["D"][0])[output]
 
     return [
-        Relation("straight_stiffness", "A", "the straight law's constants at 50 digits", 0,
-                 from_kernel("straight_stiffness", "A")),
         Relation("stiffness_at", "A", "a point's share at 50 digits", 0, given("A"), of=given("A")),
         Relation("stiffness_at", "A", "energy that a point adds in 450 states", 0, densities, of=shares),
         Relation("stiffness_at", "G0", "at 50 digits; the energies need it", 0, given("G0"), of=given("G0")),
@@ -120,31 +126,44 @@ def _half(path: Callable) -> Callable:
     return lambda k, s, t, j: path(k, s, t, j) / 2
 
 
-def rigid(family: Family) -> list[Relation]:
-    """Rigid body: points along finite motions, and Newton-Euler from momentum."""
-    rider = RIDERS[family.name]
-    n = rider.n_velocity
+def body(family: Family) -> list[Relation]:
+    """A body: points along finite motions, and Newton-Euler from momentum."""
+    rider = RIDERS[family.rider]
+    n, dim = rider.n_velocity, rider.dim
 
     def point(k, s, motion):
         return rider.point(rider.moved(k, s["b"], motion), s["u"])
 
+    def by_coordinate(k, s, t, j):
+        return point(k, s, t * unit(s["w"], j))
+
+    def force_of_point(k, s, t, j):
+        out = k("point_force", s, b=rider.moved(k, s["b"], t * unit(s["w"], j)))
+        return out["p_q"].T.dot(s["f"])
+
     def momentum(k, s, t, j):
-        """In the axes of t = 0: mass velocity, A J omega."""
+        """In the axes of t = 0: mass velocity, A J omega about the axes of rotation."""
         velocity = s["w"] + t * s["a"]
-        turn = rider.moved(k, np.concatenate([s["b"][:3], k.array([1, 0, 0, 0])]), t * s["w"])[3:]
-        return np.concatenate([s["mass"] * velocity[:3], turned(turn, s["J"].dot(velocity[3:]))])
+        turn = exponential(k, t * spin(s["w"], dim))
+        return np.concatenate([s["mass"] * velocity[:dim],
+                               turned(turn, s["J"].dot(spin(velocity, dim)))[dim - n:]])
 
     def kinetic_energy(k, s, t, j):
         """Of point masses with the same inertia: J = sum m (p.p I - p p')."""
         spread = (s["J"].trace() / 2) * np.eye(3, dtype=int) - s["J"]
-        return sum(s["mass"] * s["w"][i] ** 2 for i in range(3)) / 2 + _spinning(spread, s["w"][3:])
+        return sum(s["mass"] * s["w"][i] ** 2 for i in range(dim)) / 2 + _spinning(spread, spin(s["w"], dim))
 
+    at = Relation("point", "p", "R + A u by quaternions or complex numbers", 0,
+                  lambda k, s, t, j: rider.point(s["b"], s["u"]))
+    p_q = Relation("point", "p_q", "dp by translation and rotation about body axes", 1, by_coordinate, n)
     return [
-        Relation("point", "p", "R + q u q*", 0, lambda k, s, t, j: rider.point(s["b"], s["u"])),
-        Relation("point", "p_q", "dp by translation and rotation about body axes", 1,
-                 lambda k, s, t, j: point(k, s, t * unit(s["w"], j)), n),
+        at,
+        p_q,
         Relation("point", "v", "dp/dt", 1, lambda k, s, t, j: point(k, s, t * s["w"])),
         Relation("point", "bias", "d²p/dt² at constant velocities", 2, lambda k, s, t, j: point(k, s, t * s["w"])),
+        replace(at, kernel="point_force"),
+        replace(p_q, kernel="point_force"),
+        Relation("point_force", "K", "d(p_q' f) by translation and rotation", 1, force_of_point, n),
         Relation("inertia_force", "f", "rate of momentum", 1, momentum),
         Relation("inertia_tangent", "M", "df/da", 1, from_kernel("inertia_force", "f", a=entry("a")), n),
         Relation("inertia_tangent", "D", "df/dw", 1, from_kernel("inertia_force", "f", w=entry("w")), n),

@@ -6,7 +6,9 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import numpy as np
+from funicular.derive.verify_inputs import KINDS
 from funicular.derive.verify_methods import METHODS, Finding
+from funicular.derive.verify_rounding import ENTRY, NORM, Rounding
 from rich import box
 from rich.console import Console
 from rich.progress import Progress
@@ -21,6 +23,7 @@ class Report:
     def __init__(self):
         self.findings: list[Finding] = []
         self.invariances: list[tuple[str, str, float, float]] = []
+        self.roundings: list[Rounding] = []
         self.uncovered: list[str] = []
         self.out = Console(highlight=False, markup=False)
         if not self.out.is_terminal:
@@ -34,10 +37,12 @@ class Report:
             task = bar.add_task("verify", total=total)
             yield lambda: bar.advance(task)
 
-    def add(self, family: str, item: Finding | tuple[str, float, float]) -> None:
-        """One finding or invariance of a family."""
+    def add(self, family: str, item: Finding | Rounding | tuple[str, float, float]) -> None:
+        """One finding, rounding or invariance of a family."""
         if isinstance(item, Finding):
             self.findings.append(item)
+        elif isinstance(item, Rounding):
+            self.roundings.append(item)
         else:
             self.invariances.append((family, *item))
 
@@ -45,19 +50,50 @@ class Report:
         """Outputs without a relation."""
         self.uncovered += outputs
 
+    @property
+    def failures(self) -> int:
+        """How many findings, outputs, roundings and invariances are not as they must be."""
+        return len(self._failed) + len(self.uncovered) + len(self._rounded) + len(self._broken)
+
+    @property
+    def first_failure(self) -> str:
+        """The first of them in a line."""
+        for f in self._failed:
+            return f"{f.kernel}: {f.place(f.worst_entry)} is not {f.relation.text} ({', '.join(f.failed)})"
+        for output in self.uncovered:
+            return f"{output} is not verified"
+        for r in self._rounded:
+            return f"{r.kernel}: {r.place} loses digits on input of the kind {r.kind}"
+        return "; ".join(f"{family}: {text}" for family, text, *_ in self._broken[:1])
+
+    @property
+    def _failed(self) -> list[Finding]:
+        return [f for f in self.findings if f.failed]
+
+    @property
+    def _rounded(self) -> list[Rounding]:
+        return [r for r in self.roundings if r.failed]
+
+    @property
+    def _broken(self) -> list[tuple[str, str, float, float]]:
+        return [i for i in self.invariances if not i[2] <= i[3]]
+
     def show(self) -> int:
         """Print everything; returns the number of failures."""
         self.out.print(self._derivatives())
+        self.out.print(self._rounding())
         self.out.print(self._invariances())
-        failed = [f for f in self.findings if f.failed]
-        for finding in failed:
+        for finding in self._failed:
             self._detail(finding)
         for output in self.uncovered:
             self.out.print(f"{output}: no relation verifies this output; add one in verify_relations.py")
-        broken = [i for i in self.invariances if not i[2] <= i[3]]
-        for family, text, error, ceiling in broken:
+        for r in self._rounded:
+            self.out.print(f"{r.kernel}: {r.place} loses digits on input of the kind {r.kind}: {r.computed:.16g} is "
+                           f"off by {r.error:.2g}, {r.entry:.2g} times what rounded inputs allow, may be {ENTRY:.0f}; "
+                           f"the output by {r.norm:.2g} times, may be {NORM:.0f}")
+        for family, text, error, ceiling in self._broken:
             self.out.print(f"{family}: {text}: {error:.2g}, may be {ceiling:.2g}")
-        return len(failed) + len(self.uncovered) + len(broken)
+        return self.failures
 
     def _derivatives(self) -> Table:
         wide = self.out.width >= WIDE
@@ -68,7 +104,7 @@ class Report:
         for f in self.findings:
             about = [f.relation.output, f.relation.text] if wide else [f.relation.output]
             errors = [f"{f.errors[m]:.1e}" if m in f.errors else "-" for m in METHODS]
-            table.add_row(_verdict(not f.failed), "" if f.kernel == last else f.kernel, *about, *errors,
+            table.add_row(_verdict(not f.failed), _once(f.kernel, last, f.failed), *about, *errors,
                           f"{f.step:.0e}" if f.step else "-", f.place(f.worst_entry),
                           style="red" if f.failed else None)
             last = f.kernel
@@ -77,13 +113,31 @@ class Report:
         table.add_row("", "worst", *[""] * (2 if wide else 1), *(f"{w:.1e}" for w in worst))
         return table
 
+    def _rounding(self) -> Table:
+        table = _table("Rounding against 50 digits, in units of what rounded inputs allow: worst entry by kind of "
+                       "input, worst output", left=["kernel"], right=[*KINDS, "output"], last=["worst at"])
+        by_kernel: dict[str, list[Rounding]] = {}
+        for r in self.roundings:
+            by_kernel.setdefault(r.kernel, []).append(r)
+        for kernel, found in by_kernel.items():
+            entries = {r.kind: f"{r.entry:.2g}" for r in found}
+            norm, worst = max(r.norm for r in found), max(found, key=lambda r: r.entry)
+            ok = not any(r.failed for r in found)
+            table.add_row(_verdict(ok), kernel, *(entries.get(kind, "-") for kind in KINDS), f"{norm:.2g}",
+                          f"{worst.place}, {worst.kind}", style=None if ok else "red")
+        table.add_section()
+        worst = [max((r.entry for r in self.roundings if r.kind == kind), default=0.0) for kind in KINDS]
+        table.add_row("", "worst", *(f"{w:.2g}" for w in worst),
+                      f"{max((r.norm for r in self.roundings), default=0.0):.2g}")
+        return table
+
     def _invariances(self) -> Table:
         table = _table("Invariances: worst error, relative to the sample's scale", left=["family", "invariance"],
                        right=["error", "may be"], last=[])
         last = ""
         for family, text, error, ceiling in self.invariances:
             ok = error <= ceiling
-            table.add_row(_verdict(ok), "" if family == last else family, text, f"{error:.1e}", f"{ceiling:.1e}",
+            table.add_row(_verdict(ok), _once(family, last, not ok), text, f"{error:.1e}", f"{ceiling:.1e}",
                           style=None if ok else "red")
             last = family
         return table
@@ -106,6 +160,11 @@ def _table(title: str, left: list[str], right: list[str], last: list[str]) -> Ta
         table.add_column(name, justify="right" if name in right else "left", no_wrap=True,
                          min_width=8 if name in right else None)
     return table
+
+
+def _once(name: str, last: str, failed: object) -> str:
+    """A name stands at its first row, and wherever something failed."""
+    return name if failed or name != last else ""
 
 
 def _verdict(ok: bool) -> str:

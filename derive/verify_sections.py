@@ -9,8 +9,8 @@ from collections.abc import Callable
 
 import mpmath
 import numpy as np
+from funicular.derive import verify_curved, verify_structural
 from funicular.derive.spec import Element
-from funicular.derive import verify_curved
 from funicular.derive.verify_motion import cross, frame
 from funicular.derive.verify_reference import Shape, section_points, spatial, stress
 
@@ -23,6 +23,8 @@ STEP = mpmath.mpf(10) ** -12  # of differences of second order: errors 1e-24, ro
 def resultant(output: str) -> Callable:
     """Function of (element, law, state) for an output of the kernel."""
     def value(element: Element, law: str, s):
+        if law == "structural":
+            return verify_structural.section(element, law, s)[output]
         if output == "axes":
             return axes(element, s)
         roots = {"continuum": _continuum, "continuum_curved": verify_curved.section}

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 import sympy as sp
-from funicular.derive import verify_curved
+from funicular.derive import law_kernels, verify_curved
 from funicular.derive.spec import Element, Family, x
+from funicular.derive.verify_exact import ExactProgram
 from funicular.derive.verify_motion import RIDERS, exponential
 from funicular.derive.verify_numbers import Numbers
 from funicular.derive.verify_reference import Shape
@@ -27,17 +28,20 @@ def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
     for seed in SEEDS:
         random = np.random.default_rng(seed)
         state: dict[str, np.ndarray] = {}
+        dim = family.element.dim if family.element else RIDERS[family.rider].dim
         if family.element:
             state |= element_state(family.element, random)
         if family.rider:
-            near = _on_axis(family.element, state) if family.element else random.normal(size=3)
+            near = on_axis(family.element, state) if family.element else random.normal(size=dim)
             state |= RIDERS[family.rider].sample(random, near)
             state |= {"mass": np.float64(1.7), "J": _inertia(random), "a": random.normal(size=len(state["w"]))}
         if family.element and family.rider:
             state["director"] = director(family.element, state, random)
-        state["f"] = random.normal(size=family.element.dim if family.element else 3)
+        state["f"] = random.normal(size=dim)
         if family.role in ("element", "law"):
             state |= _constants(family, exact, state, random)
+        if family.role == "element":
+            state |= loads(family.element, random)
         found.append(state)
     rest = found[0] | at_rest(family)
     if family.law and family.law.endswith("_curved"):  # larger alike: at rest there would be nothing to compare
@@ -52,22 +56,21 @@ def at_rest(family: Family) -> dict[str, np.ndarray]:
         state["e"] = reference(family.element, LENGTH)
         state["x"] = np.float64(LENGTH / 2)
     if family.rider:
-        origin = np.zeros(3)
-        origin[0] = LENGTH / 2
-        state |= RIDERS[family.rider].at_rest(origin)
-        state["director"] = np.array([0.0, 1.0, 0.0])
+        rider = RIDERS[family.rider]
+        state |= rider.at_rest(LENGTH / 2 * np.eye(rider.dim)[0])
+        state["director"] = np.eye(rider.dim)[1]
     return state
 
 
 def director(element: Element, state: dict[str, np.ndarray], random: np.random.Generator) -> np.ndarray:
     """A direction off the tangent, neither of unit length nor normal to it."""
-    tangent = _on_axis(element, state, 1)
+    tangent = on_axis(element, state, 1)
     tangent /= np.linalg.norm(tangent)
-    normal = np.linalg.qr(np.stack([tangent, *random.normal(size=(2, 3))], axis=1))[0][:, 1]
+    normal = np.linalg.qr(np.stack([tangent, *random.normal(size=(element.dim - 1, element.dim))], axis=1))[0][:, 1]
     return 0.6 * tangent + 1.3 * normal
 
 
-def _on_axis(element: Element, state: dict[str, np.ndarray], order: int = 0) -> np.ndarray:
+def on_axis(element: Element, state: dict[str, np.ndarray], order: int = 0) -> np.ndarray:
     """Point of the centreline at the state's x, or a derivative there."""
     return Shape(element, state["l"])((state["x"], 0, 0), (order, 0, 0)).astype(float) @ state["e"]
 
@@ -130,25 +133,34 @@ def _constants(family: Family, exact: Numbers, state: dict, random: np.random.Ge
     dim = family.element.dim
     made = {"a": random.normal(size=(family.element.n_vectors, dim))}
     if family.role == "law":
-        made |= section_stiffness(family.law, dim, state["section"], random)
+        made |= section_stiffness(family.like, dim, state["section"], random)
     s = exact.state(state | made)
     for kernel, output in (("stiffness", "A"), ("mass", "m")):
         if kernel in exact.programs:
             made[output] = exact(kernel, s)[output].astype(float)
     if "stiffness_at" in exact.programs:
         points = [exact("stiffness_at", s, at=at, D=D) for at, D in verify_curved.weighted_points(family.element, s)]
-        made["A"] = np.concatenate([sum(p["A"] for p in points), points[0]["G0"], exact("straight_stiffness", s)["A"]]).astype(float)
+        straight = ExactProgram(law_kernels.Kernels(family.element, "continuum").set_up())([s["l"], s["S"]])["A"]
+        made["A"] = np.concatenate([sum(p["A"] for p in points), points[0]["G0"], straight]).astype(float)
     return made
 
 
 def section_stiffness(law: str, dim: int, moments: np.ndarray, random: np.random.Generator) -> dict[str, np.ndarray]:
     """Argument S of a law; for a continuum also D, elastic constants over the section and on the axis alone."""
+    if law == "structural":
+        return {"S": random.uniform(1, 4, 9 if dim == 3 else 4)}
     if not law.startswith("continuum"):
         return {"S": 53.0 * moments[:2]}
     pairs = dim * (dim - 1) // 2
     D = np.array([np.concatenate([random.uniform(40, 60, dim), random.uniform(5, 15, pairs),
                                   random.uniform(10, 20, pairs)]) for _ in range(2)])
     return {"S": np.outer(D[0], moments) + np.outer(D[1], moments * [1, 0, 0, 0, 0, 0]), "D": D}
+
+
+def loads(element: Element, random: np.random.Generator) -> dict[str, np.ndarray]:
+    """Components of a follower force and of a moment, as many as the element takes."""
+    local = element.dim if element.dim == 2 or element.director else 1
+    return {"c": random.normal(size=local), "M": random.normal(size=1 if element.dim == 2 else 3)}
 
 
 def _inertia(random: np.random.Generator) -> np.ndarray:

@@ -21,30 +21,45 @@ void beam24_mass(fu_real l, fu_real density, const fu_real *section, fu_real *m)
 void beam24_gravity(fu_real l, fu_real density, const fu_real *section, const fu_real *g, fu_real *Q);
 void beam24_inertia_force(const fu_real *m, const fu_real *a, fu_real *f);
 void beam24_position(fu_real l, const fu_real *at, const fu_real *e, fu_real *N, fu_real *r);
+void beam24_on_axis(fu_real l, fu_real x, fu_real *N, fu_real *N_x);
+void beam24_follower_force(fu_real l, fu_real x, const fu_real *e, const fu_real *c, fu_real *f, fu_real *K);
+void beam24_moment(fu_real l, fu_real x, const fu_real *e, const fu_real *M, fu_real *f, fu_real *K);
 
 /* cable12: spatial ANCF cable, cubic, axial and bending stiffness */
 void cable12_mass(fu_real l, fu_real density, const fu_real *section, fu_real *m);
 void cable12_gravity(fu_real l, fu_real density, const fu_real *section, const fu_real *g, fu_real *Q);
 void cable12_inertia_force(const fu_real *m, const fu_real *a, fu_real *f);
 void cable12_position(fu_real l, const fu_real *at, const fu_real *e, fu_real *N, fu_real *r);
+void cable12_on_axis(fu_real l, fu_real x, fu_real *N, fu_real *N_x);
+void cable12_follower_force(fu_real l, fu_real x, const fu_real *e, const fu_real *c, fu_real *f, fu_real *K);
+void cable12_moment(fu_real l, fu_real x, const fu_real *e, const fu_real *M, fu_real *f, fu_real *K);
 
 /* cable18: spatial cable, quintic: a slide crosses its nodes without a jump of acceleration */
 void cable18_mass(fu_real l, fu_real density, const fu_real *section, fu_real *m);
 void cable18_gravity(fu_real l, fu_real density, const fu_real *section, const fu_real *g, fu_real *Q);
 void cable18_inertia_force(const fu_real *m, const fu_real *a, fu_real *f);
 void cable18_position(fu_real l, const fu_real *at, const fu_real *e, fu_real *N, fu_real *r);
+void cable18_on_axis(fu_real l, fu_real x, fu_real *N, fu_real *N_x);
+void cable18_follower_force(fu_real l, fu_real x, const fu_real *e, const fu_real *c, fu_real *f, fu_real *K);
+void cable18_moment(fu_real l, fu_real x, const fu_real *e, const fu_real *M, fu_real *f, fu_real *K);
 
 /* beam12p: fully parameterised planar ANCF beam, shear deformable */
 void beam12p_mass(fu_real l, fu_real density, const fu_real *section, fu_real *m);
 void beam12p_gravity(fu_real l, fu_real density, const fu_real *section, const fu_real *g, fu_real *Q);
 void beam12p_inertia_force(const fu_real *m, const fu_real *a, fu_real *f);
 void beam12p_position(fu_real l, const fu_real *at, const fu_real *e, fu_real *N, fu_real *r);
+void beam12p_on_axis(fu_real l, fu_real x, fu_real *N, fu_real *N_x);
+void beam12p_follower_force(fu_real l, fu_real x, const fu_real *e, const fu_real *c, fu_real *f, fu_real *K);
+void beam12p_moment(fu_real l, fu_real x, const fu_real *e, const fu_real *M, fu_real *f, fu_real *K);
 
 /* cable8p: planar ANCF cable, cubic, axial and bending stiffness */
 void cable8p_mass(fu_real l, fu_real density, const fu_real *section, fu_real *m);
 void cable8p_gravity(fu_real l, fu_real density, const fu_real *section, const fu_real *g, fu_real *Q);
 void cable8p_inertia_force(const fu_real *m, const fu_real *a, fu_real *f);
 void cable8p_position(fu_real l, const fu_real *at, const fu_real *e, fu_real *N, fu_real *r);
+void cable8p_on_axis(fu_real l, fu_real x, fu_real *N, fu_real *N_x);
+void cable8p_follower_force(fu_real l, fu_real x, const fu_real *e, const fu_real *c, fu_real *f, fu_real *K);
+void cable8p_moment(fu_real l, fu_real x, const fu_real *e, const fu_real *M, fu_real *f, fu_real *K);
 
 /* beam24_continuum: elastic law continuum on beam24 */
 void beam24_continuum_stiffness(fu_real l, const fu_real *S, fu_real *A);
@@ -58,7 +73,6 @@ void beam24_continuum_section_forces(fu_real l, fu_real x, const fu_real *e, con
 
 /* beam24_continuum_curved: elastic law continuum_curved on beam24 */
 void beam24_continuum_curved_stiffness_at(fu_real l, const fu_real *e0, const fu_real *at, const fu_real *D, fu_real *A, fu_real *G0);
-void beam24_continuum_curved_straight_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void beam24_continuum_curved_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void beam24_continuum_curved_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void beam24_continuum_curved_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
@@ -66,6 +80,16 @@ void beam24_continuum_curved_damping_force(fu_real l, const fu_real *e, const fu
 void beam24_continuum_curved_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void beam24_continuum_curved_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 void beam24_continuum_curved_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
+
+/* beam24_structural: elastic law structural on beam24 */
+void beam24_structural_stiffness(fu_real l, const fu_real *e0, const fu_real *S, fu_real *A);
+void beam24_structural_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void beam24_structural_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void beam24_structural_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void beam24_structural_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
+void beam24_structural_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
+void beam24_structural_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+void beam24_structural_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable12_green_exact: elastic law green_exact on cable12 */
 void cable12_green_exact_stiffness(fu_real l, const fu_real *S, fu_real *A);
@@ -159,7 +183,6 @@ void beam12p_continuum_section_forces(fu_real l, fu_real x, const fu_real *e, co
 
 /* beam12p_continuum_curved: elastic law continuum_curved on beam12p */
 void beam12p_continuum_curved_stiffness_at(fu_real l, const fu_real *e0, const fu_real *at, const fu_real *D, fu_real *A, fu_real *G0);
-void beam12p_continuum_curved_straight_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void beam12p_continuum_curved_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void beam12p_continuum_curved_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void beam12p_continuum_curved_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
@@ -167,6 +190,16 @@ void beam12p_continuum_curved_damping_force(fu_real l, const fu_real *e, const f
 void beam12p_continuum_curved_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void beam12p_continuum_curved_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 void beam12p_continuum_curved_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
+
+/* beam12p_structural: elastic law structural on beam12p */
+void beam12p_structural_stiffness(fu_real l, const fu_real *e0, const fu_real *S, fu_real *A);
+void beam12p_structural_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void beam12p_structural_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void beam12p_structural_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void beam12p_structural_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
+void beam12p_structural_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
+void beam12p_structural_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+void beam12p_structural_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable8p_green_exact: elastic law green_exact on cable8p */
 void cable8p_green_exact_stiffness(fu_real l, const fu_real *S, fu_real *A);
@@ -210,9 +243,17 @@ void cable8p_engineering_linear_section_forces(fu_real l, fu_real x, const fu_re
 
 /* rigid: rigid body */
 void rigid_point(const fu_real *b, const fu_real *u, const fu_real *w, fu_real *p, fu_real *p_q, fu_real *v, fu_real *bias);
+void rigid_point_force(const fu_real *b, const fu_real *u, const fu_real *f, fu_real *p, fu_real *p_q, fu_real *K);
 void rigid_inertia_force(fu_real mass, const fu_real *J, const fu_real *w, const fu_real *a, fu_real *f);
 void rigid_inertia_tangent(fu_real mass, const fu_real *J, const fu_real *w, fu_real *M, fu_real *D);
 void rigid_kinetic_energy(fu_real mass, const fu_real *J, const fu_real *w, fu_real *T);
+
+/* planar_rigid: planar rigid body */
+void planar_rigid_point(const fu_real *b, const fu_real *u, const fu_real *w, fu_real *p, fu_real *p_q, fu_real *v, fu_real *bias);
+void planar_rigid_point_force(const fu_real *b, const fu_real *u, const fu_real *f, fu_real *p, fu_real *p_q, fu_real *K);
+void planar_rigid_inertia_force(fu_real mass, const fu_real *J, const fu_real *w, const fu_real *a, fu_real *f);
+void planar_rigid_inertia_tangent(fu_real mass, const fu_real *J, const fu_real *w, fu_real *M, fu_real *D);
+void planar_rigid_kinetic_energy(fu_real mass, const fu_real *J, const fu_real *w, fu_real *T);
 
 /* slide_beam24_rigid: sliding joint of a rigid rider on a beam24 cable */
 void slide_beam24_rigid_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
@@ -232,6 +273,18 @@ void slide_cable18_rigid_terms(fu_real l, fu_real x, const fu_real *e, const fu_
 void slide_cable18_rigid_residual(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *phi, fu_real *g);
 void slide_cable18_rigid_tangent(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *J, fu_real *K);
 
+/* slide_beam12p_planar_rigid: sliding joint of a planar_rigid rider on a beam12p cable */
+void slide_beam12p_planar_rigid_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
+void slide_beam12p_planar_rigid_terms(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *v, const fu_real *w, const fu_real *director, fu_real *C, fu_real *C_q, fu_real *C_s, fu_real *G, fu_real *s_rate, fu_real *Q_d, fu_real *H, fu_real *W, fu_real *s_bias);
+void slide_beam12p_planar_rigid_residual(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *phi, fu_real *g);
+void slide_beam12p_planar_rigid_tangent(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *J, fu_real *K);
+
+/* slide_cable8p_planar_rigid: sliding joint of a planar_rigid rider on a cable8p cable */
+void slide_cable8p_planar_rigid_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
+void slide_cable8p_planar_rigid_terms(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *v, const fu_real *w, const fu_real *director, fu_real *C, fu_real *C_q, fu_real *C_s, fu_real *G, fu_real *s_rate, fu_real *Q_d, fu_real *H, fu_real *W, fu_real *s_bias);
+void slide_cable8p_planar_rigid_residual(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *phi, fu_real *g);
+void slide_cable8p_planar_rigid_tangent(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *J, fu_real *K);
+
 /* What the engine needs of a element. */
 typedef struct {
     const char *name;
@@ -242,6 +295,9 @@ typedef struct {
     void (*gravity)(fu_real l, fu_real density, const fu_real *section, const fu_real *g, fu_real *Q);
     void (*inertia_force)(const fu_real *m, const fu_real *a, fu_real *f);
     void (*position)(fu_real l, const fu_real *at, const fu_real *e, fu_real *N, fu_real *r);
+    void (*on_axis)(fu_real l, fu_real x, fu_real *N, fu_real *N_x);
+    void (*follower_force)(fu_real l, fu_real x, const fu_real *e, const fu_real *c, fu_real *f, fu_real *K);
+    void (*moment)(fu_real l, fu_real x, const fu_real *e, const fu_real *M, fu_real *f, fu_real *K);
 } fu_element;
 
 /* What the engine needs of a law. */
@@ -255,10 +311,24 @@ typedef struct {
     void (*dissipation)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 } fu_law;
 
+/* What the engine needs of a body. */
+typedef struct {
+    const char *name;
+    int dim;
+    int configuration;
+    int velocity;
+    void (*point)(const fu_real *b, const fu_real *u, const fu_real *w, fu_real *p, fu_real *p_q, fu_real *v, fu_real *bias);
+    void (*point_force)(const fu_real *b, const fu_real *u, const fu_real *f, fu_real *p, fu_real *p_q, fu_real *K);
+    void (*inertia_force)(fu_real mass, const fu_real *J, const fu_real *w, const fu_real *a, fu_real *f);
+    void (*inertia_tangent)(fu_real mass, const fu_real *J, const fu_real *w, fu_real *M, fu_real *D);
+    void (*kinetic_energy)(fu_real mass, const fu_real *J, const fu_real *w, fu_real *T);
+} fu_body;
+
 /* What the engine needs of a slide. */
 typedef struct {
     const char *name;
     int coordinates;
+    int dim;
     void (*constraint)(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
     void (*terms)(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *v, const fu_real *w, const fu_real *director, fu_real *C, fu_real *C_q, fu_real *C_s, fu_real *G, fu_real *s_rate, fu_real *Q_d, fu_real *H, fu_real *W, fu_real *s_bias);
     void (*residual)(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *phi, fu_real *g);
@@ -271,9 +341,19 @@ typedef struct {
     const fu_element *elements;
     int n_laws;
     const fu_law *laws;
+    int n_bodys;
+    const fu_body *bodys;
     int n_slides;
     const fu_slide *slides;
 } fu_tables;
 extern const fu_tables fu_all;
+
+/* Every kernel by name, behind one signature: pointers to its inputs (scalars too) and to its outputs, in order. */
+typedef struct {
+    const char *name;
+    void (*call)(const fu_real *const *a, fu_real *const *out);
+} fu_kernel;
+extern const fu_kernel fu_kernels[];
+extern const int fu_n_kernels;
 
 #endif

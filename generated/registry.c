@@ -9,7 +9,10 @@ static const fu_element elements[] = {
      beam24_mass,
      beam24_gravity,
      beam24_inertia_force,
-     beam24_position
+     beam24_position,
+     beam24_on_axis,
+     beam24_follower_force,
+     beam24_moment
     },
     {"cable12",
      2,
@@ -18,7 +21,10 @@ static const fu_element elements[] = {
      cable12_mass,
      cable12_gravity,
      cable12_inertia_force,
-     cable12_position
+     cable12_position,
+     cable12_on_axis,
+     cable12_follower_force,
+     cable12_moment
     },
     {"cable18",
      2,
@@ -27,7 +33,10 @@ static const fu_element elements[] = {
      cable18_mass,
      cable18_gravity,
      cable18_inertia_force,
-     cable18_position
+     cable18_position,
+     cable18_on_axis,
+     cable18_follower_force,
+     cable18_moment
     },
     {"beam12p",
      2,
@@ -36,7 +45,10 @@ static const fu_element elements[] = {
      beam12p_mass,
      beam12p_gravity,
      beam12p_inertia_force,
-     beam12p_position
+     beam12p_position,
+     beam12p_on_axis,
+     beam12p_follower_force,
+     beam12p_moment
     },
     {"cable8p",
      2,
@@ -45,7 +57,10 @@ static const fu_element elements[] = {
      cable8p_mass,
      cable8p_gravity,
      cable8p_inertia_force,
-     cable8p_position
+     cable8p_position,
+     cable8p_on_axis,
+     cable8p_follower_force,
+     cable8p_moment
     }
 };
 
@@ -65,6 +80,14 @@ static const fu_law laws[] = {
      beam24_continuum_curved_damping_force,
      beam24_continuum_curved_damping_tangent,
      beam24_continuum_curved_dissipation
+    },
+    {"beam24_structural",
+     beam24_structural_energy,
+     beam24_structural_elastic_force,
+     beam24_structural_elastic_tangent,
+     beam24_structural_damping_force,
+     beam24_structural_damping_tangent,
+     beam24_structural_dissipation
     },
     {"cable12_green_exact",
      cable12_green_exact_energy,
@@ -146,6 +169,14 @@ static const fu_law laws[] = {
      beam12p_continuum_curved_damping_tangent,
      beam12p_continuum_curved_dissipation
     },
+    {"beam12p_structural",
+     beam12p_structural_energy,
+     beam12p_structural_elastic_force,
+     beam12p_structural_elastic_tangent,
+     beam12p_structural_damping_force,
+     beam12p_structural_damping_tangent,
+     beam12p_structural_dissipation
+    },
     {"cable8p_green_exact",
      cable8p_green_exact_energy,
      cable8p_green_exact_elastic_force,
@@ -180,9 +211,33 @@ static const fu_law laws[] = {
     }
 };
 
+static const fu_body bodys[] = {
+    {"rigid",
+     3,
+     7,
+     6,
+     rigid_point,
+     rigid_point_force,
+     rigid_inertia_force,
+     rigid_inertia_tangent,
+     rigid_kinetic_energy
+    },
+    {"planar_rigid",
+     2,
+     4,
+     3,
+     planar_rigid_point,
+     planar_rigid_point_force,
+     planar_rigid_inertia_force,
+     planar_rigid_inertia_tangent,
+     planar_rigid_kinetic_energy
+    }
+};
+
 static const fu_slide slides[] = {
     {"slide_beam24_rigid",
      30,
+     3,
      slide_beam24_rigid_constraint,
      slide_beam24_rigid_terms,
      slide_beam24_rigid_residual,
@@ -190,6 +245,7 @@ static const fu_slide slides[] = {
     },
     {"slide_cable12_rigid",
      18,
+     3,
      slide_cable12_rigid_constraint,
      slide_cable12_rigid_terms,
      slide_cable12_rigid_residual,
@@ -197,15 +253,1083 @@ static const fu_slide slides[] = {
     },
     {"slide_cable18_rigid",
      24,
+     3,
      slide_cable18_rigid_constraint,
      slide_cable18_rigid_terms,
      slide_cable18_rigid_residual,
      slide_cable18_rigid_tangent
+    },
+    {"slide_beam12p_planar_rigid",
+     15,
+     2,
+     slide_beam12p_planar_rigid_constraint,
+     slide_beam12p_planar_rigid_terms,
+     slide_beam12p_planar_rigid_residual,
+     slide_beam12p_planar_rigid_tangent
+    },
+    {"slide_cable8p_planar_rigid",
+     11,
+     2,
+     slide_cable8p_planar_rigid_constraint,
+     slide_cable8p_planar_rigid_terms,
+     slide_cable8p_planar_rigid_residual,
+     slide_cable8p_planar_rigid_tangent
     }
 };
 
+static void call_beam24_mass(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_mass(*a[0], *a[1], a[2], out[0]);
+}
+static void call_beam24_gravity(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_gravity(*a[0], *a[1], a[2], a[3], out[0]);
+}
+static void call_beam24_inertia_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_inertia_force(a[0], a[1], out[0]);
+}
+static void call_beam24_position(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_position(*a[0], a[1], a[2], out[0], out[1]);
+}
+static void call_beam24_on_axis(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_on_axis(*a[0], *a[1], out[0], out[1]);
+}
+static void call_beam24_follower_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_follower_force(*a[0], *a[1], a[2], a[3], out[0], out[1]);
+}
+static void call_beam24_moment(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_moment(*a[0], *a[1], a[2], a[3], out[0], out[1]);
+}
+static void call_cable12_mass(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_mass(*a[0], *a[1], a[2], out[0]);
+}
+static void call_cable12_gravity(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_gravity(*a[0], *a[1], a[2], a[3], out[0]);
+}
+static void call_cable12_inertia_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_inertia_force(a[0], a[1], out[0]);
+}
+static void call_cable12_position(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_position(*a[0], a[1], a[2], out[0], out[1]);
+}
+static void call_cable12_on_axis(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_on_axis(*a[0], *a[1], out[0], out[1]);
+}
+static void call_cable12_follower_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_follower_force(*a[0], *a[1], a[2], a[3], out[0], out[1]);
+}
+static void call_cable12_moment(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_moment(*a[0], *a[1], a[2], a[3], out[0], out[1]);
+}
+static void call_cable18_mass(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_mass(*a[0], *a[1], a[2], out[0]);
+}
+static void call_cable18_gravity(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_gravity(*a[0], *a[1], a[2], a[3], out[0]);
+}
+static void call_cable18_inertia_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_inertia_force(a[0], a[1], out[0]);
+}
+static void call_cable18_position(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_position(*a[0], a[1], a[2], out[0], out[1]);
+}
+static void call_cable18_on_axis(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_on_axis(*a[0], *a[1], out[0], out[1]);
+}
+static void call_cable18_follower_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_follower_force(*a[0], *a[1], a[2], a[3], out[0], out[1]);
+}
+static void call_cable18_moment(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_moment(*a[0], *a[1], a[2], a[3], out[0], out[1]);
+}
+static void call_beam12p_mass(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_mass(*a[0], *a[1], a[2], out[0]);
+}
+static void call_beam12p_gravity(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_gravity(*a[0], *a[1], a[2], a[3], out[0]);
+}
+static void call_beam12p_inertia_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_inertia_force(a[0], a[1], out[0]);
+}
+static void call_beam12p_position(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_position(*a[0], a[1], a[2], out[0], out[1]);
+}
+static void call_beam12p_on_axis(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_on_axis(*a[0], *a[1], out[0], out[1]);
+}
+static void call_beam12p_follower_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_follower_force(*a[0], *a[1], a[2], a[3], out[0], out[1]);
+}
+static void call_beam12p_moment(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_moment(*a[0], *a[1], a[2], a[3], out[0], out[1]);
+}
+static void call_cable8p_mass(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_mass(*a[0], *a[1], a[2], out[0]);
+}
+static void call_cable8p_gravity(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_gravity(*a[0], *a[1], a[2], a[3], out[0]);
+}
+static void call_cable8p_inertia_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_inertia_force(a[0], a[1], out[0]);
+}
+static void call_cable8p_position(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_position(*a[0], a[1], a[2], out[0], out[1]);
+}
+static void call_cable8p_on_axis(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_on_axis(*a[0], *a[1], out[0], out[1]);
+}
+static void call_cable8p_follower_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_follower_force(*a[0], *a[1], a[2], a[3], out[0], out[1]);
+}
+static void call_cable8p_moment(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_moment(*a[0], *a[1], a[2], a[3], out[0], out[1]);
+}
+static void call_beam24_continuum_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_stiffness(*a[0], a[1], out[0]);
+}
+static void call_beam24_continuum_energy(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam24_continuum_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam24_continuum_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam24_continuum_damping_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_beam24_continuum_damping_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
+}
+static void call_beam24_continuum_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_beam24_continuum_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
+}
+static void call_beam24_continuum_curved_stiffness_at(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_curved_stiffness_at(*a[0], a[1], a[2], a[3], out[0], out[1]);
+}
+static void call_beam24_continuum_curved_energy(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_curved_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam24_continuum_curved_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_curved_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam24_continuum_curved_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_curved_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam24_continuum_curved_damping_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_curved_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_beam24_continuum_curved_damping_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_curved_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
+}
+static void call_beam24_continuum_curved_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_curved_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_beam24_continuum_curved_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_curved_section_forces(*a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]);
+}
+static void call_beam24_structural_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_structural_stiffness(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam24_structural_energy(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_structural_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam24_structural_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_structural_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam24_structural_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_structural_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam24_structural_damping_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_structural_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_beam24_structural_damping_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_structural_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
+}
+static void call_beam24_structural_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_structural_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_beam24_structural_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_structural_section_forces(*a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]);
+}
+static void call_cable12_green_exact_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_stiffness(*a[0], a[1], out[0]);
+}
+static void call_cable12_green_exact_energy(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_green_exact_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_green_exact_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_green_exact_damping_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable12_green_exact_damping_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
+}
+static void call_cable12_green_exact_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable12_green_exact_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
+}
+static void call_cable12_green_linear_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_linear_stiffness(*a[0], a[1], out[0]);
+}
+static void call_cable12_green_linear_energy(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_linear_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_green_linear_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_linear_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_green_linear_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_linear_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_green_linear_damping_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_linear_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable12_green_linear_damping_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_linear_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
+}
+static void call_cable12_green_linear_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_linear_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable12_green_linear_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_linear_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
+}
+static void call_cable12_engineering_exact_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_stiffness(*a[0], a[1], out[0]);
+}
+static void call_cable12_engineering_exact_energy(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_engineering_exact_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_engineering_exact_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_engineering_exact_damping_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable12_engineering_exact_damping_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
+}
+static void call_cable12_engineering_exact_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable12_engineering_exact_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
+}
+static void call_cable12_engineering_linear_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_linear_stiffness(*a[0], a[1], out[0]);
+}
+static void call_cable12_engineering_linear_energy(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_linear_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_engineering_linear_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_linear_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_engineering_linear_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_linear_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_engineering_linear_damping_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_linear_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable12_engineering_linear_damping_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_linear_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
+}
+static void call_cable12_engineering_linear_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_linear_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable12_engineering_linear_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_linear_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
+}
+static void call_cable12_green_exact_curved_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_curved_stiffness(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_green_exact_curved_energy(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_curved_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_green_exact_curved_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_curved_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_green_exact_curved_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_curved_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_green_exact_curved_damping_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_curved_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable12_green_exact_curved_damping_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_curved_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
+}
+static void call_cable12_green_exact_curved_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_curved_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable12_green_exact_curved_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_curved_section_forces(*a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]);
+}
+static void call_cable12_engineering_exact_curved_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_curved_stiffness(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_engineering_exact_curved_energy(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_curved_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_engineering_exact_curved_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_curved_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_engineering_exact_curved_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_curved_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_engineering_exact_curved_damping_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_curved_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable12_engineering_exact_curved_damping_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_curved_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
+}
+static void call_cable12_engineering_exact_curved_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_curved_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable12_engineering_exact_curved_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_curved_section_forces(*a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]);
+}
+static void call_cable18_green_exact_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_green_exact_stiffness(*a[0], a[1], out[0]);
+}
+static void call_cable18_green_exact_energy(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_green_exact_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable18_green_exact_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_green_exact_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable18_green_exact_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_green_exact_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable18_green_exact_damping_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_green_exact_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable18_green_exact_damping_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_green_exact_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
+}
+static void call_cable18_green_exact_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_green_exact_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable18_green_exact_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_green_exact_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
+}
+static void call_cable18_engineering_exact_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_engineering_exact_stiffness(*a[0], a[1], out[0]);
+}
+static void call_cable18_engineering_exact_energy(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_engineering_exact_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable18_engineering_exact_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_engineering_exact_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable18_engineering_exact_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_engineering_exact_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable18_engineering_exact_damping_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_engineering_exact_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable18_engineering_exact_damping_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_engineering_exact_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
+}
+static void call_cable18_engineering_exact_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_engineering_exact_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable18_engineering_exact_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_engineering_exact_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
+}
+static void call_beam12p_continuum_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_stiffness(*a[0], a[1], out[0]);
+}
+static void call_beam12p_continuum_energy(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam12p_continuum_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam12p_continuum_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam12p_continuum_damping_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_beam12p_continuum_damping_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
+}
+static void call_beam12p_continuum_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_beam12p_continuum_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
+}
+static void call_beam12p_continuum_curved_stiffness_at(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_curved_stiffness_at(*a[0], a[1], a[2], a[3], out[0], out[1]);
+}
+static void call_beam12p_continuum_curved_energy(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_curved_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam12p_continuum_curved_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_curved_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam12p_continuum_curved_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_curved_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam12p_continuum_curved_damping_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_curved_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_beam12p_continuum_curved_damping_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_curved_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
+}
+static void call_beam12p_continuum_curved_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_curved_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_beam12p_continuum_curved_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_curved_section_forces(*a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]);
+}
+static void call_beam12p_structural_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_structural_stiffness(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam12p_structural_energy(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_structural_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam12p_structural_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_structural_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam12p_structural_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_structural_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam12p_structural_damping_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_structural_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_beam12p_structural_damping_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_structural_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
+}
+static void call_beam12p_structural_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_structural_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_beam12p_structural_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_structural_section_forces(*a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]);
+}
+static void call_cable8p_green_exact_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_exact_stiffness(*a[0], a[1], out[0]);
+}
+static void call_cable8p_green_exact_energy(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_exact_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable8p_green_exact_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_exact_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable8p_green_exact_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_exact_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable8p_green_exact_damping_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_exact_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable8p_green_exact_damping_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_exact_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
+}
+static void call_cable8p_green_exact_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_exact_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable8p_green_exact_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_exact_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
+}
+static void call_cable8p_green_linear_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_linear_stiffness(*a[0], a[1], out[0]);
+}
+static void call_cable8p_green_linear_energy(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_linear_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable8p_green_linear_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_linear_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable8p_green_linear_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_linear_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable8p_green_linear_damping_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_linear_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable8p_green_linear_damping_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_linear_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
+}
+static void call_cable8p_green_linear_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_linear_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable8p_green_linear_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_linear_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
+}
+static void call_cable8p_engineering_exact_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_exact_stiffness(*a[0], a[1], out[0]);
+}
+static void call_cable8p_engineering_exact_energy(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_exact_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable8p_engineering_exact_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_exact_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable8p_engineering_exact_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_exact_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable8p_engineering_exact_damping_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_exact_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable8p_engineering_exact_damping_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_exact_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
+}
+static void call_cable8p_engineering_exact_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_exact_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable8p_engineering_exact_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_exact_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
+}
+static void call_cable8p_engineering_linear_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_linear_stiffness(*a[0], a[1], out[0]);
+}
+static void call_cable8p_engineering_linear_energy(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_linear_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable8p_engineering_linear_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_linear_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable8p_engineering_linear_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_linear_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable8p_engineering_linear_damping_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_linear_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable8p_engineering_linear_damping_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_linear_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
+}
+static void call_cable8p_engineering_linear_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_linear_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable8p_engineering_linear_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_linear_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
+}
+static void call_rigid_point(const fu_real *const *a, fu_real *const *out)
+{
+    rigid_point(a[0], a[1], a[2], out[0], out[1], out[2], out[3]);
+}
+static void call_rigid_point_force(const fu_real *const *a, fu_real *const *out)
+{
+    rigid_point_force(a[0], a[1], a[2], out[0], out[1], out[2]);
+}
+static void call_rigid_inertia_force(const fu_real *const *a, fu_real *const *out)
+{
+    rigid_inertia_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_rigid_inertia_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    rigid_inertia_tangent(*a[0], a[1], a[2], out[0], out[1]);
+}
+static void call_rigid_kinetic_energy(const fu_real *const *a, fu_real *const *out)
+{
+    rigid_kinetic_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_planar_rigid_point(const fu_real *const *a, fu_real *const *out)
+{
+    planar_rigid_point(a[0], a[1], a[2], out[0], out[1], out[2], out[3]);
+}
+static void call_planar_rigid_point_force(const fu_real *const *a, fu_real *const *out)
+{
+    planar_rigid_point_force(a[0], a[1], a[2], out[0], out[1], out[2]);
+}
+static void call_planar_rigid_inertia_force(const fu_real *const *a, fu_real *const *out)
+{
+    planar_rigid_inertia_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_planar_rigid_inertia_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    planar_rigid_inertia_tangent(*a[0], a[1], a[2], out[0], out[1]);
+}
+static void call_planar_rigid_kinetic_energy(const fu_real *const *a, fu_real *const *out)
+{
+    planar_rigid_kinetic_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_slide_beam24_rigid_constraint(const fu_real *const *a, fu_real *const *out)
+{
+    slide_beam24_rigid_constraint(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]);
+}
+static void call_slide_beam24_rigid_terms(const fu_real *const *a, fu_real *const *out)
+{
+    slide_beam24_rigid_terms(*a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]);
+}
+static void call_slide_beam24_rigid_residual(const fu_real *const *a, fu_real *const *out)
+{
+    slide_beam24_rigid_residual(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_slide_beam24_rigid_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    slide_beam24_rigid_tangent(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_slide_cable12_rigid_constraint(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable12_rigid_constraint(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]);
+}
+static void call_slide_cable12_rigid_terms(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable12_rigid_terms(*a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]);
+}
+static void call_slide_cable12_rigid_residual(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable12_rigid_residual(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_slide_cable12_rigid_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable12_rigid_tangent(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_slide_cable18_rigid_constraint(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable18_rigid_constraint(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]);
+}
+static void call_slide_cable18_rigid_terms(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable18_rigid_terms(*a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]);
+}
+static void call_slide_cable18_rigid_residual(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable18_rigid_residual(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_slide_cable18_rigid_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable18_rigid_tangent(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_slide_beam12p_planar_rigid_constraint(const fu_real *const *a, fu_real *const *out)
+{
+    slide_beam12p_planar_rigid_constraint(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]);
+}
+static void call_slide_beam12p_planar_rigid_terms(const fu_real *const *a, fu_real *const *out)
+{
+    slide_beam12p_planar_rigid_terms(*a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]);
+}
+static void call_slide_beam12p_planar_rigid_residual(const fu_real *const *a, fu_real *const *out)
+{
+    slide_beam12p_planar_rigid_residual(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_slide_beam12p_planar_rigid_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    slide_beam12p_planar_rigid_tangent(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_slide_cable8p_planar_rigid_constraint(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable8p_planar_rigid_constraint(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]);
+}
+static void call_slide_cable8p_planar_rigid_terms(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable8p_planar_rigid_terms(*a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]);
+}
+static void call_slide_cable8p_planar_rigid_residual(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable8p_planar_rigid_residual(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_slide_cable8p_planar_rigid_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable8p_planar_rigid_tangent(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+
+const fu_kernel fu_kernels[] = {
+    {"beam24_mass", call_beam24_mass},
+    {"beam24_gravity", call_beam24_gravity},
+    {"beam24_inertia_force", call_beam24_inertia_force},
+    {"beam24_position", call_beam24_position},
+    {"beam24_on_axis", call_beam24_on_axis},
+    {"beam24_follower_force", call_beam24_follower_force},
+    {"beam24_moment", call_beam24_moment},
+    {"cable12_mass", call_cable12_mass},
+    {"cable12_gravity", call_cable12_gravity},
+    {"cable12_inertia_force", call_cable12_inertia_force},
+    {"cable12_position", call_cable12_position},
+    {"cable12_on_axis", call_cable12_on_axis},
+    {"cable12_follower_force", call_cable12_follower_force},
+    {"cable12_moment", call_cable12_moment},
+    {"cable18_mass", call_cable18_mass},
+    {"cable18_gravity", call_cable18_gravity},
+    {"cable18_inertia_force", call_cable18_inertia_force},
+    {"cable18_position", call_cable18_position},
+    {"cable18_on_axis", call_cable18_on_axis},
+    {"cable18_follower_force", call_cable18_follower_force},
+    {"cable18_moment", call_cable18_moment},
+    {"beam12p_mass", call_beam12p_mass},
+    {"beam12p_gravity", call_beam12p_gravity},
+    {"beam12p_inertia_force", call_beam12p_inertia_force},
+    {"beam12p_position", call_beam12p_position},
+    {"beam12p_on_axis", call_beam12p_on_axis},
+    {"beam12p_follower_force", call_beam12p_follower_force},
+    {"beam12p_moment", call_beam12p_moment},
+    {"cable8p_mass", call_cable8p_mass},
+    {"cable8p_gravity", call_cable8p_gravity},
+    {"cable8p_inertia_force", call_cable8p_inertia_force},
+    {"cable8p_position", call_cable8p_position},
+    {"cable8p_on_axis", call_cable8p_on_axis},
+    {"cable8p_follower_force", call_cable8p_follower_force},
+    {"cable8p_moment", call_cable8p_moment},
+    {"beam24_continuum_stiffness", call_beam24_continuum_stiffness},
+    {"beam24_continuum_energy", call_beam24_continuum_energy},
+    {"beam24_continuum_elastic_force", call_beam24_continuum_elastic_force},
+    {"beam24_continuum_elastic_tangent", call_beam24_continuum_elastic_tangent},
+    {"beam24_continuum_damping_force", call_beam24_continuum_damping_force},
+    {"beam24_continuum_damping_tangent", call_beam24_continuum_damping_tangent},
+    {"beam24_continuum_dissipation", call_beam24_continuum_dissipation},
+    {"beam24_continuum_section_forces", call_beam24_continuum_section_forces},
+    {"beam24_continuum_curved_stiffness_at", call_beam24_continuum_curved_stiffness_at},
+    {"beam24_continuum_curved_energy", call_beam24_continuum_curved_energy},
+    {"beam24_continuum_curved_elastic_force", call_beam24_continuum_curved_elastic_force},
+    {"beam24_continuum_curved_elastic_tangent", call_beam24_continuum_curved_elastic_tangent},
+    {"beam24_continuum_curved_damping_force", call_beam24_continuum_curved_damping_force},
+    {"beam24_continuum_curved_damping_tangent", call_beam24_continuum_curved_damping_tangent},
+    {"beam24_continuum_curved_dissipation", call_beam24_continuum_curved_dissipation},
+    {"beam24_continuum_curved_section_forces", call_beam24_continuum_curved_section_forces},
+    {"beam24_structural_stiffness", call_beam24_structural_stiffness},
+    {"beam24_structural_energy", call_beam24_structural_energy},
+    {"beam24_structural_elastic_force", call_beam24_structural_elastic_force},
+    {"beam24_structural_elastic_tangent", call_beam24_structural_elastic_tangent},
+    {"beam24_structural_damping_force", call_beam24_structural_damping_force},
+    {"beam24_structural_damping_tangent", call_beam24_structural_damping_tangent},
+    {"beam24_structural_dissipation", call_beam24_structural_dissipation},
+    {"beam24_structural_section_forces", call_beam24_structural_section_forces},
+    {"cable12_green_exact_stiffness", call_cable12_green_exact_stiffness},
+    {"cable12_green_exact_energy", call_cable12_green_exact_energy},
+    {"cable12_green_exact_elastic_force", call_cable12_green_exact_elastic_force},
+    {"cable12_green_exact_elastic_tangent", call_cable12_green_exact_elastic_tangent},
+    {"cable12_green_exact_damping_force", call_cable12_green_exact_damping_force},
+    {"cable12_green_exact_damping_tangent", call_cable12_green_exact_damping_tangent},
+    {"cable12_green_exact_dissipation", call_cable12_green_exact_dissipation},
+    {"cable12_green_exact_section_forces", call_cable12_green_exact_section_forces},
+    {"cable12_green_linear_stiffness", call_cable12_green_linear_stiffness},
+    {"cable12_green_linear_energy", call_cable12_green_linear_energy},
+    {"cable12_green_linear_elastic_force", call_cable12_green_linear_elastic_force},
+    {"cable12_green_linear_elastic_tangent", call_cable12_green_linear_elastic_tangent},
+    {"cable12_green_linear_damping_force", call_cable12_green_linear_damping_force},
+    {"cable12_green_linear_damping_tangent", call_cable12_green_linear_damping_tangent},
+    {"cable12_green_linear_dissipation", call_cable12_green_linear_dissipation},
+    {"cable12_green_linear_section_forces", call_cable12_green_linear_section_forces},
+    {"cable12_engineering_exact_stiffness", call_cable12_engineering_exact_stiffness},
+    {"cable12_engineering_exact_energy", call_cable12_engineering_exact_energy},
+    {"cable12_engineering_exact_elastic_force", call_cable12_engineering_exact_elastic_force},
+    {"cable12_engineering_exact_elastic_tangent", call_cable12_engineering_exact_elastic_tangent},
+    {"cable12_engineering_exact_damping_force", call_cable12_engineering_exact_damping_force},
+    {"cable12_engineering_exact_damping_tangent", call_cable12_engineering_exact_damping_tangent},
+    {"cable12_engineering_exact_dissipation", call_cable12_engineering_exact_dissipation},
+    {"cable12_engineering_exact_section_forces", call_cable12_engineering_exact_section_forces},
+    {"cable12_engineering_linear_stiffness", call_cable12_engineering_linear_stiffness},
+    {"cable12_engineering_linear_energy", call_cable12_engineering_linear_energy},
+    {"cable12_engineering_linear_elastic_force", call_cable12_engineering_linear_elastic_force},
+    {"cable12_engineering_linear_elastic_tangent", call_cable12_engineering_linear_elastic_tangent},
+    {"cable12_engineering_linear_damping_force", call_cable12_engineering_linear_damping_force},
+    {"cable12_engineering_linear_damping_tangent", call_cable12_engineering_linear_damping_tangent},
+    {"cable12_engineering_linear_dissipation", call_cable12_engineering_linear_dissipation},
+    {"cable12_engineering_linear_section_forces", call_cable12_engineering_linear_section_forces},
+    {"cable12_green_exact_curved_stiffness", call_cable12_green_exact_curved_stiffness},
+    {"cable12_green_exact_curved_energy", call_cable12_green_exact_curved_energy},
+    {"cable12_green_exact_curved_elastic_force", call_cable12_green_exact_curved_elastic_force},
+    {"cable12_green_exact_curved_elastic_tangent", call_cable12_green_exact_curved_elastic_tangent},
+    {"cable12_green_exact_curved_damping_force", call_cable12_green_exact_curved_damping_force},
+    {"cable12_green_exact_curved_damping_tangent", call_cable12_green_exact_curved_damping_tangent},
+    {"cable12_green_exact_curved_dissipation", call_cable12_green_exact_curved_dissipation},
+    {"cable12_green_exact_curved_section_forces", call_cable12_green_exact_curved_section_forces},
+    {"cable12_engineering_exact_curved_stiffness", call_cable12_engineering_exact_curved_stiffness},
+    {"cable12_engineering_exact_curved_energy", call_cable12_engineering_exact_curved_energy},
+    {"cable12_engineering_exact_curved_elastic_force", call_cable12_engineering_exact_curved_elastic_force},
+    {"cable12_engineering_exact_curved_elastic_tangent", call_cable12_engineering_exact_curved_elastic_tangent},
+    {"cable12_engineering_exact_curved_damping_force", call_cable12_engineering_exact_curved_damping_force},
+    {"cable12_engineering_exact_curved_damping_tangent", call_cable12_engineering_exact_curved_damping_tangent},
+    {"cable12_engineering_exact_curved_dissipation", call_cable12_engineering_exact_curved_dissipation},
+    {"cable12_engineering_exact_curved_section_forces", call_cable12_engineering_exact_curved_section_forces},
+    {"cable18_green_exact_stiffness", call_cable18_green_exact_stiffness},
+    {"cable18_green_exact_energy", call_cable18_green_exact_energy},
+    {"cable18_green_exact_elastic_force", call_cable18_green_exact_elastic_force},
+    {"cable18_green_exact_elastic_tangent", call_cable18_green_exact_elastic_tangent},
+    {"cable18_green_exact_damping_force", call_cable18_green_exact_damping_force},
+    {"cable18_green_exact_damping_tangent", call_cable18_green_exact_damping_tangent},
+    {"cable18_green_exact_dissipation", call_cable18_green_exact_dissipation},
+    {"cable18_green_exact_section_forces", call_cable18_green_exact_section_forces},
+    {"cable18_engineering_exact_stiffness", call_cable18_engineering_exact_stiffness},
+    {"cable18_engineering_exact_energy", call_cable18_engineering_exact_energy},
+    {"cable18_engineering_exact_elastic_force", call_cable18_engineering_exact_elastic_force},
+    {"cable18_engineering_exact_elastic_tangent", call_cable18_engineering_exact_elastic_tangent},
+    {"cable18_engineering_exact_damping_force", call_cable18_engineering_exact_damping_force},
+    {"cable18_engineering_exact_damping_tangent", call_cable18_engineering_exact_damping_tangent},
+    {"cable18_engineering_exact_dissipation", call_cable18_engineering_exact_dissipation},
+    {"cable18_engineering_exact_section_forces", call_cable18_engineering_exact_section_forces},
+    {"beam12p_continuum_stiffness", call_beam12p_continuum_stiffness},
+    {"beam12p_continuum_energy", call_beam12p_continuum_energy},
+    {"beam12p_continuum_elastic_force", call_beam12p_continuum_elastic_force},
+    {"beam12p_continuum_elastic_tangent", call_beam12p_continuum_elastic_tangent},
+    {"beam12p_continuum_damping_force", call_beam12p_continuum_damping_force},
+    {"beam12p_continuum_damping_tangent", call_beam12p_continuum_damping_tangent},
+    {"beam12p_continuum_dissipation", call_beam12p_continuum_dissipation},
+    {"beam12p_continuum_section_forces", call_beam12p_continuum_section_forces},
+    {"beam12p_continuum_curved_stiffness_at", call_beam12p_continuum_curved_stiffness_at},
+    {"beam12p_continuum_curved_energy", call_beam12p_continuum_curved_energy},
+    {"beam12p_continuum_curved_elastic_force", call_beam12p_continuum_curved_elastic_force},
+    {"beam12p_continuum_curved_elastic_tangent", call_beam12p_continuum_curved_elastic_tangent},
+    {"beam12p_continuum_curved_damping_force", call_beam12p_continuum_curved_damping_force},
+    {"beam12p_continuum_curved_damping_tangent", call_beam12p_continuum_curved_damping_tangent},
+    {"beam12p_continuum_curved_dissipation", call_beam12p_continuum_curved_dissipation},
+    {"beam12p_continuum_curved_section_forces", call_beam12p_continuum_curved_section_forces},
+    {"beam12p_structural_stiffness", call_beam12p_structural_stiffness},
+    {"beam12p_structural_energy", call_beam12p_structural_energy},
+    {"beam12p_structural_elastic_force", call_beam12p_structural_elastic_force},
+    {"beam12p_structural_elastic_tangent", call_beam12p_structural_elastic_tangent},
+    {"beam12p_structural_damping_force", call_beam12p_structural_damping_force},
+    {"beam12p_structural_damping_tangent", call_beam12p_structural_damping_tangent},
+    {"beam12p_structural_dissipation", call_beam12p_structural_dissipation},
+    {"beam12p_structural_section_forces", call_beam12p_structural_section_forces},
+    {"cable8p_green_exact_stiffness", call_cable8p_green_exact_stiffness},
+    {"cable8p_green_exact_energy", call_cable8p_green_exact_energy},
+    {"cable8p_green_exact_elastic_force", call_cable8p_green_exact_elastic_force},
+    {"cable8p_green_exact_elastic_tangent", call_cable8p_green_exact_elastic_tangent},
+    {"cable8p_green_exact_damping_force", call_cable8p_green_exact_damping_force},
+    {"cable8p_green_exact_damping_tangent", call_cable8p_green_exact_damping_tangent},
+    {"cable8p_green_exact_dissipation", call_cable8p_green_exact_dissipation},
+    {"cable8p_green_exact_section_forces", call_cable8p_green_exact_section_forces},
+    {"cable8p_green_linear_stiffness", call_cable8p_green_linear_stiffness},
+    {"cable8p_green_linear_energy", call_cable8p_green_linear_energy},
+    {"cable8p_green_linear_elastic_force", call_cable8p_green_linear_elastic_force},
+    {"cable8p_green_linear_elastic_tangent", call_cable8p_green_linear_elastic_tangent},
+    {"cable8p_green_linear_damping_force", call_cable8p_green_linear_damping_force},
+    {"cable8p_green_linear_damping_tangent", call_cable8p_green_linear_damping_tangent},
+    {"cable8p_green_linear_dissipation", call_cable8p_green_linear_dissipation},
+    {"cable8p_green_linear_section_forces", call_cable8p_green_linear_section_forces},
+    {"cable8p_engineering_exact_stiffness", call_cable8p_engineering_exact_stiffness},
+    {"cable8p_engineering_exact_energy", call_cable8p_engineering_exact_energy},
+    {"cable8p_engineering_exact_elastic_force", call_cable8p_engineering_exact_elastic_force},
+    {"cable8p_engineering_exact_elastic_tangent", call_cable8p_engineering_exact_elastic_tangent},
+    {"cable8p_engineering_exact_damping_force", call_cable8p_engineering_exact_damping_force},
+    {"cable8p_engineering_exact_damping_tangent", call_cable8p_engineering_exact_damping_tangent},
+    {"cable8p_engineering_exact_dissipation", call_cable8p_engineering_exact_dissipation},
+    {"cable8p_engineering_exact_section_forces", call_cable8p_engineering_exact_section_forces},
+    {"cable8p_engineering_linear_stiffness", call_cable8p_engineering_linear_stiffness},
+    {"cable8p_engineering_linear_energy", call_cable8p_engineering_linear_energy},
+    {"cable8p_engineering_linear_elastic_force", call_cable8p_engineering_linear_elastic_force},
+    {"cable8p_engineering_linear_elastic_tangent", call_cable8p_engineering_linear_elastic_tangent},
+    {"cable8p_engineering_linear_damping_force", call_cable8p_engineering_linear_damping_force},
+    {"cable8p_engineering_linear_damping_tangent", call_cable8p_engineering_linear_damping_tangent},
+    {"cable8p_engineering_linear_dissipation", call_cable8p_engineering_linear_dissipation},
+    {"cable8p_engineering_linear_section_forces", call_cable8p_engineering_linear_section_forces},
+    {"rigid_point", call_rigid_point},
+    {"rigid_point_force", call_rigid_point_force},
+    {"rigid_inertia_force", call_rigid_inertia_force},
+    {"rigid_inertia_tangent", call_rigid_inertia_tangent},
+    {"rigid_kinetic_energy", call_rigid_kinetic_energy},
+    {"planar_rigid_point", call_planar_rigid_point},
+    {"planar_rigid_point_force", call_planar_rigid_point_force},
+    {"planar_rigid_inertia_force", call_planar_rigid_inertia_force},
+    {"planar_rigid_inertia_tangent", call_planar_rigid_inertia_tangent},
+    {"planar_rigid_kinetic_energy", call_planar_rigid_kinetic_energy},
+    {"slide_beam24_rigid_constraint", call_slide_beam24_rigid_constraint},
+    {"slide_beam24_rigid_terms", call_slide_beam24_rigid_terms},
+    {"slide_beam24_rigid_residual", call_slide_beam24_rigid_residual},
+    {"slide_beam24_rigid_tangent", call_slide_beam24_rigid_tangent},
+    {"slide_cable12_rigid_constraint", call_slide_cable12_rigid_constraint},
+    {"slide_cable12_rigid_terms", call_slide_cable12_rigid_terms},
+    {"slide_cable12_rigid_residual", call_slide_cable12_rigid_residual},
+    {"slide_cable12_rigid_tangent", call_slide_cable12_rigid_tangent},
+    {"slide_cable18_rigid_constraint", call_slide_cable18_rigid_constraint},
+    {"slide_cable18_rigid_terms", call_slide_cable18_rigid_terms},
+    {"slide_cable18_rigid_residual", call_slide_cable18_rigid_residual},
+    {"slide_cable18_rigid_tangent", call_slide_cable18_rigid_tangent},
+    {"slide_beam12p_planar_rigid_constraint", call_slide_beam12p_planar_rigid_constraint},
+    {"slide_beam12p_planar_rigid_terms", call_slide_beam12p_planar_rigid_terms},
+    {"slide_beam12p_planar_rigid_residual", call_slide_beam12p_planar_rigid_residual},
+    {"slide_beam12p_planar_rigid_tangent", call_slide_beam12p_planar_rigid_tangent},
+    {"slide_cable8p_planar_rigid_constraint", call_slide_cable8p_planar_rigid_constraint},
+    {"slide_cable8p_planar_rigid_terms", call_slide_cable8p_planar_rigid_terms},
+    {"slide_cable8p_planar_rigid_residual", call_slide_cable8p_planar_rigid_residual},
+    {"slide_cable8p_planar_rigid_tangent", call_slide_cable8p_planar_rigid_tangent},
+};
+const int fu_n_kernels = sizeof fu_kernels / sizeof fu_kernels[0];
+
 const fu_tables fu_all = {
     5, elements,
-    16, laws,
-    3, slides
+    18, laws,
+    2, bodys,
+    5, slides
 };

@@ -5,6 +5,7 @@ from typing import Any
 from funicular.errors import (
     ConvergenceError,
     EndOfCableError,
+    EquilibriumError,
     FunicularError,
     FunicularWarning,
     ResultFileError,
@@ -15,20 +16,27 @@ from funicular.materials import Material
 from funicular.results import Run, load_run
 from funicular.scene import Scene
 from funicular.scene_file import bundled_scenes, load_scene
-from funicular.sections import Circle, Rectangle, Tube
+from funicular.sections import Circle, General, Rectangle, Tube
+from funicular.signals import Harmonic, Pulse, Ramp, Table
 
 __all__ = [
     "Circle",
     "ConvergenceError",
     "EndOfCableError",
+    "EquilibriumError",
     "FunicularError",
     "FunicularWarning",
+    "General",
+    "Harmonic",
     "Material",
+    "Pulse",
+    "Ramp",
     "Rectangle",
     "ResultFileError",
     "Run",
     "Scene",
     "SceneError",
+    "Table",
     "Tube",
     "UnknownResultError",
     "__version__",

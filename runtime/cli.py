@@ -56,6 +56,7 @@ def run(
     ] = None,
     plot: Annotated[bool, typer.Option("--plot", help="draw pictures next to the netCDF file")] = False,
     plot_dir: Annotated[Path | None, typer.Option(help="draw pictures in this directory")] = None,
+    forces: Annotated[bool, typer.Option("--forces", help="draw tension and moment along the cables, too")] = False,
     duration: Annotated[float | None, typer.Option(help="s, instead of the scene's")] = None,
     tol: Annotated[float | None, typer.Option(help="error aimed at, instead of the scene's")] = None,
     step: Annotated[float | None, typer.Option(help="fixed step in s, instead of the scene's")] = None,
@@ -71,7 +72,7 @@ def run(
     with _told_without_traceback():
         described = load_scene(scene)
         path = Path(output or described.run_settings.get("save") or f"{Path(scene).stem}.nc")
-        pictures = plot_dir or (path.parent if plot else None)
+        pictures = plot_dir or (path.parent if plot or forces else None)
         if pictures is not None:
             check_writable(_existing(pictures) / "picture.png")
         stopped = None
@@ -79,7 +80,7 @@ def run(
             result = described.run(duration, tol=tol, step=step, save=path)
         except (EndOfCableError, ConvergenceError) as error:
             result, stopped = error.run, error
-        _report(result, path, pictures)
+        _report(result, path, pictures, forces)
         if stopped is not None:
             raise stopped
     if result.status == "interrupted":
@@ -91,7 +92,7 @@ def _existing(directory: Path) -> Path:
     return next((d for d in (directory, *directory.parents) if d.exists()), directory)
 
 
-def _report(run: Run, path: Path, pictures: Path | None) -> None:
+def _report(run: Run, path: Path, pictures: Path | None, forces: bool) -> None:
     from rich import box
     from rich.console import Console
     from rich.markup import escape
@@ -101,7 +102,7 @@ def _report(run: Run, path: Path, pictures: Path | None) -> None:
     if pictures is not None:
         from funicular.plot import save_plots
 
-        written = save_plots(run, pictures, f"{path.stem}-")
+        written = save_plots(run, pictures, f"{path.stem}-", forces)
         rows.append(("pictures", "\n".join(map(str, written))))
     table = Table(box=box.SIMPLE, show_header=False)
     table.add_column(style="bold")
@@ -124,11 +125,20 @@ def scenes() -> None:
 def derive(
     names: Names = None,
     check: Annotated[bool, typer.Option("--check", help="write nothing; fail if the files differ")] = False,
+    spec: Annotated[Path | None, typer.Option(help="a Python file with elements of your own, instead")] = None,
+    out: Annotated[Path | None, typer.Option(help="the directory for the library of --spec")] = None,
 ) -> None:
-    """Derive the equations and write generated/, or compare it with them."""
-    from funicular.derive.drift import main
+    """Derive the equations and write generated/, or compare it with them; or make a library of your own elements."""
+    if (spec is None) != (out is None) or (spec is not None and (names or check)):
+        raise typer.BadParameter("--spec FILE and --out DIR go together, and with nothing else")
+    if spec is None:
+        from funicular.derive.drift import main
 
-    raise typer.Exit(main(names or [], check))
+        raise typer.Exit(main(names or [], check))
+    from funicular.derive.own.command import main as make_library
+
+    with _told_without_traceback():
+        make_library(spec, out)
 
 
 @app.command()

@@ -10,7 +10,6 @@ import numpy as np
 from cpython.exc cimport PyErr_CheckSignals
 from cpython.mem cimport PyMem_Calloc, PyMem_Free
 from cpython.pycapsule cimport PyCapsule_GetPointer
-from libc.string cimport strcmp
 from scipy.linalg cimport cython_blas, cython_lapack
 
 from funicular.generated import kernels
@@ -19,38 +18,65 @@ cdef extern from "kernels.h" nogil:
     ctypedef struct fu_element:
         const char *name
         int vectors, dim, nodes
+    ctypedef struct fu_body:
+        const char *name
+        int dim, configuration, velocity
     ctypedef struct fu_slide:
         const char *name
-        int coordinates
+        int coordinates, dim
     ctypedef struct fu_law:
         const char *name
     ctypedef struct fu_tables:
-        int n_elements, n_laws, n_slides
+        int n_elements, n_laws, n_bodys, n_slides
         const fu_element *elements
         const fu_law *laws
+        const fu_body *bodys
         const fu_slide *slides
 
 cdef extern from "engine.h" nogil:
     int FU_JOINT_TERMS, FU_JOINT_OUTPUTS, FU_MAX_COORDINATES
     int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR
+    int FU_SIGNAL_TERMS
     ctypedef struct fu_cable:
         const fu_element *kernel
         const fu_law *law
-        int n_elements, first, coordinates, per_node
-        double length, tau
+        int n_elements, first, coordinates, per_node, A_stride
+        double length, tau, mass_damping
         const double *m
         const double *A
-        const double *gravity
     ctypedef struct fu_rigid:
+        const fu_body *kernel
         int configuration, dof
         double mass
         double J[9]
-        double gravity[3]
     ctypedef struct fu_joint:
         const fu_slide *kernel
-        int cable, rider
+        int cable, rider, unknown, multiplier, carries_director
         double u[3]
         double mass
+    ctypedef struct fu_signal:
+        int n
+        const double *breaks
+        const double *coefficients
+        double amplitude, angular_frequency, phase
+    ctypedef struct fu_motion:
+        int dof, signal
+        double base, linear, cosine, sine
+    ctypedef struct fu_dead_load:
+        int signal, first, n
+    ctypedef struct fu_load:
+        int kind, signal, on, element
+        double x
+        double u[3]
+        double c[3]
+    ctypedef struct fu_end:
+        int cable, body, element
+        double u[3]
+        double N[32]
+    ctypedef struct fu_spring:
+        fu_end ends[2]
+        int dim, unknown
+        double stiffness, damping, length, mass
     ctypedef struct fu_lapack:
         void *dgbtrf
         void *dgbtrs
@@ -68,13 +94,25 @@ cdef extern from "engine.h" nogil:
         int *pivot_band
         int *pivot_border
     ctypedef struct fu_model:
-        int n_cables, n_rigids, n_joints
+        int n_cables, n_rigids, n_joints, n_springs, n_motions, n_dead_loads, n_loads
         const fu_cable *cables
         const fu_rigid *rigids
         const fu_joint *joints
-        int n_q, n_dof, n_band, n_border_dof
+        const fu_spring *springs
+        const fu_motion *motions
+        const fu_dead_load *dead_loads
+        const fu_load *loads
+        const fu_signal *signals
+        int n_q, n_dof, n_band, n_border_dof, n_extra, n_multipliers
         const int *place
+        const int *combination_start
+        const int *combination_place
+        const double *combination_value
         const double *weight
+        const double *gravity
+        const double *zero
+        const int *dead_dof
+        const double *dead_value
         const fu_lapack *lapack
     ctypedef struct fu_state:
         double t
@@ -84,6 +122,7 @@ cdef extern from "engine.h" nogil:
         double *a
         double *s
         double *f
+        double *spring
         int *element
         double *director
     ctypedef struct fu_accelerator:
@@ -92,6 +131,7 @@ cdef extern from "engine.h" nogil:
         double *terms
         double *force
         double *work
+        double *prescribed
         double *joints
     ctypedef struct fu_genalpha:
         double alpha_m, alpha_f, beta, gamma
@@ -111,6 +151,10 @@ cdef extern from "engine.h" nogil:
         double *elastic
         double *potential
         double *dissipated
+        double *external
+        double *spring
+    ctypedef struct fu_weights:
+        double inertia, rate, stiffness
     ctypedef struct fu_run:
         const fu_model *model
         fu_genalpha scheme
@@ -130,6 +174,13 @@ cdef extern from "engine.h" nogil:
         double h, h_factored, contraction, motion
         int factored, stopped_joint, rest_start
     void fu_linearise(fu_run *run, double h, const double *change)
+    void fu_static_move(fu_run *run, const double *change)
+    void fu_static_residual(fu_run *run)
+    void fu_matrix(fu_run *run, fu_weights weights)
+    void fu_spread(const fu_model *model, const double *x, double *dofs)
+    void fu_prescribe(const fu_model *model, fu_state *state)
+    void fu_carry_directors(const fu_model *model, fu_state *state)
+    double fu_elastic_energy(const fu_model *model, const double *q)
     int fu_start(fu_run *run)
     int fu_advance(fu_run *run, double seconds)
 
@@ -148,74 +199,172 @@ STATUS = {FU_DONE: "completed", FU_END_OF_CABLE: "end_of_cable", FU_NO_CONVERGEN
 JOINT_OUTPUTS = ("s_rate", "s_acceleration", "force", "multiplier", "residual")
 
 
+cdef const fu_element *_element(list tables, str name) except NULL:
+    cdef int k
+    for address in tables:
+        table = <const fu_tables *><size_t>address
+        for k in range(table.n_elements):
+            if table.elements[k].name == name.encode():
+                return &table.elements[k]
+    raise ValueError(f"no kernels for element {name}")
+
+
+cdef const fu_law *_law(list tables, str name) except NULL:
+    cdef int k
+    for address in tables:
+        table = <const fu_tables *><size_t>address
+        for k in range(table.n_laws):
+            if table.laws[k].name == name.encode():
+                return &table.laws[k]
+    raise ValueError(f"no kernels for law {name}")
+
+
+cdef const fu_body *_body(list tables, str name) except NULL:
+    cdef int k
+    for address in tables:
+        table = <const fu_tables *><size_t>address
+        for k in range(table.n_bodys):
+            if table.bodys[k].name == name.encode():
+                return &table.bodys[k]
+    raise ValueError(f"no kernels for body {name}")
+
+
+cdef const fu_slide *_slide(list tables, str name) except NULL:
+    cdef int k
+    for address in tables:
+        table = <const fu_tables *><size_t>address
+        for k in range(table.n_slides):
+            if table.slides[k].name == name.encode():
+                return &table.slides[k]
+    raise ValueError(f"no kernels for {name}")
+
+
 cdef class Engine:
     """One run of a model (see model.py for the fields that it reads)."""
 
     cdef fu_cable *cables
     cdef fu_rigid *rigids
     cdef fu_joint *joints
+    cdef fu_spring *springs
+    cdef fu_motion *motions
+    cdef fu_dead_load *dead_loads
+    cdef fu_load *loads
+    cdef fu_signal *signals
     cdef fu_model model
     cdef fu_run run
     cdef list kept
     cdef readonly dict arrays
 
     def __cinit__(self, model):
-        self.cables = <fu_cable *>PyMem_Calloc(max(1, len(model.cables)), sizeof(fu_cable))
-        self.rigids = <fu_rigid *>PyMem_Calloc(max(1, len(model.rigids)), sizeof(fu_rigid))
-        self.joints = <fu_joint *>PyMem_Calloc(max(1, len(model.joints)), sizeof(fu_joint))
-        if not (self.cables and self.rigids and self.joints):
+        self.cables = <fu_cable *>PyMem_Calloc(len(model.cables) + 1, sizeof(fu_cable))
+        self.rigids = <fu_rigid *>PyMem_Calloc(len(model.rigids) + 1, sizeof(fu_rigid))
+        self.joints = <fu_joint *>PyMem_Calloc(len(model.joints) + 1, sizeof(fu_joint))
+        self.springs = <fu_spring *>PyMem_Calloc(len(model.springs) + 1, sizeof(fu_spring))
+        self.motions = <fu_motion *>PyMem_Calloc(len(model.motions) + 1, sizeof(fu_motion))
+        self.dead_loads = <fu_dead_load *>PyMem_Calloc(len(model.dead_loads) + 1, sizeof(fu_dead_load))
+        self.loads = <fu_load *>PyMem_Calloc(len(model.loads) + 1, sizeof(fu_load))
+        self.signals = <fu_signal *>PyMem_Calloc(len(model.signals) + 1, sizeof(fu_signal))
+        if not (self.cables and self.rigids and self.joints and self.springs and self.motions and self.dead_loads
+                and self.loads and self.signals):
             raise MemoryError
 
     def __dealloc__(self):
-        PyMem_Free(self.cables)
-        PyMem_Free(self.rigids)
-        PyMem_Free(self.joints)
+        for pointer in (<size_t>self.cables, <size_t>self.rigids, <size_t>self.joints, <size_t>self.springs,
+                        <size_t>self.motions, <size_t>self.dead_loads, <size_t>self.loads, <size_t>self.signals):
+            PyMem_Free(<void *><size_t>pointer)
 
     def __init__(self, model):
-        cdef int i, k
         self.kept, self.arrays = [], {}
+        tables = [<size_t>TABLES, *model.tables]
+        self._bodies_and_cables(model, tables)
+        self._joints_and_springs(model, tables)
+        self._loads_and_motions(model)
+        m = &self.model
+        m.n_q, m.n_dof = model.n_q, model.n_dof
+        m.n_band, m.n_border_dof = model.n_band, model.n_border_dof
+        m.n_extra, m.n_multipliers = model.n_extra, model.n_multipliers
+        m.place, m.weight, m.lapack = self._ints(model.place), self._doubles(model.weight), &LAPACK
+        m.combination_start = self._ints(model.combinations.indptr)
+        m.combination_place = self._ints(model.combinations.indices)
+        m.combination_value = self._doubles(model.combinations.data)
+        m.gravity, m.zero = self._doubles(model.gravity), self._doubles(np.zeros(model.n_dof))
+        self._work_space(model)
+
+    def _bodies_and_cables(self, model, list tables):
+        cdef int i, k
         for i, cable in enumerate(model.cables):
             c = &self.cables[i]
-            name, law = cable.element.encode(), f"{cable.element}_{cable.law}".encode()
-            for k in range(TABLES.n_elements):
-                if strcmp(TABLES.elements[k].name, name) == 0:
-                    c.kernel = &TABLES.elements[k]
-            for k in range(TABLES.n_laws):
-                if strcmp(TABLES.laws[k].name, law) == 0:
-                    c.law = &TABLES.laws[k]
-            if c.kernel is NULL or c.law is NULL:
-                raise ValueError(f"no kernels for element {cable.element} with law {cable.law}")
-            c.n_elements, c.first, c.length, c.tau = cable.n_elements, cable.first, cable.length, cable.tau
+            c.kernel, c.law = _element(tables, cable.element), _law(tables, f"{cable.element}_{cable.law}")
+            c.n_elements, c.first, c.length = cable.n_elements, cable.first, cable.length
+            c.tau, c.mass_damping = cable.tau, cable.mass_damping
             c.per_node = c.kernel.vectors * c.kernel.dim
             c.coordinates = c.kernel.nodes * c.per_node
-            c.m, c.A, c.gravity = self._doubles(cable.m), self._doubles(cable.A), self._doubles(cable.gravity)
+            if c.coordinates > FU_MAX_COORDINATES:
+                raise ValueError(f"{cable.element}: more coordinates than the engine's {FU_MAX_COORDINATES}")
+            c.m, c.A = self._doubles(cable.m), self._doubles(cable.A)
+            c.A_stride = cable.A.shape[1] if len(cable.A) > 1 else 0
         for i, body in enumerate(model.rigids):
             r = &self.rigids[i]
+            r.kernel = _body(tables, body.kernel)
             r.configuration, r.dof, r.mass = body.configuration, body.dof, body.mass
             for k in range(9):
                 r.J[k] = body.inertia.flat[k]
-            for k in range(3):
-                r.gravity[k] = body.gravity[k]
+        self.model.n_cables, self.model.n_rigids = len(model.cables), len(model.rigids)
+        self.model.cables, self.model.rigids = self.cables, self.rigids
+
+    def _joints_and_springs(self, model, list tables):
+        cdef int i, k
         for i, joint in enumerate(model.joints):
             j = &self.joints[i]
-            name = joint.kernel.encode()
-            for k in range(TABLES.n_slides):
-                if strcmp(TABLES.slides[k].name, name) == 0:
-                    j.kernel = &TABLES.slides[k]
-            if j.kernel is NULL:
-                raise ValueError(f"no kernels for {joint.kernel}")
+            j.kernel = _slide(tables, joint.kernel)
             if j.kernel.coordinates + 1 > FU_MAX_COORDINATES:
                 raise ValueError(f"{joint.kernel}: more coordinates than the engine's {FU_MAX_COORDINATES}")
             j.cable, j.rider, j.mass = joint.cable, joint.rider, joint.mass
+            j.unknown, j.multiplier, j.carries_director = joint.unknown, joint.multiplier, joint.carries_director
             for k in range(3):
                 j.u[k] = joint.u[k]
+        for i, spring in enumerate(model.springs):
+            p = &self.springs[i]
+            p.dim, p.unknown, p.mass = spring.dim, spring.unknown, spring.mass
+            p.stiffness, p.damping, p.length = spring.stiffness, spring.damping, spring.length
+            for k, end in enumerate(spring.ends):
+                p.ends[k].cable, p.ends[k].body, p.ends[k].element = end.cable, end.body, end.element
+                for d in range(3):
+                    p.ends[k].u[d] = end.u[d]
+                for d in range(len(end.N)):
+                    p.ends[k].N[d] = end.N[d]
+        self.model.n_joints, self.model.n_springs = len(model.joints), len(model.springs)
+        self.model.joints, self.model.springs = self.joints, self.springs
+
+    def _loads_and_motions(self, model):
+        cdef int i, k, at = 0
+        for i, signal in enumerate(model.signals):
+            g = &self.signals[i]
+            g.n = len(signal.coefficients)
+            if g.n and signal.coefficients.shape[1] != FU_SIGNAL_TERMS:
+                raise ValueError(f"a signal's pieces need {FU_SIGNAL_TERMS} coefficients")
+            g.breaks, g.coefficients = self._doubles(signal.breaks), self._doubles(signal.coefficients)
+            g.amplitude, g.angular_frequency, g.phase = signal.amplitude, signal.angular_frequency, signal.phase
+        for i, motion in enumerate(model.motions):
+            o = &self.motions[i]
+            o.dof, o.signal, o.base, o.linear = motion.dof, motion.signal, motion.base, motion.linear
+            o.cosine, o.sine = motion.cosine, motion.sine
+        dofs, values = [], []
+        for i, load in enumerate(model.dead_loads):
+            d = &self.dead_loads[i]
+            d.signal, d.first, d.n = load.signal, at, len(load.dofs)
+            at += d.n
+            dofs.extend(load.dofs)
+            values.extend(load.values)
+        self.model.dead_dof, self.model.dead_value = self._ints(dofs), self._doubles(values)
+        for i, load in enumerate(model.loads):
+            n = &self.loads[i]
+            n.kind, n.signal, n.on, n.element, n.x = load.kind, load.signal, load.on, load.element, load.x
+            for k in range(3):
+                n.u[k], n.c[k] = load.u[k], load.c[k]
         m = &self.model
-        m.n_cables, m.n_rigids, m.n_joints = len(model.cables), len(model.rigids), len(model.joints)
-        m.cables, m.rigids, m.joints = self.cables, self.rigids, self.joints
-        m.n_q, m.n_dof = model.n_q, model.n_dof
-        m.n_band, m.n_border_dof = model.n_band, model.n_border_dof
-        m.place, m.weight, m.lapack = self._ints(model.place), self._doubles(model.weight), &LAPACK
-        self._work_space(model)
+        m.n_motions, m.n_dead_loads, m.n_loads = len(model.motions), len(model.dead_loads), len(model.loads)
+        m.motions, m.dead_loads, m.loads, m.signals = self.motions, self.dead_loads, self.loads, self.signals
 
     cdef double *_doubles(self, values):
         array = np.array(values, dtype=float, order="C").ravel()
@@ -253,6 +402,7 @@ cdef class Engine:
         state.acceleration, state.a = self._doubles(np.zeros(model.n_dof)), self._doubles(np.zeros(model.n_dof))
         joints = len(model.joints)
         state.s, state.f = self._doubles([j.s for j in model.joints]), self._doubles(np.zeros(3 * joints))
+        state.spring, state.t = self._doubles(np.zeros(3 * len(model.springs))), 0.0
         state.element = self._ints([j.element for j in model.joints])
         state.director = self._doubles([j.director for j in model.joints])
 
@@ -263,17 +413,41 @@ cdef class Engine:
         run.model = &self.model
         self._state(&run.now, model)
         self._state(&run.next, model)
-        self._system(&run.newton, model.n_band, model.width, model.n_border_dof + 4 * n_joints)
+        self._system(&run.newton, model.n_band, model.width, model.n_border_dof + model.n_extra)
         a = &run.accelerator
-        self._system(&a.mass, model.n_band, model.width, model.n_border_dof + 2 * n_joints)
-        a.rhs = self._doubles(np.zeros(unknowns + 2 * n_joints))
+        self._system(&a.mass, model.n_band, model.width, model.n_border_dof + model.n_multipliers)
+        a.rhs = self._doubles(np.zeros(unknowns + model.n_multipliers))
         a.terms = self._doubles(np.zeros(n_joints * FU_JOINT_TERMS))
         a.joints = self._doubles(np.zeros(n_joints * FU_JOINT_OUTPUTS))
         a.force, a.work = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
-        run.rhs = self._doubles(np.zeros(unknowns + 4 * n_joints))
+        a.prescribed = self._doubles(np.zeros(n_dof))
+        run.rhs = self._doubles(np.zeros(unknowns + model.n_extra))
         run.psi, run.force = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         run.work, run.before = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         run.first, run.s_slope = self._doubles(np.zeros(model.n_q)), self._doubles(np.zeros(n_joints))
+
+    cdef _matrix(self):
+        """The unfactored Newton matrix, (unknowns, unknowns) sparse."""
+        from scipy.sparse import coo_array
+
+        cdef fu_system *system = &self.run.newton
+        cdef int n = system.n, width = system.width, m = system.m
+        band = np.asarray(<double[:n * (3 * width + 1)]>system.K).reshape(n, 3 * width + 1).copy() if n else np.zeros((0, 1))
+        columns, diagonals = np.nonzero(band)
+        entries = [(columns + diagonals - 2 * width, columns, band[columns, diagonals])]
+        if m:
+            corner = np.asarray(<double[:m * m]>system.D).reshape(m, m)
+            rows, at = np.nonzero(corner.T)
+            entries.append((n + rows, n + at, corner.T[rows, at]))
+        if n and m:
+            right = np.asarray(<double[:m * n]>system.B).reshape(m, n)
+            below = np.asarray(<double[:m * n]>system.C).reshape(m, n)
+            at, rows = np.nonzero(right)
+            entries.append((rows, n + at, right[at, rows]))
+            rows, at = np.nonzero(below)
+            entries.append((n + rows, at, below[rows, at]))
+        row, column, value = (np.concatenate(part) for part in zip(*entries))
+        return coo_array((value, (row, column)), shape=(n + m, n + m)).tocsc()
 
     def linearise(self, double h, change):
         """Residual and Newton matrix of a step h after moving its prediction by `change`; for tests.
@@ -282,22 +456,84 @@ cdef class Engine:
         Returns (unknowns,) and (unknowns, unknowns), d residual/d change.
         """
         cdef double[::1] moved = np.ascontiguousarray(change, dtype=float)
-        cdef fu_system *system = &self.run.newton
-        cdef int i, j, n = system.n, width = system.width, m = system.m
-        cdef int total = n + m, rows = 3 * width + 1
+        cdef int i, total = self.run.newton.n + self.run.newton.m
         if moved.shape[0] != total:
             raise ValueError(f"change must have {total} entries")
         fu_linearise(&self.run, h, &moved[0])
-        matrix = np.zeros((total, total))
-        for j in range(n):
-            for i in range(max(0, j - width), min(n, j + width + 1)):
-                matrix[i, j] = system.K[j * rows + 2 * width + i - j]
-        for j in range(m):
-            for i in range(n):
-                matrix[i, n + j], matrix[n + j, i] = system.B[j * n + i], system.C[j * n + i]
-            for i in range(m):
-                matrix[n + i, n + j] = system.D[j * m + i]
-        return -np.array([self.run.rhs[i] for i in range(total)]), matrix
+        return -np.array([self.run.rhs[i] for i in range(total)]), self._matrix().toarray()
+
+    # --- statics: `next` is the state, moved by unknowns ---------------------------------------------------------
+
+    def place(self, double t=0.0, q=None, s=None, force=None, spring=None):
+        """Set the static state: time, configuration (n_q,), arc-lengths, joint and spring forces (n, 3); None: as built.
+
+        Prescribed dofs take their values at t.
+        """
+        cdef fu_state *state = &self.run.next
+        cdef int i
+        state.t = t
+        for i in range(self.model.n_dof):
+            state.v[i] = state.acceleration[i] = 0.0
+        for i in range(self.model.n_q):
+            state.q[i] = self.run.now.q[i] if q is None else q[i]
+        fu_prescribe(&self.model, state)
+        for i in range(self.model.n_dof):
+            state.v[i] = state.acceleration[i] = 0.0
+        for i in range(self.model.n_joints):
+            state.s[i] = self.run.now.s[i] if s is None else s[i]
+            n, length = self.cables[self.joints[i].cable].n_elements, self.cables[self.joints[i].cable].length
+            if not length * state.element[i] <= state.s[i] <= length * (state.element[i] + 1):
+                state.element[i] = min(max(int(state.s[i] // length), 0), n - 1)
+            for k in range(3):
+                state.f[3 * i + k] = 0.0 if force is None else force[i][k]
+        for i in range(self.model.n_springs):
+            for k in range(3):
+                state.spring[3 * i + k] = 0.0 if spring is None else spring[i][k]
+
+    def placed(self):
+        """The static state as the arguments of `place` (but t)."""
+        cdef fu_state *state = &self.run.next
+        cdef int i, joints = self.model.n_joints, springs = self.model.n_springs
+        return {"q": np.array([state.q[i] for i in range(self.model.n_q)]),
+                "s": np.array([state.s[i] for i in range(joints)]),
+                "force": np.array([state.f[i] for i in range(3 * joints)]).reshape(joints, 3),
+                "spring": np.array([state.spring[i] for i in range(3 * springs)]).reshape(springs, 3)}
+
+    def move(self, change):
+        """Move the static state by unknowns (n,): coordinates and rotations, s, forces."""
+        cdef double[::1] moved = np.ascontiguousarray(change, dtype=float)
+        if moved.shape[0] != self.run.newton.n + self.run.newton.m:
+            raise ValueError(f"change must have {self.run.newton.n + self.run.newton.m} entries")
+        fu_static_move(&self.run, &moved[0])
+
+    def static_residual(self):
+        """(n,): left side of equilibrium over the unknowns: internal minus external forces; constraints."""
+        cdef int i
+        fu_static_residual(&self.run)
+        return -np.array([self.run.rhs[i] for i in range(self.run.newton.n + self.run.newton.m)])
+
+    def reaction(self):
+        """(n_dof,): after `static_residual`, what supports give to each dof, the residual where it is free."""
+        cdef int i
+        return np.array([self.run.force[i] for i in range(self.model.n_dof)])
+
+    def matrix(self, double inertia, double rate, double stiffness):
+        """inertia M + stiffness (K + rate D) at the static state, (n, n) sparse; constraints where stiffness is not 0."""
+        cdef fu_weights weights
+        weights.inertia, weights.rate, weights.stiffness = inertia, rate, stiffness
+        fu_matrix(&self.run, weights)
+        return self._matrix()
+
+    def elastic_energy(self):
+        """J, of the static state."""
+        return fu_elastic_energy(&self.model, self.run.next.q)
+
+    def spread(self, unknowns):
+        """(n_dof,): what unknowns move the dofs by."""
+        cdef double[::1] x = np.ascontiguousarray(unknowns, dtype=float)
+        cdef double[::1] dofs = np.zeros(max(1, self.model.n_dof))
+        fu_spread(&self.model, &x[0], &dofs[0])
+        return np.asarray(dofs)[:self.model.n_dof]
 
     def start(self, *, duration, output_step, tol, step, scheme, first_step, rest_start=False):
         """Allocate the output rows and compute the consistent start.
@@ -315,7 +551,8 @@ cdef class Engine:
         r.potential, r.dissipated = self._named("potential", rows), self._named("dissipated", rows)
         r.q, r.v = self._named("q", (rows, m.n_q)), self._named("v", (rows, m.n_dof))
         r.acceleration = self._named("acceleration", (rows, m.n_dof))
-        r.reaction = self._named("reaction", (rows, m.n_dof))
+        r.reaction, r.external = self._named("reaction", (rows, m.n_dof)), self._named("external", rows)
+        r.spring = self._named("spring", (rows, m.n_springs, 3))
         r.s, r.joint = self._named("s", (rows, m.n_joints)), self._named("joint", (rows, m.n_joints, FU_JOINT_OUTPUTS))
         cdef int status = fu_start(run)
         if status:
@@ -356,6 +593,11 @@ cdef class Engine:
                 "sum_of_local_error_estimates_m": s.error_sum, "largest_motion_m": self.run.motion,
                 "time_s": {"residual": s.time_residual, "factorisation": s.time_factor, "solve": s.time_solve,
                            "output": s.time_output}}
+
+    @property
+    def unknowns(self):
+        """Number of unknowns of a Newton system."""
+        return self.run.newton.n + self.run.newton.m
 
     @property
     def time(self):

@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from funicular.results import Run
+    from funicular.static import Equilibrium
 
 
 class FunicularError(Exception):
@@ -49,6 +50,15 @@ class EndOfCableError(_StoppedError):
 
 class ConvergenceError(_StoppedError):
     """The integrator found no acceptable step; ``run`` holds everything up to then."""
+
+
+class EquilibriumError(FunicularError):
+    """No static equilibrium was reached; ``state`` holds the last one on the way, at ``load_fraction`` of the loads."""
+
+    def __init__(self, message: str, state: Equilibrium, load_fraction: float):
+        """state: the last equilibrium; load_fraction: the part of the loads that it carries, 0 to 1."""
+        super().__init__(message)
+        self.state, self.load_fraction = state, load_fraction
 
 
 class ResultFileError(FunicularError):

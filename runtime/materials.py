@@ -13,10 +13,11 @@ POISSON_RANGE = (-1.0, 0.5)
 
 
 class Material(Part):
-    """An isotropic St. Venant-Kirchhoff material with Kelvin-Voigt damping.
+    """An isotropic St. Venant-Kirchhoff material with Kelvin-Voigt and mass-proportional damping.
 
     youngs_modulus in Pa; density in kg/m³; one of poisson_ratio (1) and shear_modulus (Pa), or both if they
-    agree; damping_time: the retardation time τ in s, stress = elasticity (strain + τ strain rate).
+    agree; damping_time: the retardation time τ in s, stress = elasticity (strain + τ strain rate); mass_damping: the
+    α in 1/s of the force -α density velocity on each volume, as of a surrounding fluid.
     """
 
     youngs_modulus: Annotated[float, positive("Pa")]
@@ -24,6 +25,7 @@ class Material(Part):
     poisson_ratio: Annotated[float, within(*POISSON_RANGE, ends=False)] | None = None
     shear_modulus: Annotated[float, positive("Pa")] | None = None
     damping_time: Annotated[float, not_negative("s")] = 0.0
+    mass_damping: Annotated[float, not_negative("1/s")] = 0.0
 
     @model_validator(mode="after")
     def _shear_is_settled(self) -> Material:
@@ -43,11 +45,15 @@ class Material(Part):
             )
         return self
 
+    def poisson(self) -> float:
+        """The Poisson ratio ν, whichever constant was given."""
+        if self.poisson_ratio is not None:
+            return self.poisson_ratio
+        return self.youngs_modulus / (2 * self.shear_modulus) - 1
+
     def lame(self) -> tuple[float, float]:
         """Lamé's constants (λ, μ) in Pa."""
-        E, nu, G = self.youngs_modulus, self.poisson_ratio, self.shear_modulus
-        if nu is None:
-            nu = E / (2 * G) - 1
+        E, nu = self.youngs_modulus, self.poisson()
         return E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
 
     def elasticity(self) -> np.ndarray:

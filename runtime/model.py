@@ -11,20 +11,26 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
+from funicular.actions import Actions, DeadLoad, LoadModel, SignalModel, SpringModel
+from funicular.constants import constants
+from funicular.elements import gauge
 from funicular.errors import FunicularWarning, SceneError
-from funicular.parts import ELEMENTS, Cable
+from funicular.libraries import kernels_of, tables_of
+from funicular.parts import Cable, RigidBody, Slide
+from funicular.recording import Recording, recorded
+from funicular.reduction import Node, half_width, supports
 from funicular.scene import Scene
 from funicular.settings import RunSettings
-from funicular.stiffness import section_stiffness
+from scipy.sparse import csr_array
 
-DIM = 3
 MOST_OUTPUT = 4e9  # bytes
-RIGID_DOFS, RIGID_CONFIGURATION = 6, 7
+BODIES = {2: ("planar_rigid", 4, 3), 3: ("rigid", 7, 6)}
+"""Kernels, length of the configuration and dofs of a rigid body, by dimension of the scene."""
 
 
 @dataclass
 class CableModel:
-    """One cable: constants of its (equal) elements and where its coordinates are."""
+    """One cable: constants of its elements and where its coordinates are; A (1 or elements, constants)."""
 
     name: str
     element: str
@@ -33,37 +39,46 @@ class CableModel:
     first: int
     length: float
     tau: float
+    mass_damping: float
     m: np.ndarray
     A: np.ndarray
-    gravity: np.ndarray
     shape: tuple[int, int, int]
+    vectors: tuple[str, ...]
+    library: str | None
 
     @property
     def coordinates(self) -> slice:
         """Its part of q, v and the dofs."""
         return slice(self.first, self.first + int(np.prod(self.shape)))
 
+    def kernel(self, name: str) -> Callable:
+        """A kernel of its element."""
+        return getattr(kernels_of(self.library), f"{self.element}_{name}")
+
 
 @dataclass
 class RigidModel:
-    """One rigid body: inertia, weight and where its coordinates are."""
+    """One rigid body: kernels, inertia and where its coordinates are."""
 
     name: str
+    kernel: str
     mass: float
     inertia: np.ndarray
-    gravity: np.ndarray
     configuration: int
     dof: int
 
 
 @dataclass
 class JointModel:
-    """One slide: kernels, the two bodies (indices), the rider's point and where it starts."""
+    """One slide: kernels, the two bodies (indices), its unknowns, the rider's point and where it starts."""
 
     name: str
     kernel: str
     cable: int
     rider: int
+    unknown: int
+    multiplier: int
+    carries_director: bool
     u: tuple[float, float, float]
     mass: float
     s: float
@@ -73,19 +88,30 @@ class JointModel:
 
 @dataclass
 class Model:
-    """Arrays that the engine reads; see engine/engine.h for their meaning."""
+    """Arrays that the engine reads; see engine/engine.h for their meaning. tables: addresses of further kernels."""
 
+    dim: int
     cables: list[CableModel]
     rigids: list[RigidModel]
     joints: list[JointModel]
+    springs: list[SpringModel]
+    signals: list[SignalModel]
+    motions: list[MotionModel]
+    dead_loads: list[DeadLoad]
+    loads: list[LoadModel]
     q: np.ndarray
     v: np.ndarray
     weight: np.ndarray
+    gravity: np.ndarray
     place: np.ndarray
+    combinations: csr_array
     n_band: int
     n_border_dof: int
+    n_extra: int
+    n_multipliers: int
     width: int
-    pins: dict[str, slice] = field(default_factory=dict)
+    nodes: dict[str, list[Node]]
+    tables: list[int] = field(default_factory=list)
 
     @property
     def n_q(self) -> int:
@@ -100,132 +126,144 @@ class Model:
     @property
     def kernels(self) -> list[str]:
         """Names of the kernel families that the scene touches."""
-        return sorted(
-            {c.element for c in self.cables} | {j.kernel for j in self.joints} | ({"rigid"} if self.rigids else set())
-        )
+        return sorted({c.element for c in self.cables} | {f"{c.element}_{c.law}" for c in self.cables}
+                      | {j.kernel for j in self.joints} | {b.kernel for b in self.rigids})
 
 
 @dataclass
-class Recording:
-    """What a run left, as plain arrays; nt output times. Units SI."""
+class MotionModel:
+    """A dof that follows a signal: base + linear f + cosine cos f + sine sin f."""
 
-    status: str
-    message: str
-    time: np.ndarray
-    cables: dict[str, dict]
-    bodies: dict[str, dict]
-    slides: dict[str, dict]
-    pins: dict[str, dict]
-    energy: dict[str, np.ndarray]
-    report: dict
+    dof: int
+    signal: int
+    base: float
+    linear: float
+    cosine: float
+    sine: float
 
 
 def build(scene: Scene) -> Model:
-    """Number the coordinates of a scene and evaluate the constants of its elements."""
-    gravity = np.array(scene.gravity)
+    """Number the coordinates of a scene and evaluate the constants of its elements. Raises SceneError."""
+    dim = scene.dim
+    kernel, n_configuration, n_velocity = BODIES[dim]
     cables, at = [], 0
     for cable in scene.cables.values():
-        cables.append(_cable(cable, gravity, at))
+        cables.append(_cable(cable, at))
         at = cables[-1].coordinates.stop
     n_flexible = at
-    rigids = [
-        RigidModel(
-            body.name,
-            body.mass,
-            np.array(body.inertia),
-            body.mass * gravity,
-            n_flexible + RIGID_CONFIGURATION * k,
-            n_flexible + RIGID_DOFS * k,
-        )
-        for k, body in enumerate(scene.bodies.values())
-    ]
-    q = np.concatenate(
-        [c.nodal_vectors.ravel() for c in scene.cables.values()]
-        + [[*b.position, *b.orientation] for b in scene.bodies.values()]
-        + [[]]
-    )
-    v = np.concatenate([np.zeros(n_flexible)] + [[*b.velocity, *b.angular_velocity] for b in scene.bodies.values()])
-    pins = {}
-    fixed = np.zeros(len(v), dtype=bool)
-    by_name = {c.name: c for c in cables}
-    for pin in scene.pins:
-        cable = by_name[pin.cable]
-        start = cable.first + scene.cables[pin.cable].node_at(pin.s) * cable.shape[1] * DIM
-        pins[pin.label] = slice(start, start + DIM)
-        fixed[pins[pin.label]] = True
-    place = np.where(fixed, -1, np.cumsum(~fixed) - 1)
-    weight = np.concatenate(
-        [_cable_weights(c) for c in scene.cables.values()] + [_rigid_weights(b) for b in scene.bodies.values()] + [[]]
-    )
+    rigids = [RigidModel(body.name, kernel, body.mass, np.array(body.inertia), n_flexible + n_configuration * k,
+                         n_flexible + n_velocity * k) for k, body in enumerate(scene.bodies.values())]
+    nodal = {c.name: part.nodal_vectors[..., :dim] for c, part in zip(cables, scene.cables.values(), strict=True)}
+    nodes = {c.name: [Node(scene.cables[c.name].where, c.vectors,
+                           c.first + k * int(np.prod(c.shape[1:])), vectors)
+                      for k, vectors in enumerate(nodal[c.name])] for c in cables}
+    actions = Actions(scene, cables, rigids)
+    elements = np.array([(node.first, 2 * node.vectors.size) for each in nodes.values() for node in each[:-1]],
+                        dtype=int).reshape(-1, 2)
+    reduction = supports(scene, nodes, actions.signal).reduce(n_flexible, elements)
+    for load in scene.loads.values():
+        actions.load(load)
     bodies = list(scene.bodies)
-    joints = [
-        _joint(slide, scene, list(scene.cables).index(slide.along), bodies.index(slide.body))
-        for slide in scene.slides.values()
-    ]
+    joints = [_joint(slide, scene, list(scene.cables).index(slide.along), bodies.index(slide.body), k)
+              for k, slide in enumerate(scene.slides.values())]
+    used = (1 + dim) * len(joints)
+    springs = [actions.spring(spring, used + dim * k) for k, spring in enumerate(scene.springs.values())]
+    gravity = np.array(scene.gravity)[:dim]
     return Model(
-        cables,
-        rigids,
-        joints,
-        q,
-        v,
-        weight,
-        place,
-        n_band=int(np.sum(~fixed[:n_flexible])),
-        n_border_dof=RIGID_DOFS * len(rigids),
-        width=max((2 * c.shape[1] * DIM - 1 for c in cables), default=0),
-        pins=pins,
+        dim, cables, rigids, joints, springs, actions.signals,
+        [MotionModel(dof, p.signal, p.base, p.linear, p.cosine, p.sine) for dof, p in reduction.prescribed],
+        actions.dead, actions.turning,
+        q=np.concatenate([n.ravel() for n in nodal.values()] + [_attitude(b, dim) for b in scene.bodies.values()]
+                         + [[]]),
+        v=np.concatenate([np.zeros(n_flexible)] + [_velocity(b, dim) for b in scene.bodies.values()]),
+        weight=np.concatenate([_cable_weights(c) for c in scene.cables.values()]
+                              + [_rigid_weights(b, dim) for b in scene.bodies.values()] + [[]]),
+        gravity=np.concatenate([_gravity(m, c, gravity) for m, c in zip(cables, scene.cables.values(), strict=True)]
+                               + [_rigid_gravity(b, gravity, n_velocity) for b in rigids] + [[]]),
+        place=np.concatenate([reduction.place, reduction.n_unknowns + np.arange(n_velocity * len(rigids))]).astype(int),
+        combinations=reduction.combinations,
+        n_band=reduction.n_unknowns,
+        n_border_dof=n_velocity * len(rigids),
+        n_extra=used + dim * len(springs),
+        n_multipliers=(dim - 1) * len(joints),
+        width=half_width(reduction, elements),
+        nodes=nodes,
+        tables=[tables_of(name) for name in {c.library for c in cables if c.library is not None}],
     )
 
 
-def _cable(cable: Cable, gravity: np.ndarray, first: int) -> CableModel:
-    from funicular.generated import kernels
-
-    element, law, length = cable.element, cable.law, cable.length / cable.elements
-    section, density = cable.section.moments(), cable.material.density
-    stiffness = getattr(kernels, f"{element}_{law}_stiffness")
+def _cable(cable: Cable, first: int) -> CableModel:
+    element, law, length = cable.element, cable.kernel_law, cable.length / cable.elements
+    kernels, vectors = kernels_of(cable.library), cable.kind_of_element.nodal_vectors
+    m = getattr(kernels, f"{element}_mass")(length, cable.material.density, cable.section.moments())
     return CableModel(
         cable.name, element, law, cable.elements, first, length, cable.material.damping_time,
-        m=getattr(kernels, f"{element}_mass")(length, density, section),
-        A=stiffness(length, section_stiffness(law, cable.section, cable.material)),
-        gravity=getattr(kernels, f"{element}_gravity")(length, density, section, gravity),
-        shape=(cable.elements + 1, len(ELEMENTS[element]), DIM))
+        cable.material.mass_damping, m, constants(cable), (cable.elements + 1, len(vectors), cable.dim), vectors,
+        cable.library)
+
+
+def _gravity(model: CableModel, cable: Cable, gravity: np.ndarray) -> np.ndarray:
+    """(coordinates,): generalised weight of a cable; two elements meet at an inner node."""
+    first, second = model.kernel("gravity")(model.length, cable.material.density, cable.section.moments(),
+                                            gravity).reshape(2, *model.shape[1:])
+    weight = np.zeros(model.shape)
+    weight[:-1] += first
+    weight[1:] += second
+    return weight.ravel()
 
 
 def _cable_weights(cable: Cable) -> np.ndarray:
-    """How far a unit of each nodal vector moves a point: 1 for positions, and lengths for the slopes.
-
-    A unit of r_x moves the middle of an element by l/8, of r_xx by about l^2/64; of r_y or r_z the surface by a
-    radius of gyration.
-    """
-    length = cable.length / cable.elements
+    """How far a unit of each nodal vector moves a point: 1 for positions, and lengths for the slopes."""
     area, iyy, izz = cable.section.moments()[:3]
-    unit = {"r": 1.0, "r_x": length / 8, "r_xx": length**2 / 64, "r_y": np.sqrt(iyy / area), "r_z": np.sqrt(izz / area)}
-    return np.repeat([unit[name] for _ in range(cable.elements + 1) for name in ELEMENTS[cable.element]], DIM)
+    unit = gauge(cable.kind_of_element.nodal_vectors, cable.length / cable.elements, np.sqrt(iyy / area),
+                 np.sqrt(izz / area))
+    return np.repeat(np.tile(list(unit), cable.elements + 1), cable.dim)
 
 
-def _rigid_weights(body) -> np.ndarray:
+def _attitude(body: RigidBody, dim: int) -> np.ndarray:
+    """Its configuration."""
+    if dim == 3:
+        return np.array([*body.position, *body.orientation])
+    w, _, _, z = body.orientation
+    return np.array([*body.position[:2], w * w - z * z, 2 * w * z])
+
+
+def _velocity(body: RigidBody, dim: int) -> list[float]:
+    return [*body.velocity[:dim], *body.angular_velocity[(dim == 2 and 2) or 0 :]]
+
+
+def _rigid_weights(body: RigidBody, dim: int) -> np.ndarray:
     """1 for the centre, the largest radius of gyration for rotations."""
-    radius = np.sqrt(np.max(np.linalg.eigvalsh(np.array(body.inertia))) / body.mass)
-    return np.repeat([1.0, radius], DIM)
+    inertia = np.array(body.inertia)
+    largest = inertia[2, 2] if dim == 2 else np.max(np.linalg.eigvalsh(inertia))
+    return np.repeat([1.0, np.sqrt(largest / body.mass)], [dim, 1 if dim == 2 else 3])
 
 
-def _joint(slide, scene: Scene, cable: int, rider: int) -> JointModel:
-    along, body = scene.cables[slide.along], scene.bodies[slide.body]
+def _rigid_gravity(body: RigidModel, gravity: np.ndarray, n: int) -> np.ndarray:
+    return np.concatenate([body.mass * gravity, np.zeros(n - len(gravity))])
+
+
+def _joint(slide: Slide, scene: Scene, cable: int, rider: int, number: int) -> JointModel:
+    along, body, dim = scene.cables[slide.along], scene.bodies[slide.body], scene.dim
+    axes = along.axes_at(slide.s)
     at = slide.s / along.length * along.elements
     node = along.node_at(slide.s)
     if node is not None:  # on a node: the element that the body moves into
-        forward = np.dot(along.axes[0], body.velocity) >= 0
+        forward = np.dot(axes[0], body.velocity) >= 0
         at = node if forward else node - 1
     return JointModel(
         slide.name,
-        f"slide_{along.element}_rigid",
+        f"slide_{along.element}_{BODIES[dim][0]}",
         cable,
         rider,
+        (1 + dim) * number,
+        (dim - 1) * number,
+        dim == 3 and not along.kind_of_element.director,
         slide.at,
         body.mass,
         slide.s,
         int(np.clip(np.floor(at), 0, along.elements - 1)),
-        along.axes[1],
+        axes[1],
     )
 
 
@@ -236,12 +274,17 @@ def generalised_alpha(spectral_radius: float) -> tuple[float, float, float, floa
     return alpha_m, alpha_f, (1 - alpha_m + alpha_f) ** 2 / 4, 0.5 - alpha_m + alpha_f
 
 
-def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float], None]) -> Recording:
-    """Integrate a checked scene; calls on_progress(time reached in s) about twenty times a second."""
+def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float], None], initial=None) -> Recording:
+    """Integrate a checked scene; calls on_progress(time reached in s) about twenty times a second.
+
+    initial: an `Equilibrium` of this scene to start from, at the scene's velocities.
+    """
     from funicular.engine import Engine
 
     begin = time.perf_counter()
     model = build(scene)
+    if initial is not None:
+        initial.start(model)
     output_step = settings.output_step
     _check_size(model, settings)
     engine = Engine(model)
@@ -269,95 +312,13 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
     if status is None:
         status = engine.advance(on_progress)
     wall = time.perf_counter() - begin
-    return _recording(model, engine, settings, status, messages, {"set_up": set_up, "total": wall})
+    return recorded(model, scene, engine, settings, status, messages, {"set_up": set_up, "total": wall})
 
 
 def _check_size(model: Model, settings: RunSettings) -> None:
     """Refuse what no memory holds, before it is asked for."""
-    per_row = 8 * (model.n_q + 3 * model.n_dof + 11 * len(model.joints) + 5)
+    per_row = 8 * (model.n_q + 3 * model.n_dof + 11 * len(model.joints) + 3 * len(model.springs) + 6)
     need = per_row * settings.duration / settings.output_step
     if not need < MOST_OUTPUT:
         raise SceneError("run", f"output_step {settings.output_step:.6g} s makes {need:.3g} bytes of results, more "
                          f"than {MOST_OUTPUT:.3g}", "take a larger output_step")
-
-
-def _recording(
-    model: Model, engine, settings: RunSettings, status: str, messages: list[str], seconds: dict[str, float]
-) -> Recording:
-    rows = engine.rows()
-    q, v, a = rows["q"], rows["v"], rows["acceleration"]
-    cables = {}
-    for cable in model.cables:
-        at, shape = cable.coordinates, (len(q), *cable.shape)
-        cables[cable.name] = {
-            "nodal_vectors": q[:, at].reshape(shape),
-            "nodal_velocity": v[:, at].reshape(shape),
-            "node_s": cable.length * np.arange(cable.shape[0]),
-            "vector_names": ELEMENTS[cable.element],
-        }
-    bodies = {}
-    for body in model.rigids:
-        b, d = body.configuration, body.dof
-        bodies[body.name] = {
-            "position": q[:, b : b + 3],
-            "orientation": q[:, b + 3 : b + 7],
-            "velocity": v[:, d : d + 3],
-            "angular_velocity": v[:, d + 3 : d + 6],
-            "acceleration": a[:, d : d + 3],
-            "angular_acceleration": a[:, d + 3 : d + 6],
-        }
-    slides = {}
-    for k, joint in enumerate(model.joints):
-        slides[joint.name] = {"s": rows["s"][:, k], **engine.joint_row(rows["joint"][:, k])}
-        slides[joint.name]["residual"] = np.linalg.norm(slides[joint.name]["residual"], axis=-1)
-    statistics = engine.statistics
-    statistics["time_s"] = seconds | statistics["time_s"]
-    report = {
-        "status": status,
-        "integrator": "genalpha",
-        "spectral_radius": settings.spectral_radius,
-        "tol": settings.tol if settings.step is None else None,
-        "step": settings.step,
-        "unknowns": model.n_band + model.n_border_dof + 4 * len(model.joints),
-        "kernels": model.kernels,
-        "messages": messages,
-        **statistics,
-    }
-    return Recording(
-        status="no_convergence" if status == "singular" else status,
-        message=_message(model, engine, status, settings),
-        time=rows["time"],
-        cables=cables,
-        bodies=bodies,
-        slides=slides,
-        pins={label: {"force": rows["reaction"][:, at]} for label, at in model.pins.items()},
-        energy={name: rows[name] for name in ("kinetic", "elastic", "potential", "dissipated")},
-        report=report,
-    )
-
-
-def _message(model: Model, engine, status: str, settings: RunSettings) -> str:
-    when = f"t = {engine.time:.6g} s of {settings.duration:.6g} s"
-    match status:
-        case "end_of_cable":
-            joint = model.joints[engine.stopped_joint]
-            cable = model.cables[joint.cable]
-            middle = 0.5 * cable.n_elements * cable.length
-            end = "end" if engine.rows()["s"][-1, engine.stopped_joint] > middle else "start"
-            return (
-                f'slide "{joint.name}": ran off the {end} of cable "{cable.name}" at {when}; '
-                "what was computed up to there is kept"
-            )
-        case "no_convergence":
-            return (
-                f"no step converged at {when}, down to the smallest step; what was computed up to there is "
-                "kept. Try a smaller tol or step, or damping_time in the material"
-            )
-        case "singular":
-            return (
-                f"the equations are singular at {when}: a joint or the mass matrix is degenerate "
-                "(is a cable's director parallel to its tangent?)"
-            )
-        case "interrupted":
-            return f"interrupted at {when}; what was computed up to there is kept"
-    return f"completed {settings.duration:.6g} s"

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from funicular.errors import ResultFileError
+from funicular.results import ENERGIES
 from funicular.rotations import rotate
+from funicular.section_forces import PLACES, section_forces
 
 if TYPE_CHECKING:
     import os
@@ -43,8 +46,8 @@ class View(NamedTuple):
     names: tuple[str, str]
 
 
-def save_plots(run: Run, directory: str | os.PathLike, prefix: str = "") -> list[Path]:
-    """Draw what the run holds: shape, acceleration, slide, energy.
+def save_plots(run: Run, directory: str | os.PathLike, prefix: str = "", forces: bool = False) -> list[Path]:
+    """Draw what the run holds: shape, acceleration, slide, energy; if asked for, the forces in each cable.
 
     The files are ``directory/<prefix><picture>.png``; pictures without anything to show are left out.
     Returns their paths. Raises ResultFileError.
@@ -52,6 +55,8 @@ def save_plots(run: Run, directory: str | os.PathLike, prefix: str = "") -> list
     from matplotlib import rc_context
 
     drawers = {"shape": draw_shape, "acceleration": draw_acceleration, "slide": draw_slide, "energy": draw_energy}
+    if forces:
+        drawers |= {f"forces-{name}": partial(draw_section_forces, cable=name) for name in run.scene.cables}
     directory, written = Path(directory), []
     try:
         directory.mkdir(parents=True, exist_ok=True)
@@ -70,10 +75,11 @@ def view_of(scene: Scene) -> View:
     """The vertical plane of the first cable; y is up without gravity."""
     gravity = np.array(scene.gravity)
     up = -gravity / np.linalg.norm(gravity) if gravity.any() else np.array([0.0, 1.0, 0.0])
-    candidates = [np.subtract(cable.end, cable.start) for cable in scene.cables.values()]
+    candidates = [cable.point(cable.length) - cable.point(0.0) for cable in scene.cables.values()]
     candidates += list(np.eye(3))  # for vertical cables and for none
     level = [c - np.dot(c, up) * up for c in candidates]
-    across = next(v for v, c in zip(level, candidates, strict=True) if np.linalg.norm(v) > 1e-6 * np.linalg.norm(c))
+    across = next(v for v, c in zip(level, candidates, strict=True)
+                  if np.linalg.norm(v) > 1e-6 * np.linalg.norm(c))  # not those of rings, whose ends meet
     across = across / np.linalg.norm(across)
     return View(across, up, (_axis_name(across), _axis_name(up)))
 
@@ -147,9 +153,10 @@ def draw_shape(run: Run) -> Figure | None:
             zorder=4,
             label=None if number else "rider",
         )
-    if scene.pins:
-        pins = np.array([scene.cables[pin.cable].point(pin.s) for pin in scene.pins]) @ plane.T
-        axes.scatter(*pins.T, marker="^", s=60, color="0.1", zorder=5, label="pin")
+    for marker, label, supports in (("^", "pin", scene.pins), ("s", "clamp", scene.clamps)):
+        if supports:
+            held = np.array([scene.cables[support.cable].point(support.s) for support in supports]) @ plane.T
+            axes.scatter(*held.T, marker=marker, s=60, color="0.1", zorder=5, label=label)
     _set_scales(axes, view)
     if axes.get_legend_handles_labels()[0]:
         axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
@@ -213,15 +220,38 @@ def draw_slide(run: Run) -> Figure | None:
     return figure
 
 
+def draw_section_forces(run: Run, cable: str) -> Figure:
+    """Tension and size of the moment along a cable, at a few times, coloured by time."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+    from matplotlib.figure import Figure
+
+    described = run.scene.cables[cable]
+    s = np.linspace(0, described.length, PLACES * described.elements + 1)
+    shown = np.unique(np.linspace(0, len(run.time) - 1, SNAPSHOTS).round().astype(int))
+    colour = ScalarMappable(Normalize(run.time[0], max(run.time[-1], run.time[0] + 1e-9)), "viridis")
+    forces = section_forces(described, run[f"{cable}.nodal_vectors"][shown], s)
+    figure = Figure(figsize=(7, 4.8))
+    tension, moment = figure.subplots(2, sharex=True)
+    for time, pull, turn in zip(run.time[shown], forces["tension"], forces["moment"], strict=True):
+        tension.plot(s, pull, color=colour.to_rgba(time))
+        moment.plot(s, np.linalg.norm(turn, axis=-1), color=colour.to_rgba(time))
+    tension.set_ylabel("tension / N")
+    moment.set_ylabel("moment / (N m)")
+    moment.set_xlabel(f"arc-length s of {cable} / m")
+    figure.colorbar(colour, ax=[tension, moment], label="time / s", pad=0.02, fraction=0.04)
+    return figure
+
+
 def draw_energy(run: Run) -> Figure:
     """The changes of the energies since the start, and how well they cancel."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(7, 4.8))
     changes, error = figure.subplots(2, sharex=True, height_ratios=(2.2, 1))
-    for name in ("kinetic", "elastic", "potential", "dissipated"):
+    for name in (name for name in ENERGIES if f"energy.{name}" in run):
         energy = run[f"energy.{name}"]
-        if name != "dissipated" or energy.any():
+        if name in ("kinetic", "elastic", "potential") or energy.any():
             changes.plot(run.time, energy - energy[0], label=name)
     changes.axhline(0, color="0.4", linewidth=0.7)
     changes.set_ylabel("change of energy / J")

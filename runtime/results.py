@@ -14,6 +14,7 @@ from funicular.errors import ResultFileError, UnknownResultError, near
 
 if TYPE_CHECKING:
     import xarray
+    from funicular.cables import Cable
     from funicular.scene import Scene
     from funicular.settings import RunSettings
 
@@ -32,6 +33,8 @@ class Variable(NamedTuple):
 
 _XYZ, _TIME = ("time", "xyz"), ("time",)
 
+_SUPPORT = {"force": (_XYZ, "N", "force on the cable"), "moment": (_XYZ, "N m", "moment on the cable")}
+
 QUANTITIES = {
     "bodies": {
         "position": (_XYZ, "m", "position of the centre of mass"),
@@ -49,20 +52,28 @@ QUANTITIES = {
         "multiplier": (("time", "normal"), "N", "multipliers of the two constraints across the cable"),
         "residual": (_TIME, "m", "distance of the rider's point to the cable"),
     },
-    "pins": {"force": (_XYZ, "N", "force on the cable")},
+    "pins": {"force": _SUPPORT["force"]},
+    "clamps": _SUPPORT,
+    "motions": _SUPPORT,
+    "joins": _SUPPORT,
+    "springs": {
+        "tension": (_TIME, "N", "force with which the ends are drawn together"),
+        "length": (_TIME, "m", "distance of the ends"),
+    },
 }
 ENERGIES = {
     "kinetic": "kinetic energy",
     "elastic": "elastic energy",
     "potential": "potential energy of gravity",
     "dissipated": "energy lost to damping since the start",
+    "external": "work of loads other than gravity and of prescribed motions since the start",
 }
 
 
 class EnergyBalance(NamedTuple):
-    """residual (time,): kinetic + elastic + potential + dissipated, minus the same at the start, in J.
+    """residual (time,): kinetic + elastic + potential + dissipated - external, minus the same at the start, in J.
 
-    exchanged: the most energy that had changed its kind at any time, half the sum of the four changes, in J;
+    exchanged: the most energy that had changed its kind at any time, half the sum of these changes, in J;
     relative (time,): residual / exchanged, the residual itself if nothing was exchanged.
     """
 
@@ -99,11 +110,12 @@ class Run:
                 dims, cable["nodal_velocity"], "m/s (r), 1/s (its gradients)", "rates of the nodal vectors"
             )
         for group, quantities in QUANTITIES.items():
-            for name, arrays in getattr(recording, group).items():
+            for name, arrays in getattr(recording, group, {}).items():
                 for quantity, values in arrays.items():
                     dims, units, long_name = quantities[quantity]
                     variables[f"{name}.{quantity}"] = Variable(dims, values, units, long_name)
-        for name, long_name in ENERGIES.items():
+        for name in recording.energy:
+            long_name = ENERGIES[name]
             variables[f"energy.{name}"] = Variable(_TIME, recording.energy[name], "J", long_name)
         report = {
             **recording.report,
@@ -192,10 +204,23 @@ class Run:
 
     def energy_balance(self) -> EnergyBalance:
         """How well the energy books close; see `EnergyBalance`."""
-        changes = np.array([self[f"energy.{name}"] - self[f"energy.{name}"][0] for name in ENERGIES])
+        energies = {name: self[f"energy.{name}"] for name in ENERGIES if f"energy.{name}" in self}
+        changes = np.array([(e - e[0]) * (-1 if name == "external" else 1) for name, e in energies.items()])
         residual = changes.sum(axis=0)
         exchanged = float(np.abs(changes).sum(axis=0).max() / 2)
         return EnergyBalance(residual, exchanged, residual / (exchanged or 1.0))
+
+    def section_forces(self, cable: Cable | str, s=None) -> xarray.Dataset:
+        """Forces and moments in sections of ``cable``, at arc-lengths ``s`` (n,) in m; none given: along all of it.
+
+        Returns a Dataset over (time, s): force and moment, on the part before the cut along the ground's axes (xyz), in
+        N and N m; tension, shear and strain; curvature of cables; components along the section's axes of beams. At a
+        node, where the forces of an element may jump, they are those of the element that begins there.
+        Raises UnknownResultError; FunicularError where s is off the cable.
+        """
+        from funicular.section_forces import dataset
+
+        return dataset(self, cable, s)
 
     def summary_rows(self) -> list[tuple[str, str]]:
         """What to tell about the run in short: pairs of a heading and a text."""

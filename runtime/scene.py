@@ -4,17 +4,38 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
 
 import numpy as np
 from funicular.errors import ConvergenceError, EndOfCableError, FunicularWarning, SceneError, near
 from funicular.materials import Material
-from funicular.parts import EXACT, Cable, Pin, RigidBody, Slide
+from funicular.parts import (
+    EXACT,
+    Cable,
+    Clamp,
+    DistributedForce,
+    Force,
+    Join,
+    Moment,
+    Motion,
+    Pin,
+    RigidBody,
+    Slide,
+    Spring,
+)
+from funicular.placing import cable_at, check_join, check_support, placed_load, placed_spring
+from funicular.plane import check_plane
 from funicular.progress import progress_bar
 from funicular.results import Run, check_writable
 from funicular.sections import Section
-from funicular.settings import RunSettings
-from funicular.validation import show, vector
+from funicular.settings import EquilibriumSettings, ModeSettings, RunSettings
+from funicular.supports import Support
+from funicular.validation import Part, show, vector
+
+if TYPE_CHECKING:
+    from funicular.modal import Modes
+    from funicular.static import Equilibrium
 
 MOVABLE = 1e-3
 """A rider nearer to its cable than this part of the cable's length is moved onto it at the start."""
@@ -23,10 +44,11 @@ RESERVED = ("energy", "time")
 
 
 class Scene:
-    """Cables, bodies, and what joins them.
+    """Cables, bodies, and what joins, holds and loads them.
 
-    ``gravity`` in m/s²; ``cables``, ``bodies`` and ``slides`` are dicts by name, ``pins`` is a list; ``messages``
-    tells what was adjusted; ``run_settings`` holds the settings that a scene file gives.
+    ``gravity`` in m/s²; ``cables``, ``bodies``, ``slides``, ``joins``, ``loads`` and ``springs`` are dicts by name;
+    ``pins``, ``clamps`` and ``motions`` are lists; ``messages`` tells what was adjusted; ``run_settings`` and
+    ``equilibrium_settings`` hold the settings that a scene file gives.
     """
 
     def __init__(self, gravity=(0, -9.81, 0)):
@@ -36,39 +58,52 @@ class Scene:
         except ValueError as error:
             raise SceneError("scene", f"gravity {error}") from None
         self.cables: dict[str, Cable] = {}
+        self.pins: list[Pin] = []
+        self.clamps: list[Clamp] = []
+        self.motions: list[Motion] = []
+        self.joins: dict[str, Join] = {}
         self.bodies: dict[str, RigidBody] = {}
         self.slides: dict[str, Slide] = {}
-        self.pins: list[Pin] = []
+        self.loads: dict[str, Force | DistributedForce | Moment] = {}
+        self.springs: dict[str, Spring] = {}
         self.messages: list[str] = []
         self.run_settings: dict = {}
+        self.equilibrium_settings: dict = {}
 
     def cable(
         self,
         name: str,
         *,
-        start,
-        end,
+        start=None,
+        end=None,
+        points=None,
+        curve: Callable | None = None,
         elements: int,
         section: Section,
         material: Material,
         element: str = "beam24",
+        library: str | os.PathLike | None = None,
+        law: str | None = None,
         strain: str | None = None,
         curvature: str | None = None,
         up=(0, 1, 0),
+        rest: str = "drawn",
+        rest_length: float | None = None,
     ) -> Cable:
-        """Add a straight cable of equal elements; see `Cable`. Raises SceneError."""
+        """Add a cable of equal elements: straight, through points, or along a curve; see `Cable`. Raises SceneError."""
+        shape = {"start": start, "end": end, "points": points, "curve": curve, "law": law, "strain": strain,
+                 "curvature": curvature, "rest_length": rest_length}
         return self.add(
             Cable(
                 name=name,
-                start=start,
-                end=end,
                 elements=elements,
                 element=element,
-                strain=strain,
-                curvature=curvature,
+                library=library,
                 section=section,
                 material=material,
                 up=up,
+                rest=rest,
+                **{keyword: value for keyword, value in shape.items() if value is not None},
             )
         )
 
@@ -100,6 +135,47 @@ class Scene:
         """Hold the node of ``cable`` at arc-length ``s`` (m) in its place. Raises SceneError."""
         return self.add(Pin(cable=cable, s=s))
 
+    def clamp(self, cable: Cable | str, *, s: float, hold: str = "section") -> Clamp:
+        """Hold the node of ``cable`` at ``s`` (m) in its place and direction; see `Clamp`. Raises SceneError."""
+        return self.add(Clamp(cable=cable, s=s, hold=hold))
+
+    def motion(self, cable: Cable | str, *, s: float, displacement=None, rotation=None) -> Motion:
+        """Move the node of ``cable`` at ``s`` (m) as prescribed.
+
+        displacement: 3 signals or numbers (m); rotation: an axis and a signal (rad); see `Motion`. Raises SceneError.
+        """
+        return self.add(Motion(cable=cable, s=s, displacement=displacement, rotation=rotation))
+
+    def join(self, cable: Cable | str, *, s: float, to: Cable | str, at: float, rotation: str = "rigid",
+             name: str | None = None) -> Join:
+        """Join nodes of two cables, at ``s`` and ``at`` (m), rigidly or as a hinge; see `Join`. Raises SceneError."""
+        return self.add(Join(cable=cable, s=s, to=to, at=at, rotation=rotation, **_named(name)))
+
+    def force(self, on: Cable | RigidBody | str, *, value, s: float | None = None, at=None, scale=1.0,
+              follower: bool = False, name: str | None = None) -> Force:
+        """Add a force of ``value`` (N) times the signal ``scale``; see `Force`. Raises SceneError."""
+        place = {keyword: given for keyword, given in (("s", s), ("at", at)) if given is not None}
+        return self.add(Force(on=on, value=value, scale=scale, follower=follower, **place, **_named(name)))
+
+    def distributed_force(self, cable: Cable | str, *, value, start: float | None = None, stop: float | None = None,
+                          scale=1.0, follower: bool = False, name: str | None = None) -> DistributedForce:
+        """Add a force along a cable, ``value`` in N/m; see `DistributedForce`. Raises SceneError."""
+        ends = {keyword: given for keyword, given in (("start", start), ("stop", stop)) if given is not None}
+        return self.add(DistributedForce(cable=cable, value=value, scale=scale, follower=follower, **ends,
+                                         **_named(name)))
+
+    def moment(self, on: Cable | RigidBody | str, *, value, s: float | None = None, scale=1.0,
+               name: str | None = None) -> Moment:
+        """Add a moment of ``value`` (N m) times the signal ``scale``; see `Moment`. Raises SceneError."""
+        place = {} if s is None else {"s": s}
+        return self.add(Moment(on=on, value=value, scale=scale, **place, **_named(name)))
+
+    def spring(self, a, b, *, stiffness: float, damping: float = 0.0, length: float | None = None,
+               name: str | None = None) -> Spring:
+        """Add a spring with a damper between two points; see `Spring`. Raises SceneError."""
+        free = {} if length is None else {"length": length}
+        return self.add(Spring(a=a, b=b, stiffness=stiffness, damping=damping, **free, **_named(name)))
+
     def slide(
         self, body: RigidBody | str, *, along: Cable | str, s: float, at=(0, 0, 0), name: str | None = None
     ) -> Slide:
@@ -107,33 +183,60 @@ class Scene:
 
         A body slightly off the cable is moved onto it, with a `FunicularWarning`. Raises SceneError.
         """
-        named = {} if name is None else {"name": name}
-        return self.add(Slide(body=body, along=along, s=s, at=at, **named))
+        return self.add(Slide(body=body, along=along, s=s, at=at, **_named(name)))
 
-    def add(self, part: Cable | RigidBody | Pin | Slide) -> Cable | RigidBody | Pin | Slide:
-        """Add a part made elsewhere; the methods above end here. Raises SceneError."""
+    def add(self, part: Part) -> Part:
+        """Add a part made elsewhere, complete it with what the scene knows; the methods above end here.
+
+        Returns the part as it stands in the scene. Raises SceneError.
+        """
+        if isinstance(part, Join | Force | DistributedForce | Moment | Spring) and part.name is None:
+            part = part.model_copy(update={"name": self._free_name(part.kind)})
+        if hasattr(part, "name"):
+            self._claim(part)
+        check_plane(self, part)
         match part:
             case Cable():
-                self._claim(part)
-                self.cables[part.name] = part
+                self._add_cable(part)
             case RigidBody():
-                self._claim(part)
                 self.bodies[part.name] = part
-            case Pin():
-                self._check_pin(part)
-                self.pins.append(part)
+            case Pin() | Clamp() | Motion():
+                check_support(self, part)
+                {"pin": self.pins, "clamp": self.clamps, "motion": self.motions}[part.kind].append(part)
+            case Join():
+                check_join(self, part)
+                self.joins[part.name] = part
             case Slide():
-                self._claim(part)
                 cable = self._check_slide(part)
                 part = part.model_copy(update={"s": min(max(part.s, 0.0), cable.length)})
                 self._seat(part)
                 self.slides[part.name] = part
+            case Spring():
+                self.springs[part.name] = part = placed_spring(self, part)
+            case _:
+                self.loads[part.name] = part = placed_load(self, part)
         return part
+
+    @property
+    def dim(self) -> int:
+        """2 if its cables are planar, else 3."""
+        return min((cable.dim for cable in self.cables.values()), default=3)
+
+    @property
+    def supports(self) -> list[Support]:
+        """All that holds or moves nodes: pins, clamps and motions."""
+        return [*self.pins, *self.clamps, *self.motions]
+
+    def parts(self) -> Iterator[Part]:
+        """All parts, in an order in which they can be added."""
+        for group in (self.cables, self.supports, self.joins, self.bodies, self.slides, self.loads, self.springs):
+            yield from group.values() if isinstance(group, dict) else group
 
     def check(self) -> None:
         """Check the scene as a whole, as `run` does first. Raises SceneError."""
         if not self.cables and not self.bodies:
             raise SceneError("scene", "is empty: there is nothing to simulate", "add a cable or a rigid body")
+        check_plane(self)
         for slide in self.slides.values():
             gap, where = self._gap(slide)
             if gap > EXACT * self.cables[slide.along].length:
@@ -150,18 +253,21 @@ class Scene:
         output_step: float | None = None,
         integrator: str | None = None,
         spectral_radius: float | None = None,
+        initial: str | Equilibrium | None = None,
         save: str | os.PathLike | None = None,
         progress: bool | Callable[[float], None] | None = None,
     ) -> Run:
         """Simulate the scene for ``duration`` (s); see `RunSettings` for the settings and their defaults.
 
-        Settings not given here are the scene file's, if it gave them. save: a netCDF file, tried before the
+        Settings not given here are the scene file's, if it gave them. initial: "drawn", "equilibrium" (found first),
+        or a state that `equilibrium` returned. save: a netCDF file, tried before the
         run and written also when that stops early. progress: a bar (True), none (False), a bar if a terminal
         watches (None), or a function of the time reached.
 
-        Raises SceneError, ResultFileError; EndOfCableError and ConvergenceError, whose ``run`` holds
+        Raises SceneError, ResultFileError, EquilibriumError; EndOfCableError and ConvergenceError, whose ``run`` holds
         everything up to then. Ctrl-C returns what was computed, with a `FunicularWarning`.
         """
+        state = None if initial is None or isinstance(initial, str) else _equilibrium_state(initial)
         given = {
             "duration": duration,
             "tol": tol,
@@ -169,17 +275,23 @@ class Scene:
             "output_step": output_step,
             "integrator": integrator,
             "spectral_radius": spectral_radius,
+            "initial": initial if state is None else "equilibrium",
             "save": None if save is None else os.fspath(save),
         }
         settings = RunSettings(**self.run_settings | {k: v for k, v in given.items() if v is not None})
         self.check()
+        if settings.initial == "drawn":
+            self._check_motions_start_at_zero()
         if settings.save is not None:
             check_writable(settings.save)
+        if settings.initial == "equilibrium" and state is None:
+            state = self.equilibrium()
 
         from funicular.model import simulate
 
+        start = {} if state is None else {"initial": state}
         with progress_bar(settings.duration, progress) as on_progress:
-            recording = simulate(self, settings, on_progress)
+            recording = simulate(self, settings, on_progress, **start)
         run = Run.from_recording(recording, self, settings)
         if settings.save is not None:
             run.save(settings.save)
@@ -192,46 +304,89 @@ class Scene:
                 warnings.warn(recording.message, FunicularWarning, stacklevel=2)
         return run
 
+    def equilibrium(
+        self,
+        *,
+        load_steps: int | None = None,
+        tolerance: float | None = None,
+        max_iterations: int | None = None,
+        method: str | None = None,
+    ) -> Equilibrium:
+        """Find the static equilibrium under all loads at t = 0; see `EquilibriumSettings` for the defaults.
+
+        Settings not given here are the scene file's, if it gave them. Raises SceneError; EquilibriumError, which keeps
+        the state that was reached.
+        """
+        given = {"load_steps": load_steps, "tolerance": tolerance, "max_iterations": max_iterations, "method": method}
+        settings = EquilibriumSettings(**self.equilibrium_settings | {k: v for k, v in given.items() if v is not None})
+        self.check()
+
+        from funicular.static import equilibrium
+
+        return equilibrium(self, settings)
+
+    def modes(self, n: int, about: Equilibrium | None = None) -> Modes:
+        """The ``n`` lowest natural frequencies and shapes, about the scene as drawn or a state from `equilibrium`.
+
+        Raises SceneError.
+        """
+        settings = ModeSettings(n=n)
+        state = None if about is None else _equilibrium_state(about)
+        self.check()
+
+        from funicular.modal import modes
+
+        return modes(self, settings.n, state)
+
     def to_toml(self) -> str:
         """The scene as the text of a scene file."""
         from funicular.scene_file import dumps
 
         return dumps(self)
 
-    def _claim(self, part: Cable | RigidBody | Slide) -> None:
+    @property
+    def _named(self) -> dict[str, Part]:
         """Results are addressed by name, so that all named parts share one space of names."""
-        for kind, named in (("cable", self.cables), ("rigid_body", self.bodies), ("slide", self.slides)):
-            if part.name in named:
-                raise SceneError(part.where, f"there is already a {kind} of that name", "give each part its own name")
+        return self.cables | self.joins | self.bodies | self.slides | self.loads | self.springs
+
+    def _claim(self, part: Part) -> None:
+        if part.name in self._named:
+            kind = self._named[part.name].kind
+            raise SceneError(part.where, f"there is already a {kind} of that name", "give each part its own name")
         if part.name in RESERVED:
             raise SceneError(part.where, "that name is taken by the results", "give another one")
 
-    def _cable(self, name: str, place: str, s: float) -> Cable:
-        """The cable ``name``, on which ``s`` must lie."""
-        if name not in self.cables:
-            raise SceneError(place, f'there is no cable "{name}"', near(name, self.cables))
-        cable = self.cables[name]
-        if not -EXACT * cable.length <= s <= (1 + EXACT) * cable.length:
-            raise SceneError(place, f"s must lie on the cable, in [0, {cable.length:.9g}] m, got {s:.9g} m")
-        return cable
+    def _free_name(self, kind: str) -> str:
+        number = 1
+        while f"{kind}_{number}" in self._named:
+            number += 1
+        return f"{kind}_{number}"
 
-    def _check_pin(self, pin: Pin) -> None:
-        cable = self._cable(pin.cable, pin.where, pin.s)
-        node = cable.node_at(pin.s)
-        if node is None:
-            nodes = cable.node_s
-            if len(nodes) > 12:  # a long list helps less than the two neighbours
-                right = int(np.searchsorted(nodes, pin.s))
-                nodes = nodes[right - 1 : right + 1]
-            raise SceneError(
-                pin.where,
-                f"s must be a node of the cable, got {show(pin.s, 'm')}",
-                f"nodes {'near it ' if len(cable.node_s) > 12 else ''}are at "
-                + ", ".join(f"{s:.9g}" for s in nodes)
-                + " m",
-            )
-        if any(other.cable == pin.cable and cable.node_at(other.s) == node for other in self.pins):
-            raise SceneError(pin.where, f"the node at s = {show(pin.s, 'm')} is already pinned")
+    def _add_cable(self, cable: Cable) -> None:
+        for other in self.cables.values():
+            if other.dim != cable.dim:
+                word = {2: "planar", 3: "spatial"}
+                raise SceneError(
+                    cable.where, f'{cable.element} is {word[cable.dim]}, but the elements of cable "{other.name}" '
+                    f"({other.element}) are {word[other.dim]}", "take planar elements for all cables, or for none")
+        self.cables[cable.name] = cable
+        try:
+            check_plane(self)
+        except SceneError:
+            del self.cables[cable.name]
+            raise
+
+    def _check_motions_start_at_zero(self) -> None:
+        """A run that starts as drawn must not begin with a jump."""
+        for motion in self.motions:
+            length = self.cables[motion.cable].length
+            starts = [(f"displacement {axis}", signal, length, "m")
+                      for axis, signal in zip("xyz", motion.displacement or (), strict=False)]
+            starts += [("rotation", motion.rotation.angle, 1.0, "rad")] if motion.rotation else []
+            for name, signal, size, unit in starts:
+                if abs(value := float(signal.value(0.0))) > EXACT * size:
+                    raise SceneError(motion.where, f"{name} is {show(value, unit)} at t = 0, but counts from the place "
+                                     "drawn", 'let it start from 0, or start with initial="equilibrium"')
 
     def _check_slide(self, slide: Slide) -> Cable:
         if slide.body not in self.bodies:
@@ -240,7 +395,7 @@ class Scene:
             if (other.body, other.along, other.at) == (slide.body, slide.along, slide.at):
                 raise SceneError(slide.where, f'holds the same point of body "{slide.body}" on cable "{slide.along}" '
                                  f'as slide "{other.name}"', "leave one of them out, or give them different points at")
-        return self._cable(slide.along, slide.where, slide.s)
+        return cable_at(self, slide.along, slide.where, slide.s)
 
     def _gap(self, slide: Slide) -> tuple[float, str]:
         """The distance in m from the rider's point to its place on the cable, and a sentence on it."""
@@ -268,3 +423,15 @@ class Scene:
         message = f'{slide.where}: body "{body.name}" was moved by {gap:.6g} m onto cable "{cable.name}"'
         self.messages.append(message)
         warnings.warn(message, FunicularWarning, stacklevel=4)
+
+
+def _named(name: str | None) -> dict:
+    return {} if name is None else {"name": name}
+
+
+def _equilibrium_state(state: Equilibrium) -> Equilibrium:
+    from funicular.static import Equilibrium
+
+    if not isinstance(state, Equilibrium):
+        raise SceneError("scene", f"the state to start from must be one that equilibrium() returned, got {state!r}")
+    return state

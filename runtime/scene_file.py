@@ -1,7 +1,7 @@
 """Scenes as TOML files.
 
-Tables, with the names of the Python API: ``gravity``, ``[[cable]]``, ``[[pin]]``, ``[[rigid_body]]``,
-``[[slide]]``, ``[run]``. All checks are those of `funicular.parts`, `funicular.settings` and `Scene`.
+Tables, with the names of the Python API: ``gravity``, one array of tables for each kind of part (``[[cable]]``,
+``[[pin]]``, ...), ``[equilibrium]`` and ``[run]``. All checks are those of the parts, the settings and `Scene`.
 """
 
 from __future__ import annotations
@@ -13,18 +13,20 @@ from pathlib import Path
 from typing import Any
 
 from funicular.errors import SceneError, near
-from funicular.parts import Cable, Pin, RigidBody, Slide
+from funicular.parts import PARTS
 from funicular.scene import Scene
 from funicular.sections import Section
-from funicular.settings import RunSettings
+from funicular.settings import EquilibriumSettings, RunSettings
+from funicular.signals import Constant, Signal
+from funicular.springs import End
+from funicular.supports import Rotation
 from funicular.validation import Part
 
 SCENES = Path(__file__).parent / "scenes"
 
-PARTS = {part.kind: part for part in (Cable, Pin, RigidBody, Slide)}
-"""In the order in which they can be added: a slide needs its cable and its body."""
+SETTINGS = {"run": RunSettings, "equilibrium": EquilibriumSettings}
 
-TABLES = ("gravity", *PARTS, "run")
+TABLES = ("gravity", *PARTS, *SETTINGS)
 
 
 def bundled_scenes() -> dict[str, Path]:
@@ -51,11 +53,14 @@ def load_scene(path: str | os.PathLike) -> Scene:
         text = file.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise SceneError(str(file), f"cannot be read as text: {error}") from None
-    return loads(text, str(file))
+    return loads(text, str(file), file.parent)
 
 
-def loads(text: str, origin: str) -> Scene:
-    """A scene from the text of a scene file; ``origin`` is what error messages call it. Raises SceneError."""
+def loads(text: str, origin: str, directory: str | os.PathLike = "") -> Scene:
+    """A scene from the text of a scene file; ``origin`` is what error messages call it.
+
+    directory: where paths in the text start from, by default the working directory. Raises SceneError.
+    """
     try:
         tables = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:  # its text gives line and column
@@ -67,9 +72,10 @@ def loads(text: str, origin: str) -> Scene:
         scene = Scene(**{name: tables[name] for name in ("gravity",) if name in tables})
         for kind, part in PARTS.items():
             for index, table in enumerate(_array(tables, kind), start=1):
-                scene.add(_part(part, table, index))
-        if "run" in tables:
-            scene.run_settings = _run_settings(tables["run"])
+                scene.add(_part(part, _placed(table, directory), index))
+        for name in SETTINGS:
+            if name in tables:
+                setattr(scene, f"{name}_settings", _settings(name, tables[name]))
     except SceneError as error:
         raise error.inside(origin) from None
     return scene
@@ -82,6 +88,12 @@ def _array(tables: dict, kind: str) -> list:
     return array
 
 
+def _placed(table: dict, directory: str | os.PathLike) -> dict:
+    """A table with its library seen from the working directory, and not from the scene file's."""
+    library = table.get("library")
+    return table | {"library": os.path.join(directory, library)} if isinstance(library, str) else table
+
+
 def _part(part: type[Part], table: dict, index: int) -> Part:
     try:
         return part(**table)
@@ -91,35 +103,43 @@ def _part(part: type[Part], table: dict, index: int) -> Part:
         raise SceneError(f"[[{part.kind}]] {index}", error.cause, error.remedy) from None
 
 
-def _run_settings(table: Any) -> dict:
-    """What a [run] table sets, checked."""
+def _settings(name: str, table: Any) -> dict:
+    """What a table of settings sets, checked."""
     if not isinstance(table, dict):
-        raise SceneError("[run]", "must be a table")
-    return RunSettings(**table).model_dump(exclude_unset=True)
+        raise SceneError(f"[{name}]", "must be a table")
+    return SETTINGS[name](**table).model_dump(exclude_unset=True)
 
 
 def dumps(scene: Scene) -> str:
     """The text of a scene file, such that `loads` makes the same scene of it."""
-    lines = [f"gravity = {_toml(scene.gravity)}"]
-    for kind, parts in (
-        ("cable", scene.cables.values()),
-        ("pin", scene.pins),
-        ("rigid_body", scene.bodies.values()),
-        ("slide", scene.slides.values()),
-    ):
+    lines, parts = [f"gravity = {_toml(scene.gravity)}"], list(scene.parts())
+    for kind in PARTS:
         for part in parts:
-            lines += ["", f"[[{kind}]]", *_lines(_table(part))]
-    if scene.run_settings:
-        lines += ["", "[run]", *_lines(scene.run_settings)]
+            if part.kind == kind:
+                lines += ["", f"[[{kind}]]", *_lines(_data(part))]
+    for name in SETTINGS:
+        if settings := getattr(scene, f"{name}_settings"):
+            lines += ["", f"[{name}]", *_lines(settings)]
     return "\n".join(lines) + "\n"
 
 
-def _table(part: Part) -> dict:
-    """The fields of a part that are set, tables of parts among them."""
-    shape = {"shape": part.shape} if isinstance(part, Section) else {}
-    return shape | {
-        name: _table(value) if isinstance(value, Part) else value for name, value in part if value is not None
-    }
+def _data(value: Any) -> Any:
+    """A value as plain data: of a part all that is set, defaults too, which a later version may change."""
+    match value:
+        case Constant():
+            return value.constant
+        case End():
+            return value.data()
+        case Rotation():
+            return [value.axis, _data(value.angle)]
+        case Part():
+            tag = {"shape": value.shape} if isinstance(value, Section) else {}
+            tag = {"form": value.form} if isinstance(value, Signal) else tag
+            given = {keyword: getattr(value, name) for keyword, name in value.keywords().items()}
+            return tag | {keyword: _data(each) for keyword, each in given.items() if each is not None}
+        case list() | tuple():
+            return [_data(each) for each in value]
+    return value
 
 
 def _lines(table: dict) -> list[str]:
@@ -130,6 +150,8 @@ def _toml(value: Any) -> str:
     match value:
         case str():
             return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+        case bool():
+            return str(value).lower()
         case dict():
             return "{" + ", ".join(_lines(value)) + "}"
         case list() | tuple():

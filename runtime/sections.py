@@ -1,25 +1,42 @@
 """Cross-sections. y runs along the cable's ``up`` (height), z along its width; lengths in m.
 
-A further section is one class with ``moments`` and one entry in `SHAPES`.
+A further section is one class with ``moments``, its torsion constant and shear factors, and one entry in `SHAPES`.
 """
 
 from __future__ import annotations
 
-from math import pi
+from math import exp, nan, pi
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
-from funicular.errors import near
-from funicular.validation import Part, positive
-from pydantic import PlainValidator, model_validator
+from funicular.errors import SceneError, near
+from funicular.validation import Part, positive, show, vector
+from pydantic import Field, PlainValidator, model_validator
 
 Length = Annotated[float, positive("m")]
+ZETA_5 = 1.03692775514336992633  # Σ 1/n⁵
+
+
+def _factors(value: Any) -> tuple[float, float]:
+    factors = vector(value, size=2)
+    if not min(factors) > 0:
+        raise ValueError(f"must be positive, got {show(factors)}", "give (ky, kz), 1 for no correction")
+    return factors
+
+
+TorsionConstant = Annotated[float, positive("m⁴")]
+ShearFactors = Annotated[tuple[float, float], PlainValidator(_factors)]
 
 
 class Section(Part):
-    """Base of doubly symmetric sections: their odd moments are zero, their axis is the centroid."""
+    """Base of doubly symmetric sections: their odd moments are zero, their axis is the centroid.
+
+    ``torsion_constant`` (m⁴) and ``shear_factors`` (ky, kz), given to a section, replace those of its shape.
+    """
 
     shape: ClassVar[str]
+    given_torsion_constant: TorsionConstant | None = Field(None, alias="torsion_constant")
+    given_shear_factors: ShearFactors | None = Field(None, alias="shear_factors")
 
     def moments(self) -> np.ndarray:
         """The even moments up to order 4.
@@ -27,6 +44,22 @@ class Section(Part):
         Returns (6,): [∫dA, ∫y²dA, ∫z²dA, ∫y⁴dA, ∫y²z²dA, ∫z⁴dA] in m², m⁴, m⁴, m⁶, m⁶, m⁶.
         """
         raise NotImplementedError
+
+    @property
+    def torsion_constant(self) -> float:
+        """St Venant's J in m⁴: torque = G J times the twist per length."""
+        return self._shape_torsion_constant() if self.given_torsion_constant is None else self.given_torsion_constant
+
+    def shear_factors(self, poisson_ratio: float) -> tuple[float, float]:
+        """Timoshenko's (ky, kz): shear force = k G A times the mean shear angle, along y and z."""
+        given = self.given_shear_factors
+        return self._shape_shear_factors(poisson_ratio) if given is None else given
+
+    def _shape_torsion_constant(self) -> float:
+        raise SceneError(type(self).__name__, "has no torsion_constant", "give it, in m⁴")
+
+    def _shape_shear_factors(self, poisson_ratio: float) -> tuple[float, float]:
+        raise SceneError(type(self).__name__, "has no shear_factors", "give (ky, kz)")
 
     @property
     def area(self) -> float:
@@ -58,6 +91,21 @@ class Rectangle(Section):
         yy, zz = h * h / 12, w * w / 12
         return area * np.array([1, yy, zz, h**4 / 80, yy * zz, w**4 / 80])
 
+    def _shape_torsion_constant(self) -> float:
+        """St Venant's series (Timoshenko & Goodier, Theory of Elasticity, art. 109), to rounding.
+
+        J = long short³ / 3 (1 - 192/π⁵ short/long Σ tanh(nπ long / 2 short) / n⁵), n odd. Summed as Σ 1/n⁵, which is
+        31/32 ζ(5), less Σ (1 - tanh) / n⁵, whose terms fall like exp(-nπ).
+        """
+        short, long = sorted((self.height, self.width))
+        less = sum(2 / (exp(n * pi * long / short) + 1) / n**5 for n in range(1, 15, 2) if n * long < 200 * short)
+        return long * short**3 / 3 * (1 - 192 / pi**5 * short / long * (31 / 32 * ZETA_5 - less))
+
+    def _shape_shear_factors(self, poisson_ratio: float) -> tuple[float, float]:
+        """Cowper, J. Appl. Mech. 33 (1966) 335-340."""
+        factor = 10 * (1 + poisson_ratio) / (12 + 11 * poisson_ratio)
+        return factor, factor
+
 
 class Circle(Section):
     """A solid circle, ``radius`` in m."""
@@ -68,6 +116,12 @@ class Circle(Section):
     def moments(self) -> np.ndarray:
         """See `Section.moments`."""
         return _disc(self.radius)
+
+    def _shape_torsion_constant(self) -> float:
+        return self.second_moment_yy + self.second_moment_zz
+
+    def _shape_shear_factors(self, poisson_ratio: float) -> tuple[float, float]:
+        return _ring_shear_factors(poisson_ratio, 0.0)
 
 
 class Tube(Section):
@@ -89,12 +143,51 @@ class Tube(Section):
         """See `Section.moments`."""
         return _disc(self.outer_radius) - _disc(self.inner_radius)
 
+    def _shape_torsion_constant(self) -> float:
+        return self.second_moment_yy + self.second_moment_zz
+
+    def _shape_shear_factors(self, poisson_ratio: float) -> tuple[float, float]:
+        return _ring_shear_factors(poisson_ratio, self.inner_radius / self.outer_radius)
+
+
+class General(Section):
+    """A section known by its constants alone, for cables and for structural beams.
+
+    area in m²; second_moment_yy (∫y²dA) and second_moment_zz in m⁴, equal if only one is given; for beams
+    torsion_constant in m⁴ and shear_factors (ky, kz).
+    """
+
+    shape: ClassVar[str] = "general"
+    area_: Annotated[float, positive("m²")] = Field(alias="area")
+    yy: Annotated[float, positive("m⁴")] = Field(alias="second_moment_yy")
+    zz: Annotated[float, positive("m⁴")] = Field(default_factory=lambda data: data["yy"], alias="second_moment_zz")
+
+    @model_validator(mode="after")
+    def _twists_less_than_a_disc(self) -> General:
+        """Warping only ever lowers J below the polar moment."""
+        constant, polar = self.given_torsion_constant, self.yy + self.zz
+        if constant is not None and constant > polar * (1 + 1e-9):
+            raise ValueError(f"torsion_constant must not exceed second_moment_yy + second_moment_zz = {polar:.6g} m⁴, "
+                             f"got {constant:.6g} m⁴")
+        return self
+
+    def moments(self) -> np.ndarray:
+        """See `Section.moments`; not known, hence NaN, are those of order 4."""
+        return np.array([self.area_, self.yy, self.zz, nan, nan, nan])
+
+
+def _ring_shear_factors(poisson_ratio: float, inner: float) -> tuple[float, float]:
+    """Cowper, J. Appl. Mech. 33 (1966) 335-340; inner: the ratio of the radii."""
+    nu, square = poisson_ratio, (1 + inner**2) ** 2
+    factor = 6 * (1 + nu) * square / ((7 + 6 * nu) * square + (20 + 12 * nu) * inner**2)
+    return factor, factor
+
 
 def _disc(r: float) -> np.ndarray:
     return pi * np.array([r**2, r**4 / 4, r**4 / 4, r**6 / 8, r**6 / 24, r**6 / 8])
 
 
-SHAPES = {section.shape: section for section in (Rectangle, Circle, Tube)}
+SHAPES = {section.shape: section for section in (Rectangle, Circle, Tube, General)}
 
 
 def _section(value: Any) -> Section:

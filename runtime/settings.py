@@ -1,10 +1,10 @@
-"""The settings of a run."""
+"""The settings of a run, of a search for equilibrium, and of an analysis of modes."""
 
 from __future__ import annotations
 
 from typing import Annotated, ClassVar
 
-from funicular.validation import Part, one_of, positive, within
+from funicular.validation import Count, Part, one_of, positive, within
 from pydantic import Field, model_validator
 
 INTEGRATORS = ("auto", "genalpha")
@@ -18,8 +18,8 @@ class RunSettings(Part):
     duration in s; tol: the error aimed at in positions, relative to the largest motion in the scene, by which
     the step is chosen; step: a fixed step in s instead, divided where need be so that steps end on output times;
     output_step in s, a hundredth of the duration if not given; integrator: "auto" takes the best there is, today
-    genalpha; spectral_radius of the integrator at infinity: 1 keeps and 0 removes the fastest vibrations; save:
-    the file to write, or None.
+    genalpha; spectral_radius of the integrator at infinity: 1 keeps and 0 removes the fastest vibrations; initial:
+    the start, "drawn" or "equilibrium" (static, under the loads at t = 0); save: the file to write, or None.
     """
 
     kind: ClassVar[str] = "run"
@@ -29,6 +29,7 @@ class RunSettings(Part):
     output_step: Duration = Field(default_factory=lambda data: data["duration"] / 100)
     integrator: Annotated[str, one_of(INTEGRATORS)] = "auto"
     spectral_radius: Annotated[float, within(0, 1, ends=True)] = 0.9
+    initial: Annotated[str, one_of(("drawn", "equilibrium"))] = "drawn"
     save: str | None = None
 
     @model_validator(mode="after")
@@ -38,3 +39,25 @@ class RunSettings(Part):
             if value is not None and value > self.duration:
                 raise ValueError(f"{name} must not exceed the duration {self.duration:g} s, got {value:g} s")
         return self
+
+
+class EquilibriumSettings(Part):
+    """How a static equilibrium is sought.
+
+    load_steps: in how many steps the loads are raised from 0, more where one does not converge; tolerance: of the
+    forces out of balance, relative to the largest forces in the scene; max_iterations of a load step; method:
+    "newton", or "arc_length", which also follows a path on which the load falls again.
+    """
+
+    kind: ClassVar[str] = "equilibrium"
+    load_steps: Count = 1
+    tolerance: Annotated[float, within(0, 1, ends=False)] = 1e-9
+    max_iterations: Count = 15
+    method: Annotated[str, one_of(("newton", "arc_length"))] = "newton"
+
+
+class ModeSettings(Part):
+    """How many modes are sought."""
+
+    kind: ClassVar[str] = "modes"
+    n: Count

@@ -18,14 +18,18 @@ def section_stiffness(law: str, section: Section, material: Material, dim: int =
     law: a name in ``derive/laws``, or "poisson_split"; dim: 2 for a planar element, else 3.
     Returns, in N times even powers of m: (2,) [EA, EI] for cables; for a continuum (9, 6) or, planar, (4, 6): the
     integrals over the section of D11, D22, D33, D12, D13, D23, G12, G13, G23 (planar: D11, D22, D12, G12) times
-    1, y², z², y⁴, y²z², z⁴.
+    1, y², z², y⁴, y²z², z⁴; for structural (9,) or, planar, (4,), see `_structural`.
     """
     return _LAWS.get(law, _cable)(section, material, dim)
 
 
+KERNEL_LAWS = {"poisson_split": "continuum"}
+"""Laws that run on the kernels of another one: they differ by the stiffness of the section alone."""
+
+
 def kernel_law(law: str) -> str:
-    """The law whose kernels a law runs on: some differ by the stiffness of the section alone."""
-    return "continuum" if law == "poisson_split" else law
+    """The law whose kernels a law runs on."""
+    return KERNEL_LAWS.get(law, law)
 
 
 def _cable(section: Section, material: Material, dim: int) -> np.ndarray:
@@ -44,8 +48,8 @@ def _poisson_split(section: Section, material: Material, dim: int) -> np.ndarray
     Multibody Syst. Dyn. 20 (2008) 359-384.
     """
     full, moments = _elasticity(material, dim), section.moments()
-    lam, mu = material.lame()
-    factors = section.shear_factors(lam / (2 * (lam + mu)))[: dim - 1]
+    _, mu = material.lame()
+    factors = section.shear_factors(material.poisson())[: dim - 1]
     shears = slice(-3, -1) if dim == 3 else slice(-1, None)  # G12, G13; planar G12
     free = full * 0
     free[:dim] = material.youngs_modulus
@@ -58,6 +62,21 @@ def _poisson_split(section: Section, material: Material, dim: int) -> np.ndarray
     return S
 
 
+def _structural(section: Section, material: Material, dim: int) -> np.ndarray:
+    """EA, GA_y, GA_z, GJ, EI about y and about z, and of the section's own strains those of its height, width, angle.
+
+    Shears with the shear factors. The section's own strains have no part in the bending of beams; their stiffness is
+    that of the material under one stress alone. Planar: EA, GA_y, EI about z, and that of the height.
+    """
+    E, (_, G) = material.youngs_modulus, material.lame()
+    area, yy, zz = section.moments()[:3]
+    k_y, k_z = section.shear_factors(material.poisson())
+    if dim == 2:
+        return np.array([E * area, k_y * G * area, E * yy, E * area])
+    return np.array([E * area, k_y * G * area, k_z * G * area, G * section.torsion_constant, E * zz, E * yy,
+                     E * area, E * area, G * area])
+
+
 def _elasticity(material: Material, dim: int) -> np.ndarray:
     """D11, D22, ... of the material; planar: of plane stress, for the width of a beam is free to change."""
     if dim == 3:
@@ -68,4 +87,4 @@ def _elasticity(material: Material, dim: int) -> np.ndarray:
 
 
 _LAWS: dict[str, Callable[[Section, Material, int], np.ndarray]] = {
-    "continuum": _continuum, "poisson_split": _poisson_split}
+    "continuum": _continuum, "poisson_split": _poisson_split, "structural": _structural}

@@ -102,10 +102,27 @@ def xyz(unit: str = "") -> PlainValidator:
     return PlainValidator(lambda value: vector(value, unit))
 
 
+def list_of(unit: str = "", *, least: int) -> PlainValidator:
+    """Check of a list of at least ``least`` finite numbers."""
+    def check(value: Any) -> tuple[float, ...]:
+        value = value.tolist() if isinstance(value, np.ndarray) else value
+        if not isinstance(value, list | tuple) or len(value) < least:
+            raise ValueError(f"must be a list of {least} numbers or more, got {value!r}")
+        return vector(value, unit, len(value))
+
+    return PlainValidator(check)
+
+
 def _count(value: Any) -> int:
     if isinstance(value, bool) or not isinstance(value, Integral) or value < 1:
         raise ValueError(f"must be a whole number, 1 or more, got {value!r}")
     return int(value)
+
+
+def _flag(value: Any) -> bool:
+    if not isinstance(value, bool | np.bool_):
+        raise ValueError(f"must be true or false, got {value!r}")
+    return bool(value)
 
 
 def _name(value: Any) -> str:
@@ -116,6 +133,7 @@ def _name(value: Any) -> str:
 
 
 Count = Annotated[int, PlainValidator(_count)]
+Flag = Annotated[bool, PlainValidator(_flag)]
 Name = Annotated[str, PlainValidator(_name)]
 Reference = Annotated[str, BeforeValidator(lambda value: getattr(value, "name", value))]
 """The name of a part of the scene, given as that or as the part itself."""
@@ -139,7 +157,7 @@ class _TranslatingType(type(BaseModel)):
 class Part(BaseModel, metaclass=_TranslatingType):
     """Base of what a scene is described with: frozen, and strict about names."""
 
-    model_config = ConfigDict(frozen=True)
+    model_config = ConfigDict(frozen=True, defer_build=True)  # built when first used: the import stays quick
 
     kind: ClassVar[str] = ""
     """What messages call it; the class name when empty."""
@@ -150,6 +168,11 @@ class Part(BaseModel, metaclass=_TranslatingType):
         kind = cls.kind or cls.__name__
         return f'{kind} "{data["name"]}"' if isinstance(data.get("name"), str) else kind
 
+    @classmethod
+    def keywords(cls) -> dict[str, str]:
+        """What a part is made with: the keywords, and the names of the fields that hold them."""
+        return {field.alias or name: name for name, field in cls.model_fields.items()}
+
     @property
     def where(self) -> str:
         """How messages name this part."""
@@ -159,9 +182,10 @@ class Part(BaseModel, metaclass=_TranslatingType):
     @classmethod
     def _knows_all_names(cls, data: Any) -> Any:
         if isinstance(data, dict):
+            known = cls.keywords()
             for key in data:
-                if key not in cls.model_fields:
-                    raise ValueError(f'"{key}" is not known here', near(key, cls.model_fields))
+                if key not in known:
+                    raise ValueError(f'"{key}" is not known here', near(key, known))
         return data
 
 

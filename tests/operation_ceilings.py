@@ -3,11 +3,26 @@ on purpose.
 """
 
 CEILINGS = {
-    "beam24": {"mass": 58, "gravity": 26, "inertia_force": 120, "position": 70},
-    "cable12": {"mass": 40, "gravity": 26, "inertia_force": 84, "position": 40},
-    "cable18": {"mass": 105, "gravity": 42, "inertia_force": 198, "position": 85},
-    "beam12p": {"mass": 49, "gravity": 22, "inertia_force": 68, "position": 44},
-    "cable8p": {"mass": 40, "gravity": 22, "inertia_force": 56, "position": 33},
+    "beam24": {
+        "mass": 58, "gravity": 26, "inertia_force": 120, "position": 70,
+        "on_axis": 34, "follower_force": 615, "moment": 1158
+    },
+    "cable12": {
+        "mass": 40, "gravity": 26, "inertia_force": 84, "position": 40,
+        "on_axis": 34, "follower_force": 327, "moment": 303
+    },
+    "cable18": {
+        "mass": 105, "gravity": 42, "inertia_force": 198, "position": 85,
+        "on_axis": 94, "follower_force": 633, "moment": 546
+    },
+    "beam12p": {
+        "mass": 49, "gravity": 22, "inertia_force": 68, "position": 44,
+        "on_axis": 34, "follower_force": 167, "moment": 61
+    },
+    "cable8p": {
+        "mass": 40, "gravity": 22, "inertia_force": 56, "position": 33,
+        "on_axis": 34, "follower_force": 167, "moment": 141
+    },
     "beam24_continuum": {
         "stiffness": 217, "energy": 485, "elastic_force": 756, "elastic_tangent": 5124, "damping_force": 991,
         "damping_tangent": 8797, "dissipation": 692, "section_forces": 487
@@ -56,8 +71,19 @@ CEILINGS = {
         "stiffness": 0, "energy": 137, "elastic_force": 230, "elastic_tangent": 508, "damping_force": 356,
         "damping_tangent": 1500, "dissipation": 217, "section_forces": 104
     },
-    "rigid": {"point": 207, "inertia_force": 45, "inertia_tangent": 48, "kinetic_energy": 31},
-    "slide_beam24_rigid": {"constraint": 615, "terms": 1673, "residual": 213, "tangent": 292},
-    "slide_cable12_rigid": {"constraint": 488, "terms": 1456, "residual": 213, "tangent": 292},
-    "slide_cable18_rigid": {"constraint": 795, "terms": 2449, "residual": 377, "tangent": 599},
+    "beam24_structural": {
+        "stiffness": 313, "energy": 510, "elastic_force": 997, "elastic_tangent": 6802, "damping_force": 1286,
+        "damping_tangent": 13055, "dissipation": 849, "section_forces": 724
+    },
+    "beam12p_structural": {
+        "stiffness": 105, "energy": 207, "elastic_force": 302, "elastic_tangent": 1081, "damping_force": 394,
+        "damping_tangent": 2006, "dissipation": 296, "section_forces": 263
+    },
+    "rigid": {"point": 207, "point_force": 183, "inertia_force": 45, "inertia_tangent": 48, "kinetic_energy": 31},
+    "planar_rigid": {"point": 40, "point_force": 23, "inertia_force": 3, "inertia_tangent": 0, "kinetic_energy": 9},
+    "slide_beam24_rigid": {"constraint": 596, "terms": 1646, "residual": 208, "tangent": 285},
+    "slide_cable12_rigid": {"constraint": 469, "terms": 1429, "residual": 208, "tangent": 285},
+    "slide_cable18_rigid": {"constraint": 695, "terms": 2198, "residual": 331, "tangent": 511},
+    "slide_beam12p_planar_rigid": {"constraint": 154, "terms": 568, "residual": 96, "tangent": 112},
+    "slide_cable8p_planar_rigid": {"constraint": 154, "terms": 568, "residual": 96, "tangent": 112},
 }

@@ -129,7 +129,7 @@ def test_material(changes, complaint):
         ({"elements": True}, "elements must be a whole number, 1 or more, got True"),
         ({"element": "beam42"}, 'element "beam42" is not known; did you mean "beam24"?'),
         ({"section": 0.05}, "section must be a section such as Rectangle(height=0.05, width=0.05), got 0.05"),
-        ({"section": {"height": 1}}, "section has no shape; known: rectangle, circle, tube"),
+        ({"section": {"height": 1}}, "section has no shape; known: rectangle, circle, tube, general"),
         ({"section": {"shape": "cirkle"}}, 'section has the unknown shape "cirkle"; did you mean "circle"?'),
         ({"material": "steel"}, "material must be a Material or a table of its values, got 'steel'"),
     ],

@@ -73,6 +73,11 @@ def test_pictures(engine, tmp_path):
     assert {p.name for p in (tmp_path / "a" / "b").iterdir()} == names
 
 
+def test_pictures_of_section_forces(engine, tmp_path):
+    assert funicular("run", "paper51", "--forces").exit_code == 0
+    assert "paper51-forces-wire.png" in {p.name for p in tmp_path.glob("*.png")}
+
+
 def test_end_of_cable(engine):
     engine.outcome = {"status": "end_of_cable", "message": END, "duration": 0.4, "times": 41}
     result = funicular("run", "paper51")
@@ -181,6 +186,7 @@ def test_settings_and_defaults_reach_the_engine(engine):
         "output_step": 0.02,
         "integrator": "auto",
         "spectral_radius": 0.5,
+        "initial": "drawn",
         "save": None,
     }
 

@@ -6,12 +6,14 @@ import os
 import subprocess
 import sys
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pytest
 from funicular.derive import drift, emit, sources
 from funicular.derive.families import families
+from funicular.derive.spec import Family, FamilyError
+from funicular.derive.stages import Program
 from funicular.derive.verify_compile import compiler
 from operation_ceilings import CEILINGS
 
@@ -174,6 +176,25 @@ def test_operation_counts_stay_below_their_ceilings(derived):
     assert set(counts) == set(ceilings), "a new kernel needs its ceiling in operation_ceilings.py"
     over = {name: f"{count} > {ceilings[name]}" for name, count in counts.items() if count > ceilings[name]}
     assert not over
+
+
+def test_kernels_of_a_role_that_differ_are_refused_or_declared():
+    """One table, one signature: a kernel that does not fit used to fall out of it."""
+    def family(name, parameters, **more):
+        program = Program(f"{name}_area", "area", "")
+        program.output("A", [sum(program.input(p, (), "m", "side") for p in parameters)], "m", "area")
+        return emit.Derived(Family(name, "", list, (), role="shape", **more), [program], [], "")
+
+    square, box = family("square", "a"), family("box", "ab")
+    with pytest.raises(FamilyError, match=r'role "shape": .* kernel area .* square has \(fu_real a, fu_real \*A\), '
+                                        r"box has \(fu_real a, fu_real b, fu_real \*A\).* Family.own"):
+        emit.render([square, box], [], print)
+    with pytest.raises(FamilyError, match=r"other has \(none\)"):
+        emit.render([square, replace(family("other", "a"), programs=[])], [], print)
+    apart = [family("square", "a", own=("area",)), family("box", "ab", own=("area",))]
+    header = emit.render(apart, [], print)["kernels.h"]
+    assert "void square_area(fu_real a, fu_real *A);" in header
+    assert "(*area)" not in header
 
 
 def test_the_manifest_holds_the_hashes_of_the_files(derived):

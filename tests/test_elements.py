@@ -6,12 +6,12 @@ import sympy as sp
 from funicular.derive.elements import ELEMENTS
 from funicular.derive.gram import Gram
 from funicular.derive.laws.continuum import Form
-from funicular.derive.spec import Element, l, x, y, z
-from funicular.derive.verify_states import element_state, reference, rotation, section
+from funicular.derive.spec import CABLE_LAWS, Element, l, x, y, z
+from funicular.derive.verify_states import element_state, loads, reference, rotation, section
 from funicular.generated import kernels
 
 LAWS = [(name, law) for name, element in ELEMENTS.items() for law in element.laws]
-CABLES = [(name, law) for name, law in LAWS if law != "continuum"]
+CABLES = [(name, law) for name, law in LAWS if law in CABLE_LAWS]
 YOUNGS_MODULUS = 50.0
 
 
@@ -38,6 +38,12 @@ class Elastic:
             D = np.concatenate([np.full(self.element.dim, YOUNGS_MODULUS), np.full(pairs, 10.0), np.full(pairs, 20.0)])
             self.A = self("stiffness")(self.l, np.outer(D, self.section))
             self.energy_scale = np.abs(self.A).max()
+        elif law == "structural":
+            area, EI = YOUNGS_MODULUS * self.section[0], YOUNGS_MODULUS * self.section[1]
+            S = area * np.array([1, 0.4, 0.3, 0, 0, 0, 0.8, 0.9, 0.5]) + EI * np.array([0, 0, 0, 0.6, 0.7, 1, 0, 0, 0])
+            self.A = self("stiffness")(self.l, reference(self.element, self.l),
+                                       S if self.element.dim == 3 else S[[0, 1, 5, 6]])
+            self.energy_scale = max(area * self.l, EI / self.l)
         else:
             self.A = self("stiffness")(self.l, YOUNGS_MODULUS * self.section[:2])
             self.energy_scale = max(self.A[0] * self.l, self.A[1] / self.l)
@@ -118,6 +124,50 @@ def test_gravity_total(element):
     np.testing.assert_allclose(positions(element) @ Q, 7850.0 * 0.02 * 1.7 * g, rtol=1e-14)
 
 
+def test_the_centreline_is_where_y_and_z_are_zero(element):
+    at = 0.37
+    N, N_x = kernel(element.name, "on_axis")(0.9, at)
+    whole, _ = kernel(element.name, "position")(0.9, (at, 0, 0), reference(element, 0.9))
+    np.testing.assert_allclose(N, whole, rtol=0, atol=2e-16)
+    slopes = [float(sp.diff(n, x).subs({x: at, y: 0, z: 0, l: 0.9})) for n in element.shape_functions]
+    np.testing.assert_allclose(N_x, slopes, rtol=1e-14, atol=1e-15)
+
+
+def test_a_follower_force_has_its_components_in_the_frame_of_the_section(element):
+    """Straight, turned: c along the turned axes."""
+    e = reference(element, 1.3)
+    c = loads(element, np.random.default_rng(2))["c"]
+    Q = rotation(np.random.default_rng(3), element.dim)
+    f, _ = kernel(element.name, "follower_force")(1.3, 0.4, e @ Q.T, c)
+    np.testing.assert_allclose(positions(element) @ f, Q[:, : len(c)] @ c, rtol=1e-14)
+
+
+def test_a_moment_works_on_the_rotation_of_the_section(element):
+    """f . v = M . omega where the element turns as a whole, but for a cable's turn about itself."""
+    state = element_state(element, np.random.default_rng(7))
+    l, at, e = (state[name] for name in ("l", "x", "e"))
+    M = loads(element, np.random.default_rng(2))["M"]
+    f, _ = kernel(element.name, "moment")(l, at, e, M)
+    tangent = kernel(element.name, "on_axis")(l, at)[1] @ e
+    for spin in spins(element.dim):
+        omega = spin[1, :1] if element.dim == 2 else np.array([spin[2, 1], spin[0, 2], spin[1, 0]])
+        if element.dim == 3 and not element.director:
+            omega = omega - tangent * (tangent @ omega) / (tangent @ tangent)
+        assert np.sum(f * (e @ spin.T)) == pytest.approx(M @ omega, rel=1e-13)
+
+
+@pytest.mark.parametrize("name", ["beam24", "beam12p"])
+def test_a_moment_turns_a_section_and_does_not_strain_it(name):
+    """At rest: opposite forces on opposite faces, nothing that widens the section or lengthens the axis."""
+    element = ELEMENTS[name]
+    e = reference(element, 1.0)
+    f, _ = kernel(name, "moment")(1.0, 0.0, e, [3.0] if element.dim == 2 else [1.0, 2.0, 3.0])
+    by_slope = dict(zip(element.names, f, strict=True))
+    expected = {"beam12p": {"r_y1": [-3, 0]}, "beam24": {"r_y1": [-3, 0, 0.5], "r_z1": [2, -0.5, 0]}}[name]
+    for slope, force in by_slope.items():
+        np.testing.assert_allclose(force, expected.get(slope, 0.0), atol=1e-15, err_msg=slope)
+
+
 @pytest.mark.parametrize("lengths", [0.0, 1e2, 1e4])
 def test_rigid_motion_stores_no_energy_and_makes_no_force(elastic, lengths):
     random, element = np.random.default_rng(11), elastic.element
@@ -163,7 +213,7 @@ def test_homogeneous_stretch_stores_what_the_law_says(elastic, stretch):
     F = np.eye(elastic.element.dim)
     F[0, 0] += stretch
     U = elastic.at("energy", reference(elastic.element, elastic.l) @ F.T)[0]
-    strain = stretch if elastic.law.startswith("engineering") else stretch + stretch**2 / 2
+    strain = stretch if elastic.law.startswith(("engineering", "structural")) else stretch + stretch**2 / 2
     assert U == pytest.approx(YOUNGS_MODULUS * strain**2 / 2 * elastic.section[0] * elastic.l, rel=1e-9)
 
 

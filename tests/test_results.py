@@ -136,7 +136,7 @@ def test_damaged_and_foreign_files(run, tmp_path):
 
 
 def with_energy(**energy):
-    steady = dict.fromkeys(("kinetic", "elastic", "potential", "dissipated"), np.zeros(3))
+    steady = dict.fromkeys(("kinetic", "elastic", "potential", "dissipated", "external"), np.zeros(3))
     variables = {f"energy.{name}": SimpleNamespace(values=np.array(e)) for name, e in (steady | energy).items()}
     return Run(variables, {}, {}, "")
 
@@ -146,6 +146,23 @@ def test_energy_balance():
     np.testing.assert_allclose(balance.residual, [0, 0, -0.1], atol=1e-15)
     assert balance.exchanged == 2.0  # the fall from 5 J to 3 J, once
     np.testing.assert_allclose(balance.relative, [0, 0, -0.05], atol=1e-15)
+
+
+def test_work_from_outside_is_no_residual():
+    balance = with_energy(kinetic=[0, 2.0, 3.0], dissipated=[0, 1.0, 1.5], external=[0, 3.0, 4.0]).energy_balance()
+    np.testing.assert_allclose(balance.residual, [0, 0, 0.5], atol=1e-15)
+
+
+def test_supports_joins_and_springs_have_results(recording):
+    turn = {"force": np.ones((101, 3)), "moment": np.full((101, 3), 2.0)}
+    recording.clamps, recording.motions, recording.joins = {"wire@0.5": turn}, {"wire@1": turn}, {"corner": turn}
+    recording.springs = {"tie": {"tension": np.zeros(101), "length": np.ones(101)}}
+    recording.energy["external"] = np.zeros(101)
+    run = Run.from_recording(recording, load_scene("paper51"), RunSettings(duration=1.0))
+    units = {name: run.variables[name].units for name in run.keys() if name not in recording.energy}
+    assert {"wire@0.5.force": "N", "wire@0.5.moment": "N m", "wire@1.moment": "N m", "corner.force": "N",
+            "tie.tension": "N", "tie.length": "m", "energy.external": "J"}.items() <= units.items()
+    assert_array_equal(run["wire@0.5.moment"], turn["moment"])
 
 
 def test_energy_balance_of_a_body_at_rest():

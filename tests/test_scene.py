@@ -1,39 +1,9 @@
-"""What a scene computes and keeps: sections, materials, geometry, the joints' starts."""
+"""What a scene computes and keeps: materials, geometry, the joints' starts."""
 
 import numpy as np
 import pytest
-from funicular import Circle, FunicularWarning, Material, Rectangle, Scene, Tube
+from funicular import FunicularWarning, Material, Rectangle, Scene
 from numpy.testing import assert_allclose
-from scipy.integrate import dblquad
-
-SECTIONS = [
-    (Rectangle(height=0.03, width=0.07), lambda y: 0.035, 0.015),
-    (Circle(radius=0.02), lambda y: np.sqrt(0.02**2 - y**2), 0.02),
-]
-
-
-def quadrature(half_width, half_height):
-    powers = [(0, 0), (2, 0), (0, 2), (4, 0), (2, 2), (0, 4)]
-    return [
-        4 * dblquad(lambda z, y, p=p, q=q: y**p * z**q, 0, half_height, 0, half_width, epsabs=0, epsrel=1e-8)[0]
-        for p, q in powers
-    ]
-
-
-@pytest.mark.parametrize(("section", "half_width", "half_height"), SECTIONS, ids=lambda x: getattr(x, "shape", ""))
-def test_moments_agree_with_quadrature(section, half_width, half_height):
-    assert_allclose(section.moments(), quadrature(half_width, half_height), rtol=1e-7)
-    assert_allclose(
-        [section.area, section.second_moment_yy, section.second_moment_zz], section.moments()[:3], rtol=1e-15
-    )
-
-
-def test_a_tube_is_a_disc_less_a_disc():
-    tube = Tube(outer_radius=0.02, inner_radius=0.015)
-    radius, area = (0.02 + 0.015) / 2, np.pi * (0.02**2 - 0.015**2)
-    assert_allclose(tube.moments(), Circle(radius=0.02).moments() - Circle(radius=0.015).moments(), rtol=1e-14)
-    assert_allclose(tube.second_moment_yy, area * (0.02**2 + 0.015**2) / 4, rtol=1e-14)
-    assert radius**2 * area / 2 < tube.second_moment_yy < 1.03 * radius**2 * area / 2  # a thin ring's, nearly
 
 
 def test_material_from_either_constant():

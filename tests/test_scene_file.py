@@ -2,8 +2,23 @@
 
 import re
 
+import numpy as np
 import pytest
-from funicular import Circle, Material, Scene, SceneError, Tube, bundled_scenes, load_scene
+from funicular import (
+    Circle,
+    General,
+    Harmonic,
+    Material,
+    Pulse,
+    Ramp,
+    Rectangle,
+    Scene,
+    SceneError,
+    Table,
+    Tube,
+    bundled_scenes,
+    load_scene,
+)
 from funicular.scene_file import loads
 
 CABLE = """
@@ -70,6 +85,70 @@ def test_round_trip_of_everything_else():
     assert same(loads(scene.to_toml(), "copy"), scene)
 
 
+def test_round_trip_of_shapes_supports_loads_and_springs():
+    scene = Scene(gravity=(0, 0, -1))
+    soft = Material(youngs_modulus=1e6, density=1e3, shear_modulus=4e5, mass_damping=0.1)
+    constants = General(area=1e-4, second_moment_yy=1e-9, torsion_constant=2e-9, shear_factors=(0.8, 0.9))
+    common = {"material": soft, "elements": 2}
+    scene.cable("ring", curve=lambda u: (np.sin(u), np.cos(u), u / 3), element="beam24", law="structural",
+                section=constants, up=(0, 0, 1), rest_length=1.1, **common)
+    scene.cable("rope", points=[(0, 1, 0), (0, 2, 1), (0, 3, 1)], element="cable18", strain="engineering",
+                rest="straight", section=Circle(radius=0.01), **common)
+    scene.cable("bar", start=(1, 0, 0), end=(2, 0, 0), law="poisson_split",
+                section=Rectangle(height=0.1, width=0.2, torsion_constant=1e-5), **common)
+    scene.clamp("ring", s=1.1, hold="all")
+    scene.motion("bar", s=0, displacement=(Table(time=[0, 1, 2], value=[0, 1 / 3, 1]), 0, Ramp(start=0, end=0.1)),
+                 rotation=((1, 2, 2), Pulse(start=0, end=1, height=-2)))
+    scene.motion("bar", s=1, rotation=((1, 0, 0), 0))
+    scene.join("rope", s=0, to="ring", at=0, rotation="free")
+    scene.rigid_body("A", mass=1, inertia=(1, 1, 1), position=(0, 0, 3))
+    scene.force("A", value=(0, 0, 1 / 7), at=(0, 0, 1), follower=True, scale=Harmonic(amplitude=2, frequency=3))
+    scene.force("ring", s=0.5, value=(0, 0, 1), scale=0.5, name="push")
+    scene.distributed_force("bar", value=(0, 1, 0), stop=0.3, scale=Table(time=[0, 1], value=[2, 3],
+                                                                           interpolation="linear"))
+    scene.moment("bar", s=1, value=(1, 0, 0))
+    scene.spring("A", (0, 0, 9), stiffness=3)
+    scene.spring(("A", (0, 0, 1)), ("bar", 1 / 3), stiffness=3, damping=0.1, length=0.5, name="tie")
+    scene.equilibrium_settings = {"load_steps": 4, "method": "arc_length"}
+    scene.run_settings = {"duration": 1.0, "initial": "equilibrium"}
+    copy = loads(scene.to_toml(), "copy")
+    assert same(copy, scene)
+    assert copy.to_toml() == scene.to_toml()
+    assert copy.cables["ring"].length == 1.1
+
+
+def test_loads_as_tables():
+    scene = loads(CABLE + """
+[[clamp]]
+cable = "wire"
+s = 0
+[[motion]]
+cable = "wire"
+s = 1.5
+displacement = [0, { form = "ramp", start = 0, end = 1, after = 0.1 }, 0]
+[[force]]
+name = "push"
+on = "wire"
+s = 0.5
+value = [0, 1, 0]
+scale = { form = "table", time = [0, 1, 2], value = [0, 1, 0] }
+[[spring]]
+a = ["wire", 1]
+b = [1, 2, 0]
+stiffness = 3
+[equilibrium]
+load_steps = 3
+[run]
+duration = 1
+initial = "equilibrium"
+""", "x.toml")
+    assert scene.motions[0].displacement[1] == Ramp(start=0, end=1, after=0.1)
+    assert scene.loads["push"].scale == Table(time=[0, 1, 2], value=[0, 1, 0])
+    assert scene.springs["spring_1"].length == 2
+    assert (scene.equilibrium_settings, scene.run_settings) == (
+        {"load_steps": 3}, {"duration": 1.0, "initial": "equilibrium"})
+
+
 def test_a_moved_rider_is_not_moved_again():
     text = CABLE + '[[rigid_body]]\nname="A"\nmass=1\ninertia=[1,1,1]\nposition=[0.5,0.001,0]\n'
     with pytest.warns(UserWarning, match="moved by 0.001 m"):
@@ -92,7 +171,7 @@ def test_a_file_is_named_by_its_path(tmp_path):
         ("gravity = [0, nan, 0]", "x.toml: scene: gravity must be finite, got (0, nan, 0) m/s²"),
         ("[cable]", "x.toml: [cable]: must be an array of tables; write [[cable]], in two brackets"),
         ("[[cable]]", "x.toml: [[cable]] 1: name is missing"),
-        ('[[cable]]\nname = "wire"', 'x.toml: cable "wire": start is missing'),
+        ('[[cable]]\nname = "wire"', 'x.toml: cable "wire": elements is missing'),
         (CABLE + "elemnts = 3", 'x.toml: cable "wire": "elemnts" is not known here; did you mean "elements"?'),
         (
             CABLE.replace("width =", "widht ="),
@@ -121,6 +200,21 @@ def test_a_file_is_named_by_its_path(tmp_path):
         ("[run]\nduration = -1", "x.toml: run: duration must be positive, got -1 s"),
         ("[run]\nduration = 1\ntoll = 1e-3", 'x.toml: run: "toll" is not known here; did you mean "tol"?'),
         ("run = 3", "x.toml: [run]: must be a table"),
+        ('[run]\nduration = 1\ninitial = "rest"',
+         'x.toml: run: initial "rest" is not known; known: drawn, equilibrium'),
+        ("equilibrium = 3", "x.toml: [equilibrium]: must be a table"),
+        ("[equilibrium]\nload_step = 3",
+         'x.toml: equilibrium: "load_step" is not known here; did you mean "load_steps"?'),
+        ("[[clmp]]", 'x.toml: "clmp" is not known here; did you mean "clamp"?'),
+        (CABLE + '[[force]]\non = "wire"\ns = 0', "x.toml: [[force]] 1: value is missing"),
+        (CABLE + '[[force]]\nname = "F"\non = "wire"\ns = 0\nvalue = [0, 0, 1]\nscale = { start = 0 }',
+         'x.toml: force "F": scale has no form; known: table, ramp, harmonic, pulse'),
+        (CABLE + '[[force]]\nname = "F"\non = "wire"\ns = 0\nvalue = [0, 0, 1]\nscale = { form = "ramp", begin = 0 }',
+         'x.toml: force "F": scale "begin" is not known here; known: start, end, before, after'),
+        (CABLE + '[[spring]]\na = "wire"\nb = [0, 0, 1]\nstiffness = 1',
+         'x.toml: spring "spring_1": a: acts on cable "wire" and needs the arc-length s there'),
+        (CABLE.replace("end = [1.5, 0, 0]", "curve = 1"),
+         'x.toml: cable "wire": curve must be a function of u from 0 to 1, got 1; or give points'),
         (
             'gravity = [0, -9.81, 0]\nname "wire"',
             "x.toml: is not valid TOML: Expected '=' after a key in a key/value pair (at line 2, column 6)",

@@ -2,24 +2,13 @@
 
 import numpy as np
 import pytest
-from funicular import Material, Rectangle
+from funicular import General, Material, Rectangle
 from funicular.generated import kernels
 from funicular.stiffness import section_stiffness
 
 TORSION = 0.1406e-4  # m^4
 STEEL = Material(youngs_modulus=210e9, poisson_ratio=0.3, density=7850)
-
-
-class Square(Rectangle):
-    """With the shear factors of E1, and St. Venant's torsion constant."""
-
-    @property
-    def torsion_constant(self):
-        return TORSION
-
-    def shear_factors(self, poisson_ratio):
-        factor = 10 * (1 + poisson_ratio) / (12 + 11 * poisson_ratio)
-        return factor, factor
+SQUARE = Rectangle(height=0.1, width=0.1, torsion_constant=TORSION)
 
 
 def straight(length=1.0):
@@ -31,7 +20,7 @@ def straight(length=1.0):
 
 def poisson_split():
     return kernels.beam24_continuum_stiffness(
-        1.0, section_stiffness("poisson_split", Square(height=0.1, width=0.1), STEEL))
+        1.0, section_stiffness("poisson_split", SQUARE, STEEL))
 
 
 def test_poisson_split_as_published():
@@ -67,7 +56,7 @@ def test_poisson_split_twists_and_bends_as_a_beam(rate, stiffness):
 
 def test_planar_continuum_is_of_plane_stress():
     """Sides free to move: E A a^2/2 l."""
-    a, section = 1e-6, Square(height=0.1, width=0.1)
+    a, section = 1e-6, SQUARE
     for law in ("continuum", "poisson_split"):
         A = kernels.beam12p_continuum_stiffness(1.0, section_stiffness(law, section, STEEL, dim=2))
         e = np.array([[0, 0], [1, 0], [0, 1], [1, 0], [1, 0], [0, 1]]) @ np.diag([1 + a, 1 - 0.3 * a])
@@ -78,3 +67,12 @@ def test_planar_continuum_is_of_plane_stress():
 def test_cables_take_axial_and_bending_stiffness():
     S = section_stiffness("green_exact", Rectangle(height=0.1, width=0.2), STEEL)
     np.testing.assert_allclose(S, [210e9 * 0.02, 210e9 * 0.2 * 0.1**3 / 12], rtol=1e-15)
+
+
+def test_structural_beams_take_what_the_section_says():
+    """Bending about y is resisted by ∫z²dA, about z by ∫y²dA."""
+    section = General(area=2, second_moment_yy=3, second_moment_zz=4, torsion_constant=5, shear_factors=(0.5, 0.6))
+    material = Material(youngs_modulus=26, poisson_ratio=0.3, density=1)  # G = 10
+    S = section_stiffness("structural", section, material)
+    np.testing.assert_allclose(S, [52, 10, 12, 50, 104, 78, 52, 52, 20], rtol=1e-14)
+    np.testing.assert_allclose(section_stiffness("structural", section, material, dim=2), [52, 10, 78, 52], rtol=1e-14)

@@ -59,6 +59,10 @@ def test_what_is_checked_in_passes(capsys):
     ("rigid", "rigid_point", "p_q[4]"),
     ("rigid", "rigid_inertia_force", "f[5]"),
     ("rigid", "rigid_kinetic_energy", "T[0]"),
+    ("planar_rigid", "planar_rigid_point_force", "K[8]"),
+    ("slide_cable8p_planar_rigid", "slide_cable8p_planar_rigid_terms", "W[0]"),
+    ("beam12p", "beam12p_follower_force", "K[2]"),
+    ("cable12", "cable12_moment", "f[4]"),
 ])
 def test_a_sign_changed_in_an_output_is_found_and_named(generated, capsys, family, kernel, entry):
     break_output(generated, f"{family}.c", kernel, entry)
@@ -139,7 +143,7 @@ def test_an_output_left_unwritten_is_found(generated, capsys):
 
 
 def test_what_does_not_compile_is_told_with_the_compilers_words(generated, capsys):
-    broken(generated, "rigid.c", "const fu_real A1_x =", "const fu_real A1_x +=")
+    broken(generated, "rigid.c", "const fu_real dt_p_x =", "const fu_real dt_p_x +=")
     assert verify.main(["rigid"], generated) == 1
     err = capsys.readouterr().err
     assert "generated/rigid.c does not compile" in err

@@ -1,1 +1,5 @@
-"""Body specs: how configuration and velocity of a body give its points and its inertia."""
+"""Body specs, one short file each."""
+
+from funicular.derive.bodies import planar_rigid, rigid
+
+BODIES = {body.NAME: body for body in (rigid, planar_rigid)}

@@ -13,7 +13,7 @@ from funicular.derive.frames import cross
 from funicular.derive.stages import Derivation, Program
 
 NAME, DIM, N_CONFIGURATION, N_VELOCITY = "rigid", 3, 7, 6
-SOURCE = "paper eq 12 (q_r); Haug 1989, ch. 9"
+DOC, SOURCE = "rigid body", "paper eq 12 (q_r); Haug 1989, ch. 9"
 
 
 def configuration(program: Program) -> np.ndarray:
@@ -66,62 +66,11 @@ def arm(program: Program, A: np.ndarray, u: np.ndarray) -> np.ndarray:
     return program.vector("arm", A.dot(u))
 
 
-def build() -> list[Program]:
-    """The kernels of a rigid body."""
-    return [_point(), _inertia_force(), _inertia_tangent(), _kinetic_energy()]
+def turning_inertia(J: np.ndarray) -> np.ndarray:
+    """The part of the inertia that the rotations of this body meet."""
+    return J
 
 
-def _point() -> Program:
-    p = Program("rigid_point", "position, Jacobian, velocity and acceleration bias of a point", SOURCE)
-    b, u, w = configuration(p), attachment(p), velocity(p)
-    p.stage("position")
-    A = axes(p, b)
-    at = p.vector("p", origin(b) + arm(p, A, u))
-    p.stage("derivatives")
-    p_q = np.stack([d.array(at) for d in tangents(p, b, A)], axis=1)
-    along = Derivation(p, "dt", rate(b, A, w))
-    speed = along.array(at)
-    p.output("p", at, "m", "position R + A u")
-    p.output("p_q", p_q, "1, m", "derivatives by translation and rotation about body axes")
-    p.output("v", speed, "m/s", "velocity")
-    p.output("bias", along.array(speed), "m/s^2", "acceleration at zero R'' and zero omega'")
-    return p
-
-
-def _inertia(p: Program):
-    return (p.input("mass", (), "kg", "mass"),
-            p.input("J", (3, 3), "kg m^2", "inertia about the mass centre in body axes, symmetric"))
-
-
-def _inertia_force() -> Program:
-    p = Program("rigid_inertia_force", "m R'' and J omega' + omega x J omega", "M q'' of eq 12")
-    mass, J = _inertia(p)
-    w, a = velocity(p), p.input("a", N_VELOCITY, "m/s^2, rad/s^2", "accelerations R'', omega'")
-    p.stage("angular momentum")
-    h = p.vector("h", J.dot(w[3:]))
-    p.output("f", np.concatenate([mass * a[:3], J.dot(a[3:]) + cross(w[3:], h)]), "N, N m", "inertia force")
-    return p
-
-
-def _inertia_tangent() -> Program:
-    p = Program("rigid_inertia_tangent", "mass matrix and derivative of the inertia force by velocity",
-                "derivative of M q''")
-    mass, J = _inertia(p)
-    w = velocity(p)
-    p.stage("gyroscopic moment")
-    h = p.vector("h", J.dot(w[3:]))
-    force = np.concatenate([[0, 0, 0], p.vector("gyro", cross(w[3:], h))])
-    M = np.zeros((6, 6), dtype=object)
-    M[:3, :3], M[3:, 3:] = mass * np.eye(3, dtype=int), J
-    D = np.stack([Derivation(p, f"d_w{k}", {w[k]: 1}).array(force) for k in range(6)], axis=1)
-    p.output("M", M, "kg, kg m^2", "mass matrix")
-    p.output("D", D, "kg m/s", "derivative of the inertia force by w")
-    return p
-
-
-def _kinetic_energy() -> Program:
-    p = Program("rigid_kinetic_energy", "kinetic energy", "eq 3 for a rigid body")
-    mass, J = _inertia(p)
-    w = velocity(p)
-    p.output("T", [(mass * w[:3].dot(w[:3]) + w[3:].dot(J.dot(w[3:]))) / 2], "J", "kinetic energy")
-    return p
+def gyroscopic_moment(program: Program, J: np.ndarray, omega: np.ndarray) -> np.ndarray:
+    """Stage: omega x J omega."""
+    return program.vector("gyro", cross(omega, program.vector("h", J.dot(omega))))

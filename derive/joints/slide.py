@@ -2,152 +2,154 @@
 
 Everything is differentiated from C = A_t' (r(s) - p). The derivations are by the cable's nodal vectors e, by the
 rider's coordinates, by s, and along the motion; Q_d is the second derivative along the motion with q'' = s'' = 0.
+Cable and rider are both planar, with C = (C_l, C_m), or both spatial.
 """
 
 from __future__ import annotations
 
+from types import ModuleType
+
 import numpy as np
-import sympy as sp
-from funicular.derive.bodies import rigid
+from funicular.derive.axis import Axis
 from funicular.derive.frames import tangent_frame
-from funicular.derive.spec import Element, l, x, y, z
+from funicular.derive.spec import Element
 from funicular.derive.stages import Derivation, Program, jacobian
+
+ENTRIES = {2: ("l", "m"), 3: ("l", "m1", "m2")}  # of C, by dim
+_C_DOC = "constraint in the tangent frame: C_l, then C_m across the cable"
 
 
 class Slide:
     """Symbols that every kernel of the joint starts from: inputs, derivations and r_p = r - p (eq 19)."""
 
-    def __init__(self, program: Program, element: Element, rider=rigid):
-        self.program, self.element = program, element
-        self.length = program.input("l", (), "m", "length of the element that holds s")
-        self.x = program.input("x", (), "m", "arc-length s from the element's first node")
-        self.e = program.input("e", (element.n_vectors, element.dim), "m, 1", "nodal vectors of that element")
+    def __init__(self, program: Program, element: Element, rider: ModuleType):
+        self.program, self.element, self.rider = program, element, rider
+        self.entries = ENTRIES[element.dim]
+        self.axis = Axis(program, element)
+        self.e = self.axis.coordinates()
         self.b, self.u = rider.configuration(program), rider.attachment(program)
-        self.by_s = Derivation(program, "ds", {self.x: 1})
+        self.by_s = Derivation(program, "ds", {self.axis.x: 1})
         self.by_e = [Derivation(program, f"de{k}", {symbol: 1}) for k, symbol in enumerate(self.e.ravel())]
-        self.rider = rider
         program.stage("centreline at s and rider's point (eq 19)")
         self.axes = rider.axes(program, self.b)
         self.by_rider = rider.tangents(program, self.b, self.axes)
-        self.xi = program.define("xi", self.x * program.define("inv_l", 1 / self.length))
         # from the first node and from the rider's origin: no digits are lost far from the global origin
-        self.r = self._on_axis("r", element.shape_functions, self.e - self._first_position())
+        self.r = self.axis.vector("r", self.axis.shape(), self.e)
         arm = rider.arm(program, self.axes, self.u)
         gap = program.vector("gap", self.e[0] - rider.origin(self.b))
         self.r_p = program.vector("r_p", gap + (self.r - arm))
 
-    def _director(self) -> np.ndarray:
-        """What gives the frame its normal: a slope of the element, or a direction from outside, held fixed.
+    def _director(self) -> tuple[np.ndarray, list]:
+        """What gives a spatial frame its normal, and its entries that move with e.
 
-        Only the direction of the two normals hangs on it, not the plane that they span.
+        A slope of the element, or a direction from outside, held fixed: only the direction of the two normals hangs
+        on it, not the plane that they span. A planar frame needs neither; the input stays, so that all slides are
+        called alike.
         """
-        if not self.element.director:
-            return self.outside
-        by = {"x": x, "y": y, "z": z}[self.element.director.partition("_")[2]]
-        return self._on_axis("n", [sp.diff(f, by) for f in self.element.shape_functions], self.e)
-
-    def _first_position(self) -> np.ndarray:
-        """r_1 in the rows of e that are positions, zero in the slopes."""
-        return np.outer(np.array(self.element.is_position, dtype=int), self.e[0])
-
-    def _on_axis(self, name: str, functions, vectors: np.ndarray) -> np.ndarray:
-        """Sum of functions(x, 0, 0) times nodal vectors."""
-        N = [self.program.define(f"N{name}_{k}", sp.horner(sp.expand(f.subs({y: 0, z: 0, x: self.xi * l})),
-                                                           self.xi).subs(l, self.length))
-             for k, f in zip(self.element.names, functions, strict=True)]
-        return self.program.vector(name, sum(N[k] * vectors[k] for k in range(len(N))))
+        outside = self.program.input("director", self.element.dim, "1",
+                                     "a direction off the tangent; used in space, where an element has none")
+        if self.element.dim == 2 or not self.element.director:
+            return outside, []
+        slope = self.axis.shape(self.element.director.partition("_")[2])
+        director = self.axis.vector("n", slope, self.e)
+        return director, [*director]
 
     def constraint(self) -> np.ndarray:
         """C = A_t' r_p (eq 20), with the cut (r_p, r_x, director) through which it is differentiated."""
-        self.outside = self.program.input("director", 3, "1",
-                                          "a direction off the tangent; used where an element has none")
         self.program.stage("tangent and director")
         self.t = self.by_s.array(self.r)
-        self.n = self._director()
+        director, moving = self._director()
         self.program.stage("tangent frame (eq 13-18)")
-        self.A_t = tangent_frame(self.program, self.t, self.n)
+        self.A_t = tangent_frame(self.program, self.t, director)
         self.program.stage("C (eq 20)")
-        self.C = np.array([self.program.define(name, c) for name, c in
-                           zip(("C_l", "C_m1", "C_m2"), self.A_t.T.dot(self.r_p), strict=True)])
-        self.cut = [*self.r_p, *self.t, *(self.n if self.element.director else ())]
+        self.C = self.named("C_", self.A_t.T.dot(self.r_p))
+        self.cut = [*self.r_p, *self.t, *moving]
         self.program.stage("derivatives of C by r_p, r_x, director")
         self.C_cut = jacobian(self.program, self.C, self.cut)
         return self.C
+
+    def named(self, name: str, values: np.ndarray, suffix: str = "") -> np.ndarray:
+        """Define the entries of something like C."""
+        return np.array([self.program.define(f"{name}{entry}{suffix}", value)
+                         for entry, value in zip(self.entries, values, strict=True)])
+
+    def by_arc_length(self) -> np.ndarray:
+        """C_s (eq 22). dr_p/ds = r_x is along i: along j and k it is zero, and would be nothing but rounding."""
+        dim = len(self.r_p)
+        C_s = self.C_cut[:, dim:].dot(self.by_s.array(np.array(self.cut[dim:], dtype=object)))
+        C_s[0] += self.A_t[:, 0].dot(self.t)
+        return C_s
 
     def through_cut(self, derivation: Derivation) -> np.ndarray:
         """Derivative of C along a derivation, by the chain rule through the cut."""
         return self.C_cut.dot(derivation.array(np.array(self.cut, dtype=object)))
 
 
-def build(element: Element) -> list[Program]:
-    """The kernels of the slide of a rigid rider on a cable of this element."""
-    name = f"slide_{element.name}_{rigid.NAME}"
-    return [_constraint(name, element), _terms(name, element), _residual(name, element), _tangent(name, element)]
+def build(element: Element, rider: ModuleType) -> list[Program]:
+    """The kernels of the slide of a rider on a cable of this element."""
+    name = f"slide_{element.name}_{rider.NAME}"
+    return [kernel(name, element, rider) for kernel in (_constraint, _terms, _residual, _tangent)]
 
 
-def _constraint(name: str, element: Element) -> Program:
+def _constraint(name: str, element: Element, rider: ModuleType) -> Program:
     p = Program(f"{name}_constraint", "C, C_s and the Newton step for s", "eq 19-22")
-    slide = Slide(p, element)
+    slide = Slide(p, element, rider)
     C = slide.constraint()
     p.stage("C_s (eq 22)")
-    C_s = slide.through_cut(slide.by_s)
-    p.output("C", C, "m", "constraint in the tangent frame: C_l, C_m1, C_m2")
+    C_s = slide.by_arc_length()
+    p.output("C", C, "m", _C_DOC)
     p.output("C_s", C_s, "1", "derivative of C by s")
     p.output("s_step", [-C[0] / p.define("C_ls", C_s[0])], "m", "Newton step of C_l(s) = 0")
-    p.output("A_t", slide.A_t, "1", "tangent frame, columns i j k (eq 18)")
+    p.output("A_t", slide.A_t, "1", "tangent frame, columns i j (k) (eq 18)")
     return p
 
 
-def _terms(name: str, element: Element) -> Program:
+def _terms(name: str, element: Element, rider: ModuleType) -> Program:
     p = Program(f"{name}_terms", "terms of the equations of motion with the slide", "eq 20-37")
-    slide = Slide(p, element)
+    slide = Slide(p, element, rider)
     v = p.input("v", slide.e.shape, "m/s, 1/s", "rates of the nodal vectors")
     w = slide.rider.velocity(p)
     C = slide.constraint()
     p.stage("C_s and C_q (eq 22-23)")
-    C_s = np.array([p.define(f"C_s{k}", c) for k, c in zip(("l", "m1", "m2"), slide.through_cut(slide.by_s),
-                                                          strict=True)])
+    C_s = slide.named("C_s", slide.by_arc_length())
     by_q = slide.by_e + slide.by_rider
-    C_q = np.stack([[p.define(f"C_q{name}_{k}", c) for name, c in zip(("l", "m1", "m2"), slide.through_cut(d),
-                                                                      strict=True)]
-                    for k, d in enumerate(by_q)], axis=1)
+    C_q = np.stack([slide.named("C_q", slide.through_cut(d), f"_{k}") for k, d in enumerate(by_q)], axis=1)
     p.stage("G (eq 24) and the rate of s (eq 25)")
     inverse = p.define("inv_C_sl", 1 / C_s[0])
     G = np.array([p.define(f"G_{k}", -inverse * c) for k, c in enumerate(C_q[0])])
     velocities = np.concatenate([v.ravel(), w])
     s_rate = p.define("sdot", G.dot(velocities))
     p.stage("Q_d: second derivative along the motion (eq 33)")
-    motion = dict(zip(slide.e.ravel(), v.ravel(), strict=True)) | {slide.x: s_rate}
+    motion = dict(zip(slide.e.ravel(), v.ravel(), strict=True)) | {slide.axis.x: s_rate}
     motion |= slide.rider.rate(slide.b, slide.axes, w)
     # velocities are held: the derivation knows s_rate as a constant, not as the function of q that it is
     along = Derivation(p, "dt", motion | {s_rate: 0})
-    Q_d = np.array([p.define(f"Q_d{k}", c) for k, c in zip(("l", "m1", "m2"), along.array(along.array(C)),
-                                                          strict=True)])
+    Q_d = slide.named("Q_d", along.array(along.array(C)))
     p.stage("H (eq 31) and W (eq 37)")
     H = C_q[1:] + np.outer(C_s[1:], G)
     W = -Q_d[1:] + C_s[1:] * inverse * Q_d[0]
-    p.output("C", C, "m", "constraint in the tangent frame: C_l, C_m1, C_m2")
+    p.output("C", C, "m", _C_DOC)
     p.output("C_q", C_q, "1, m", "derivatives of C by the nodal vectors, then the rider")
     p.output("C_s", C_s, "1", "derivative of C by s")
     p.output("G", G, "1, m", "ds = G dq (eq 24)")
     p.output("s_rate", [s_rate], "m/s", "rate of s (eq 25)")
     p.output("Q_d", Q_d, "m/s^2", "second derivative of C at zero accelerations (eq 33)")
-    p.output("H", H, "1, m", "Jacobian of the two constraints that stay (eq 31)")
+    p.output("H", H, "1, m", "Jacobian of the constraints that stay (eq 31)")
     p.output("W", W, "m/s^2", "H q'' = W (eq 36-37)")
     # eq 34 prints the last term with the wrong sign: s'' = -Q_dl/C_sl + G q''
     p.output("s_bias", [-inverse * Q_d[0]], "m/s^2", "s'' - G q'' (eq 34, sign mended)")
     return p
 
 
-def _lagrangian(p: Program, element: Element):
+def _lagrangian(p: Program, element: Element, rider: ModuleType):
     """phi = r_p, its Jacobian by (e, rider, s), and the gradient of f . phi.
 
-    The integrator carries s and the whole force f on the joint as unknowns instead of C_M and two multipliers:
+    The integrator carries s and the whole force f on the joint as unknowns instead of C_M and its multipliers:
     f . r_x = 0, the s-entry of the gradient, is eq 30's statement that the force along the tangent is nil. Same
     solutions and no frame in the Newton matrix, which is symmetric but for the rider's rotations (their bracket).
     """
-    slide = Slide(p, element)
-    f = p.input("f", 3, "N", "force of the joint on the rider")
+    slide = Slide(p, element, rider)
+    f = p.input("f", element.dim, "N", "force of the joint on the rider")
     p.stage("Jacobian of phi")
     J = np.stack([d.array(slide.r_p) for d in (*slide.by_e, *slide.by_rider, slide.by_s)], axis=1)
     p.stage("gradient of f . phi")
@@ -155,17 +157,17 @@ def _lagrangian(p: Program, element: Element):
     return slide, J, g
 
 
-def _residual(name: str, element: Element) -> Program:
+def _residual(name: str, element: Element, rider: ModuleType) -> Program:
     p = Program(f"{name}_residual", "phi and the gradient of f . phi by (e, rider, s)", "eq 19, 28-30")
-    slide, _, g = _lagrangian(p, element)
+    slide, _, g = _lagrangian(p, element, rider)
     p.output("phi", slide.r_p, "m", "r(s) - p")
     p.output("g", g, "N, N m", "gradient of f . phi")
     return p
 
 
-def _tangent(name: str, element: Element) -> Program:
+def _tangent(name: str, element: Element, rider: ModuleType) -> Program:
     p = Program(f"{name}_tangent", "derivatives of phi and of the gradient of f . phi", "eq 19, 28-30")
-    slide, J, g = _lagrangian(p, element)
+    slide, J, g = _lagrangian(p, element, rider)
     p.stage("derivative of the gradient")
     K = np.stack([d.array(g) for d in (*slide.by_e, *slide.by_rider, slide.by_s)], axis=1)
     p.output("J", J, "1, m", "derivatives of phi by (e, rider, s)")

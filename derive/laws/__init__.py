@@ -1,5 +1,6 @@
 """Elastic laws: energies as functions of Gram products, by name."""
 
+from collections.abc import Callable
 from functools import partial
 
 from funicular.derive.laws.cable import Cable
@@ -10,4 +11,20 @@ from funicular.derive.spec import CABLE_LAWS
 
 LAWS = {"continuum": Continuum, "continuum_curved": CurvedContinuum} | {
     name: partial(Cable, **dict(zip(("strain", "curvature"), name.split("_"), strict=True))) for name in CABLE_LAWS} | {
-    f"{strain}_exact_curved": partial(CurvedCable, strain=strain, curvature="exact") for strain in ("green", "engineering")}
+    f"{strain}_exact_curved": partial(CurvedCable, strain=strain, curvature="exact")
+    for strain in ("green", "engineering")}
+
+
+def law_name(law: str | type) -> str:
+    """Name of an entry of an element's `laws`."""
+    return law if isinstance(law, str) else law.name
+
+
+def law_like(law: str | type) -> str:
+    """The law in LAWS whose section stiffness an entry of an element's `laws` takes."""
+    return law if isinstance(law, str) else law.like
+
+
+def law_class(law: str | type) -> Callable:
+    """What makes the law of an entry of an element's `laws` from Gram products."""
+    return LAWS[law] if isinstance(law, str) else law

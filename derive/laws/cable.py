@@ -8,7 +8,7 @@ and never through the coordinates.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
@@ -49,7 +49,7 @@ class Term:
 class Cable(Damping):
     """The law over an element's Gram products."""
 
-    source, curved = SOURCE, False
+    source, curved, set_up_kernel = SOURCE, False, "stiffness"
 
     def __init__(self, gram: Gram, strain: str, curvature: str):
         self.gram, self.strain, self.curvature = gram, strain, curvature
@@ -101,11 +101,7 @@ class Cable(Damping):
         """Input S."""
         return program.input("S", 2, "N, N m^2", STIFFNESS_DOC)
 
-    def set_up(self) -> dict[str, Callable[[Program], None]]:
-        """Kernels that make A, by name."""
-        return {"stiffness": self.stiffness}
-
-    def stiffness(self, program: Program) -> None:
+    def set_up(self, program: Program) -> None:
         """Inputs l, S and output A, which is S."""
         program.input("l", (), "m", "length of the element")
         program.output("A", self.section_stiffness(program), "N, N m^2", STIFFNESS_DOC)

@@ -55,7 +55,7 @@ class CurvedCable(Cable):
         """Input A."""
         return program.input("A", self._size(), "N, N m^2, 1", "EA, EI, and the stress-free shape at each Gauss point")
 
-    def stiffness(self, program: Program) -> None:
+    def set_up(self, program: Program) -> None:
         """Inputs l, e0, S and output A."""
         length = program.input("l", (), "m", "length of the element")
         e0 = self.reference_input(program)

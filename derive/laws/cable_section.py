@@ -7,6 +7,8 @@ linear curvature W_r'' also has a part along the tangent, which no moment stands
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import sympy as sp
 from funicular.derive.frames import cross, spatial
@@ -47,7 +49,7 @@ def resultants(law, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, 
 def _along_x(r: list[np.ndarray]) -> dict[sp.Symbol, sp.Expr]:
     """Derivatives by x of r', r''; r''' is not asked for."""
     along = {s: 0 for s in r[2] if s.is_Symbol}
-    return along | {s: v for near, far in zip(r, r[1:], strict=False) for s, v in zip(near, far, strict=True)}
+    return along | {s: v for near, far in pairwise(r) for s, v in zip(near, far, strict=True)}
 
 
 def _size(program: Program, tag: str, normal: np.ndarray, scale: sp.Expr) -> sp.Expr:

@@ -6,8 +6,8 @@ exactly, and sparse, because Legendre polynomials are orthogonal (beam24: 114 en
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from functools import cached_property, partial
+from collections.abc import Sequence
+from functools import cached_property
 
 import numpy as np
 import sympy as sp
@@ -88,7 +88,7 @@ class Form:
 class Continuum:
     """The law over an element's Gram products."""
 
-    name, doc, source, curved = NAME, DOC, SOURCE, False
+    name, doc, source, curved, set_up_kernel = NAME, DOC, SOURCE, False, "stiffness"
 
     def __init__(self, gram: Gram):
         self.gram, self.form = gram, Form(gram)
@@ -105,16 +105,12 @@ class Continuum:
                              f"section stiffness: integrals over A of {', '.join(rows)} (rows; orthotropic, axes x, y, "
                              "z) times 1, y^2, z^2, y^4, y^2 z^2, z^4 (columns)")
 
-    def set_up(self) -> dict[str, Callable[[Program], None]]:
-        """Kernels that make A, by name."""
-        return {"stiffness": partial(self.stiffness, self.form)}
-
-    def stiffness(self, form: Form, program: Program) -> None:
+    def set_up(self, program: Program) -> None:
         """Inputs l, S and output A, for any doubly symmetric section and any orthotropic law, alike over it or not."""
         length = program.input("l", (), "m", "length of the element")
         S = self.section_stiffness(program)
         A = [sum(sp.Rational(int(c.numerator), int(c.denominator)) * S[k, m] * length**power
-                 for (k, m, power), c in entry) for entry in form.constants]
+                 for (k, m, power), c in entry) for entry in self.form.constants]
         program.stage("integrals of strain products")
         program.output("A", [program.define(f"A_{i}", a) for i, a in enumerate(A)], "N m",
                        "different non-zero entries of A")

@@ -1,15 +1,15 @@
 """St. Venant-Kirchhoff continuum with a curved stress-free shape e0 (eq 5): D = dr/dX with J0 = dr0/dx of e0.
 
-E = J0^-T (F'F - F0'F0)/2 J0^-1 is linear in G - G0 at every point, so the energy is the same quadratic form with a dense
-A and the G0 of e0. J0 is not a polynomial: A is a sum over points of the volume, each by the kernel `stiffness_at`, once
-for an element. Axes of the elastic constants are the tangent frame of the stress-free axis. Damping takes the form of the
-straight law, whose components are those of the tangent frame but for a part of the order of section over radius.
+E = J0^-T (F'F - F0'F0)/2 J0^-1 is linear in G - G0 at every point, so the energy is the same quadratic form with a
+dense A and the G0 of e0. J0 is not a polynomial: A is a sum over points of the volume, each by the kernel
+`stiffness_at`, once for an element. Axes of the elastic constants are the tangent frame of the stress-free axis.
+Damping takes the form of the straight law, whose components are those of the tangent frame but for a part of the order
+of section over radius.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from functools import partial
+from collections.abc import Sequence
 
 import numpy as np
 import sympy as sp
@@ -42,6 +42,7 @@ class DenseForm(Form):
 class CurvedContinuum(Continuum):
     """The law with e0."""
 
+    set_up_kernel = "stiffness_at"
     name, doc, curved = NAME, "St. Venant-Kirchhoff continuum, orthotropic, its stress-free shape curved", True
 
     def __init__(self, gram: Gram):
@@ -49,15 +50,12 @@ class CurvedContinuum(Continuum):
 
     def constants(self, program: Program) -> np.ndarray:
         """Input A."""
-        family = f"{self.gram.element.name}_{NAME}"
+        element = self.gram.element.name
         return program.input("A", self.form.size + len(self.gram.pairs) + len(self.straight.constants), "N m, 1",
-                             f"form over Gram pairs, summed over {family}_stiffness_at; G0; the straight law's constants")
+                             f"form over Gram pairs, summed over {element}_{NAME}_stiffness_at; its G0; then A of "
+                             f"{element}_continuum_stiffness")
 
-    def set_up(self) -> dict[str, Callable[[Program], None]]:
-        """Kernels that make A, by name."""
-        return {"stiffness_at": self.stiffness_at, "straight_stiffness": partial(self.stiffness, self.straight)}
-
-    def stiffness_at(self, program: Program) -> None:
+    def set_up(self, program: Program) -> None:
         """Inputs l, e0, at, D and outputs A, G0: what a point of the volume adds."""
         length = program.input("l", (), "m", "length of the element")
         e0 = self.reference_input(program)

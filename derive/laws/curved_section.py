@@ -33,7 +33,7 @@ def resultants(gram: Gram, elasticity: Mapping, program: Program, S: np.ndarray,
         metric = Metric(program, f"_{g}", R, F0g)
         strain = _strain(program, f"_{g}", metric, _green(Fg, F0g))
         stress = [[sp.S.Zero] * dim for _ in range(dim)]
-        for i, (a, b) in enumerate(voigt(dim)):
+        for a, b in voigt(dim):
             stress[a][b] = stress[b][a] = program.define(f"S{a}{b}_{g}", metric.det * sum(
                 D[elasticity[(a, b), kl]] * strain[k] for k, kl in enumerate(voigt(dim)) if ((a, b), kl) in elasticity))
         toward = program.vector(f"s_{g}", np.array(stress).dot(metric.N[0]))
@@ -92,9 +92,9 @@ def _strain(program: Program, tag: str, metric: Metric, change: list[sp.Expr]) -
     for (i, j), value in zip(order, change, strict=True):
         name = program.define(f"d{i}{j}{tag}", value)
         half[i, j] = half[j, i] = name if i == j else name / 2
-    right = [[program.define(f"dN{i}{b}{tag}", sum(half[i, j] * metric.N[j, b] for j in range(dim))) for b in range(dim)]
-             for i in range(dim)]
-    return [program.define(f"E{a}{b}{tag}", (1 if a == b else 2) * sum(metric.N[i, a] * right[i][b] for i in range(dim)))
+    N, axes = metric.N, range(dim)
+    right = [[program.define(f"dN{i}{b}{tag}", sum(half[i, j] * N[j, b] for j in axes)) for b in axes] for i in axes]
+    return [program.define(f"E{a}{b}{tag}", (1 if a == b else 2) * sum(N[i, a] * right[i][b] for i in axes))
             for a, b in order]
 
 

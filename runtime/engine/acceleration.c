@@ -32,8 +32,8 @@ static void evaluate(const fu_model *model, const fu_state *state, fu_accelerato
         const int element = state->element[j], at = cable->first + element * cable->per_node;
         const terms_view t = view(work, j);
         joint->kernel->terms(cable->length, state->s[j] - fu_element_start(model, j, element), state->q + at,
-                             state->q + rider->configuration, joint->u, state->v + at, state->v + rider->dof, state->director + 3 * j, t.C,
-                             t.C_q, t.C_s, t.G, t.s_rate, t.Q_d, t.H, t.W, t.s_bias);
+                             state->q + rider->configuration, joint->u, state->v + at, state->v + rider->dof,
+                             state->director + 3 * j, t.C, t.C_q, t.C_s, t.G, t.s_rate, t.Q_d, t.H, t.W, t.s_bias);
     }
 }
 
@@ -41,8 +41,7 @@ static void evaluate(const fu_model *model, const fu_state *state, fu_accelerato
 int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
 {
     fu_system_clear(&work->mass);
-    for (int i = 0; i < model->n_dof; ++i) work->work[i] = 0.0;
-    fu_dynamic_matrix(model, work->work, work->work, 1.0, 0.0, 0.0, &work->mass);
+    fu_dynamic_matrix(model, model->zero, model->zero, 1.0, 0.0, 0.0, &work->mass);
     return fu_system_factor_band(&work->mass, model->lapack);
 }
 
@@ -52,26 +51,26 @@ static int factor_border(const fu_model *model, const fu_state *state, fu_accele
     fu_system *s = &work->mass;
     double M[36], D[36];
     const double rest[6] = {0};
-    for (int i = 0; i < s->n * s->m; ++i) s->B[i] = s->C[i] = 0.0;
+    for (long i = 0; i < (long)s->n * s->m; ++i) s->B[i] = s->C[i] = 0.0;
     for (int i = 0; i < s->m * s->m; ++i) s->D[i] = 0.0;
     for (int b = 0; b < model->n_rigids; ++b) {
         const fu_rigid *body = &model->rigids[b];
-        rigid_inertia_tangent(body->mass, body->J, rest, M, D);
-        for (int i = 0; i < 6; ++i)
-            for (int j = 0; j < 6; ++j)
-                fu_system_add(s, model->place[body->dof + i], model->place[body->dof + j], M[6 * i + j]);
+        const int n = body->kernel->velocity;
+        body->kernel->inertia_tangent(body->mass, body->J, rest, M, D);
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < n; ++j) fu_add(model, s, body->dof + i, body->dof + j, M[n * i + j]);
     }
     for (int j = 0; j < model->n_joints; ++j) {
         const fu_joint *joint = &model->joints[j];
         const terms_view t = view(work, j);
         const int n = joint->kernel->coordinates;
-        for (int c = 0; c < 2; ++c)
+        for (int c = 0; c < joint->kernel->dim - 1; ++c)
             for (int k = 0; k < n; ++k) {
-                const int row = model->n_band + model->n_border_dof + 2 * j + c;
-                const int place = model->place[joint_dof(model, joint, state->element[j], k)];
+                const int row = fu_extra(model, joint->multiplier + c);
+                const int dof = joint_dof(model, joint, state->element[j], k);
                 /* rows in kg, so that the border is of one scale */
-                fu_system_add(s, row, place, joint->mass * t.H[c * n + k]);
-                fu_system_add(s, place, row, joint->mass * t.H[c * n + k]);
+                fu_add(model, s, row, dof, joint->mass * t.H[c * n + k]);
+                fu_add(model, s, dof, row, joint->mass * t.H[c * n + k]);
             }
     }
     return fu_system_factor_border(s, model->lapack);
@@ -81,59 +80,79 @@ static int factor_border(const fu_model *model, const fu_state *state, fu_accele
 static void solve(const fu_model *model, fu_accelerator *work, const double *force, double *solution)
 {
     double *x = work->rhs, *lambda = x + model->n_band + model->n_border_dof;
-    for (int i = 0; i < model->n_dof; ++i)
-        if (model->place[i] >= 0) x[model->place[i]] = force[i];
+    fu_gather(model, force, x);
     for (int j = 0; j < model->n_joints; ++j)
-        for (int c = 0; c < 2; ++c) lambda[2 * j + c] *= model->joints[j].mass;
+        for (int c = 0; c < model->joints[j].kernel->dim - 1; ++c)
+            lambda[model->joints[j].multiplier + c] *= model->joints[j].mass;
     fu_system_solve(&work->mass, model->lapack, x);
-    for (int i = 0; i < model->n_dof; ++i) solution[i] = model->place[i] >= 0 ? x[model->place[i]] : 0.0;
+    fu_spread(model, x, solution);
     for (int j = 0; j < model->n_joints; ++j)
-        for (int c = 0; c < 2; ++c) lambda[2 * j + c] *= model->joints[j].mass;
+        for (int c = 0; c < model->joints[j].kernel->dim - 1; ++c)
+            lambda[model->joints[j].multiplier + c] *= model->joints[j].mass;
 }
 
-/* Eq 38. `joints` and `reaction` (forces on the fixed dofs, zero elsewhere) may be null. */
+/* -sum_k H_ck x_k: what the joints' right sides lose to known accelerations or velocities */
+static double minus_H(const fu_model *model, const fu_state *state, const fu_accelerator *work, int j, int c,
+                      const double *x)
+{
+    const int n = model->joints[j].kernel->coordinates;
+    const double *H = view(work, j).H + c * n;
+    double sum = 0.0;
+    for (int k = 0; k < n; ++k) sum -= H[k] * x[joint_dof(model, &model->joints[j], state->element[j], k)];
+    return sum;
+}
+
+/* Eq 38. `joints` may be null, and `reaction`: what supports give to each dof, zero to rounding where it is free. */
 int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerator *work, double *acceleration,
                      fu_joint_output *joints, double *reaction)
 {
-    double *lambda = work->rhs + model->n_band + model->n_border_dof;
+    double *lambda = work->rhs + model->n_band + model->n_border_dof, *prescribed = work->prescribed;
     evaluate(model, state, work);
     const int info = factor_border(model, state, work);
     if (info) return info;
-    for (int i = 0; i < model->n_dof; ++i) work->force[i] = 0.0;
+    for (int i = 0; i < model->n_dof; ++i) work->force[i] = prescribed[i] = work->work[i] = 0.0;
     fu_internal_forces(model, state->q, state->v, work->force);
-    fu_external_forces(model, work->force);
-    for (int i = 0; i < model->n_dof; ++i) work->work[i] = -work->force[i];
+    fu_spring_forces(model, state->q, state->v, work->force);
+    fu_external_forces(model, state->t, state->q, work->force);
+    for (int k = 0; k < model->n_motions; ++k)
+        prescribed[model->motions[k].dof] = state->acceleration[model->motions[k].dof];
+    if (model->n_motions) fu_mass_times(model, prescribed, work->work);
+    for (int i = 0; i < model->n_dof; ++i) work->work[i] = -work->force[i] - work->work[i];
     for (int j = 0; j < model->n_joints; ++j)
-        for (int c = 0; c < 2; ++c) lambda[2 * j + c] = view(work, j).W[c];
+        for (int c = 0; c < model->joints[j].kernel->dim - 1; ++c)
+            lambda[model->joints[j].multiplier + c] = view(work, j).W[c] + minus_H(model, state, work, j, c, prescribed);
     solve(model, work, work->work, acceleration);
+    for (int i = 0; i < model->n_dof; ++i) acceleration[i] += prescribed[i];
     if (joints)
         for (int j = 0; j < model->n_joints; ++j) {
             const fu_joint *joint = &model->joints[j];
             const terms_view t = view(work, j);
-            const int n = joint->kernel->coordinates, rider = n - 6;
+            const int n = joint->kernel->coordinates, dim = joint->kernel->dim;
+            const int rider = model->cables[joint->cable].coordinates;
             fu_joint_output *out = &joints[j];
+            *out = (fu_joint_output){0};
             out->s_rate = t.s_rate[0];
             out->s_acceleration = t.s_bias[0];
             for (int k = 0; k < n; ++k)
                 out->s_acceleration += t.G[k] * acceleration[joint_dof(model, joint, state->element[j], k)];
-            for (int c = 0; c < 2; ++c) out->multiplier[c] = lambda[2 * j + c];
-            for (int d = 0; d < 3; ++d) {
+            for (int c = 0; c < dim - 1; ++c) out->multiplier[c] = lambda[joint->multiplier + c];
+            for (int d = 0; d < dim; ++d) {
                 out->residual[d] = t.C[d];
-                out->force[d] = -(t.H[rider + d] * lambda[2 * j] + t.H[n + rider + d] * lambda[2 * j + 1]);
+                for (int c = 0; c < dim - 1; ++c) out->force[d] -= t.H[c * n + rider + d] * out->multiplier[c];
             }
         }
     if (reaction) {
         fu_mass_times(model, acceleration, work->work);
         for (int i = 0; i < model->n_dof; ++i) reaction[i] = work->work[i] + work->force[i];
-        for (int j = 0; j < model->n_joints; ++j)
-            for (int k = 0; k < model->joints[j].kernel->coordinates; ++k) {
-                const int n = model->joints[j].kernel->coordinates;
-                const terms_view t = view(work, j);
-                reaction[joint_dof(model, &model->joints[j], state->element[j], k)] +=
-                    t.H[k] * lambda[2 * j] + t.H[n + k] * lambda[2 * j + 1];
-            }
-        for (int i = 0; i < model->n_dof; ++i)
-            if (model->place[i] >= 0) reaction[i] = 0.0;
+        for (int j = 0; j < model->n_joints; ++j) {
+            const fu_joint *joint = &model->joints[j];
+            const terms_view t = view(work, j);
+            const int n = joint->kernel->coordinates;
+            for (int k = 0; k < n; ++k)
+                for (int c = 0; c < joint->kernel->dim - 1; ++c)
+                    reaction[joint_dof(model, joint, state->element[j], k)] +=
+                        t.H[c * n + k] * lambda[joint->multiplier + c];
+        }
     }
     return 0;
 }
@@ -146,51 +165,49 @@ int fu_project_velocities(const fu_model *model, const fu_state *state, fu_accel
     const int info = factor_border(model, state, work);
     if (info) return info;
     for (int i = 0; i < model->n_dof; ++i) work->work[i] = 0.0;
-    for (int j = 0; j < model->n_joints; ++j) {
-        const fu_joint *joint = &model->joints[j];
-        const terms_view t = view(work, j);
-        const int n = joint->kernel->coordinates;
-        for (int c = 0; c < 2; ++c) {
-            lambda[2 * j + c] = 0.0;
-            for (int k = 0; k < n; ++k)
-                lambda[2 * j + c] -= t.H[c * n + k] * state->v[joint_dof(model, joint, state->element[j], k)];
-        }
-    }
+    for (int j = 0; j < model->n_joints; ++j)
+        for (int c = 0; c < model->joints[j].kernel->dim - 1; ++c)
+            lambda[model->joints[j].multiplier + c] = minus_H(model, state, work, j, c, state->v);
     solve(model, work, work->work, change);
     return 0;
+}
+
+/* C, C_s, the Newton step for s, and the tangent, of a joint where it stands with this s */
+static double evaluate_constraint(const fu_model *model, const fu_state *state, int j, double s, double i[3])
+{
+    const fu_joint *joint = &model->joints[j];
+    const fu_cable *cable = &model->cables[joint->cable];
+    const int dim = joint->kernel->dim;
+    double C[3], C_s[3], step, A_t[9];
+    joint->kernel->constraint(cable->length, s - fu_element_start(model, j, state->element[j]),
+                              state->q + cable->first + state->element[j] * cable->per_node,
+                              state->q + model->rigids[joint->rider].configuration, joint->u, state->director + 3 * j,
+                              C, C_s, &step, A_t);
+    for (int d = 0; d < dim; ++d) i[d] = A_t[d * dim];
+    return step;
 }
 
 /* Newton for C_l(s) = 0 (eq 21) on the curve of the element that holds s; 0 when it converged. */
 int fu_find_arc_length(const fu_model *model, const fu_state *state, int j, double *s)
 {
-    const fu_joint *joint = &model->joints[j];
-    const fu_cable *cable = &model->cables[joint->cable];
-    double C[3], C_s[3], step, A_t[9];
+    const double length = model->cables[model->joints[j].cable].length;
+    double step = 0.0, tangent[3];
     for (int i = 0; i < 50; ++i) {
-        joint->kernel->constraint(cable->length, *s - fu_element_start(model, j, state->element[j]),
-                                  state->q + cable->first + state->element[j] * cable->per_node,
-                                  state->q + model->rigids[joint->rider].configuration, joint->u,
-                                  state->director + 3 * j, C, C_s, &step, A_t);
+        step = evaluate_constraint(model, state, j, *s, tangent);
         *s += step;
-        if (fabs(step) <= 1e-15 * (cable->length + fabs(*s))) return 0;
+        if (fabs(step) <= 1e-15 * (length + fabs(*s))) return 0;
     }
-    return fabs(step) <= 1e-12 * cable->length ? 0 : 1;
+    return fabs(step) <= 1e-12 * length ? 0 : 1;
 }
 
-/* Turn each director with the tangent: the part of it across the tangent, of unit length. Where the tangent has
- * swung onto it, the axis least along the tangent takes over. */
+/* Turn each director that no element gives with the tangent: the part of it across the tangent, of unit length. Where
+ * the tangent has swung onto it, the axis least along the tangent takes over. */
 void fu_carry_directors(const fu_model *model, fu_state *state)
 {
-    double C[3], C_s[3], step, A_t[9];
     for (int j = 0; j < model->n_joints; ++j) {
-        const fu_joint *joint = &model->joints[j];
-        const fu_cable *cable = &model->cables[joint->cable];
-        double *d = state->director + 3 * j;
-        joint->kernel->constraint(cable->length, state->s[j] - fu_element_start(model, j, state->element[j]),
-                                  state->q + cable->first + state->element[j] * cable->per_node,
-                                  state->q + model->rigids[joint->rider].configuration, joint->u, d, C, C_s, &step,
-                                  A_t);
-        const double i[3] = {A_t[0], A_t[3], A_t[6]};
+        if (!model->joints[j].carries_director) continue;
+        double *d = state->director + 3 * j, i[3];
+        evaluate_constraint(model, state, j, state->s[j], i);
         double along = i[0] * d[0] + i[1] * d[1] + i[2] * d[2];
         if (!(fabs(along) < 0.99)) {
             const double x = fabs(i[0]), y = fabs(i[1]), z = fabs(i[2]);

@@ -1,11 +1,13 @@
 /* The engine: what is integrated, and the work space of integrating it.
  *
- * Coordinates. q is the configuration: for each cable its nodal vectors node by node, then for each rigid body
- * position and unit quaternion. v, accelerations and increments have one entry a degree of freedom (dof): the
- * cables' as in q, then six a rigid body (translation; rotation about body axes).
+ * Coordinates. q is the configuration: for each cable its nodal vectors node by node, then for each body position and
+ * attitude (unit quaternion; in the plane unit complex number). v, accelerations and increments have one entry a degree
+ * of freedom (dof): the cables' as in q, then the bodies' (translation; rotation about body axes).
  *
- * Unknowns of a linear system: the free dofs of the cables ("band"), then the border: free dofs of the rigid
- * bodies, then what each joint adds. place[dof] is the place of a dof among them, -1 where it is fixed.
+ * Unknowns of a linear system: the free coordinates of the cables ("band"), then the border: those of the bodies, then
+ * what each joint and spring adds. Supports make dofs linear in the unknowns, dofs = T unknowns + what motions prescribe;
+ * place[dof] is the place of the unknown that the dof is, -1 where it is held or prescribed, -2 - k where it is the k-th
+ * combination of unknowns (reduce.c).
  *
  * Every array belongs to the caller; nothing here allocates.
  */
@@ -16,6 +18,7 @@
 
 #define FU_MAX_COORDINATES 32                        /* of one element or one joint; model.py checks */
 #define FU_JOINT_TERMS (13 + 6 * FU_MAX_COORDINATES) /* numbers of one joint in fu_accelerator.terms */
+#define FU_SIGNAL_TERMS 6                            /* coefficients of a piece of a signal */
 
 typedef struct {
     const fu_element *kernel;
@@ -26,25 +29,69 @@ typedef struct {
     int per_node;     /* coordinates of a node */
     double length;    /* of an element, m */
     double tau;       /* Kelvin-Voigt retardation time, s */
-    const double *m;       /* mass matrix of an element over nodal vectors */
-    const double *A;       /* constants of the law */
-    const double *gravity; /* generalised force on an element */
+    double mass_damping; /* 1/s */
+    const double *m;  /* mass matrix of an element over nodal vectors */
+    const double *A;  /* constants of the law, of the first element */
+    int A_stride;     /* from one element's to the next's: zero where they are equal */
 } fu_cable;
 
 typedef struct {
+    const fu_body *kernel;
     int configuration; /* first entry in q */
     int dof;           /* first dof */
     double mass;
     double J[9];
-    double gravity[3]; /* force, N */
 } fu_rigid;
 
 typedef struct {
     const fu_slide *kernel;
     int cable, rider;
+    int unknown, multiplier; /* places beyond the border's dofs: of s and the force, of the multipliers of eq 38 */
+    int carries_director;    /* the element has none of its own */
     double u[3]; /* the rider's point in body axes, m */
     double mass; /* scale of the constraint rows, kg */
 } fu_joint;
+
+/* f(t) = a polynomial of t - breaks[i] in each interval (the first and the last go on beyond the breaks)
+ *        + amplitude sin(angular_frequency t + phase) */
+typedef struct {
+    int n;
+    const double *breaks;       /* n + 1 */
+    const double *coefficients; /* n rows of FU_SIGNAL_TERMS, ascending powers */
+    double amplitude, angular_frequency, phase;
+} fu_signal;
+
+/* A dof that follows signals: q = base + linear f + cosine cos f + sine sin f */
+typedef struct {
+    int dof, signal;
+    double base, linear, cosine, sine;
+} fu_motion;
+
+/* Constant direction in the dofs: value[first ... first + n) on dof[first ...), times a signal */
+typedef struct {
+    int signal, first, n;
+} fu_dead_load;
+
+/* A load that turns with what it acts on: at x of a cable's element, or at the point u of a body. */
+enum { FU_CABLE_FOLLOWER, FU_CABLE_MOMENT, FU_BODY_FORCE, FU_BODY_FOLLOWER, FU_BODY_MOMENT, FU_BODY_MOMENT_FOLLOWER };
+typedef struct {
+    int kind, signal, on; /* `on`: the cable or the body */
+    int element;
+    double x, u[3], c[3]; /* c: components, N or N m */
+} fu_load;
+
+/* One end of a spring: a point of the ground (cable and body -1), of a cable's element, of a body. */
+typedef struct {
+    int cable, body, element;
+    double u[3]; /* the point: of the ground; of the body in its axes */
+    double N[FU_MAX_COORDINATES]; /* shape functions at the point of the element */
+} fu_end;
+
+typedef struct {
+    fu_end ends[2];
+    int dim, unknown;
+    double stiffness, damping, length, mass; /* N/m, N s/m, m; kg: scale of its rows */
+} fu_spring;
 
 /* LAPACK and BLAS, as scipy hands them out. */
 typedef struct {
@@ -70,13 +117,25 @@ typedef struct {
 } fu_system;
 
 typedef struct {
-    int n_cables, n_rigids, n_joints;
+    int n_cables, n_rigids, n_joints, n_springs, n_motions, n_dead_loads, n_loads;
     const fu_cable *cables;
     const fu_rigid *rigids;
     const fu_joint *joints;
+    const fu_spring *springs;
+    const fu_motion *motions;
+    const fu_dead_load *dead_loads;
+    const fu_load *loads;
+    const fu_signal *signals;
     int n_q, n_dof, n_band, n_border_dof;
+    int n_extra, n_multipliers; /* unknowns of joints and springs in a Newton system, of joints in eq 38 */
     const int *place;
-    const double *weight; /* length that a unit of each dof moves a point by: makes norms of increments metres */
+    const int *combination_start, *combination_place; /* combinations, row by row */
+    const double *combination_value;
+    const double *weight;  /* length that a unit of each dof moves a point by: makes norms of increments metres */
+    const double *gravity; /* generalised force on each dof */
+    const double *zero;    /* n_dof zeros: a velocity at rest */
+    const int *dead_dof;
+    const double *dead_value;
     const fu_lapack *lapack;
 } fu_model;
 
@@ -87,6 +146,7 @@ typedef struct {
     double *a;       /* the integrator's auxiliary acceleration */
     double *s;       /* per joint: arc-length */
     double *f;       /* per joint: force on the rider, 3 */
+    double *spring;  /* per spring: force on its first end, 3 */
     int *element;    /* per joint: element that holds s */
     double *director; /* per joint: unit vector across the tangent, carried along with the slide */
 } fu_state;
@@ -98,10 +158,15 @@ int fu_system_factor_band(fu_system *system, const fu_lapack *lapack);
 int fu_system_factor_border(fu_system *system, const fu_lapack *lapack);
 void fu_system_solve(const fu_system *system, const fu_lapack *lapack, double *x);
 
+/* reduce.c: dofs and unknowns */
+void fu_gather(const fu_model *model, const double *force, double *x);
+void fu_spread(const fu_model *model, const double *x, double *dofs);
+void fu_add(const fu_model *model, fu_system *system, int i, int j, double value);
+int fu_extra(const fu_model *model, int k);
+
 /* assembly.c */
 void fu_mass_times(const fu_model *model, const double *a, double *f);
 void fu_internal_forces(const fu_model *model, const double *q, const double *v, double *f);
-void fu_external_forces(const fu_model *model, double *f);
 void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, double inertia, double rate,
                        double stiffness, fu_system *system);
 double fu_kinetic_energy(const fu_model *model, const double *v);
@@ -111,16 +176,36 @@ double fu_dissipation(const fu_model *model, const double *q, const double *v);
 double fu_length(const fu_model *model, int joint);
 double fu_element_start(const fu_model *model, int joint, int element);
 
+/* motions.c */
+double fu_signal_at(const fu_signal *signal, double t, double *rate, double *second);
+void fu_prescribe(const fu_model *model, fu_state *state);
+
+/* loads.c */
+void fu_external_forces(const fu_model *model, double t, const double *q, double *f);
+void fu_loads(const fu_model *model, double t, const double *q, double *f);
+void fu_loads_matrix(const fu_model *model, double t, const double *q, const double *psi, double stiffness,
+                     fu_system *system);
+
+/* springs.c */
+void fu_spring_force(const fu_model *model, const fu_spring *spring, const double *q, const double *v, double force[3],
+                     double by_gap[9], double by_rate[9]);
+void fu_spring_forces(const fu_model *model, const double *q, const double *v, double *f);
+void fu_spring_pull(const fu_model *model, const fu_spring *spring, const double *q, const double force[3], double *f);
+void fu_spring_matrix(const fu_model *model, const fu_spring *spring, const fu_state *state, const double *psi,
+                      double rate, double stiffness, double unit, fu_system *system);
+double fu_spring_energy(const fu_model *model, const double *q);
+double fu_spring_dissipation(const fu_model *model, const double *q, const double *v);
+
 /* rotation.c */
-void fu_move_rigid(const double *b, const double *increment, double *moved);
-void fu_exponential_tangent(const double *psi, double T[9]);
+void fu_move_body(const fu_body *kernel, const double *b, const double *increment, double *moved);
+void fu_turn_columns(const fu_body *kernel, double *rows, int n_rows, int n_columns, int first, const double *psi);
 
 /* acceleration.c: eq 38 and what comes out of it */
 typedef struct {
     fu_system mass;   /* [M H'; H 0], its band factored once */
     double *rhs;      /* unknowns */
     double *terms;    /* per joint: C, C_q, C_s, G, s_rate, Q_d, H, W, s_bias */
-    double *force, *work; /* n_dof */
+    double *force, *work, *prescribed; /* n_dof */
     double *joints;       /* FU_JOINT_OUTPUTS a joint */
 } fu_accelerator;
 typedef struct {
@@ -150,7 +235,7 @@ enum { FU_RUNNING = 0, FU_DONE = 1, FU_END_OF_CABLE = 2, FU_NO_CONVERGENCE = 3, 
 typedef struct {
     int n;
     double *time, *q, *v, *acceleration, *reaction, *s, *joint;
-    double *kinetic, *elastic, *potential, *dissipated;
+    double *kinetic, *elastic, *potential, *dissipated, *external, *spring;
 } fu_record;
 
 typedef struct {
@@ -163,18 +248,26 @@ typedef struct {
     fu_record record;
     fu_statistics statistics;
     double *rhs;                              /* unknowns */
-    double *psi, *force, *work, *before;      /* n_dof */
+    double *psi, *force, *work, *before;      /* n_dof; force is what supports and motions give, once Newton is done */
     double *first;                            /* n_q: the configuration at the start */
     double *s_slope;                          /* per joint: predicts ds/dt */
-    double h, h_factored, contraction, dissipated, power, last_error;
+    double h, h_factored, contraction, last_error;
+    double dissipated, dissipated_power, external, external_power; /* J, W */
     double motion, least_motion, extent; /* m: largest so far, assumed at least, largest coordinate of a position */
     double newton_tolerance, round_off; /* of increments, m: where Newton may stop, and where it cannot go on */
     int factored, stopped_joint;
     int rest_start; /* for order.py only: start the scheme from zero accelerations */
 } fu_run;
 
+/* Newton matrix = inertia M + stiffness (K + rate D); statics has no inertia */
+typedef struct {
+    double inertia, rate, stiffness;
+} fu_weights;
 int fu_step(fu_run *run, double h);
 void fu_linearise(fu_run *run, double h, const double *change);
+void fu_static_move(fu_run *run, const double *change);
+void fu_static_residual(fu_run *run);
+void fu_matrix(fu_run *run, fu_weights weights);
 double fu_step_error(fu_run *run, double h);
 double fu_clock(void);
 

@@ -13,6 +13,7 @@
 #define _POSIX_C_SOURCE 199309L
 #include "engine.h"
 
+#include <string.h>
 #include <time.h>
 
 #define MOST_ITERATIONS 12
@@ -43,97 +44,113 @@ static void kinematics(fu_run *run, double h)
         next->acceleration[i] = ((1.0 - g->alpha_m) * next->a[i] + g->alpha_m * now->a[i] -
                                  g->alpha_f * now->acceleration[i]) / (1.0 - g->alpha_f);
     }
-    const int n_flexible = model->n_dof - 6 * model->n_rigids;
+    const int n_flexible = model->n_rigids ? model->rigids[0].dof : model->n_dof;
     for (int i = 0; i < n_flexible; ++i) next->q[i] = now->q[i] + run->psi[i];
     for (int b = 0; b < model->n_rigids; ++b) {
         const fu_rigid *body = &model->rigids[b];
-        fu_move_rigid(now->q + body->configuration, run->psi + body->dof, next->q + body->configuration);
+        fu_move_body(body->kernel, now->q + body->configuration, run->psi + body->dof, next->q + body->configuration);
     }
+    if (model->n_motions) fu_prescribe(model, next);
 }
 
-/* places of a joint's coordinates among the unknowns: element, rider, s */
-static void joint_places(const fu_run *run, int j, int *place)
+/* a joint's coordinates for fu_add: element, rider, s; the force follows s */
+static void joint_coordinates(const fu_model *model, const fu_state *state, int j, int *at)
 {
-    const fu_model *model = run->model;
     const fu_joint *joint = &model->joints[j];
     const fu_cable *cable = &model->cables[joint->cable];
-    const int n = cable->coordinates, at = cable->first + run->next.element[j] * cable->per_node;
-    for (int i = 0; i < n; ++i) place[i] = model->place[at + i];
-    for (int i = 0; i < 6; ++i) place[n + i] = model->place[model->rigids[joint->rider].dof + i];
-    place[n + 6] = model->n_band + model->n_border_dof + 4 * j;
+    const int n = cable->coordinates, all = joint->kernel->coordinates;
+    for (int i = 0; i < n; ++i) at[i] = cable->first + state->element[j] * cable->per_node + i;
+    for (int i = n; i < all; ++i) at[i] = model->rigids[joint->rider].dof + i - n;
+    at[all] = fu_extra(model, joint->unknown);
 }
 
-/* minus the scaled residual, over the unknowns */
-static void residual(fu_run *run, double h)
+/* Statics has no mass to scale a joint's rows and force by. */
+static double unit(double inertia, double mass)
 {
-    const double begin = fu_clock(), scale = sigma(&run->scheme, h);
+    return inertia != 0.0 ? mass : 1.0;
+}
+
+/* minus the scaled residual, over the unknowns; run->force keeps the unscaled sum over the dofs */
+static void residual(fu_run *run, double inertia, double scale)
+{
+    const double begin = fu_clock();
     const fu_model *model = run->model;
     const fu_state *next = &run->next;
-    double phi[3], g[FU_MAX_COORDINATES];
-    fu_mass_times(model, next->acceleration, run->force);
+    double phi[3], g[FU_MAX_COORDINATES], *extra = run->rhs + model->n_band + model->n_border_dof;
+    if (inertia != 0.0) fu_mass_times(model, next->acceleration, run->force);
+    else
+        for (int i = 0; i < model->n_dof; ++i) run->force[i] = 0.0;
     fu_internal_forces(model, next->q, next->v, run->force);
-    fu_external_forces(model, run->force);
-    for (int i = 0; i < model->n_dof; ++i)
-        if (model->place[i] >= 0) run->rhs[model->place[i]] = -scale * run->force[i];
+    fu_external_forces(model, next->t, next->q, run->force);
     for (int j = 0; j < model->n_joints; ++j) {
         const fu_joint *joint = &model->joints[j];
         const fu_cable *cable = &model->cables[joint->cable];
-        const int at = cable->first + next->element[j] * cable->per_node;
-        int place[FU_MAX_COORDINATES];
-        joint_places(run, j, place);
+        int at[FU_MAX_COORDINATES];
+        joint_coordinates(model, next, j, at);
         joint->kernel->residual(cable->length, next->s[j] - fu_element_start(model, j, next->element[j]),
-                                next->q + at, next->q + model->rigids[joint->rider].configuration, joint->u,
+                                next->q + at[0], next->q + model->rigids[joint->rider].configuration, joint->u,
                                 next->f + 3 * j, phi, g);
         const int s = joint->kernel->coordinates;
-        for (int i = 0; i < s; ++i)
-            if (place[i] >= 0) run->rhs[place[i]] -= scale * g[i];
-        run->rhs[place[s]] = -scale * g[s];
-        for (int d = 0; d < 3; ++d) run->rhs[place[s] + 1 + d] = -joint->mass * phi[d];
+        for (int i = 0; i < s; ++i) run->force[at[i]] += g[i];
+        extra[joint->unknown] = -scale * g[s];
+        for (int d = 0; d < joint->kernel->dim; ++d)
+            extra[joint->unknown + 1 + d] = -unit(inertia, joint->mass) * phi[d];
     }
+    for (int k = 0; k < model->n_springs; ++k) {
+        const fu_spring *spring = &model->springs[k];
+        double force[3], by_gap[9], by_rate[9];
+        fu_spring_pull(model, spring, next->q, next->spring + 3 * k, run->force);
+        fu_spring_force(model, spring, next->q, next->v, force, by_gap, by_rate);
+        for (int d = 0; d < spring->dim; ++d)
+            extra[spring->unknown + d] = -scale * (next->spring[3 * k + d] - force[d]);
+    }
+    fu_gather(model, run->force, run->rhs);
+    for (int i = 0; i < model->n_band + model->n_border_dof; ++i) run->rhs[i] *= -scale;
     run->statistics.time_residual += fu_clock() - begin;
 }
 
-/* columns of the rider's rotation: a change of psi turns the body by T dpsi */
-static void turn_columns(double *rows, int n_rows, int n_columns, int first, const double T[9])
+/* Derivative at `next` of the scaled residual by the unknowns; psi: what moved the bodies there, or null where the
+ * unknowns move them from there. */
+static void matrix(fu_run *run, fu_weights w, const double *psi)
 {
-    for (int r = 0; r < n_rows; ++r) {
-        double *p = rows + r * n_columns + first;
-        const double x = p[0], y = p[1], z = p[2];
-        for (int d = 0; d < 3; ++d) p[d] = x * T[d] + y * T[3 + d] + z * T[6 + d];
-    }
-}
-
-/* the Newton matrix at `next`: derivative of the scaled residual by the unknowns */
-static void newton_matrix(fu_run *run, double h)
-{
-    const double scale = sigma(&run->scheme, h);
     const fu_model *model = run->model;
     const fu_state *next = &run->next;
     fu_system *system = &run->newton;
-    double J[3 * FU_MAX_COORDINATES], K[FU_MAX_COORDINATES * FU_MAX_COORDINATES], T[9];
+    double J[3 * FU_MAX_COORDINATES], K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
     fu_system_clear(system);
-    fu_dynamic_matrix(model, next->q, next->v, 1.0, run->scheme.gamma / (run->scheme.beta * h), scale, system);
+    fu_dynamic_matrix(model, next->q, next->v, w.inertia, w.rate, w.stiffness, system);
+    if (w.stiffness == 0.0) return;
+    fu_loads_matrix(model, next->t, next->q, psi, w.stiffness, system);
     for (int j = 0; j < model->n_joints; ++j) {
         const fu_joint *joint = &model->joints[j];
         const fu_cable *cable = &model->cables[joint->cable];
-        const int at = cable->first + next->element[j] * cable->per_node;
-        const int s = joint->kernel->coordinates, n = s + 1;
-        int place[FU_MAX_COORDINATES];
-        joint_places(run, j, place);
+        const fu_rigid *rider = &model->rigids[joint->rider];
+        const double mass = unit(w.inertia, joint->mass);
+        const int s = joint->kernel->coordinates, n = s + 1, dim = joint->kernel->dim, turns = cable->coordinates;
+        int at[FU_MAX_COORDINATES];
+        joint_coordinates(model, next, j, at);
         joint->kernel->tangent(cable->length, next->s[j] - fu_element_start(model, j, next->element[j]),
-                               next->q + at, next->q + model->rigids[joint->rider].configuration, joint->u,
-                               next->f + 3 * j, J, K);
+                               next->q + at[0], next->q + rider->configuration, joint->u, next->f + 3 * j, J, K);
         for (int i = 0; i < n; ++i)
-            for (int d = 0; d < 3; ++d) fu_system_add(system, place[i], place[s] + 1 + d, joint->mass * J[d * n + i]);
-        fu_exponential_tangent(run->psi + model->rigids[joint->rider].dof + 3, T);
-        turn_columns(J, 3, n, s - 3, T);
-        turn_columns(K, n, n, s - 3, T);
+            for (int d = 0; d < dim; ++d) fu_add(model, system, at[i], at[s] + 1 + d, mass * J[d * n + i]);
+        if (psi) {
+            fu_turn_columns(rider->kernel, J, dim, n, turns, psi + rider->dof);
+            fu_turn_columns(rider->kernel, K, n, n, turns, psi + rider->dof);
+        }
         for (int i = 0; i < n; ++i) {
-            for (int d = 0; d < 3; ++d) fu_system_add(system, place[s] + 1 + d, place[i], joint->mass * J[d * n + i]);
+            for (int d = 0; d < dim; ++d) fu_add(model, system, at[s] + 1 + d, at[i], mass * J[d * n + i]);
             for (int k = 0; k < n; ++k)
-                if (K[i * n + k] != 0.0) fu_system_add(system, place[i], place[k], scale * K[i * n + k]);
+                if (K[i * n + k] != 0.0) fu_add(model, system, at[i], at[k], w.stiffness * K[i * n + k]);
         }
     }
+    for (int k = 0; k < model->n_springs; ++k)
+        fu_spring_matrix(model, &model->springs[k], next, psi, w.rate, w.stiffness,
+                         unit(w.inertia, model->springs[k].mass), system);
+}
+
+static void newton_matrix(fu_run *run, double h)
+{
+    matrix(run, (fu_weights){1.0, run->scheme.gamma / (run->scheme.beta * h), sigma(&run->scheme, h)}, run->psi);
 }
 
 static int factor(fu_run *run, double h)
@@ -149,41 +166,61 @@ static int factor(fu_run *run, double h)
     return info;
 }
 
+/* largest of the unknowns in run->rhs, as a length; the dofs' part of them is left in run->work */
+static double spread_size(fu_run *run)
+{
+    const fu_model *model = run->model;
+    const double *extra = run->rhs + model->n_band + model->n_border_dof;
+    double largest = 0.0;
+    fu_spread(model, run->rhs, run->work);
+    for (int i = 0; i < model->n_dof; ++i) {
+        const double size = fabs(run->work[i]) * model->weight[i];
+        if (!(size <= largest)) largest = size; /* keeps a NaN */
+    }
+    for (int i = 0; i < model->n_extra; ++i)
+        if (!(fabs(extra[i]) <= largest)) largest = fabs(extra[i]);
+    return largest;
+}
+
+/* the solution in run->rhs, added to s and to the forces of joints and springs */
+static void apply_extra(fu_run *run, double inertia, double scale)
+{
+    const fu_model *model = run->model;
+    const double *extra = run->rhs + model->n_band + model->n_border_dof;
+    for (int j = 0; j < model->n_joints; ++j) {
+        const fu_joint *joint = &model->joints[j];
+        run->next.s[j] += extra[joint->unknown];
+        for (int d = 0; d < joint->kernel->dim; ++d)
+            run->next.f[3 * j + d] += extra[joint->unknown + 1 + d] * unit(inertia, joint->mass) / scale;
+    }
+    for (int k = 0; k < model->n_springs; ++k) {
+        const fu_spring *spring = &model->springs[k];
+        for (int d = 0; d < spring->dim; ++d)
+            run->next.spring[3 * k + d] += extra[spring->unknown + d] * unit(inertia, spring->mass) / scale;
+    }
+}
+
 /* the solution in run->rhs, applied to `next`; returns its size as a length */
 static double apply(fu_run *run, double h)
 {
-    const fu_model *model = run->model;
-    const double per_psi = 1.0 / (run->scheme.beta * h * h), scale = sigma(&run->scheme, h);
-    double largest = 0.0;
-    for (int i = 0; i < model->n_dof; ++i) {
-        if (model->place[i] < 0) continue;
-        const double d = run->rhs[model->place[i]], size = fabs(d) * model->weight[i];
-        run->next.a[i] += per_psi * d;
-        if (!(size <= largest)) largest = size; /* keeps a NaN */
-    }
-    for (int j = 0; j < model->n_joints; ++j) {
-        const double *d = run->rhs + model->n_band + model->n_border_dof + 4 * j;
-        run->next.s[j] += d[0];
-        if (!(fabs(d[0]) <= largest)) largest = fabs(d[0]);
-        for (int k = 0; k < 3; ++k) {
-            run->next.f[3 * j + k] += d[1 + k] * model->joints[j].mass / scale;
-            if (!(fabs(d[1 + k]) <= largest)) largest = fabs(d[1 + k]);
-        }
-    }
-    return largest;
+    const double per_psi = 1.0 / (run->scheme.beta * h * h), size = spread_size(run);
+    for (int i = 0; i < run->model->n_dof; ++i) run->next.a[i] += per_psi * run->work[i];
+    apply_extra(run, 1.0, sigma(&run->scheme, h));
+    return size;
 }
 
 static void predict(fu_run *run, double h)
 {
     const fu_model *model = run->model;
-    for (int i = 0; i < model->n_dof; ++i) run->next.a[i] = run->now.a[i];
+    const size_t real = sizeof(double);
+    run->next.t = run->now.t + h;
+    memcpy(run->next.a, run->now.a, real * (size_t)model->n_dof);
+    memcpy(run->next.f, run->now.f, 3 * real * (size_t)model->n_joints);
+    memcpy(run->next.spring, run->now.spring, 3 * real * (size_t)model->n_springs);
+    memcpy(run->next.director, run->now.director, 3 * real * (size_t)model->n_joints);
     for (int j = 0; j < model->n_joints; ++j) {
         run->next.s[j] = run->now.s[j] + h * run->s_slope[j];
         run->next.element[j] = run->now.element[j];
-        for (int k = 0; k < 3; ++k) {
-            run->next.f[3 * j + k] = run->now.f[3 * j + k];
-            run->next.director[3 * j + k] = run->now.director[3 * j + k];
-        }
     }
 }
 
@@ -193,7 +230,7 @@ static int iterate(fu_run *run, double h)
     double last = 0.0;
     for (int i = 0; i < MOST_ITERATIONS; ++i) {
         kinematics(run, h);
-        residual(run, h);
+        residual(run, 1.0, sigma(&run->scheme, h));
         if (!run->factored) {
             if (factor(run, h)) return 1;
             run->contraction = 0.5; /* nothing is known yet: do not stop after one iteration */
@@ -224,12 +261,11 @@ static int iterate(fu_run *run, double h)
 void fu_linearise(fu_run *run, double h, const double *change)
 {
     predict(run, h);
-    for (int i = 0; i < run->model->n_band + run->model->n_border_dof + 4 * run->model->n_joints; ++i)
-        run->rhs[i] = change[i];
+    for (int i = 0; i < run->newton.n + run->newton.m; ++i) run->rhs[i] = change[i];
     apply(run, h);
     kinematics(run, h);
     newton_matrix(run, h);
-    residual(run, h);
+    residual(run, 1.0, sigma(&run->scheme, h));
     run->factored = 0;
 }
 
@@ -260,16 +296,43 @@ double fu_step_error(fu_run *run, double h)
     const double factor = h * h * fabs(g->beta + 0.5 * (g->alpha_m - g->alpha_f) - 1.0 / 6.0);
     for (int i = 0; i < model->n_dof; ++i)
         run->work[i] = factor * (run->next.acceleration[i] - run->now.acceleration[i]);
-    fu_mass_times(model, run->work, run->force);
-    for (int i = 0; i < model->n_dof; ++i)
-        if (model->place[i] >= 0) run->rhs[model->place[i]] = run->force[i];
-    for (int i = 0; i < 4 * model->n_joints; ++i) run->rhs[model->n_band + model->n_border_dof + i] = 0.0;
+    fu_mass_times(model, run->work, run->psi);
+    fu_gather(model, run->psi, run->rhs);
+    for (int i = 0; i < model->n_extra; ++i) run->rhs[model->n_band + model->n_border_dof + i] = 0.0;
     const double begin = fu_clock();
     fu_system_solve(&run->newton, model->lapack, run->rhs);
     run->statistics.time_solve += fu_clock() - begin;
-    double largest = 0.0;
-    for (int i = 0; i < model->n_dof; ++i)
-        if (model->place[i] >= 0 && fabs(run->rhs[model->place[i]]) * model->weight[i] > largest)
-            largest = fabs(run->rhs[model->place[i]]) * model->weight[i];
-    return largest;
+    for (int i = 0; i < model->n_extra; ++i) run->rhs[model->n_band + model->n_border_dof + i] = 0.0;
+    return spread_size(run);
+}
+
+/* Statics: unknowns move `next`, from where it is. */
+void fu_static_move(fu_run *run, const double *change)
+{
+    const fu_model *model = run->model;
+    double moved[7];
+    for (int i = 0; i < run->newton.n + run->newton.m; ++i) run->rhs[i] = change[i];
+    fu_spread(model, run->rhs, run->work);
+    const int n_flexible = model->n_rigids ? model->rigids[0].dof : model->n_dof;
+    for (int i = 0; i < n_flexible; ++i) run->next.q[i] += run->work[i];
+    for (int b = 0; b < model->n_rigids; ++b) {
+        const fu_rigid *body = &model->rigids[b];
+        double *place = run->next.q + body->configuration;
+        fu_move_body(body->kernel, place, run->work + body->dof, moved);
+        memcpy(place, moved, sizeof(double) * (size_t)body->kernel->configuration);
+    }
+    apply_extra(run, 0.0, 1.0);
+}
+
+/* minus the sum of forces and the joints' residuals, in run->rhs */
+void fu_static_residual(fu_run *run)
+{
+    residual(run, 0.0, 1.0);
+}
+
+/* the matrix of these weights at `next`, unfactored, in run->newton; unknowns move bodies from there */
+void fu_matrix(fu_run *run, fu_weights weights)
+{
+    matrix(run, weights, 0);
+    run->factored = 0;
 }

@@ -22,7 +22,8 @@ static double motion(const fu_model *model, const double *from, const double *to
     for (int b = 0; b < model->n_rigids; ++b) {
         const int at = model->rigids[b].configuration;
         double square = 0.0;
-        for (int d = 0; d < 3; ++d) square += (to[at + d] - from[at + d]) * (to[at + d] - from[at + d]);
+        for (int d = 0; d < model->rigids[b].kernel->dim; ++d)
+            square += (to[at + d] - from[at + d]) * (to[at + d] - from[at + d]);
         if (square > largest) largest = square;
     }
     return sqrt(largest);
@@ -38,7 +39,8 @@ static double extent(const fu_model *model, const double *origin, const double *
             largest = fmax(largest, model->weight[cable->first + i]);
     }
     for (int b = 0; b < model->n_rigids; ++b)
-        for (int i = 3; i < 6; ++i) largest = fmax(largest, model->weight[model->rigids[b].dof + i]);
+        for (int i = model->rigids[b].kernel->dim; i < model->rigids[b].kernel->velocity; ++i)
+            largest = fmax(largest, model->weight[model->rigids[b].dof + i]);
     return largest;
 }
 
@@ -60,6 +62,12 @@ static int record_row(fu_run *run)
     r->elastic[row] = fu_elastic_energy(model, now->q);
     r->potential[row] = fu_potential_energy(model, now->q);
     r->dissipated[row] = run->dissipated;
+    r->external[row] = run->external;
+    for (int k = 0; k < model->n_springs; ++k) {
+        double by_gap[9], by_rate[9];
+        fu_spring_force(model, &model->springs[k], now->q, now->v, r->spring + 3 * (row * model->n_springs + k), by_gap,
+                        by_rate);
+    }
     ++r->n;
     run->statistics.time_output += fu_clock() - begin;
     return info;
@@ -80,14 +88,39 @@ static int start_scheme(fu_run *run)
         run->s_slope[j] = joints[j].s_rate;
         memcpy(now->f + 3 * j, joints[j].force, sizeof joints[j].force);
     }
+    for (int k = 0; k < model->n_springs; ++k) {
+        double by_gap[9], by_rate[9];
+        fu_spring_force(model, &model->springs[k], now->q, now->v, now->spring + 3 * k, by_gap, by_rate);
+    }
     run->factored = 0;
     return FU_RUNNING;
+}
+
+/* power of the loads and, with the forces of the supports, of the motions */
+static double external_power(fu_run *run, const double *reaction)
+{
+    const fu_model *model = run->model;
+    const fu_state *now = &run->now;
+    double power = 0.0;
+    if (model->n_dead_loads || model->n_loads) {
+        for (int i = 0; i < model->n_dof; ++i) run->work[i] = 0.0;
+        fu_loads(model, now->t, now->q, run->work);
+        for (int i = 0; i < model->n_dof; ++i) power -= run->work[i] * now->v[i];
+    }
+    for (int k = 0; k < model->n_motions; ++k) {
+        const int i = model->motions[k].dof;
+        int counted = 0;
+        for (int m = 0; m < k; ++m) counted |= model->motions[m].dof == i;
+        if (!counted) power += reaction[i] * now->v[i];
+    }
+    return power;
 }
 
 int fu_start(fu_run *run)
 {
     const fu_model *model = run->model;
     fu_state *now = &run->now;
+    fu_prescribe(model, now);
     fu_carry_directors(model, now);
     for (int j = 0; j < model->n_joints; ++j)
         if (fu_find_arc_length(model, now, j, &now->s[j])) return FU_SINGULAR;
@@ -100,7 +133,8 @@ int fu_start(fu_run *run)
         memset(now->acceleration, 0, sizeof(double) * (size_t)model->n_dof);
         memset(now->a, 0, sizeof(double) * (size_t)model->n_dof);
     }
-    run->power = fu_dissipation(model, now->q, now->v);
+    run->dissipated_power = fu_dissipation(model, now->q, now->v);
+    run->external_power = external_power(run, run->record.reaction);
     /* tolerances are relative to the largest motion: until there is one, that of a thousandth of the duration; and
      * never to less than what a scene at rest cannot help */
     run->least_motion = 1e-9 * run->extent;
@@ -117,13 +151,15 @@ static void accept(fu_run *run, double h)
     const fu_model *model = run->model;
     for (int j = 0; j < model->n_joints; ++j) run->s_slope[j] = (run->next.s[j] - run->now.s[j]) / h;
     const fu_state state = run->now;
-    run->next.t = run->now.t + h;
     run->now = run->next;
     run->next = state;
     fu_carry_directors(model, &run->now);
-    const double power = fu_dissipation(model, run->now.q, run->now.v);
-    run->dissipated += 0.5 * h * (run->power + power);
-    run->power = power;
+    const double dissipated = fu_dissipation(model, run->now.q, run->now.v);
+    const double external = external_power(run, run->force);
+    run->dissipated += 0.5 * h * (run->dissipated_power + dissipated);
+    run->external += 0.5 * h * (run->external_power + external);
+    run->dissipated_power = dissipated;
+    run->external_power = external;
     const double moved = motion(model, run->first, run->now.q);
     if (moved > run->motion) run->motion = moved;
     fu_statistics *s = &run->statistics;

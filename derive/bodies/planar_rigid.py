@@ -1,0 +1,65 @@
+"""Planar rigid body: position R and unit complex number c + i s; velocities R' and angular velocity (3 coordinates).
+
+As in space, a change of configuration is a translation and a rotation: no constraint, no angle that grows with every
+turn, and A is linear in (c, s), which turn as dc = -s dtheta, ds = c dtheta.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import sympy as sp
+from funicular.derive.stages import Derivation, Program
+
+NAME, DIM, N_CONFIGURATION, N_VELOCITY = "planar_rigid", 2, 4, 3
+DOC, SOURCE = "planar rigid body", "paper eq 12 (q_r) in the plane"
+
+
+def configuration(program: Program) -> np.ndarray:
+    """Input b: position of the mass centre and unit complex number."""
+    return program.input("b", N_CONFIGURATION, "m, 1", "position of the mass centre, cosine and sine of the angle")
+
+
+def velocity(program: Program) -> np.ndarray:
+    """Input w: velocity of the mass centre and angular velocity."""
+    return program.input("w", N_VELOCITY, "m/s, rad/s", "velocity of the mass centre, angular velocity")
+
+
+def attachment(program: Program) -> np.ndarray:
+    """Input u: a point of the body."""
+    return program.input("u", DIM, "m", "point in body axes from the mass centre")
+
+
+def axes(program: Program, b: np.ndarray) -> np.ndarray:
+    """A, body to global axes."""
+    return np.array([[b[2], -b[3]], [b[3], b[2]]])
+
+
+def rate(b: np.ndarray, A: np.ndarray, w: np.ndarray) -> dict[sp.Symbol, sp.Expr]:
+    """Value on b of the derivation along the velocity w."""
+    return dict(zip(b, [*w[:2], *(w[2] * A[:, 1])], strict=True))
+
+
+def tangents(program: Program, b: np.ndarray, A: np.ndarray) -> list[Derivation]:
+    """The three derivations: two translations and the rotation."""
+    units = np.eye(N_VELOCITY, dtype=int)
+    return [Derivation(program, f"d_{name}", rate(b, A, units[k])) for k, name in enumerate(("X", "Y", "th"))]
+
+
+def origin(b: np.ndarray) -> np.ndarray:
+    """R."""
+    return b[:2]
+
+
+def arm(program: Program, A: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """Stage: A u, the point from the origin."""
+    return program.vector("arm", A.dot(u))
+
+
+def turning_inertia(J: np.ndarray) -> np.ndarray:
+    """The part of the inertia that the rotations of this body meet."""
+    return J[2:, 2:]
+
+
+def gyroscopic_moment(program: Program, J: np.ndarray, omega: np.ndarray) -> np.ndarray:
+    """None in the plane."""
+    return np.zeros(1, dtype=int)

@@ -1,0 +1,105 @@
+/* Forces and moments from outside, and their derivatives where they turn with what they act on. */
+#include "engine.h"
+
+static double scale_at(const fu_model *model, int signal, double t)
+{
+    return signal < 0 ? 1.0 : fu_signal_at(&model->signals[signal], t, 0, 0);
+}
+
+/* Generalised force g of a load at unit signal, its derivative K by the dofs (row by row); returns their number, and the
+ * first dof. On a body: translation of the force c, rotation of its moment about the mass centre. */
+static int generalised(const fu_model *model, const fu_load *load, const double *q, double *g, double *K, int *first)
+{
+    if (load->kind == FU_CABLE_FOLLOWER || load->kind == FU_CABLE_MOMENT) {
+        const fu_cable *cable = &model->cables[load->on];
+        *first = cable->first + load->element * cable->per_node;
+        (load->kind == FU_CABLE_MOMENT ? cable->kernel->moment : cable->kernel->follower_force)(
+            cable->length, load->x, q + *first, load->c, g, K);
+        return cable->coordinates;
+    }
+    const fu_rigid *body = &model->rigids[load->on];
+    const int dim = body->kernel->dim, n = body->kernel->velocity;
+    const double *b = q + body->configuration, *c = load->c, *u = load->u;
+    double p[3], p_q[18], unused[36];
+    *first = body->dof;
+    for (int i = 0; i < n; ++i) g[i] = 0.0;
+    for (int i = 0; i < n * n; ++i) K[i] = 0.0;
+    switch (load->kind) {
+    case FU_BODY_FORCE:
+        body->kernel->point_force(b, u, c, p, p_q, K);
+        for (int i = 0; i < n; ++i)
+            for (int d = 0; d < dim; ++d) g[i] += p_q[d * n + i] * c[d];
+        break;
+    case FU_BODY_FOLLOWER: /* the force is A c: where the body's point c stands from its centre */
+        body->kernel->point_force(b, c, c, p, p_q, unused);
+        for (int d = 0; d < dim; ++d) {
+            g[d] = p[d] - b[d];
+            for (int i = dim; i < n; ++i) K[d * n + i] = p_q[d * n + i];
+        }
+        if (dim == 2) g[2] = u[0] * c[1] - u[1] * c[0];
+        else
+            for (int i = 0; i < 3; ++i)
+                g[3 + i] = u[(i + 1) % 3] * c[(i + 2) % 3] - u[(i + 2) % 3] * c[(i + 1) % 3];
+        break;
+    case FU_BODY_MOMENT: /* A' c: c along each body axis */
+        if (dim == 2) {
+            g[2] = c[2];
+            break;
+        }
+        for (int i = 0; i < 3; ++i) {
+            const double axis[3] = {i == 0, i == 1, i == 2};
+            body->kernel->point_force(b, axis, c, p, p_q, unused);
+            for (int d = 0; d < 3; ++d) {
+                g[3 + i] += (p[d] - b[d]) * c[d];
+                for (int j = 3; j < 6; ++j) K[(3 + i) * 6 + j] += p_q[d * 6 + j] * c[d];
+            }
+        }
+        break;
+    default:
+        for (int i = 0; i < n - dim; ++i) g[dim + i] = c[dim == 2 ? 2 : i];
+    }
+    return n;
+}
+
+/* f -= loads other than gravity */
+void fu_loads(const fu_model *model, double t, const double *q, double *f)
+{
+    double g[FU_MAX_COORDINATES], K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
+    for (int k = 0; k < model->n_dead_loads; ++k) {
+        const fu_dead_load *load = &model->dead_loads[k];
+        const double scale = scale_at(model, load->signal, t);
+        for (int i = load->first; i < load->first + load->n; ++i) f[model->dead_dof[i]] -= scale * model->dead_value[i];
+    }
+    for (int k = 0; k < model->n_loads; ++k) {
+        const fu_load *load = &model->loads[k];
+        const double scale = scale_at(model, load->signal, t);
+        int first;
+        const int n = generalised(model, load, q, g, K, &first);
+        for (int i = 0; i < n; ++i) f[first + i] -= scale * g[i];
+    }
+}
+
+/* f -= gravity and loads */
+void fu_external_forces(const fu_model *model, double t, const double *q, double *f)
+{
+    for (int i = 0; i < model->n_dof; ++i) f[i] -= model->gravity[i];
+    fu_loads(model, t, q, f);
+}
+
+/* system -= stiffness times derivatives of the loads, by psi where that is given (rotation.c) */
+void fu_loads_matrix(const fu_model *model, double t, const double *q, const double *psi, double stiffness,
+                     fu_system *system)
+{
+    double g[FU_MAX_COORDINATES], K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
+    for (int k = 0; k < model->n_loads; ++k) {
+        const fu_load *load = &model->loads[k];
+        const double scale = stiffness * scale_at(model, load->signal, t);
+        int first;
+        const int n = generalised(model, load, q, g, K, &first);
+        if (psi && load->kind >= FU_BODY_FORCE)
+            fu_turn_columns(model->rigids[load->on].kernel, K, n, n, 0, psi + first);
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < n; ++j)
+                if (K[i * n + j] != 0.0) fu_add(model, system, first + i, first + j, -scale * K[i * n + j]);
+    }
+}

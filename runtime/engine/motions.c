@@ -1,0 +1,50 @@
+/* Signals, and the dofs that follow them. */
+#include "engine.h"
+
+/* f(t); its two derivatives where asked for */
+double fu_signal_at(const fu_signal *signal, double t, double *rate, double *second)
+{
+    double f = 0.0, f1 = 0.0, f2 = 0.0;
+    if (signal->n) {
+        const double *breaks = signal->breaks;
+        int low = 0, high = signal->n - 1;
+        while (low < high) {
+            const int middle = (low + high + 1) / 2;
+            if (t >= breaks[middle]) low = middle;
+            else high = middle - 1;
+        }
+        const double d = t - breaks[low];
+        for (int k = FU_SIGNAL_TERMS - 1; k >= 0; --k) {
+            f2 = f2 * d + 2.0 * f1;
+            f1 = f1 * d + f;
+            f = f * d + signal->coefficients[low * FU_SIGNAL_TERMS + k];
+        }
+    }
+    if (signal->amplitude != 0.0) {
+        const double w = signal->angular_frequency, angle = w * t + signal->phase;
+        f += signal->amplitude * sin(angle);
+        f1 += signal->amplitude * w * cos(angle);
+        f2 -= signal->amplitude * w * w * sin(angle);
+    }
+    if (rate) *rate = f1;
+    if (second) *second = f2;
+    return f;
+}
+
+/* Position, velocity and acceleration of the prescribed dofs at state->t; several motions of one dof add up. */
+void fu_prescribe(const fu_model *model, fu_state *state)
+{
+    for (int k = 0; k < model->n_motions; ++k) {
+        const int i = model->motions[k].dof;
+        state->q[i] = state->v[i] = state->acceleration[i] = 0.0;
+    }
+    for (int k = 0; k < model->n_motions; ++k) {
+        const fu_motion *m = &model->motions[k];
+        double rate, second;
+        const double f = fu_signal_at(&model->signals[m->signal], state->t, &rate, &second);
+        const double c = cos(f), s = sin(f), slope = m->linear - m->cosine * s + m->sine * c;
+        state->q[m->dof] += m->base + m->linear * f + m->cosine * c + m->sine * s;
+        state->v[m->dof] += slope * rate;
+        state->acceleration[m->dof] += slope * second - (m->cosine * c + m->sine * s) * rate * rate;
+    }
+}

@@ -1,0 +1,192 @@
+/* Springs and dampers between two points. Where a Newton system is solved the force is an unknown of its own, so that
+ * ends far apart on cables do not widen the band. */
+#include "engine.h"
+
+#include <string.h>
+
+/* Position and velocity of an end; derivatives P of the position by its dofs (dim rows); returns their number. */
+static int end_point(const fu_model *model, const fu_end *end, int dim, const double *q, const double *v, double p[3],
+                     double rate[3], double *P, int *first)
+{
+    *first = 0;
+    for (int d = 0; d < 3; ++d) {
+        p[d] = end->u[d];
+        rate[d] = 0.0;
+    }
+    if (end->cable >= 0) {
+        const fu_cable *cable = &model->cables[end->cable];
+        const int n = cable->coordinates;
+        *first = cable->first + end->element * cable->per_node;
+        for (int i = 0; i < dim * n; ++i) P[i] = 0.0;
+        for (int d = 0; d < dim; ++d) {
+            p[d] = 0.0;
+            for (int k = 0; k < n / dim; ++k) {
+                P[d * n + k * dim + d] = end->N[k];
+                p[d] += end->N[k] * q[*first + k * dim + d];
+                rate[d] += end->N[k] * v[*first + k * dim + d];
+            }
+        }
+        return n;
+    }
+    if (end->body >= 0) {
+        const fu_rigid *body = &model->rigids[end->body];
+        double bias[3];
+        *first = body->dof;
+        body->kernel->point(q + body->configuration, end->u, v + body->dof, p, P, rate, bias);
+        return body->kernel->velocity;
+    }
+    return 0;
+}
+
+/* Force on the first end, and its derivatives by the gap p_2 - p_1 and the gap's rate (dim x dim). A length of zero
+ * makes it k gap + c rate, smooth where the ends meet. */
+static void law(const fu_spring *spring, const double *gap, const double *rate, double *force, double *by_gap,
+                double *by_rate)
+{
+    const int dim = spring->dim;
+    const double k = spring->stiffness, c = spring->damping;
+    if (spring->length == 0.0) {
+        for (int i = 0; i < dim; ++i) {
+            force[i] = k * gap[i] + c * rate[i];
+            for (int j = 0; j < dim; ++j) {
+                by_gap[i * dim + j] = i == j ? k : 0.0;
+                by_rate[i * dim + j] = i == j ? c : 0.0;
+            }
+        }
+        return;
+    }
+    double square = 0.0, closing = 0.0, n[3];
+    for (int d = 0; d < dim; ++d) square += gap[d] * gap[d];
+    const double length = sqrt(square);
+    for (int d = 0; d < dim; ++d) n[d] = gap[d] / length;
+    for (int d = 0; d < dim; ++d) closing += n[d] * rate[d];
+    const double tension = k * (length - spring->length) + c * closing;
+    for (int i = 0; i < dim; ++i) {
+        force[i] = tension * n[i];
+        for (int j = 0; j < dim; ++j) {
+            by_gap[i * dim + j] = tension / length * ((i == j) - n[i] * n[j]) +
+                                  n[i] * (k * n[j] + c / length * (rate[j] - closing * n[j]));
+            by_rate[i * dim + j] = c * n[i] * n[j];
+        }
+    }
+}
+
+static void gap_of(const fu_model *model, const fu_spring *spring, const double *q, const double *v, double gap[3],
+                   double rate[3])
+{
+    double p[2][3], w[2][3], P[3 * FU_MAX_COORDINATES];
+    int first;
+    for (int e = 0; e < 2; ++e) end_point(model, &spring->ends[e], spring->dim, q, v, p[e], w[e], P, &first);
+    for (int d = 0; d < 3; ++d) {
+        gap[d] = p[1][d] - p[0][d];
+        rate[d] = w[1][d] - w[0][d];
+    }
+}
+
+void fu_spring_force(const fu_model *model, const fu_spring *spring, const double *q, const double *v, double force[3],
+                     double by_gap[9], double by_rate[9])
+{
+    double gap[3], rate[3];
+    gap_of(model, spring, q, v, gap, rate);
+    law(spring, gap, rate, force, by_gap, by_rate);
+}
+
+/* f += what a force on the first end, and its opposite on the second, puts on the left of the equations of motion */
+void fu_spring_pull(const fu_model *model, const fu_spring *spring, const double *q, const double force[3], double *f)
+{
+    double p[3], w[3], P[3 * FU_MAX_COORDINATES];
+    const double *none = model->zero;
+    for (int e = 0; e < 2; ++e) {
+        int first;
+        const int n = end_point(model, &spring->ends[e], spring->dim, q, none, p, w, P, &first);
+        for (int d = 0; d < spring->dim; ++d)
+            for (int i = 0; i < n; ++i) f[first + i] += (e ? 1.0 : -1.0) * P[d * n + i] * force[d];
+    }
+}
+
+/* f += all spring forces */
+void fu_spring_forces(const fu_model *model, const double *q, const double *v, double *f)
+{
+    double force[3], by_gap[9], by_rate[9];
+    for (int k = 0; k < model->n_springs; ++k) {
+        fu_spring_force(model, &model->springs[k], q, v, force, by_gap, by_rate);
+        fu_spring_pull(model, &model->springs[k], q, force, f);
+    }
+}
+
+/* Rows and columns of a spring in a Newton system; its rows are stiffness (F - law), its unknown F stiffness/unit. */
+void fu_spring_matrix(const fu_model *model, const fu_spring *spring, const fu_state *state, const double *psi,
+                      double rate, double stiffness, double unit, fu_system *system)
+{
+    const int dim = spring->dim, row = fu_extra(model, spring->unknown);
+    double force[3], by_gap[9], by_rate[9], p[3], w[3];
+    fu_spring_force(model, spring, state->q, state->v, force, by_gap, by_rate);
+    for (int d = 0; d < dim; ++d) fu_add(model, system, row + d, row + d, unit);
+    for (int e = 0; e < 2; ++e) {
+        const fu_end *end = &spring->ends[e];
+        double P[3 * FU_MAX_COORDINATES], turned[3 * FU_MAX_COORDINATES], by_place[3 * FU_MAX_COORDINATES];
+        int first;
+        const int n = end_point(model, end, dim, state->q, state->v, p, w, P, &first);
+        const double sign = e ? 1.0 : -1.0;
+        memcpy(turned, P, sizeof turned);
+        for (int i = 0; i < dim * n; ++i) by_place[i] = 0.0; /* of the end's velocity, at fixed rates of its dofs */
+        if (end->body >= 0) {
+            const fu_rigid *body = &model->rigids[end->body];
+            const double *b = state->q + body->configuration, *turn = psi ? psi + body->dof : 0;
+            double P_again[18], K[36];
+            for (int d = 0; d < dim; ++d) {
+                const double axis[3] = {d == 0, d == 1, d == 2};
+                body->kernel->point_force(b, end->u, axis, p, P_again, K);
+                for (int i = 0; i < n; ++i)
+                    for (int j = 0; j < n; ++j) by_place[d * n + j] += state->v[first + i] * K[i * n + j];
+            }
+            body->kernel->point_force(b, end->u, state->spring + 3 * (spring - model->springs), p, P_again, K);
+            if (turn) {
+                fu_turn_columns(body->kernel, turned, dim, n, 0, turn);
+                fu_turn_columns(body->kernel, by_place, dim, n, 0, turn);
+                fu_turn_columns(body->kernel, K, n, n, 0, turn);
+            }
+            for (int i = 0; i < n; ++i)
+                for (int j = 0; j < n; ++j) fu_add(model, system, first + i, first + j, sign * stiffness * K[i * n + j]);
+        }
+        for (int i = 0; i < n; ++i)
+            for (int d = 0; d < dim; ++d) {
+                double change = 0.0;
+                for (int k = 0; k < dim; ++k)
+                    change += by_gap[d * dim + k] * turned[k * n + i] +
+                              by_rate[d * dim + k] * (by_place[k * n + i] + rate * P[k * n + i]);
+                fu_add(model, system, row + d, first + i, -sign * stiffness * change);
+                fu_add(model, system, first + i, row + d, sign * unit * P[d * n + i]);
+            }
+    }
+}
+
+double fu_spring_energy(const fu_model *model, const double *q)
+{
+    double total = 0.0, gap[3], rate[3];
+    for (int k = 0; k < model->n_springs; ++k) {
+        const fu_spring *spring = &model->springs[k];
+        gap_of(model, spring, q, model->zero, gap, rate);
+        const double length = sqrt(gap[0] * gap[0] + gap[1] * gap[1] + gap[2] * gap[2]) - spring->length;
+        total += 0.5 * spring->stiffness * length * length;
+    }
+    return total;
+}
+
+/* power taken out by the dampers */
+double fu_spring_dissipation(const fu_model *model, const double *q, const double *v)
+{
+    double total = 0.0, gap[3], rate[3];
+    for (int k = 0; k < model->n_springs; ++k) {
+        const fu_spring *spring = &model->springs[k];
+        double square = 0.0, along = 0.0, speed = 0.0;
+        gap_of(model, spring, q, v, gap, rate);
+        for (int d = 0; d < 3; ++d) {
+            square += gap[d] * gap[d];
+            along += gap[d] * rate[d];
+            speed += rate[d] * rate[d];
+        }
+        total += spring->damping * (spring->length == 0.0 ? speed : along * along / square);
+    }
+    return total;
+}

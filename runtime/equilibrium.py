@@ -1,0 +1,85 @@
+"""A state of rest: what `scene.equilibrium()` returns, and a run or modes start from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+from funicular.recording import body_state, end_points, join_force, spatial, support_reaction
+
+if TYPE_CHECKING:
+    from funicular.model import Model
+    from funicular.scene import Scene
+
+
+@dataclass
+class Equilibrium:
+    """A state of rest of a scene.
+
+    Quantities by name as in a `Run`, without the time: ``state["wire.nodal_vectors"]`` (node, vector, 3),
+    ``state["A.position"]``, ``state["trolley.s"]``, ``state["wire@0.force"]`` ... load_fraction: how much of the load
+    is on, 1 but in the `EquilibriumError` that says how far it got; iterations of Newton; residual: the largest force
+    left over, in N. """
+
+    scene: Scene
+    model: Model
+    placed: dict
+    reaction: np.ndarray
+    load_fraction: float
+    iterations: int
+    residual: float
+    quantities: dict[str, np.ndarray] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, scene: Scene, path, fraction: float) -> Equilibrium:
+        """Read the static state of a path (static.py)."""
+        left = path.off(fraction)
+        units = np.where(path.weight > 0, path.weight, np.inf)
+        state = cls(scene, path.model, path.keep(), path.engine.reaction(), fraction, path.iterations,
+                    float(np.max(np.abs(left) / units, initial=0.0)))
+        state.quantities = state._quantities()
+        return state
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """A quantity by its name. Raises KeyError naming the near ones."""
+        from funicular.errors import near
+
+        if name not in self.quantities:
+            raise KeyError(f'no quantity "{name}"; {near(name, self.quantities)}')
+        return self.quantities[name]
+
+    def start(self, model: Model) -> None:
+        """Put a freshly built model of the same scene into this state."""
+        model.q = self.placed["q"].copy()
+        for joint, s in zip(model.joints, self.placed["s"], strict=True):
+            cable = model.cables[joint.cable]
+            joint.s = float(s)
+            at = s / cable.length
+            if not joint.element <= at <= joint.element + 1:
+                joint.element = min(max(int(at), 0), cable.n_elements - 1)
+
+    def _quantities(self) -> dict[str, np.ndarray]:
+        model, scene, q, reaction = self.model, self.scene, self.placed["q"][None], self.reaction[None]
+        found = {}
+        for cable in model.cables:
+            vectors = spatial(q[0, cable.coordinates].reshape(cable.shape))
+            found[f"{cable.name}.nodal_vectors"] = vectors
+            found[f"{cable.name}.position"] = vectors[:, cable.vectors.index("r")]
+        for body in model.rigids:
+            found |= {f"{body.name}.{name}": value[0] for name, value in body_state(model, body, q).items()}
+        for k, joint in enumerate(model.joints):
+            found[f"{joint.name}.s"] = self.placed["s"][k]
+            found[f"{joint.name}.force"] = self.placed["force"][k]
+        for part in (*scene.pins, *scene.clamps, *scene.motions):
+            given_ = support_reaction(model, scene, part, reaction, q)
+            found |= {f"{part.label}.{name}": value[0] for name, value in given_.items()}
+        for name, join in scene.joins.items():
+            found |= {f"{name}.{part}": value[0] for part, value in join_force(model, scene, join, reaction, q).items()}
+        for k, spring in enumerate(model.springs):
+            gap = end_points(model, spring.ends[1], q) - end_points(model, spring.ends[0], q)
+            found[f"{spring.name}.length"] = np.linalg.norm(gap[0])
+            found[f"{spring.name}.force"] = self.placed["spring"][k]
+        return found
+
+

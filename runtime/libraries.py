@@ -1,0 +1,122 @@
+"""Libraries of the user's own elements: what `funicular derive --spec FILE --out DIR` leaves in DIR, loaded."""
+
+from __future__ import annotations
+
+import ctypes
+import hashlib
+import json
+import math
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+from funicular import elements
+from funicular.elements import MANIFEST, ElementKind
+from funicular.errors import FunicularError
+
+COMMAND = "`funicular derive --spec {spec} --out {out}`"
+
+_loaded: dict[str, tuple[bytes, Library]] = {}
+
+
+class LibraryError(FunicularError, ValueError):
+    """A directory holds no library that this version can use."""
+
+    def __init__(self, cause: str, remedy: str):
+        """cause: what is wrong with the directory; remedy: what to do."""
+        super().__init__(cause, remedy)
+
+    def __str__(self) -> str:
+        return "library " + "; ".join(self.args)
+
+
+class Kernel:
+    """A kernel of a library as a function of arrays, called like those of `funicular.generated.kernels`."""
+
+    def __init__(self, shared: ctypes.CDLL, name: str, entry: dict):
+        self.__name__, self.__doc__ = name, f"{entry['doc']} ({entry['source']})."
+        self._inputs = [(a["name"], tuple(a["shape"])) for a in entry["inputs"]]
+        self._outputs = [tuple(a["shape"]) for a in entry["outputs"]]
+        self._function = getattr(shared, name)
+        self._function.restype = None
+        self._function.argtypes = [*(ctypes.c_void_p if shape else ctypes.c_double for _, shape in self._inputs),
+                                   *(ctypes.c_void_p for _ in self._outputs)]
+
+    def __call__(self, *given, **named):
+        """The outputs for these inputs: one array, or a tuple of them."""
+        names = [name for name, _ in self._inputs]
+        named = dict(zip(names, given, strict=False)) | named
+        if len(given) > len(names) or set(named) != set(names):
+            raise TypeError(f"{self.__name__} takes ({', '.join(names)})")
+        values = [self._array(named[name], shape, name) if shape else float(named[name])
+                  for name, shape in self._inputs]
+        outputs = [np.empty(shape) for shape in self._outputs]
+        self._function(*(v.ctypes.data if isinstance(v, np.ndarray) else v for v in (*values, *outputs)))
+        return outputs[0] if len(outputs) == 1 else tuple(outputs)
+
+    def _array(self, value, shape: tuple[int, ...], name: str) -> np.ndarray:
+        array = np.ascontiguousarray(value, dtype=float)
+        if array.size != math.prod(shape):
+            raise ValueError(f"{self.__name__}: argument {name} must have shape {shape}, got {array.shape}")
+        return array
+
+
+@dataclass(frozen=True)
+class Library:
+    """A library in memory: its elements by name, its kernels as functions, and where its fu_all is (kernels.h)."""
+
+    directory: Path
+    elements: dict[str, ElementKind]
+    kernels: SimpleNamespace
+    tables: int
+
+
+def load(directory: str | os.PathLike) -> Library:
+    """The library in a directory; once loaded it stays. Raises LibraryError."""
+    path = Path(os.path.abspath(directory))
+    try:
+        text = (path / MANIFEST).read_bytes()
+    except OSError as error:
+        raise LibraryError(f'"{directory}" is none: {MANIFEST} cannot be read ({error.strerror})',
+                           "make one with " + COMMAND.format(spec="FILE", out=directory)) from None
+    if _loaded.get(str(path), (b"",))[0] != text:
+        _loaded[str(path)] = text, _open(path, text)
+    return _loaded[str(path)][1]
+
+
+def kernels_of(library: str | None):
+    """Where the kernels of a library are, of this package for None, as attributes by name. Raises LibraryError."""
+    if library is not None:
+        return load(library).kernels
+    from funicular.generated import kernels
+
+    return kernels
+
+
+def tables_of(library: str | None) -> int:
+    """Address of a library's fu_all for the engine, 0 for this package's own. Raises LibraryError."""
+    return load(library).tables if library is not None else 0
+
+
+def _open(path: Path, text: bytes) -> Library:
+    try:
+        content = json.loads(text)
+        made, file, digest = content["interface"], path / content["library"]["file"], content["library"]["sha256"]
+        again = "make it anew with " + COMMAND.format(spec=content["library"]["spec"], out=path)
+    except (ValueError, KeyError, TypeError):
+        raise LibraryError(f'"{path}" is none: its {MANIFEST} is not that of a library',
+                           "make one with " + COMMAND.format(spec="FILE", out=path)) from None
+    if made != elements.manifest()["interface"]:
+        raise LibraryError(f'"{path}" was made for another version of funicular: its tables of kernels '
+                           f"are laid out as {made}, here as {elements.manifest()['interface']}", again)
+    try:
+        if hashlib.sha256(file.read_bytes()).hexdigest() != digest:
+            raise LibraryError(f'"{path}" is damaged: {file.name} is not the file that was made', again)
+        shared = ctypes.CDLL(str(file))
+    except OSError as error:
+        raise LibraryError(f'"{path}" cannot be loaded here: {error}', again) from None
+    kernels = SimpleNamespace(**{name: Kernel(shared, name, entry) for name, entry in content["kernels"].items()})
+    return Library(path, elements.of_manifest(content), kernels,
+                   ctypes.addressof(ctypes.c_char.in_dll(shared, "fu_all")))

@@ -1,0 +1,171 @@
+"""Checks of a part against the scene that it joins, and what it takes from there."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from funicular.cables import EXACT, Cable
+from funicular.elements import built_in
+from funicular.errors import SceneError, near
+from funicular.loads import DistributedForce, Force, Moment
+from funicular.springs import End, Spring
+from funicular.supports import Join, Support
+from funicular.validation import Part, show
+
+if TYPE_CHECKING:
+    from funicular.scene import Scene
+
+HELD = {"pin": "pinned", "clamp": "clamped", "motion": "moved as prescribed"}
+
+Node = tuple[str, int]
+"""A node of a cable: the cable's name and the node's number."""
+
+
+def cable_at(scene: Scene, name: str, place: str, s: float, keyword: str = "s") -> Cable:
+    """The cable ``name``, on which ``s`` must lie."""
+    if name not in scene.cables:
+        raise SceneError(place, f'there is no cable "{name}"', near(name, scene.cables))
+    cable = scene.cables[name]
+    if not -EXACT * cable.length <= s <= (1 + EXACT) * cable.length:
+        raise SceneError(place, f"{keyword} must lie on the cable, in [0, {cable.length:.9g}] m, got {s:.9g} m")
+    return cable
+
+
+def node_at(scene: Scene, name: str, place: str, s: float, keyword: str = "s") -> Node:
+    """The node of the cable ``name`` at ``s``; there must be one."""
+    cable = cable_at(scene, name, place, s, keyword)
+    node = cable.node_at(s)
+    if node is not None:
+        return name, node
+    nodes = cable.node_s
+    if len(nodes) > 12:  # a long list helps less than the two neighbours
+        right = int(np.searchsorted(nodes, s))
+        nodes = nodes[right - 1 : right + 1]
+    raise SceneError(
+        place,
+        f"{keyword} must be a node of the cable, got {show(s, 'm')}",
+        f"nodes {'near it ' if len(cable.node_s) > 12 else ''}are at " + ", ".join(f"{s:.9g}" for s in nodes) + " m")
+
+
+def joined(scene: Scene, node: Node) -> set[Node]:
+    """All nodes that share the position of ``node``, itself included."""
+    found, new = {node}, [node]
+    while new:
+        at = new.pop()
+        for join in scene.joins.values():
+            pair = {(join.cable, scene.cables[join.cable].node_at(join.s)),
+                    (join.to, scene.cables[join.to].node_at(join.at))}
+            if at in pair:
+                new += pair - found
+                found |= pair
+    return found
+
+
+def holder(scene: Scene, node: Node) -> Support | None:
+    """What holds ``node`` or one that is joined to it."""
+    nodes = joined(scene, node)
+    return next((s for s in scene.supports if (s.cable, scene.cables[s.cable].node_at(s.s)) in nodes), None)
+
+
+def check_support(scene: Scene, support: Support) -> None:
+    """A support needs a node that nothing holds yet."""
+    node = node_at(scene, support.cable, support.where, support.s)
+    if (other := holder(scene, node)) is None:
+        return
+    if (other.cable, scene.cables[other.cable].node_at(other.s)) == node:
+        raise SceneError(support.where, f"the node at s = {show(support.s, 'm')} is already {HELD[other.kind]}")
+    raise SceneError(support.where, f"the node at s = {show(support.s, 'm')} is joined to that at {other.label}, which "
+                     f"is already {HELD[other.kind]}")
+
+
+def check_join(scene: Scene, join: Join) -> None:
+    """A join needs two nodes at one place, not joined yet, of which at most one is held."""
+    one = node_at(scene, join.cable, join.where, join.s)
+    other = node_at(scene, join.to, join.where, join.at, "at")
+    if other in joined(scene, one):
+        raise SceneError(join.where, f"the nodes are {'one and the same' if one == other else 'already joined'}")
+    a, b = scene.cables[join.cable], scene.cables[join.to]
+    gap = float(np.linalg.norm(a.point(join.s) - b.point(join.at)))
+    if gap > EXACT * max(a.length, b.length):
+        raise SceneError(join.where, f"the nodes are {gap:.6g} m apart, at {show(a.point(join.s))} and "
+                         f"{show(b.point(join.at), 'm')}", "draw both cables through the same point")
+    holders = holder(scene, one), holder(scene, other)
+    if all(holders):
+        raise SceneError(join.where, f"both nodes are held already, by the {holders[0].where} and the "
+                         f"{holders[1].where}", "leave one of them out")
+
+
+def placed_load(scene: Scene, load: Force | DistributedForce | Moment) -> Part:
+    """The load with its place complete, and sure to be one that the element can carry."""
+    if isinstance(load, DistributedForce):
+        cable = cable_at(scene, load.cable, load.where, load.start or 0.0, "start")
+        start, stop = load.start or 0.0, cable.length if load.stop is None else load.stop
+        cable_at(scene, load.cable, load.where, stop, "stop")
+        start, stop = max(start, 0.0), min(stop, cable.length)
+        if not start < stop:
+            raise SceneError(load.where, f"stop must be beyond start {show(start, 'm')}, got {show(stop, 'm')}")
+        load = load.model_copy(update={"start": start, "stop": stop})
+    else:
+        at = getattr(load, "at", None)
+        end = placed_end(scene, End(on=load.on, s=load.s, at=at), load.where)
+        update = {"s": end.s} | ({"at": end.at} if isinstance(load, Force) else {})
+        load = load.model_copy(update=update)
+        cable = scene.cables.get(load.on)
+    if cable is not None and cable.dim == 3 and not cable.kind_of_element.director:
+        _check_without_section(load, cable)
+    return load
+
+
+def _check_without_section(load: Part, cable: Cable) -> None:
+    """Without axes of the section there is nothing to turn about the tangent, and no direction across it."""
+    with_axes = "element=" + " or ".join(f'"{n}"' for n, kind in built_in().items() if kind.director and kind.dim == 3)
+    if isinstance(load, Moment):
+        value, tangent = np.array(load.value), cable.axes_at(load.s)[0]
+        twist = float(np.dot(value, tangent))
+        if abs(twist) > EXACT * np.linalg.norm(value):
+            raise SceneError(
+                load.where, f'twists cable "{cable.name}" by {twist:.6g} N m about its tangent {show(tangent)}, but '
+                f"{cable.element} has no torsion", f"give a moment across the tangent, or take {with_axes}")
+    elif load.follower and any(load.value[1:]):
+        raise SceneError(
+            load.where, f'follower force across cable "{cable.name}", but {cable.element} has no section axes that it '
+            f"could follow, got {show(load.value, 'N' if isinstance(load, Force) else 'N/m')}",
+            f"possible is one along the tangent, (F, 0, 0), or take {with_axes}")
+
+
+def placed_end(scene: Scene, end: End, where: str, prefix: str = "") -> End:
+    """Where on a cable or a body something acts, complete."""
+    if end.on is None:
+        return end
+    if end.on in scene.cables:
+        if end.s is None or end.at is not None:
+            raise SceneError(where, f'{prefix}acts on cable "{end.on}" and needs the arc-length s there'
+                             + (", not a point at" if end.at else ""))
+        cable = cable_at(scene, end.on, where, end.s, f"{prefix}s")
+        return end.model_copy(update={"s": min(max(end.s, 0.0), cable.length)})
+    if end.on in scene.bodies:
+        if end.s is not None:
+            raise SceneError(where, f'{prefix}acts on body "{end.on}" and takes no arc-length s',
+                             "give a point in body axes, or nothing for its centre of mass")
+        return end.model_copy(update={"at": end.at or (0.0, 0.0, 0.0)})
+    known = [*scene.cables, *scene.bodies]
+    raise SceneError(where, f'{prefix}there is no cable or rigid_body "{end.on}"', near(end.on, known))
+
+
+def point_of(scene: Scene, end: End) -> np.ndarray:
+    """(3,): where a complete end starts, in m."""
+    if end.on is None:
+        return np.array(end.at)
+    return scene.bodies[end.on].point(end.at) if end.on in scene.bodies else scene.cables[end.on].point(end.s)
+
+
+def placed_spring(scene: Scene, spring: Spring) -> Spring:
+    """The spring with its ends and its length complete."""
+    a, b = (placed_end(scene, getattr(spring, name), spring.where, f"{name}: ") for name in ("a", "b"))
+    points = point_of(scene, a), point_of(scene, b)
+    distance = float(np.linalg.norm(points[1] - points[0]))
+    if not distance > 1e-12 * (1 + np.abs(points).max()):
+        raise SceneError(spring.where, f"both ends are at {show(points[0], 'm')}: its direction is lost",
+                         "join the points, or hold them apart at the start")
+    return spring.model_copy(update={"a": a, "b": b, "length": distance if spring.length is None else spring.length})

@@ -1,0 +1,211 @@
+"""What a run left: the engine's rows as named arrays, in three dimensions whatever the scene's."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from funicular.rotations import rotate
+from funicular.scene import Scene
+from funicular.settings import RunSettings
+
+if TYPE_CHECKING:
+    from funicular.model import Model
+
+
+@dataclass
+class Recording:
+    """What a run left, as plain arrays; nt output times. Units SI, vectors with three components."""
+
+    status: str
+    message: str
+    time: np.ndarray
+    cables: dict[str, dict]
+    bodies: dict[str, dict]
+    slides: dict[str, dict]
+    pins: dict[str, dict]
+    clamps: dict[str, dict]
+    motions: dict[str, dict]
+    joins: dict[str, dict]
+    springs: dict[str, dict]
+    energy: dict[str, np.ndarray]
+    report: dict
+
+
+def spatial(vectors: np.ndarray) -> np.ndarray:
+    """(..., 2 or 3) -> (..., 3)."""
+    return np.concatenate([vectors, np.zeros((*vectors.shape[:-1], 3 - vectors.shape[-1]))], axis=-1)
+
+
+def given(model: Model, nodes, reaction: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray]:
+    """Force and moment that supports or joins give to nodes at one place.
+
+    reaction, q: (time, dofs) generalised forces and configuration. Returns force, moment (time, 3) in N, N m: the
+    moment is what the forces on the slopes turn the section by, sum of r_k x f_k.
+    """
+    force, moment = np.zeros((len(q), 3)), np.zeros((len(q), 3))
+    for node in nodes:
+        force += spatial(reaction[:, node.dofs("r")])
+        for name in {"r_x", "r_y", "r_z"} & set(node.names):
+            at = node.dofs(name)
+            moment += np.cross(spatial(q[:, at]), spatial(reaction[:, at]))
+    return {"force": force, "moment": moment}
+
+
+def _joined(scene: Scene, start: tuple[str, int], without=None) -> set[tuple[str, int]]:
+    """Nodes (cable, number) that joins tie to one, itself among them; `without` leaves one join out."""
+    found, waiting = {start}, [start]
+    links = [((j.cable, scene.cables[j.cable].node_at(j.s)), (j.to, scene.cables[j.to].node_at(j.at)))
+             for j in scene.joins.values() if j is not without]
+    while waiting:
+        node = waiting.pop()
+        for a, b in (*links, *((b, a) for a, b in links)):
+            if a == node and b not in found:
+                found.add(b)
+                waiting.append(b)
+    return found
+
+
+def support_reaction(model: Model, scene: Scene, part, reaction: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray]:
+    """Force and moment of a pin, clamp or motion on its node and those joined to it."""
+    nodes = _joined(scene, (part.cable, scene.cables[part.cable].node_at(part.s)))
+    return given(model, [model.nodes[cable][k] for cable, k in nodes], reaction, q)
+
+
+def join_force(model: Model, scene: Scene, join, reaction: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray]:
+    """Force and moment of a join on the node of its `cable`: what the nodes on that side of it are given.
+
+    A support on that side gives a part that is not the join's: then it is minus what the other side is given.
+    """
+    held = {(s.cable, scene.cables[s.cable].node_at(s.s)) for s in (*scene.pins, *scene.clamps, *scene.motions)}
+    near = _joined(scene, (join.cable, scene.cables[join.cable].node_at(join.s)), without=join)
+    sign = 1.0
+    if near & held:
+        sign, near = -1.0, _joined(scene, (join.to, scene.cables[join.to].node_at(join.at)), without=join)
+    found = given(model, [model.nodes[cable][k] for cable, k in near], reaction, q)
+    return {name: sign * value for name, value in found.items()}
+
+
+def body_state(model: Model, body, q: np.ndarray) -> dict[str, np.ndarray]:
+    """position, orientation of a body from configurations (time, n_q)."""
+    b = body.configuration
+    if model.dim == 3:
+        return {"position": q[:, b : b + 3], "orientation": q[:, b + 3 : b + 7]}
+    half = np.arctan2(q[:, b + 3], q[:, b + 2]) / 2
+    zero = np.zeros_like(half)
+    return {"position": spatial(q[:, b : b + 2]),
+            "orientation": np.stack([np.cos(half), zero, zero, np.sin(half)], axis=1)}
+
+
+def recorded(model: Model, scene: Scene, engine, settings: RunSettings, status: str, messages: list[str],
+             seconds: dict[str, float]) -> Recording:
+    """The engine's rows by name."""
+    rows = engine.rows()
+    q, v, a = rows["q"], rows["v"], rows["acceleration"]
+    cables = {}
+    for cable in model.cables:
+        at, shape = cable.coordinates, (len(q), *cable.shape)
+        cables[cable.name] = {
+            "nodal_vectors": spatial(q[:, at].reshape(shape)),
+            "nodal_velocity": spatial(v[:, at].reshape(shape)),
+            "node_s": cable.length * np.arange(cable.shape[0]),
+            "vector_names": cable.vectors,
+        }
+    bodies = {}
+    for body in model.rigids:
+        at = slice(body.dof, body.dof + model.dim)
+        turn = slice(body.dof + model.dim, body.dof + (6 if model.dim == 3 else 3))
+        bodies[body.name] = body_state(model, body, q) | {
+            "velocity": spatial(v[:, at]), "angular_velocity": _turning(v[:, turn]),
+            "acceleration": spatial(a[:, at]), "angular_acceleration": _turning(a[:, turn])}
+    slides = {}
+    for k, joint in enumerate(model.joints):
+        slides[joint.name] = {"s": rows["s"][:, k], **engine.joint_row(rows["joint"][:, k])}
+        slides[joint.name]["residual"] = np.linalg.norm(slides[joint.name]["residual"], axis=-1)
+
+    def held(part) -> dict[str, np.ndarray]:
+        return support_reaction(model, scene, part, rows["reaction"], q)
+
+    statistics = engine.statistics
+    statistics["time_s"] = seconds | statistics["time_s"]
+    report = {
+        "status": status,
+        "integrator": "genalpha",
+        "spectral_radius": settings.spectral_radius,
+        "tol": settings.tol if settings.step is None else None,
+        "step": settings.step,
+        "unknowns": model.n_band + model.n_border_dof + model.n_extra,
+        "kernels": model.kernels,
+        "messages": messages,
+        **statistics,
+    }
+    return Recording(
+        status="no_convergence" if status == "singular" else status,
+        message=_message(model, engine, status, settings),
+        time=rows["time"],
+        cables=cables,
+        bodies=bodies,
+        slides=slides,
+        pins={pin.label: {"force": held(pin)["force"]} for pin in scene.pins},
+        clamps={clamp.label: held(clamp) for clamp in scene.clamps},
+        motions={motion.label: held(motion) for motion in scene.motions},
+        joins={name: join_force(model, scene, join, rows["reaction"], q) for name, join in scene.joins.items()},
+        springs={spring.name: _spring(model, spring, rows["spring"][:, k], q)
+                 for k, spring in enumerate(model.springs)},
+        energy={name: rows[name] for name in ("kinetic", "elastic", "potential", "dissipated", "external")},
+        report=report,
+    )
+
+
+def _turning(rates: np.ndarray) -> np.ndarray:
+    """Rotation about three axes, or about z alone."""
+    return rates if rates.shape[1] == 3 else np.concatenate([np.zeros((len(rates), 2)), rates], axis=1)
+
+
+def _spring(model: Model, spring, force: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray]:
+    """Force on the first end, (time, 3) in N; length between the ends, in m; tension, in N, negative in compression."""
+    gap = end_points(model, spring.ends[1], q) - end_points(model, spring.ends[0], q)
+    length = np.linalg.norm(gap, axis=1)
+    along = gap / np.where(length > 0, length, 1.0)[:, None]
+    return {"force": force, "length": length, "tension": np.sum(force * along, axis=1)}
+
+
+def end_points(model: Model, end, q: np.ndarray) -> np.ndarray:
+    """(time, 3): where an end of a spring is."""
+    if end.cable >= 0:
+        cable = model.cables[end.cable]
+        start = cable.first + end.element * cable.shape[1] * model.dim
+        vectors = q[:, start : start + len(end.N) * model.dim].reshape(len(q), -1, model.dim)
+        return spatial(np.einsum("k,tkd->td", end.N, vectors))
+    if end.body >= 0:
+        state = body_state(model, model.rigids[end.body], q)
+        return state["position"] + np.array([rotate(o, end.u) for o in state["orientation"]])
+    return np.broadcast_to(np.array(end.u), (len(q), 3))
+
+
+def _message(model: Model, engine, status: str, settings: RunSettings) -> str:
+    when = f"t = {engine.time:.6g} s of {settings.duration:.6g} s"
+    match status:
+        case "end_of_cable":
+            joint = model.joints[engine.stopped_joint]
+            cable = model.cables[joint.cable]
+            middle = 0.5 * cable.n_elements * cable.length
+            end = "end" if engine.rows()["s"][-1, engine.stopped_joint] > middle else "start"
+            return (
+                f'slide "{joint.name}": ran off the {end} of cable "{cable.name}" at {when}; '
+                "what was computed up to there is kept"
+            )
+        case "no_convergence":
+            return (
+                f"no step converged at {when}, down to the smallest step; what was computed up to there is "
+                "kept. Try a smaller tol or step, or damping_time in the material"
+            )
+        case "singular":
+            return (
+                f"the equations are singular at {when}: a joint or the mass matrix is degenerate "
+                "(is a cable's director parallel to its tangent?)"
+            )
+        case "interrupted":
+            return f"interrupted at {when}; what was computed up to there is kept"
+    return f"completed {settings.duration:.6g} s"

@@ -1,0 +1,138 @@
+"""What holds or joins the nodes of cables: pins, clamps, joins, prescribed motions."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, ClassVar
+
+from funicular.signals import Signal, signal
+from funicular.validation import Name, Part, Reference, Vector, finite, one_of, vector
+from pydantic import PlainValidator, model_validator
+
+
+class Support(Part):
+    """Base of what holds a cable's node at ``s`` (m)."""
+
+    cable: Reference
+    s: Annotated[float, finite("m")]
+
+    @classmethod
+    def place(cls, data: dict) -> str:
+        """How messages name the support."""
+        return f'{cls.kind} on "{getattr(data.get("cable"), "name", data.get("cable"))}"'
+
+    @property
+    def label(self) -> str:
+        """Its name in the results, such as ``wire@0``."""
+        return f"{self.cable}@{self.s + 0.0:.12g}"
+
+
+class Pin(Support):
+    """Holds the position of a cable's node at ``s`` (m) where it starts; its slopes stay free."""
+
+    kind: ClassVar[str] = "pin"
+
+
+class Clamp(Support):
+    """Holds the position of a cable's node at ``s`` (m) and its section, or all of its nodal vectors.
+
+    hold: "section": of cables the direction of the tangent, while its length stays free; of beams the axes of the
+    section, r_y and r_z, while r_x stays free, so that shear and stretch are not hindered. "all": every nodal vector.
+    """
+
+    kind: ClassVar[str] = "clamp"
+    hold: Annotated[str, one_of(("section", "all"))] = "section"
+
+
+class Rotation(Part):
+    """A turn about ``axis``, fixed in the ground, by the signal ``angle`` in rad."""
+
+    axis: Vector
+    angle: Signal
+
+
+def _displacement(value: Any) -> tuple[Signal, Signal, Signal] | None:
+    if value is None:
+        return None
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if not isinstance(value, list | tuple) or len(value) != 3:
+        raise ValueError(f"must be 3 signals or numbers, got {value!r}", "give 0 for a direction without motion")
+    return tuple(map(_component, "xyz", value))
+
+
+def _component(axis: str, value: Any) -> Signal:
+    try:
+        return signal(value)
+    except ValueError as error:
+        raise _of(axis, error) from None
+
+
+def _of(name: str, error: ValueError) -> ValueError:
+    """The same complaint about a part of a quantity; a model's own errors name theirs."""
+    if hasattr(error, "errors"):
+        first = error.errors(include_url=False)[0]
+        cause = first.get("ctx", {}).get("error")
+        inner, args = ".".join(map(str, first["loc"])), cause.args if cause else ("is missing",)
+        return ValueError(f"{name}: {inner} {args[0]}".replace("  ", " "), *args[1:])
+    return ValueError(f"{name} {error.args[0]}", *error.args[1:])
+
+
+def _rotation(value: Any) -> Rotation | None:
+    if value is None or isinstance(value, Rotation):
+        return value
+    if isinstance(value, dict) and set(value) == {"axis", "angle"}:
+        value = value["axis"], value["angle"]
+    if not isinstance(value, list | tuple) or len(value) != 2:
+        raise ValueError(f"must be an axis and a signal, got {value!r}", "such as ((0, 0, 1), Ramp(start=0, end=1))")
+    try:
+        axis = vector(value[0])
+    except ValueError as error:
+        raise _of("axis", error) from None
+    norm = math.hypot(*axis)
+    if not norm > 0:
+        raise ValueError("axis must not be zero")
+    return Rotation(axis=axis if norm == 1 else tuple(a / norm for a in axis), angle=_component("angle", value[1]))
+
+
+class Motion(Support):
+    """Moves a cable's node at ``s`` (m) as prescribed.
+
+    displacement: three signals in m, from where the node is drawn, or numbers, 0 for a direction that is held; without
+    it the position stays free. rotation: an axis and a signal in rad, by which the section turns from where it is
+    drawn (of cables the tangent, whose length stays free; of beams r_y and r_z); without it the section stays free.
+    """
+
+    kind: ClassVar[str] = "motion"
+    displacement: Annotated[tuple[Signal, Signal, Signal] | None, PlainValidator(_displacement)] = None
+    rotation: Annotated[Rotation | None, PlainValidator(_rotation)] = None
+
+    @model_validator(mode="after")
+    def _moves_something(self) -> Motion:
+        if self.displacement is None and self.rotation is None:
+            raise ValueError("has neither displacement nor rotation", "give one of them, or both")
+        return self
+
+
+class Join(Part):
+    """Joins the node at ``s`` (m) of one cable to the node at arc-length ``at`` of another one, ``to``.
+
+    They share their position and, with rotation "rigid", keep the angle at which they are drawn (a frame's corner);
+    with "free" they turn freely (a hinge).
+    """
+
+    kind: ClassVar[str] = "join"
+    name: Name | None = None
+    cable: Reference
+    s: Annotated[float, finite("m")]
+    to: Reference
+    at: Annotated[float, finite("m")]
+    rotation: Annotated[str, one_of(("rigid", "free"))] = "rigid"
+
+    @classmethod
+    def place(cls, data: dict) -> str:
+        """How messages name the join."""
+        if data.get("name") is not None:
+            return super().place(data)
+        one, other = (getattr(data.get(key), "name", data.get(key)) for key in ("cable", "to"))
+        return f'join of "{one}" and "{other}"'

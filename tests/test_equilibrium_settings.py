@@ -1,0 +1,108 @@
+"""`Scene.equilibrium`, `Scene.modes` and starts from an equilibrium, around the solvers, for which others stand in."""
+
+import re
+import sys
+from types import ModuleType, SimpleNamespace
+
+import pytest
+from fake_recording import fake_recording
+from funicular import EquilibriumError, Scene, SceneError, load_scene
+
+
+@pytest.fixture
+def solvers(monkeypatch):
+    """Stand-ins for funicular.static, funicular.modal and funicular.model, and what they were called with."""
+    calls = SimpleNamespace(static=[], modal=[], model=[])
+    static, modal, model = (ModuleType(f"funicular.{name}") for name in ("static", "modal", "model"))
+
+    class Equilibrium:
+        pass
+
+    def equilibrium(scene, settings):
+        calls.static.append(settings)
+        return Equilibrium()
+
+    def modes(scene, n, about):
+        calls.modal.append((n, about))
+        return "modes"
+
+    def simulate(scene, settings, on_progress, **start):
+        calls.model.append((settings.initial, start))
+        return fake_recording(scene)
+
+    static.Equilibrium, static.equilibrium, modal.modes, model.simulate = Equilibrium, equilibrium, modes, simulate
+    for module in (static, modal, model):
+        monkeypatch.setitem(sys.modules, module.__name__, module)
+    return calls
+
+
+def refused(complaint):
+    return pytest.raises(SceneError, match="^" + re.escape(complaint) + "$")
+
+
+def test_settings_and_defaults_reach_the_solver(solvers):
+    scene = load_scene("paper51")
+    scene.equilibrium()
+    scene.equilibrium_settings = {"load_steps": 7, "tolerance": 1e-6}
+    scene.equilibrium(tolerance=1e-8, method="arc_length")
+    assert [settings.model_dump() for settings in solvers.static] == [
+        {"load_steps": 1, "tolerance": 1e-9, "max_iterations": 50, "method": "newton"},
+        {"load_steps": 7, "tolerance": 1e-8, "max_iterations": 50, "method": "arc_length"}]
+
+
+def test_a_run_starts_as_drawn_or_from_an_equilibrium(solvers):
+    scene = load_scene("paper51")
+    scene.run()
+    state = scene.equilibrium()
+    scene.run(initial=state)
+    scene.run_settings["initial"] = "equilibrium"
+    scene.run()
+    scene.run(initial="drawn")
+    initial = [name for name, _ in solvers.model]
+    assert initial == ["drawn", "equilibrium", "equilibrium", "drawn"]
+    assert [list(start) for _, start in solvers.model] == [[], ["initial"], ["initial"], []]
+    assert solvers.model[1][1]["initial"] is state
+    assert len(solvers.static) == 2
+
+
+def test_a_motion_may_start_off_its_place_in_an_equilibrium(solvers):
+    scene = load_scene("paper51")
+    scene.motion("wire", s=0.5, displacement=(0, 0.1, 0))
+    scene.run(initial="equilibrium")
+    assert len(solvers.model) == 1
+
+
+def test_modes(solvers):
+    scene = load_scene("paper51")
+    state = scene.equilibrium()
+    assert scene.modes(3) == scene.modes(4, about=state) == "modes"
+    assert solvers.modal == [(3, None), (4, state)]
+
+
+@pytest.mark.parametrize(("call", "complaint"), [
+    (lambda s: s.equilibrium(load_steps=0), "equilibrium: load_steps must be a whole number, 1 or more, got 0"),
+    (lambda s: s.equilibrium(tolerance=1), "equilibrium: tolerance must lie inside (0, 1), got 1"),
+    (lambda s: s.equilibrium(max_iterations=2.5),
+     "equilibrium: max_iterations must be a whole number, 1 or more, got 2.5"),
+    (lambda s: s.equilibrium(method="arclength"),
+     'equilibrium: method "arclength" is not known; did you mean "arc_length"?'),
+    (lambda s: s.modes(0), "modes: n must be a whole number, 1 or more, got 0"),
+    (lambda s: s.modes(1, about=3), "scene: the state to start from must be one that equilibrium() returned, got 3"),
+    (lambda s: s.run(initial=3), "scene: the state to start from must be one that equilibrium() returned, got 3"),
+    (lambda s: s.run(initial="rest"), 'run: initial "rest" is not known; known: drawn, equilibrium'),
+])
+def test_refused(solvers, call, complaint):
+    with refused(complaint):
+        call(load_scene("paper51"))
+    assert solvers.model == solvers.static == solvers.modal == []
+
+
+def test_an_empty_scene(solvers):
+    for call in (Scene().equilibrium, lambda: Scene().modes(1)):
+        with refused("scene: is empty: there is nothing to simulate; add a cable or a rigid body"):
+            call()
+
+
+def test_the_error_keeps_what_was_reached():
+    error = EquilibriumError("no equilibrium beyond 0.4 of the loads", "state", 0.4)
+    assert (str(error), error.state, error.load_fraction) == ("no equilibrium beyond 0.4 of the loads", "state", 0.4)

@@ -1,0 +1,124 @@
+"""Section forces along a cable: the right element and place, components, labels; mostly with a stand-in kernel."""
+
+import re
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from fake_recording import fake_recording
+from funicular import Circle, FunicularError, Material, Scene, UnknownResultError, load_scene
+from funicular.generated import kernels
+from funicular.plot import draw_section_forces, save_plots
+from funicular.results import Run
+from funicular.section_forces import BEAM, CABLE, section_forces
+from funicular.settings import RunSettings
+from funicular.stiffness import section_stiffness
+from numpy.testing import assert_allclose
+
+SOFT = Material(youngs_modulus=1e6, density=1000, poisson_ratio=0.3)
+AXES = np.array([[0.6, 0.8, 0], [-0.8, 0.6, 0], [0, 0, 1]])
+
+
+@pytest.fixture
+def calls(monkeypatch):
+    """Kernels that return the place of the cut as a tension, and keep what they were called with."""
+    kept = []
+
+    def kernel(l, x, e, S, *e0):
+        kept.append(SimpleNamespace(l=l, x=x, e=e, S=S, e0=e0))
+        place = e[0, 0] + x
+        return AXES.T @ [place, 2, 3], AXES.T @ [4, 5, 6], AXES, np.arange(6) + 1.0
+
+    for name in ("beam24_continuum", "beam24_continuum_curved", "beam24_structural", "cable12_green_exact",
+                 "beam12p_continuum"):
+        monkeypatch.setattr(kernels, f"{name}_section_forces", kernel, raising=False)
+    return kept
+
+
+@pytest.fixture
+def run():
+    scene = load_scene("paper51")
+    return Run.from_recording(fake_recording(scene, times=3), scene, RunSettings(duration=1.0))
+
+
+def test_a_cut_lies_in_its_element(run, calls):
+    s = [0, 0.2, 0.5, 1.2, 1.5]
+    forces = run.section_forces("wire", s)
+    assert_allclose(forces["tension"], np.tile(s, (3, 1)), rtol=1e-12)  # r of the element's first node, and x
+    assert [(round(c.e[0, 0], 9), round(c.x, 9)) for c in calls[::3]] == [
+        (0, 0), (0, 0.2), (0.5, 0), (1, 0.2), (1, 0.5)]
+    assert calls[0].l == 0.5 and calls[0].e.shape == (8, 3) and calls[0].e0 == ()
+    wire = run.scene.cables["wire"]
+    assert_allclose(calls[0].S, section_stiffness("continuum", wire.section, wire.material))
+
+
+def test_components_and_labels_of_a_beam(run, calls):
+    forces = run.section_forces(run.scene.cables["wire"], s=0.25)
+    assert dict(forces.sizes) == {"time": 3, "s": 1, "xyz": 3}
+    assert_allclose(forces["force"].sel(s=0.25), np.tile(AXES.T @ [0.25, 2, 3], (3, 1)))
+    components = {name: float(forces[name][0, 0]) for name in BEAM}
+    assert_allclose(list(components.values()), [0.25, np.sqrt(13), 2, 3, 4, 5, 6, 1, 2, 3, 4, 5, 6])
+    assert forces["moment_y"].units == "N m" and forces["twist"].units == "1/m"
+    assert_allclose(forces["time"], run.time)
+    assert forces.attrs == {"cable": "wire", "element": "beam24", "law": "continuum"}
+
+
+def test_along_all_of_the_cable(run, calls):
+    assert_allclose(run.section_forces("wire")["s"], np.linspace(0, 1.5, 25))
+
+
+def straight(element, **given):
+    return Scene().cable("wire", **{"start": (0, 0, 0), "end": (2, 0, 0)} | given, elements=2, element=element,
+                         section=Circle(radius=0.1), material=SOFT)
+
+
+def test_components_of_a_cable(calls):
+    wire = straight("cable12")
+    forces = section_forces(wire, wire.nodal_vectors[None], np.array([0.5]))
+    assert set(forces) == {"force", "moment", *CABLE}
+    assert_allclose([forces[name][0, 0] for name in CABLE], [0.5, np.sqrt(13), 1, 6])
+
+
+def test_a_planar_cable_gives_its_two_components(calls):
+    wire = straight("beam12p")
+    section_forces(wire, wire.nodal_vectors[None], np.array([0.5]))
+    assert calls[0].e.shape == (6, 2) and calls[0].S.shape == (4, 6)
+
+
+def test_curved_and_structural_laws_take_the_rest_shape(calls):
+    wire = straight("beam24", start=None, end=None, points=[(0, 0, 0), (1, 0.2, 0), (2, 0, 0)])
+    section_forces(wire, wire.nodal_vectors[None], np.array([1.9]))
+    assert_allclose(calls[0].e0[0], np.concatenate(wire.rest_nodal_vectors[1:]))
+
+
+@pytest.mark.parametrize("element", ["beam24", "cable12", "cable18", "beam12p", "cable8p"])
+def test_a_taut_cable_by_its_own_kernel(element):
+    """Green strain, second Piola-Kirchhoff: N = E A (stretch² - 1)/2 stretch, where the section keeps its size."""
+    steel = Material(youngs_modulus=1e6, density=1000, poisson_ratio=0)
+    scene = Scene()
+    wire = scene.cable("wire", start=(0, 0, 0), end=(2, 0, 0), elements=3, element=element, material=steel,
+                       section=Circle(radius=0.1), rest_length=1.6)
+    forces = section_forces(wire, wire.nodal_vectors[None], np.array([0, 0.7, 1.6]))
+    expected = 1e6 * wire.section.area * (1.25**2 - 1) / 2 * 1.25
+    assert_allclose(forces["tension"], np.full((1, 3), expected), rtol=1e-12)
+    assert_allclose(forces["force"], [[[expected, 0, 0]] * 3], atol=1e-9 * expected)
+    assert_allclose(forces["moment"], 0, atol=1e-9 * expected)
+    assert_allclose(forces["strain"], (1.25**2 - 1) / 2, rtol=1e-12)
+
+
+def test_what_is_not_there(run):
+    with pytest.raises(UnknownResultError, match=r'^the run has no cable "wir"; did you mean "wire"\?$'):
+        run.section_forces("wir")
+    for s, shown in ((1.6, "1.6 m"), ([0, -1], "-1 m"), ([[0]], "an array of shape (1, 1)"), (np.nan, "nan m")):
+        message = f'section forces of "wire": s must lie on the cable, in [0, 1.5] m, got {shown}'
+        with pytest.raises(FunicularError, match="^" + re.escape(message) + "$"):
+            run.section_forces("wire", s)
+
+
+def test_pictures_when_asked_for(run, calls, tmp_path):
+    assert "forces-wire.png" not in [p.name for p in save_plots(run, tmp_path)]
+    assert [p.name for p in save_plots(run, tmp_path, forces=True)][-1] == "forces-wire.png"
+    tension, moment, _ = draw_section_forces(run, "wire").axes
+    assert (tension.get_ylabel(), moment.get_ylabel()) == ("tension / N", "moment / (N m)")
+    assert_allclose(tension.lines[0].get_ydata(), np.linspace(0, 1.5, 25), atol=1e-15)
+    assert_allclose(moment.lines[0].get_ydata(), np.sqrt(4**2 + 5**2 + 6**2))

@@ -1,0 +1,84 @@
+"""Signals: their values, how smooth they are, and what is refused of them."""
+
+import re
+
+import numpy as np
+import pytest
+from funicular import Harmonic, Pulse, Ramp, SceneError, Table
+from funicular.signals import Constant, signal
+from numpy.testing import assert_allclose
+
+TIMES = np.linspace(-0.5, 3.5, 801)
+EVERY = [
+    Constant(constant=2.0),
+    Table(time=[0, 0.5, 2, 3], value=[0, 1, -1, 4]),
+    Table(time=[0, 0.5, 2, 3], value=[0, 1, -1, 4], interpolation="linear"),
+    Ramp(start=0.5, end=2, before=1, after=-3),
+    Pulse(start=1, end=3),
+    Pulse(start=1, end=3, rise=0.25, height=-2),
+    Harmonic(amplitude=2, frequency=0.7, phase=0.3, offset=1),
+]
+SMOOTH = [s for s in EVERY if not isinstance(s, Table)]
+
+
+@pytest.mark.parametrize("each", EVERY, ids=lambda s: s.form)
+def test_value_is_what_pieces_and_sine_say(each):
+    breaks, coefficients = each.pieces()
+    assert breaks.shape == (len(coefficients) + 1,) and coefficients.shape[1] == 6
+    assert np.all(np.diff(breaks) > 0)
+    for t in (*TIMES[::50], *breaks):
+        k = min(max(np.searchsorted(breaks, t, side="right") - 1, 0), len(coefficients) - 1)
+        polynomial = sum(c * (t - breaks[k]) ** power for power, c in enumerate(coefficients[k]))
+        sine = each.amplitude * np.sin(each.angular_frequency * t + each.phase)
+        assert_allclose(each.value(t), polynomial + sine, rtol=1e-13, atol=1e-13)
+
+
+@pytest.mark.parametrize("each", SMOOTH, ids=lambda s: s.form)
+@pytest.mark.parametrize("derivative", [0, 1])
+def test_derivatives_are_those_of_values_everywhere(each, derivative):
+    """Across all breaks, too: the second derivative has no jump."""
+    h = 1e-6
+    slope = (each.value(TIMES + h, derivative) - each.value(TIMES - h, derivative)) / (2 * h)
+    assert_allclose(slope, each.value(TIMES, derivative + 1), atol=3e-3)
+
+
+def test_a_table_passes_through_its_points_and_stays_beyond_them():
+    time, value = [0, 0.5, 2, 3], [0, 1, -1, 4]
+    for kind in ("cubic", "linear"):
+        table = Table(time=time, value=value, interpolation=kind)
+        assert_allclose(table.value(time), value, atol=1e-14)
+        assert_allclose(table.value([-9, 99]), [0, 4], atol=1e-14)
+    assert table.value(1.25) == 0.0
+    assert_allclose(Table(time=[0, 1, 2, 4], value=[0, 1, 8, 64]).value(3), 27, rtol=1e-14)
+
+
+def test_ramps_and_pulses():
+    assert Ramp(start=1, end=3).value([0, 1, 2, 3, 4]).tolist() == [0, 0, 0.5, 1, 1]
+    assert Pulse(start=1, end=3).value([0, 1, 2, 3, 4]).tolist() == [0, 0, 1, 0, 0]
+    assert Pulse(start=1, end=3, rise=0.5, height=4).value([1, 1.25, 1.5, 2, 2.5, 2.75, 3]).tolist() == [
+        0, 2, 4, 4, 4, 2, 0]
+
+
+def test_numbers_and_tables_are_signals():
+    assert signal(3).value(0.1) == 3
+    assert signal({"form": "ramp", "start": 0, "end": 1}) == Ramp(start=0, end=1)
+    assert signal(EVERY[1]) is EVERY[1]
+
+
+@pytest.mark.parametrize(("make", "complaint"), [
+    (lambda: Ramp(start=1, end=1), "Ramp: end must be after start 1 s, got 1 s"),
+    (lambda: Ramp(start=0, end=np.nan), "Ramp: end must be finite, got nan s"),
+    (lambda: Pulse(start=1, end=0.5), "Pulse: end must be after start 1 s, got 0.5 s"),
+    (lambda: Pulse(start=0, end=1, rise=0.6), "Pulse: rise must not exceed half of the pulse, 0.5 s, got 0.6 s"),
+    (lambda: Harmonic(amplitude=1, frequency=0), "Harmonic: frequency must be positive, got 0 Hz"),
+    (lambda: Harmonic(amplitde=1, frequency=1), 'Harmonic: "amplitde" is not known here; did you mean "amplitude"?'),
+    (lambda: Table(time=[0], value=[1]), "Table: time must be a list of 2 numbers or more, got [0]"),
+    (lambda: Table(time=[0, 1], value=[1, 2, 3]), "Table: time and value must be of equal length, got 2 and 3"),
+    (lambda: Table(time=[0, 2, 1], value=[1, 2, 3]), "Table: time must increase, got 1 s after 2 s"),
+    (lambda: Table(time=[0, 1], value=[1, "2"]), "Table: value must be a number, got '2'"),
+    (lambda: Table(time=[0, 1], value=[1, 2], interpolation="cubik"),
+     'Table: interpolation "cubik" is not known; did you mean "cubic"?'),
+])
+def test_refused(make, complaint):
+    with pytest.raises(SceneError, match="^" + re.escape(complaint) + "$"):
+        make()
