@@ -68,9 +68,9 @@ def energy(element: Element, law: str, s):
 
 
 def density_at(element: Element, s):
-    """Energy that the point `at` adds with the elastic constants D[0]."""
+    """Energy that the point `at` adds with the elastic constants D."""
     body = Body(element, s)
-    return body.volume(s["at"]) * density(s["D"][0], body.strain(s["at"]))
+    return body.volume(s["at"]) * density(s["D"], body.strain(s["at"]))
 
 
 def section(element: Element, law: str, s) -> dict[str, np.ndarray]:

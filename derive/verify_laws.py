@@ -59,13 +59,13 @@ def continuum_dissipation(element: Element, law: str, s):
 
 
 def _material_points(element: Element, s) -> Iterator[tuple]:
-    """Gradient of the shape functions, weight and elastic constants: D[0] over the volume, D[1] on the axis alone."""
+    """Gradient of the shape functions, weight and elastic constants: D over the volume, D_axis on the axis alone."""
     shape = Shape(element, s["l"].item())
     height, width = s["rectangle"]
     for at, weight in shape.points(height, width):
-        yield shape.gradient(at), weight, s["D"][0]
+        yield shape.gradient(at), weight, s["D"]
     for t, weight in gauss(2 * max(p[0] for p in shape.powers) + 1):
-        yield shape.gradient((shape.l / 2 * (1 + t), 0, 0)), weight * shape.l / 2 * height * width, s["D"][1]
+        yield shape.gradient((shape.l / 2 * (1 + t), 0, 0)), weight * shape.l / 2 * height * width, s["D_axis"]
 
 
 def cable_energy(element: Element, law: str, s):

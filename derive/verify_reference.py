@@ -121,11 +121,11 @@ def stress(D, E: np.ndarray) -> np.ndarray:
 
 
 def section_points(s) -> Iterator[tuple]:
-    """y, z, area and elastic constants of the sample's section: D[0] all over it, D[1] on the axis alone."""
+    """y, z, area and elastic constants of the sample's section: D all over it, D_axis on the axis alone."""
     height, width = (mp.mpf(v) for v in s["rectangle"])
     for (a, p), (b, q) in product(gauss(3), gauss(3)):
-        yield a * height / 2, b * width / 2, p * q * height * width / 4, s["D"][0]
-    yield mp.mpf(0), mp.mpf(0), height * width, s["D"][1]
+        yield a * height / 2, b * width / 2, p * q * height * width / 4, s["D"]
+    yield mp.mpf(0), mp.mpf(0), height * width, s["D_axis"]
 
 
 def spatial(vector: np.ndarray) -> np.ndarray:

@@ -99,7 +99,7 @@ def law(family: Family) -> list[Relation]:
 def _stiffness_at(spec: Element) -> list[Relation]:
     """A point of the volume, tried by the energy that it adds in many states."""
     def shares(k, s):
-        point = k("stiffness_at", s, D=s["D"][0])
+        point = k("stiffness_at", s)
         A = s["A"].copy()
         A[: point["A"].size + point["G0"].size] = [*point["A"], *point["G0"]]
         return [k("energy", s, A=A, e=e)["U"][0] for e in near(s)]
@@ -112,13 +112,11 @@ def _stiffness_at(spec: Element) -> list[Relation]:
         moves = np.random.default_rng(1).normal(size=(450, *s["e"].shape))
         return [s["e"] + move for move in moves]
 
-    def given(output):
-        return lambda k, s, *_: k("stiffness_at", s, D=s["D"][0])[output]
-
     return [
-        Relation("stiffness_at", "A", "a point's share at 50 digits", 0, given("A"), of=given("A")),
+        Relation("stiffness_at", "A", "a point's share at 50 digits", 0, from_kernel("stiffness_at", "A")),
         Relation("stiffness_at", "A", "energy that a point adds in 450 states", 0, densities, of=shares),
-        Relation("stiffness_at", "G0", "at 50 digits; the energies need it", 0, given("G0"), of=given("G0")),
+        Relation("stiffness_at", "G0", "at 50 digits; the energies need it", 0,
+                 from_kernel("stiffness_at", "G0")),
     ]
 
 

@@ -44,8 +44,9 @@ def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
             state |= loads(family.element, random)
         found.append(state)
     rest = found[0] | at_rest(family)
-    if family.law and family.law.endswith("_curved"):  # larger alike: at rest there would be nothing to compare
-        rest["e"] = 1.25 * rest["e0"]
+    if family.law and family.law.endswith("_curved"):
+        rest["e0"] = rest["e"]
+        rest |= _from_kernels(family, exact, rest)
     return [*found, rest]
 
 
@@ -134,7 +135,12 @@ def _constants(family: Family, exact: Numbers, state: dict, random: np.random.Ge
     made = {"a": random.normal(size=(family.element.n_vectors, dim))}
     if family.role == "law":
         made |= section_stiffness(family.like, dim, state["section"], random)
-    s = exact.state(state | made)
+    return made | _from_kernels(family, exact, state | made)
+
+
+def _from_kernels(family: Family, exact: Numbers, state: dict) -> dict[str, np.ndarray]:
+    """Constants that kernels make for others."""
+    made, s = {}, exact.state(state)
     for kernel, output in (("stiffness", "A"), ("mass", "m")):
         if kernel in exact.programs:
             made[output] = exact(kernel, s)[output].astype(float)
@@ -146,15 +152,16 @@ def _constants(family: Family, exact: Numbers, state: dict, random: np.random.Ge
 
 
 def section_stiffness(law: str, dim: int, moments: np.ndarray, random: np.random.Generator) -> dict[str, np.ndarray]:
-    """Argument S of a law; for a continuum also D, elastic constants over the section and on the axis alone."""
+    """Argument S of a law; for a continuum also elastic constants, D over the section and D_axis on the axis alone."""
     if law == "structural":
         return {"S": random.uniform(1, 4, 9 if dim == 3 else 4)}
     if not law.startswith("continuum"):
         return {"S": 53.0 * moments[:2]}
     pairs = dim * (dim - 1) // 2
-    D = np.array([np.concatenate([random.uniform(40, 60, dim), random.uniform(5, 15, pairs),
-                                  random.uniform(10, 20, pairs)]) for _ in range(2)])
-    return {"S": np.outer(D[0], moments) + np.outer(D[1], moments * [1, 0, 0, 0, 0, 0]), "D": D}
+    D, on_axis_alone = (np.concatenate([random.uniform(40, 60, dim), random.uniform(5, 15, pairs),
+                                        random.uniform(10, 20, pairs)]) for _ in range(2))
+    return {"S": np.outer(D, moments) + np.outer(on_axis_alone, moments * [1, 0, 0, 0, 0, 0]), "D": D,
+            "D_axis": on_axis_alone}
 
 
 def loads(element: Element, random: np.random.Generator) -> dict[str, np.ndarray]:
