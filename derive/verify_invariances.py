@@ -78,7 +78,7 @@ def _rigid_motion(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
     for far, where in ((0.0, ""), (1e4, " at 10⁴ lengths")):
         chord = EPS * (1 + far)
         for _ in range(3):
-            at_rest = s["e0"] if family.law == "structural" else reference(spec, float(s["l"]))
+            at_rest = s.get("e0", reference(spec, float(s["l"])))
             e = at_rest @ rotation(random, spec.dim).T
             direction = random.normal(size=spec.dim)
             e[spec.is_position] += far * s["l"] * direction / np.linalg.norm(direction)
