@@ -75,8 +75,12 @@ def law(family: Family) -> list[Relation]:
 
     if family.law == family.like:
         energy, power = (root(f, spec, family.law) for f in (verify_laws.energy, verify_laws.dissipation))
+        section = [(output, text, root(verify_sections.resultant(output), spec, family.law))
+                   for output, text in verify_sections.TEXTS.items()]
     else:  # a law of the user's is what its energy and its dissipated power say
         energy, power = from_kernel("energy", "U"), from_kernel("dissipation", "P")
+        section = [(output, "as derived, at 50 digits", from_kernel("section_forces", output))
+                   for output in verify_sections.TEXTS]
     force_by_both = from_kernel("damping_force", "f", e=entry("e"), v=lambda s, j: s["rate"] * unit(s["v"], j))
     stiffness = [
         Relation("stiffness", "A", "the law's constants at 50 digits", 0, from_kernel("stiffness", "A")),
@@ -91,8 +95,7 @@ def law(family: Family) -> list[Relation]:
         Relation("damping_force", "f", "d(P/2)/dv", 1, _half(from_kernel("dissipation", "P", v=entry("v"))), n),
         Relation("damping_tangent", "K", "df/de + rate df/dv", 1, force_by_both, n),
         Relation("dissipation", "P", "the law's integral by quadrature", 0, power),
-        *(Relation("section_forces", output, text, 0, root(verify_sections.resultant(output), spec, family.law))
-          for output, text in verify_sections.TEXTS.items()),
+        *(Relation("section_forces", output, text, 0, path) for output, text, path in section),
     ]
 
 

@@ -31,6 +31,8 @@ def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
         dim = family.element.dim if family.element else RIDERS[family.rider].dim
         if family.element:
             state |= element_state(family.element, random)
+            if not any(a.name == "e0" for program in exact.programs.values() for a in program.inputs):
+                del state["e0"]
         if family.rider:
             near = on_axis(family.element, state) if family.element else random.normal(size=dim)
             state |= RIDERS[family.rider].sample(random, near)
@@ -119,8 +121,9 @@ def element_state(element: Element, random: np.random.Generator) -> dict[str, np
         e[k * per_node : (k + 1) * per_node] @= rotation(random, dim, angle=0.4 * mild).T
     e += random.normal(size=(n, dim)) * 0.15 * mild**2
     e[element.is_position] += random.normal(size=dim)
-    e0 = reference(element, LENGTH) @ rotation(random, dim).T
-    e0 += random.normal(size=(n, dim)) * 0.1 * mild**2
+    of_shape, = random.spawn(1)  # its own stream: the other samples are the same with and without
+    e0 = reference(element, LENGTH) @ rotation(of_shape, dim).T
+    e0 += of_shape.normal(size=(n, dim)) * 0.1 * mild**2
     return {
         "l": np.float64(LENGTH), "rectangle": np.array([HEIGHT, WIDTH]), "section": section(), "e": e, "e0": e0,
         "v": random.normal(size=(n, dim)), "vdot": random.normal(size=(n, dim)),

@@ -96,7 +96,7 @@ def test_signs_changed_inside_an_element_are_found(generated, capsys):
 
 
 @pytest.mark.parametrize(("family", "definition", "constant"), [
-    ("beam12p_continuum", "K_t0_t1_xy", 7), ("cable8p_engineering_exact", "A_t0t0_t0t1", 1)])
+    ("beam12p_continuum", "K_t0_t1_xy", 7), ("cable8p_engineering_exact", "K_t0_t0_xy", 1)])
 def test_signs_changed_inside_a_law_are_found(generated, capsys, family, definition, constant):
     change_sign(generated, family, "elastic_tangent", definition)
     break_output(generated, f"{family}.c", f"{family}_stiffness", f"A[{constant}]")
