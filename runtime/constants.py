@@ -16,17 +16,22 @@ POINTS = 5
 def constants(cable: Cable) -> np.ndarray:
     """(1, n), or (elements, n) where they differ because the stress-free shape is curved."""
     kernels, length = kernels_of(cable.library), cable.length / cable.elements
-    law = f"{cable.element}_{cable.kernel_law}"
     S = section_stiffness(cable.stiffness_law, cable.section, cable.material, cable.dim)
-    if not (cable.is_curved or cable.stiffness_law == "structural"):
-        return np.array([getattr(kernels, f"{law}_stiffness")(length, S)])
-    rest = cable.rest_nodal_vectors[..., : cable.dim]
-    shapes = [np.concatenate(rest[k : k + 2]) for k in range(cable.elements if cable.is_curved else 1)]
-    if not hasattr(kernels, f"{law}_stiffness_at"):
-        return np.array([getattr(kernels, f"{law}_stiffness")(length, e0, S) for e0 in shapes])
-    straight = getattr(kernels, f"{law.removesuffix('_curved')}_stiffness")(length, S)
-    sums = (integral_over_volume(getattr(kernels, f"{law}_stiffness_at"), length, e0, S) for e0 in shapes)
-    return np.array([np.concatenate([*form_and_shape, straight]) for form_and_shape in sums])
+    shapes: list[np.ndarray | None] = [None]
+    if cable.is_curved or cable.stiffness_law == "structural":
+        rest = cable.rest_nodal_vectors[..., : cable.dim]
+        shapes = [np.concatenate(rest[k : k + 2]) for k in range(cable.elements if cable.is_curved else 1)]
+    return np.array([element_constants(kernels, cable.element, cable.kernel_law, length, S, e0) for e0 in shapes])
+
+
+def element_constants(kernels, element: str, law: str, length: float, S: np.ndarray,
+                      e0: np.ndarray | None = None) -> np.ndarray:
+    """(n,): A of one element; e0 (nodal vectors, dim) is its stress-free shape, for laws that take it."""
+    if hasattr(kernels, f"{element}_{law}_stiffness_at"):
+        straight = getattr(kernels, f"{element}_{law.removesuffix('_curved')}_stiffness")
+        return np.concatenate([*integral_over_volume(getattr(kernels, f"{element}_{law}_stiffness_at"), length, e0, S),
+                               straight(length, S)])
+    return getattr(kernels, f"{element}_{law}_stiffness")(length, *([] if e0 is None else [e0]), S)
 
 
 def integral_over_volume(stiffness_at, length: float, e0: np.ndarray, S: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

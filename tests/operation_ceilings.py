@@ -27,6 +27,22 @@ CEILINGS = {
         "stiffness": 217, "energy": 485, "elastic_force": 756, "elastic_tangent": 5124, "damping_force": 991,
         "damping_tangent": 8797, "dissipation": 692, "section_forces": 487
     },
+    "beam24_continuum_curved": {
+        "stiffness_at": 1949, "energy": 1857, "elastic_force": 2128, "elastic_tangent": 12610, "damping_force": 991,
+        "damping_tangent": 8797, "dissipation": 692, "section_forces": 4561
+    },
+    "cable12_green_exact_curved": {
+        "stiffness": 255, "energy": 299, "elastic_force": 710, "elastic_tangent": 3087, "damping_force": 558,
+        "damping_tangent": 3498, "dissipation": 298, "section_forces": 604
+    },
+    "cable12_engineering_exact_curved": {
+        "stiffness": 255, "energy": 314, "elastic_force": 730, "elastic_tangent": 3157, "damping_force": 588,
+        "damping_tangent": 3753, "dissipation": 319, "section_forces": 611
+    },
+    "beam12p_continuum_curved": {
+        "stiffness_at": 518, "energy": 571, "elastic_force": 655, "elastic_tangent": 2589, "damping_force": 395,
+        "damping_tangent": 2125, "dissipation": 296, "section_forces": 608
+    },
     "cable12_green_exact": {
         "stiffness": 0, "energy": 229, "elastic_force": 485, "elastic_tangent": 2012, "damping_force": 558,
         "damping_tangent": 3498, "dissipation": 298, "section_forces": 262
