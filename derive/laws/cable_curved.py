@@ -1,10 +1,15 @@
 """Cable with a curved stress-free shape e0: strain and curvature are measured along r0 and against its curvature.
 
-ds0 = |r0'| dx; the strain is Green's or the engineering one of |r'|/|r0'|; the bending energy 1/2 EI (kappa - kappa0)^2
-with the sizes of the curvatures. A cable has no torsional stiffness: its sections turn about the tangent until the
-curvature points where kappa0 does, and the energy is the least over these turns. That has a kink where the cable is
-straight, where a curved rod snaps to the other side: it is rounded within kappa < kappa0/1000, with 1e-6 of the bending
-stiffness elsewhere. A shape straight to 1e-8 of the element's length is bent as by the straight law.
+ds0 = |r0'| dx; the strain is Green's or the engineering one of |r'|/|r0'|; the bending energy is
+1/2 EI (kappa - kappa0)^2 with the sizes of the curvatures: a cable has no material frame. It is a rod without torsional
+stiffness, whose sections turn about the tangent until the curvature points where kappa0 does; the energy is the least
+over these turns. Hence
+- in the plane of a curved shape it is a curved rod, as long as its curvature keeps its side;
+- across that plane nothing resists but tension: bent there, the size of the curvature stays the same to first order,
+  and a ring may become any curve of the same curvature. What has to hold its shape in space is a beam;
+- where the cable is straight the energy has a kink, for the curvature may leave to any side. It is rounded within
+  kappa < kappa0/1000, which takes 1e-6 off the bending stiffness elsewhere.
+A kappa0 below 2e-6/l is none: the straight law.
 """
 
 from __future__ import annotations
