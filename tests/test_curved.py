@@ -107,6 +107,20 @@ def test_with_a_straight_shape_it_is_the_straight_law(name, law):
         assert_allclose(mine, its, atol=1e-11 * np.abs(its).max())
 
 
+@pytest.mark.parametrize("name", BEAMS)
+def test_damping_is_stiffness_times_the_time_but_for_height_over_radius(name):
+    """Eigenvalues of the damping matrix over the stiffness, at rest, rigid motions left out."""
+    S = section_stiffness("continuum", fu.Rectangle(height=0.05, width=0.05), SOFT, ELEMENTS[name].dim)
+    l, e0 = 2 * np.pi / 16, ring(name, 16)[1]
+    A = element_constants(kernels, name, "continuum_curved", l, S, e0)
+    K = getattr(kernels, f"{name}_continuum_curved_elastic_tangent")(l, e0, A)
+    C = getattr(kernels, f"{name}_continuum_curved_damping_tangent")(l, e0, 0 * e0, A, 1.0, 1.0)
+    values, vectors = np.linalg.eigh(K)
+    free = vectors[:, values > 1e-9 * values[-1]] / np.sqrt(values[values > 1e-9 * values[-1]])
+    assert free.shape[1] == {3: 24 - 6, 2: 12 - 3}[ELEMENTS[name].dim]
+    assert_allclose(np.linalg.eigvalsh(free.T @ C @ free), 1, atol=0.05)
+
+
 @pytest.mark.parametrize("section", [fu.Rectangle(height=0.2, width=0.1), fu.Circle(radius=0.1),
                                      fu.Tube(outer_radius=0.1, inner_radius=0.08)])
 @pytest.mark.parametrize("law", ["continuum", "poisson_split"])
