@@ -91,15 +91,15 @@ class CurvedCable(Cable):
         return Reference(program.define(f"j0{tag}", sp.sqrt(a)), inverse, k2, rounding, kappa,
                          program.define(f"k0_none{tag}", floor**2 * none * kappa))
 
-    def _terms(self, program: Program, A, G, w) -> Iterator[Term]:
+    def _terms(self, program: Program, A, c, w) -> Iterator[Term]:
         """Stages: the energy point by point."""
         program.stage("strain at the quadrature points")
         EA, EI = program.define("EA_l", A[0] / (2 * w)), program.define("EI_l", 2 * A[1] * w)
-        for g, point in enumerate(self.bending_points):
-            invariants, rows = self._invariants(program, f"{g}", point, G, "abc")
+        points = self.bending_points
+        for g, (invariants, *vectors) in enumerate(self._at_points(program, "", "abc", points, c)):
             at = Reference(*A[2 + N_REFERENCE * g : 2 + N_REFERENCE * (g + 1)])
             density, _, _ = self.curved_density(program, f"_{g}", EA, EI, invariants, at)
-            yield Term("abc", point, point.weight * density, invariants, rows)
+            yield Term("abc", 2 * points[g].weight * density, invariants, *vectors)
 
     def curved_density(self, program: Program, tag: str, EA, EI, invariants, at: Reference) -> tuple:
         """Energy per x, axial strain, and what leads from |r' x r''|^2 to the squared curvature."""

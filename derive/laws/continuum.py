@@ -120,18 +120,29 @@ class Continuum:
         section = Resultants(self.form, program, S, c, X, w)
         return section.force(), section.moment(), section.strain()
 
-    def energy(self, program: Program, A: np.ndarray, G: Sequence[sp.Expr], w: sp.Expr) -> sp.Expr:
+    def energy(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr) -> sp.Expr:
         """U."""
-        return sum(a * b for a, b in zip(self.stress(program, A, G, w), G, strict=True)) / 2
+        G = self._strain(program, A, c)
+        return sum(a * b for a, b in zip(self._stress(program, A, G), G, strict=True)) / 2
 
-    def stress(self, program: Program, A: np.ndarray, G: Sequence[sp.Expr], w: sp.Expr) -> list[sp.Expr]:
-        """Stage: u = A (G - G0)."""
+    def forces(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr) -> np.ndarray:
+        """Stages: dU/dc on strain vectors."""
+        u = self._stress(program, A, self._strain(program, A, c))
+        program.stage("forces on strain vectors")
+        return self.gram.vector_forces(program, c, u)
+
+    def tangent(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr) -> np.ndarray:
+        """Stages: d2U/dc2 over strain vectors."""
+        return blocks(self.gram, program, c, c, self._moduli(A), self._stress(program, A, self._strain(program, A, c)))
+
+    def _strain(self, program: Program, A: np.ndarray, c: np.ndarray) -> list[sp.Expr]:
+        """Stage: Gram products, less those of the stress-free shape."""
+        program.stage("Gram products G - G0")
+        return self.gram.gram(program, c)
+
+    def _stress(self, program: Program, A: np.ndarray, G: Sequence[sp.Expr]) -> list[sp.Expr]:
         program.stage("u = A (G - G0)")
         return self._times(program, self._moduli(A), G)
-
-    def tangent(self, program: Program, A: np.ndarray, G: Sequence[sp.Expr], c: np.ndarray, w: sp.Expr) -> np.ndarray:
-        """Stages: d2U/dc2 over strain vectors."""
-        return blocks(self.gram, program, c, c, self._moduli(A), self.stress(program, A, G, w))
 
     def _viscous_moduli(self, A: np.ndarray) -> dict:
         return self._moduli(A)

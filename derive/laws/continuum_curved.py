@@ -9,8 +9,6 @@ of section over radius.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 import sympy as sp
 from funicular.derive.gram import DIRECTIONS, Gram
@@ -98,19 +96,11 @@ class CurvedContinuum(Continuum):
             rows.append(row)
         return rows
 
-    def _shifted(self, program: Program, A: np.ndarray, G: Sequence[sp.Expr]) -> list[sp.Expr]:
+    def _strain(self, program: Program, A: np.ndarray, c: np.ndarray) -> list[sp.Expr]:
+        """Stages: Gram products, less those of the stress-free shape."""
+        G = super()._strain(program, A, c)
         program.stage("Gram products less those of e0")
         return [program.define(f"g_{self.gram.pair(p)}", value - A[self.form.size + p]) for p, value in enumerate(G)]
-
-    def energy(self, program: Program, A: np.ndarray, G: Sequence[sp.Expr], w: sp.Expr) -> sp.Expr:
-        """U."""
-        g = self._shifted(program, A, G)
-        program.stage("u = A (G - G0)")
-        return sum(a * b for a, b in zip(self._times(program, self._moduli(A), g), g, strict=True)) / 2
-
-    def stress(self, program: Program, A: np.ndarray, G: Sequence[sp.Expr], w: sp.Expr) -> list[sp.Expr]:
-        """Stages: u = A (G - G0)."""
-        return super().stress(program, A, self._shifted(program, A, G), w)
 
     def _viscous_moduli(self, A: np.ndarray) -> dict:
         after = self.form.size + len(self.gram.pairs)
