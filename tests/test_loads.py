@@ -123,7 +123,8 @@ def test_the_books_close_with_everything_on(element):
     scene.cable("wire", start=(0, 0, 0), end=(1.5, 0, 0), elements=3, element=element, section=SQUARE,
                 material=Material(youngs_modulus=2e7, poisson_ratio=0.0, density=4200, damping_time=1e-3,
                                   mass_damping=0.3))
-    scene.motion("wire", s=0.0, displacement=(0, Harmonic(amplitude=0.1, frequency=1.0), 0))
+    wave = Harmonic(amplitude=0.1, frequency=1.0, phase=np.pi / 2, offset=-0.1)  # from rest
+    scene.motion("wire", s=0.0, displacement=(0, wave, 0))
     scene.pin("wire", s=1.5)
     add_rider(scene, s=0.4, speed=1.0)
     scene.force("wire", s=1.0, value=(20, 0, 0) if element == "cable12" else (0, 20, 0 if planar else 10),
