@@ -29,7 +29,7 @@ def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
         dim = family.element.dim if family.element else RIDERS[family.rider].dim
         if family.element:
             state |= element_state(family.element, random)
-            if not any(a.name == "e0" for program in exact.programs.values() for a in program.inputs):
+            if family.role != "law" or not _takes_shape(exact):
                 del state["e0"]
         if family.rider:
             near = on_axis(family.element, state) if family.element else random.normal(size=dim)
@@ -44,6 +44,11 @@ def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
             state |= loads(family.element, random)
         found.append(state)
     return [*found, found[0] | at_rest(family)]
+
+
+def _takes_shape(exact: Numbers) -> bool:
+    """Whether a kernel asks for the stress-free shape."""
+    return any(a.name == "e0" for program in exact.programs.values() for a in program.inputs)
 
 
 def at_rest(family: Family) -> dict[str, np.ndarray]:
