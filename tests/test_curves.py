@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from funicular import Circle, Material, Scene, SceneError
+from funicular import Circle, Material, Rectangle, Scene, SceneError
 from funicular.curves import points, sample, shape_through, transported
 from numpy.testing import assert_allclose
 
@@ -56,6 +56,44 @@ def test_the_axes_turn_about_the_tangent_nowhere():
     assert_allclose(angle, -torsion * s, atol=1e-5)
 
 
+def test_nodal_vectors_as_drawn_and_at_rest_are_one():
+    wire = drawn(element="beam24", section=Rectangle(height=0.01, width=0.02), up=(0, 1, 0))
+    assert wire.is_curved and wire.kernel_law == "continuum_curved"
+    assert_allclose(wire.nodal_vectors, wire.rest_nodal_vectors, atol=1e-15)
+    r, r_x, r_y, r_z = wire.nodal_vectors.transpose(1, 0, 2)
+    assert_allclose(r[-1], arc(1.0), atol=1e-15)
+    assert_allclose(r_x[-1], [np.sqrt(0.5), 0, np.sqrt(0.5)], atol=1e-6)
+    assert_allclose(r_y, np.tile([0.0, 1, 0], (5, 1)), atol=1e-15)
+    assert_allclose(np.cross(r_x, r_y), r_z, atol=1e-15)
+
+
+@pytest.mark.parametrize("element", ["cable12", "beam24", "beam12p"])
+def test_a_point_is_where_the_elements_draw_it(element):
+    flat = element == "beam12p"
+    wire = drawn(element=element, curve=(lambda u: (arc(u)[0], arc(u)[2], 0)) if flat else arc)
+    for s, node in zip(wire.node_s, wire.nodal_vectors, strict=True):
+        assert_allclose(wire.point(s), node[0], atol=1e-15)
+    (r0, t0), (r1, t1) = wire.nodal_vectors[1:3, :2]
+    length = wire.length / 4
+    middle = (r0 + r1) / 2 + length * (t0 - t1) / 8  # of the cubic
+    assert_allclose(wire.point(1.5 * length), middle, atol=1e-14)
+    assert 1e-7 < np.linalg.norm(middle - wire._shape.point(1.5 * length)) < 1e-4
+
+
+def test_a_rider_starts_on_the_elements():
+    scene = Scene()
+    wire = scene.cable("wire", curve=arc, elements=2, section=Circle(radius=0.01), material=SOFT)
+    scene.rigid_body("A", mass=1, inertia=(1, 1, 1), position=wire.point(0.3))
+    scene.slide("A", along=wire, s=0.3)
+    assert scene.messages == []
+
+
+def test_three_points_make_a_parabola():
+    wire = drawn(curve=None, points=[(0, 0, 0), (1, 1, 0), (2, 0, 0)])
+    x = np.linspace(0, 2, 200001)
+    assert_allclose(wire.length, np.trapezoid(np.sqrt(1 + (2 - 2 * x) ** 2), x), rtol=1e-9)
+
+
 def test_points_on_a_line_are_a_line():
     wire = drawn(curve=None, points=[(0, 0, 0), (1, 1, 0), (3, 3, 0)])
     assert not wire.is_curved
@@ -70,11 +108,37 @@ def test_a_straight_rest_shape():
     assert_allclose(np.linalg.norm(wire.nodal_vectors[:, 2], axis=1), 1 / RADIUS, rtol=1e-4)
 
 
+@pytest.mark.parametrize("ratio", [0.9, 1.2])
+def test_a_rest_length_makes_it_taut_or_slack(ratio):
+    as_drawn = drawn(element="cable12")
+    wire = drawn(element="cable12", rest_length=ratio * as_drawn.length)
+    assert wire.length == ratio * as_drawn.length and wire.node_s[-1] == wire.length
+    assert_allclose(wire.nodal_vectors[:, 0], as_drawn.nodal_vectors[:, 0], atol=1e-14)
+    assert_allclose(wire.nodal_vectors[:, 1] * ratio, as_drawn.nodal_vectors[:, 1], atol=1e-14)
+    assert_allclose(wire.rest_nodal_vectors[:, 1], as_drawn.nodal_vectors[:, 1], atol=1e-14)
+    assert_allclose(wire.rest_nodal_vectors[-1, 0], ratio * np.array(arc(1.0)), atol=1e-14)
+    assert_allclose(wire.point(wire.length), arc(1.0), atol=1e-14)
+    assert_allclose(wire.nearest_s(arc(0.5)), wire.length / 2, rtol=1e-3)
+
+
 def test_a_straight_cable_under_tension():
     wire = drawn(curve=None, start=(0, 0, 0), end=(1, 0, 0), rest_length=0.8, element="cable12")
     assert_allclose(wire.nodal_vectors[2], [[0.5, 0, 0], [1.25, 0, 0]], rtol=1e-15)
     assert_allclose(wire.rest_nodal_vectors[2], [[0.4, 0, 0], [1, 0, 0]], rtol=1e-15)
     assert [wire.node_at(s) for s in (0, 0.2, 0.8, 1.0)] == [0, 1, 4, None]
+
+
+def test_planar_cables_have_their_height_in_the_plane():
+    wire = drawn(curve=lambda u: (np.sin(u), 1 - np.cos(u), 0), element="beam12p")
+    r_x, r_y = wire.nodal_vectors[:, 1], wire.nodal_vectors[:, 2]
+    assert_allclose(r_y, np.cross([0, 0, 1], r_x), atol=1e-15)
+    assert drawn(curve=None, start=(0, 0, 0), end=(0, 3, 0), element="cable8p").axes.tolist() == [
+        [0, 1, 0], [-1, 0, 0], [0, 0, 1]]
+
+
+def test_a_ring_may_close():
+    wire = drawn(curve=lambda u: (np.cos(2 * np.pi * u), np.sin(2 * np.pi * u), 0), elements=8, up=(0, 0, 1))
+    assert_allclose(wire.length, 2 * np.pi, rtol=1e-9)
 
 
 @pytest.mark.parametrize(("changes", "complaint"), [
@@ -109,6 +173,13 @@ def test_a_straight_cable_under_tension():
      "give the direction of the section's height"),
     ({"rest_length": 0}, "rest_length must be positive, got 0 m"),
     ({"rest": "bent"}, 'rest "bent" is not known; known: drawn, straight'),
+    ({"element": "cable18"},
+     'cable18 with law "green_exact" is stress-free only where it is straight, but it is drawn curved; take '
+     'rest="straight", or one of beam24 (continuum, structural, poisson_split), cable12 (green_exact, '
+     "engineering_exact), beam12p (continuum, structural, poisson_split)"),
+    ({"element": "cable8p"},
+     "cable8p is planar, but point 2 leaves the plane z = 0: (0.0122717693, 0, 3.76494348e-05) m; "
+     'draw it with z = 0, or take element="beam24" or "cable12" or "cable18"'),
 ])
 def test_what_cannot_be_drawn(changes, complaint):
     with refused(complaint):

@@ -85,6 +85,12 @@ def test_a_planar_cable_gives_its_two_components(calls):
     assert calls[0].e.shape == (6, 2) and calls[0].S.shape == (4, 6)
 
 
+def test_curved_and_structural_laws_take_the_rest_shape(calls):
+    wire = straight("beam24", start=None, end=None, points=[(0, 0, 0), (1, 0.2, 0), (2, 0, 0)])
+    section_forces(wire, wire.nodal_vectors[None], np.array([1.9]))
+    assert_allclose(calls[0].e0[0], np.concatenate(wire.rest_nodal_vectors[1:]))
+
+
 @pytest.mark.parametrize("element", ["beam24", "cable12", "cable18", "beam12p", "cable8p"])
 def test_a_taut_cable_by_its_own_kernel(element):
     """Green strain, second Piola-Kirchhoff: N = E A (stretch² - 1)/2 stretch, where the section keeps its size."""
