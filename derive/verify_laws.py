@@ -14,16 +14,11 @@ import numpy as np
 from funicular.derive import verify_curved, verify_structural
 from funicular.derive.gram import Gram
 from funicular.derive.laws import LAWS
-from funicular.derive.spec import CABLE_LAWS, Element
+from funicular.derive.spec import Element
 from funicular.derive.verify_motion import cross
 from funicular.derive.verify_reference import Shape, density, gauss, spatial
 
 mp = mpmath.mp
-
-
-def is_cable(law: str) -> bool:
-    """Whether a law is along an axis alone, with S = EA, EI."""
-    return law.removesuffix("_curved") in CABLE_LAWS
 
 
 def energy(element: Element, law: str, s):

@@ -31,7 +31,7 @@ def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
         dim = family.element.dim if family.element else RIDERS[family.rider].dim
         if family.element:
             state |= element_state(family.element, random)
-            if not any(a.name == "e0" for program in exact.programs.values() for a in program.inputs):
+            if family.role != "law" or not _takes_shape(exact):
                 del state["e0"]
         if family.rider:
             near = on_axis(family.element, state) if family.element else random.normal(size=dim)
@@ -50,6 +50,11 @@ def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
         rest["e0"] = rest["e"]
         rest |= _from_kernels(family, exact, rest)
     return [*found, rest]
+
+
+def _takes_shape(exact: Numbers) -> bool:
+    """Whether a kernel asks for the stress-free shape."""
+    return any(a.name == "e0" for program in exact.programs.values() for a in program.inputs)
 
 
 def at_rest(family: Family) -> dict[str, np.ndarray]:
