@@ -215,8 +215,8 @@ ENERGY = """
     (STRAIN.format(strain="a1 + sp.sqrt(a1**2)"),
      "the energy has a kink in its slope: along r_1[x] its second derivative "),
     (ENERGY.format(more="A[1] * w * sp.sqrt(c[-1].dot(c[-1]))"), "the energy has a kink: along r_1[x] its slope is -"),
-    (ENERGY.format(more="A[1] * w / c[-1].dot(c[-1])"), "the energy is not a finite number: kernel mine8p_own_energy, at the "
-                                             "straight reference"),
+    (ENERGY.format(more="A[1] * w / c[-1].dot(c[-1])"),
+     "the energy is not a finite number: kernel mine8p_own_energy, at the straight reference"),
     (STRAIN.format(strain="sp.sin(a1)"), "kernel mine8p_own_energy is not plain arithmetic: sin(a1_0)"),
     (STRAIN.format(strain="a1 + sp.Rational(1, 10)"), "the undeformed element is not at rest: it stores "),
     ("    def forces(self, program, A, c, w):\n        return 2 * super().forces(program, A, c, w)\n",

@@ -38,8 +38,8 @@ class Point:
 
 @dataclass(frozen=True)
 class Term:
-    """A point's share of twice the energy, its invariants by name, and the vectors that these are products of, with their
-    series over the strain vectors.
+    """A point's share of twice the energy, its invariants by name, the vectors that these are products of, and the
+    series of the vectors over the strain vectors.
     """
 
     names: str
@@ -128,7 +128,8 @@ class Cable(Damping):
         kinds = {"a": ["value"], "c": ["slope"], "abc": ["value", "slope"]}[names]
         series = [[getattr(point, kind) for point in points] for kind in kinds]
         along = [c[m] for m in self.axis_indices]
-        every = [values(program, f"r{1 + (kind == 'slope')}{rule}", s, along) for kind, s in zip(kinds, series, strict=True)]
+        every = [values(program, f"r{1 + (kind == 'slope')}{rule}", s, along)
+                 for kind, s in zip(kinds, series, strict=True)]
         found = []
         for g, vectors in enumerate(zip(*every, strict=True)):
             first, last = vectors[0], vectors[-1]

@@ -31,8 +31,8 @@ def by_vectors(program: Program, tag: str, names: str, vectors: Sequence[np.ndar
     r1, r2 = vectors
     half = program.define(f"half_{tag}", D[1] / 2)
     factors = {"aa": 2, "ab": 1, "bb": sp.Rational(1, 2), "ac": 2, "bc": 1, "cc": 2}
-    second = {names[i] + names[j]: program.define(f"H_{names[i]}{names[j]}_{tag}", factors[names[i] + names[j]] * H[i, j])
-              for i in range(3) for j in range(i, 3)}
+    pairs = {names[i] + names[j]: H[i, j] for i in range(3) for j in range(i, 3)}
+    second = {pair: program.define(f"H_{pair}_{tag}", factors[pair] * value) for pair, value in pairs.items()}
 
     def combined(name, first, last):
         return program.vector(f"{name}_{tag}", first * r1 + last * r2)
