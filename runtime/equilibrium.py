@@ -9,6 +9,8 @@ import numpy as np
 from funicular.recording import body_state, join_force, spatial, spring_state, support_reaction
 
 if TYPE_CHECKING:
+    import xarray
+    from funicular.cables import Cable
     from funicular.model import Model
     from funicular.scene import Scene
 
@@ -52,6 +54,12 @@ class Equilibrium:
         if name not in self.quantities:
             raise KeyError(f'no quantity "{name}"; {near(name, self.quantities)}')
         return self.quantities[name]
+
+    def section_forces(self, cable: Cable | str, s=None) -> xarray.Dataset:
+        """Forces and moments in sections of ``cable`` as `Run.section_forces` has them, over s alone."""
+        from funicular.section_forces import dataset
+
+        return dataset(self, cable, s)
 
     def start(self, model: Model) -> None:
         """Put a freshly built model of the same scene into this state."""

@@ -131,3 +131,17 @@ def test_tolerance_is_met():
     loose, tight = (scene.equilibrium(tolerance=t) for t in (1e-3, 1e-12))
     assert tight.iterations > loose.iterations
     assert tight.residual < 1e-6
+
+
+def test_section_forces_at_rest():
+    """A weight at the end of a rope: its tension everywhere, the rope's own below."""
+    scene = Scene()
+    rope = scene.cable("rope", start=(0, 0, 0), end=(0, -2, 0), up=(1, 0, 0), elements=4, element="cable12",
+                       section=General(area=1e-4, second_moment_yy=1e-9, second_moment_zz=1e-9),
+                       material=Material(youngs_modulus=1e9, poisson_ratio=0, density=1e4))
+    scene.pin(rope, s=0)
+    scene.force(rope, s=2.0, value=(0, -50, 0))
+    forces = scene.equilibrium().section_forces("rope", s=[0.25, 1.25])
+    assert forces["tension"].dims == ("s",)
+    assert forces["force"].dims == ("s", "xyz")
+    np.testing.assert_allclose(forces["tension"], 50 + 9.81 * (2 - forces["s"]), rtol=1e-4)
