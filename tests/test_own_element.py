@@ -380,6 +380,7 @@ def test_the_example_of_the_readme_is_cable18(tmp_path, monkeypatch):
     reference = loads(in_toml, "README.md").run(duration=0.3, output_step=0.01)
     assert len(reference.time) == 31
     for run in (space["run"], from_file):
+        np.testing.assert_allclose(*(r.section_forces("wire", s=0.7)["tension"] for r in (run, reference)), atol=1e-6)
         for name in ("A.position", "wire.nodal_vectors"):  # compilers may round differently, but no more than that
             np.testing.assert_allclose(run[name], reference[name], rtol=0, atol=1e-9, err_msg=name)
 
