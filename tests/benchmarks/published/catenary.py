@@ -1,0 +1,54 @@
+"""Ropes that hang: B11."""
+
+from __future__ import annotations
+
+from math import hypot, pi, sqrt
+
+import numpy as np
+from funicular import Circle, Material, Scene
+
+from .case import KINDS, Case, Kind, Quantity
+
+LIMP = 1e-3
+"""Diameter in m: bending of some 1e-8 of the tension moves the horizontal force by less than its last digit printed."""
+
+GRAVITY = 9.81
+
+
+def catenary(kind: Kind, elements: int, weight: float, axial: float, length: float, span: float, drop: float):
+    """Horizontal force, and sag in the middle of the rope, of the elastic catenary.
+
+    weight in N/m, axial stiffness in N, undeformed length, span and drop in m. Drawn as a parabola of that length.
+    """
+    area = pi * LIMP**2 / 4
+    scene = Scene(gravity=(0, -GRAVITY, 0))
+    u, sag = np.linspace(0, 1, 41), sqrt(3 / 8 * span * (length - hypot(span, drop)))
+    points = np.stack([span * u, -drop * u - 4 * sag * u * (1 - u), 0 * u], axis=1)
+    scene.cable("rope", points=points, rest="straight", rest_length=length, elements=elements, element=kind.element,
+                law=kind.law, section=Circle(radius=LIMP / 2),
+                material=Material(youngs_modulus=axial / area, poisson_ratio=0, density=weight / GRAVITY / area))
+    scene.pin("rope", s=0)
+    scene.pin("rope", s=length)
+    state = scene.equilibrium(max_iterations=100)
+    return abs(state["rope@0.force"][0]), -state["rope.position"][elements // 2, 1]
+
+
+GREEN = "green strain: an elongation of 5e-4 takes a force larger by 1.5 times as much"
+
+B11_ROPE = Case(
+    "B11 level", "elastic catenary, level", "closed form",
+    lambda kind, elements: [Quantity("H", "N", 468.5298543), Quantity("sag", "m", 29.2912402998)],
+    lambda kind, elements: catenary(kind, elements, 10, 1e6, 120, 100, 0), 64, KINDS)
+
+B11_DROP = Case(
+    "B11 drop", "elastic catenary, one end 30 m lower", "closed form",
+    lambda kind, elements: [Quantity("H", "N", 517.6813139)],
+    lambda kind, elements: catenary(kind, elements, 10, 1e6, 120, 100, 30)[:1], 64, KINDS)
+
+B11_WIRE = Case(
+    "B11 wire", "like a contact wire", "closed form",
+    lambda kind, elements: [Quantity("H", "N", 5464.176658), Quantity("sag", "m", 1.0905468631)],
+    lambda kind, elements: catenary(kind, elements, 13.2435, 1e7, 60.02, 60, 0), 64, KINDS,
+    notes={"green_exact": GREEN, "poisson_split": GREEN, "continuum": GREEN})
+
+CASES = [B11_ROPE, B11_DROP, B11_WIRE]
