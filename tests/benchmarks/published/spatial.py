@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from math import cos, pi, radians, sin
 
 import numpy as np
@@ -44,7 +45,7 @@ def polygon(kind: Kind, elements: int, section: Rectangle) -> Scene:
         for k in range(PIECES)
     ]
     scene.clamp(pieces[0], s=0)
-    for one, other in zip(pieces, pieces[1:], strict=False):
+    for one, other in pairwise(pieces):
         scene.join(one, s=one.length, to=other, at=0)
     return scene
 
@@ -134,7 +135,8 @@ def buckling(kind: Kind, elements: int) -> tuple[float]:
     return (brentq(through, around[0], around[-1]),)
 
 
-POISSON = "locks: its sides can neither move freely nor bulge linearly across; torsion of a section that stays plane"
+POISSON = "locks: its sides can neither move freely nor bulge linearly across; and twists as a section that stays plane"
+PLANE = "J = 1/6 of a section that stays plane"
 AS_POLYGON = f"the arc as {PIECES} straight pieces"
 CABLES_CANNOT = {kind.element: NO_TORSION for kind in CABLES}
 BLADES_CANNOT = CABLES_CANNOT | {"cable12": f"{NO_TORSION}, {UNEQUAL}", "cable18": f"{NO_TORSION}, {UNEQUAL}",
@@ -145,7 +147,7 @@ B5 = [
          bend_quantities(constant), bend(constant), 16, SPATIAL_BEAMS,
          own_elements={"poisson_split": 4 * PIECES, "continuum": 4 * PIECES},
          notes={"poisson_split": AS_POLYGON,
-                "continuum": AS_POLYGON + ("" if constant == POLAR else ", and J is that of a section that stays plane")},
+                "continuum": AS_POLYGON + ("" if constant == POLAR else f", and {PLANE}")},
          cannot={"cable12": f"{NO_TORSION}, straight at rest", "cable18": f"{NO_TORSION}, straight at rest",
                  "cable8p": "planar", "beam12p": "planar"})
     for constant, name in ((POLAR, "1/6"), (ST_VENANT, "0.141"))
