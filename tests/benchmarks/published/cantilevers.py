@@ -150,12 +150,12 @@ def rolled(turns: int):
     return values
 
 
-LOCKS = "locks: its sections turn linearly, its axis quadratically in x; as long as elements are longer than high"
-OWN_SHEAR = "limit of its own: it has shear"
-NO_SHEAR = "has no shear: Euler and Bernoulli's beam"
-POISSON = "locks: its sides can neither move freely nor bulge linearly across"
-FULLY_INTEGRATED = "limit of its own: St. Venant-Kirchhoff stress at strains of 14 % is not Reissner's law"
-SLOW_START = "locks a little in stretch where elements are much longer than high: order 2 to 4, then 6"
+LOCKS = "locks in bending until elements are as short as high"
+OWN_SHEAR = "own limit: has shear"
+NO_SHEAR = "no shear: Euler-Bernoulli"
+POISSON = "Poisson locking: its sides cannot bulge"
+FULLY_INTEGRATED = "own limit: St. Venant-Kirchhoff at strains of 14 %"
+SLOW_START = "locks a little in stretch where slender; order 6 later"
 
 STOUT_NOTES = {str(kind): NO_SHEAR for kind in CABLES} | {"continuum": POISSON}
 

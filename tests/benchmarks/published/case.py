@@ -40,7 +40,8 @@ class Kind:
 
 CABLES = [Kind(element, law) for element in ("cable12", "cable18", "cable8p")
           for law in ("green_exact", "engineering_exact")]
-BEAMS = [Kind(element, law) for element in ("beam24", "beam12p") for law in ("structural", "poisson_split", "continuum")]
+BEAMS = [Kind(element, law) for element in ("beam24", "beam12p")
+         for law in ("structural", "poisson_split", "continuum")]
 STRUCTURAL = [kind for kind in BEAMS if kind.law == "structural"]
 SPATIAL_BEAMS = [kind for kind in BEAMS if not kind.is_planar]
 KINDS = CABLES + BEAMS

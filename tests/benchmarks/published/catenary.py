@@ -36,9 +36,9 @@ def catenary(kind: Kind, elements: int, weight: float, axial: float, length: flo
     return abs(state["rope@0.force"][0]), -state["rope.position"][elements // 2, 1]
 
 
-GREEN = "limit of its own: an elongation of 5e-4 by green strain takes a force larger by 1.5 times as much"
-THICK = f"bending of a diameter of {1e3 * BEAM_DIAMETER:g} mm; a thinner taut element is unstable, see D0 mesh"
-LOCKS = f"{GREEN}; and locks a little"
+GREEN = "own limit: green strain"
+THICK = f"diameter {1e3 * BEAM_DIAMETER:g} mm; unstable if thin, see D0 mesh"
+LOCKS = f"{GREEN}; locks a little"
 NOTES = {"green_exact": GREEN, "poisson_split": LOCKS, "continuum": LOCKS, "structural": THICK}
 
 B11_ROPE = Case(

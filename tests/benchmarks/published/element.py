@@ -89,15 +89,15 @@ def vibration_case(motion: str, where: str, notes: dict[str, str], cannot: dict[
         return [Quantity(f"{motion} {number}", "rad/s", reference) for number, reference in
                 enumerate(FREQUENCIES[motion], start=1)]
     return Case(f"E2 {motion}", f"natural frequencies, {where}", "closed form, Timoshenko's beam", quantities,
-                vibrations(motion), 32, [kind for kind in KINDS if kind.element not in cannot], notes=notes,
+                vibrations(motion), 16, [kind for kind in KINDS if kind.element not in cannot], notes=notes,
                 cannot=cannot)
 
 
-SLENDER = "neither shear nor rotary inertia: Euler and Bernoulli's beam"
-LOCKS = "locks: its sides can neither move freely nor bulge linearly across"
-WIDENS = "limit of its own: its section, which widens and narrows, has inertia"
-LAGS = "limit of its own: the frame is that of r_y, and the inertia of r_z hangs on the shear stiffness of the section"
-PLANE = "torsion of a section that stays plane"
+SLENDER = "no shear, no rotary inertia: Euler-Bernoulli"
+LOCKS = "Poisson locking: its sides cannot bulge"
+WIDENS = "own limit: the held section cannot narrow"
+LAGS = "own limit: r_z hangs on r_y by the shear of the section"
+PLANE = "J of a section that stays plane"
 
 E1_MASS = Case("E1 mass", "mass matrix", "published code", mass_quantities, mass, 1, [Kind("beam24", "continuum")])
 E1_FORCE = Case(

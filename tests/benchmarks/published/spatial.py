@@ -13,7 +13,7 @@ from .cantilevers import cantilever, rest, tip
 from .case import CABLES, SPATIAL_BEAMS, Case, Kind, Quantity
 
 NO_TORSION = "no torsion"
-UNEQUAL = "one bending stiffness for both directions"
+UNEQUAL = "one bending stiffness"
 
 # --- B5: the 45-degree bend -------------------------------------------------------------------------------------------
 
@@ -135,9 +135,9 @@ def buckling(kind: Kind, elements: int) -> tuple[float]:
     return (brentq(through, around[0], around[-1]),)
 
 
-POISSON = "locks: its sides can neither move freely nor bulge linearly across; and twists as a section that stays plane"
-PLANE = "J = 1/6 of a section that stays plane"
-AS_POLYGON = f"the arc as {PIECES} straight pieces"
+POISSON = "Poisson locking, and J of a section that stays plane"
+PLANE = "J of a section that stays plane"
+AS_POLYGON = f"arc of {PIECES} straight pieces"
 CABLES_CANNOT = {kind.element: NO_TORSION for kind in CABLES}
 BLADES_CANNOT = CABLES_CANNOT | {"cable12": f"{NO_TORSION}, {UNEQUAL}", "cable18": f"{NO_TORSION}, {UNEQUAL}",
                                  "cable8p": "planar", "beam12p": "planar"}
