@@ -135,7 +135,7 @@ def test_every_row_of_the_table_is_asserted():
 @pytest.mark.parametrize(("elements", "u", "w"), [(2, 0.48892631, 1.17522287), (4, 0.50742872, 1.20553370),
                                                   (8, 0.50850924, 1.20719776), (16, 0.50853658, 1.20723890)])
 def test_cubic_cables_mesh_by_mesh(elements, u, w):
-    """B2, as another code has it; what differs is the quadrature of the curvature, of order 5."""
+    """B2, as published mesh by mesh; what differs, by the quadrature of the curvature, falls with the fifth power."""
     found = cantilevers.stretched(Kind("cable12", "engineering_exact"), elements)
     np.testing.assert_allclose(found, [u, w], atol=6e-5 * (2 / elements) ** 5 + 1e-8)
 

@@ -174,7 +174,7 @@ D0_MESH = Case(
     "D0 mesh", "rope pendulum, first half second", "a fine mesh of its own",
     lambda kind, elements: [Quantity("distance of the end", "m", 0.0, 1.0)], mesh_error, 16, CABLES + STRUCTURAL,
     own_elements={"cable18": 4, "structural": 32}, ordered=CABLES + STRUCTURAL, notes={"structural": TAUT})
-D1 = Case("D1", "rubber pendulum", "experiment and code, 1 % of the length", rubber_quantities, rubber, 16, KINDS,
+D1 = Case("D1", "rubber pendulum", "several codes, 1 % of the length", rubber_quantities, rubber, 16, KINDS,
           notes={"continuum": LOCKS, "poisson_split": LOCKS})
 D3_LAG = Case("D3 lag", "spin-up, largest lag", "several codes",
               lambda kind, elements: [Quantity("lag", "m", LAG), Quantity("time", "s", LAG_TIME)], lag, 8, KINDS,

@@ -99,9 +99,9 @@ WIDENS = "own limit: the held section cannot narrow"
 LAGS = "own limit: r_z hangs on r_y by the shear of the section"
 PLANE = "J of a section that stays plane"
 
-E1_MASS = Case("E1 mass", "mass matrix", "published code", mass_quantities, mass, 1, [Kind("beam24", "continuum")])
+E1_MASS = Case("E1 mass", "mass matrix", "several codes", mass_quantities, mass, 1, [Kind("beam24", "continuum")])
 E1_FORCE = Case(
-    "E1 force", "force of one element", "published code",
+    "E1 force", "force of one element", "several codes",
     lambda kind, elements: [Quantity(name, "N", value) for name, value in zip(("x", "z"), FORCE, strict=True)], force,
     1, [Kind("beam24", "poisson_split")])
 E2 = [

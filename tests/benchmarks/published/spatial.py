@@ -156,7 +156,7 @@ B5 = [
 B6 = Case("B6", "Princeton beam", "two independent formulations, converged; experiment by Dowell and Traybar",
           princeton_quantities, princeton, 16, SPATIAL_BEAMS, notes={"continuum": POISSON}, cannot=BLADES_CANNOT)
 
-B8 = Case("B8", "right-angle frame, buckling", "Argyris et al. 1979, several codes",
+B8 = Case("B8", "right-angle frame, buckling", "several codes",
           lambda kind, elements: [Quantity("buckling load", "N", BUCKLING)], buckling, 16, SPATIAL_BEAMS,
           notes={"continuum": POISSON}, cannot=BLADES_CANNOT)
 
