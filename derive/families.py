@@ -28,7 +28,8 @@ def _law(element: Element, law: str | type) -> Family:
     builder = structural_kernels if name == structural.NAME else law_kernels
     return Family(f"{element.name}_{name}", f"elastic law {name} on {element.name}",
                   partial(builder.build, element, law), (f"elements.{element.name}", builder.__name__.split(".")[-1]),
-                  role="law", own=("stiffness", "section_forces"), element=element, law=name, like=law_like(law))
+                  role="law", own=("stiffness", "stiffness_at", "section_forces"), element=element, law=name,
+                  like=law_like(law))
 
 
 def _body(body: ModuleType) -> Family:

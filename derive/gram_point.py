@@ -16,7 +16,7 @@ def expansion(polynomials: Sequence, c: np.ndarray, X: sp.Expr, w: sp.Expr) -> E
     """Sum of ring polynomials times strain vectors as a polynomial in y and z: {(power of y, power of z): vector}."""
     found: Expansion = {}
     for p, vector in zip(polynomials, c, strict=True):
-        for (y, z), factor in _by_section(p, X, w).items():
+        for (y, z), factor in by_section(p, X, w).items():
             found[y, z] = found.get((y, z), 0) + factor * vector
     return found
 
@@ -30,7 +30,7 @@ def axis(gram: Gram, c: np.ndarray, X: sp.Expr, w: sp.Expr, order: int) -> np.nd
     return expansion(polynomials, c, X, w).get((0, 0), zero)
 
 
-def _by_section(p, X: sp.Expr, w: sp.Expr) -> dict[tuple[int, int], sp.Expr]:
+def by_section(p, X: sp.Expr, w: sp.Expr) -> dict[tuple[int, int], sp.Expr]:
     """Factors, Horner's way in X and with one power of w = 1/l each, by the powers of y and z."""
     series: dict[tuple[int, int], dict[int, sp.Expr]] = {}
     for (x, y, z, l, u), c in p.terms():

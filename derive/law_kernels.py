@@ -19,7 +19,7 @@ from funicular.derive.stages import Program
 def build(element: Element, law: str | type) -> list[Program]:
     """Every kernel of a law on an element."""
     kernels = Kernels(element, law)
-    return [kernels.stiffness(), kernels.energy(), kernels.elastic_force(), kernels.elastic_tangent(),
+    return [kernels.set_up(), kernels.energy(), kernels.elastic_force(), kernels.elastic_tangent(),
             kernels.damping_force(), kernels.damping_tangent(), kernels.dissipation(), kernels.section_forces()]
 
 
@@ -37,14 +37,12 @@ class Kernels:
         return program.input(name, (self.element.n_vectors, self.element.dim), unit, doc)
 
     def _strain(self, program: Program) -> tuple:
-        """Inputs l, e, A and the stages up to G - G0."""
+        """Inputs l, e, A and the stage of the strain vectors."""
         length = program.input("l", (), "m", "length of the element")
         e, A = self._coordinates(program), self.law.constants(program)
         program.stage("strain vectors")
         w = program.define("w", 1 / length)
-        c = self.gram.differences(program, e, w)
-        program.stage("Gram products G - G0")
-        return w, A, c, self.gram.gram(program, c)
+        return w, A, self.gram.differences(program, e, w)
 
     def _rates(self, program: Program) -> tuple:
         """Inputs l, e, v, A, tau and the stages up to the rates of the strain vectors."""
@@ -57,34 +55,31 @@ class Kernels:
         w = program.define("w", 1 / length)
         return w, A, tau, self.gram.differences(program, e, w), self.gram.differences(program, v, w, "d")
 
-    def stiffness(self) -> Program:
+    def set_up(self) -> Program:
         """The law's constants."""
-        p = self._program("stiffness", "constants of the law from the stiffness of the section", "eq 7")
+        p = self._program(self.law.set_up_kernel, "constants of the law from the stiffness of the section", "eq 7")
         self.law.set_up(p)
         return p
 
     def energy(self) -> Program:
         """eq 7."""
         p = self._program("energy", "elastic energy", "eq 7")
-        w, A, _, G = self._strain(p)
-        p.output("U", [self.law.energy(p, A, G, w)], "J", "elastic energy")
+        w, A, c = self._strain(p)
+        p.output("U", [self.law.energy(p, A, c, w)], "J", "elastic energy")
         return p
 
     def elastic_force(self) -> Program:
         """eq 8, as dU/de = -Q_k."""
         p = self._program("elastic_force", "dU/de, minus the elastic force Q_k", "eq 8")
-        w, A, c, G = self._strain(p)
-        u = self.law.stress(p, A, G, w)
-        p.stage("forces on strain vectors")
-        f = self.gram.vector_forces(p, c, u)
-        p.output("f", self._nodal(p, f, w), "N, N m", "dU/de")
+        w, A, c = self._strain(p)
+        p.output("f", self._nodal(p, self.law.forces(p, A, c, w), w), "N, N m", "dU/de")
         return p
 
     def elastic_tangent(self) -> Program:
         """Second derivative of the energy."""
         p = self._program("elastic_tangent", "d2U/de2", "derivative of eq 8")
-        w, A, c, G = self._strain(p)
-        K = nodal_tangent(self.gram, p, self.law.tangent(p, A, G, c, w), w, symmetric=True)
+        w, A, c = self._strain(p)
+        K = nodal_tangent(self.gram, p, self.law.tangent(p, A, c, w), w, symmetric=True)
         p.output("K", K, "N/m, N, N m", "d2U/de2, symmetric")
         return p
 
@@ -117,11 +112,13 @@ class Kernels:
         p = self._program("section_forces", "force and moment resultants of a section", "eq 6-8 at a section")
         length, x = p.input("l", (), "m", "length of the element"), p.input("x", (), "m", "arc-length from its start")
         e, S = self._coordinates(p), self.law.section_stiffness(p)
+        e0 = [self.law.reference_input(p)] if self.law.curved else []
         p.stage("strain vectors")
         w = p.define("w", 1 / length)
         X = p.define("X", 2 * w * x - 1)
         c = self.gram.differences(p, e, w)
-        force, moment, strain = self.law.section_forces(p, S, c, X, w)
+        c0 = [self.gram.differences(p, vectors, w, "r0_") for vectors in e0]
+        force, moment, strain = self.law.section_forces(p, S, c, X, w, *c0)
         p.stage("axes of the section")
         axes = self._axes(p, c, X, w)
         p.output("force", force, "N", "resultant of the stress, global axes")

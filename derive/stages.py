@@ -71,10 +71,10 @@ class Program:
         """Open a stage; the definitions that follow belong to it."""
         self.stages.append(Stage(title))
 
-    def define(self, name: str, expr: sp.Expr, moves_as: sp.Symbol | None = None) -> sp.Expr:
+    def define(self, name: str, expr: sp.Expr, moves_as: sp.Expr | None = None) -> sp.Expr:
         """Give an expression a name. Numbers and bare symbols pass through: a name would say nothing more.
 
-        `moves_as` is a symbol that differs from this one by a constant: derivatives are taken of that one instead.
+        `moves_as` is an expression that differs from this one by a constant: derivatives are taken of that one instead.
         """
         expr = sp.sympify(expr)
         if expr.is_Number or expr.is_Symbol:
@@ -87,6 +87,11 @@ class Program:
         self.stages[-1].definitions.append((symbol, expr))
         self.definition[symbol] = expr if moves_as is None else moves_as
         return symbol
+
+    def once(self, name: str, expr: sp.Expr) -> sp.Expr:
+        """Give an expression a name, the first time; later the same name."""
+        symbol = sp.Symbol(name)
+        return symbol if self.definition.get(symbol) == expr else self.define(name, expr)
 
     def vector(self, name: str, components: Iterable[sp.Expr]) -> np.ndarray:
         """Define a vector component by component: name_x, name_y, name_z."""
@@ -133,14 +138,17 @@ class Program:
 def _count(expr: sp.Expr, count: dict[str, int]) -> None:
     if expr.is_Atom:
         return
+    args = expr.args
     if expr.is_Add:
-        count["add"] += len(expr.args) - 1
+        count["add"] += len(args) - 1
     elif expr.is_Mul:
-        factors = [a for a in expr.args if a is not sp.S.NegativeOne]
-        below = [a for a in factors if a.is_Pow and a.exp.is_Rational and a.exp < 0]
+        args = [a for a in args if a is not sp.S.NegativeOne]
+        below = [a for a in args if _is_below(a)]
         count["div"] += bool(below)
-        count["mul"] += max(len(factors) - len(below) - 1, 0) + max(len(below) - 1, 0)
-    if expr.is_Pow:
+        count["mul"] += max(len(args) - len(below) - 1, 0) + max(len(below) - 1, 0)
+        args = [1 / a if a in below else a for a in args]
+    elif expr.is_Pow:
+        count["div"] += _is_below(expr)
         exponent = abs(expr.exp)
         if exponent == sp.Rational(1, 2):
             count["sqrt"] += 1
@@ -148,8 +156,13 @@ def _count(expr: sp.Expr, count: dict[str, int]) -> None:
             count["mul"] += int(exponent) - 1
         else:
             raise ValueError(f"a power {expr.exp} has no cheap form in C: stage it")
-    for arg in expr.args:
+    for arg in args:
         _count(arg, count)
+
+
+def _is_below(expr: sp.Expr) -> bool:
+    """Whether it stands below the line of a fraction."""
+    return bool(expr.is_Pow and expr.exp.is_Rational and expr.exp < 0)
 
 
 class Derivation:
@@ -184,7 +197,9 @@ class Derivation:
         # roots and reciprocals reuse their own value: no second root, no power -3/2
         if definition.is_Pow and definition.exp == sp.Rational(1, 2):
             # half of each term: the twos of a sum of squares go
-            return sp.Add(*(term / 2 for term in sp.Add.make_args(self(definition.base)))) / symbol
+            half = sp.Add(*(term / 2 for term in sp.Add.make_args(self(definition.base))))
+            inverse = (s for s, value in self.program.definition.items() if value == 1 / symbol)
+            return half * next(inverse, 1 / symbol)
         if definition.is_Pow and definition.exp == -1:
             return -(symbol**2) * self(definition.base)
         return self(definition)

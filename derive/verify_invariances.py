@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from funicular.derive.gram import Gram
 from funicular.derive.spec import Element, Family, x, y, z
 from funicular.derive.verify_motion import RIDERS
 from funicular.derive.verify_numbers import EPS, Numbers, State
@@ -91,9 +92,12 @@ def _stiffness(family: Family, s: State) -> float:
     """Energy of a strain of order one."""
     if family.like == "continuum":
         return float(np.max(np.abs(s["A"])))
+    if family.law == "continuum_curved":
+        n = len(Gram(family.element).pairs)
+        return float(np.max(np.abs(s["A"][: n * (n + 1) // 2])))
     if family.law == "structural":
         return float(np.max(s["S"]) * max(s["l"], 1 / s["l"]))
-    EA, EI = s["A"]
+    EA, EI = s["A"][:2]
     return float(max(EA * s["l"], EI / s["l"]))
 
 
@@ -145,7 +149,7 @@ def _damping(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
     f = k("damping_force", s)["f"]
     scale_f = max(scale, np.max(np.abs(f)))
     yield "damping: no net force", relative(positions @ f, scale_f), 64 * EPS
-    twisted = spec.dim == 3 and family.like not in ("continuum", "structural")
+    twisted = spec.dim == 3 and family.like not in ("continuum", "continuum_curved", "structural")
     for spin in spins(spec.dim):
         v = relative_e @ spin.T + np.outer(positions, s["g"])
         f_rigid, P = k("damping_force", s, v=v)["f"], k("dissipation", s, v=v)["P"]

@@ -11,41 +11,28 @@ from collections.abc import Iterator
 
 import mpmath
 import numpy as np
-from funicular.derive import verify_structural
+from funicular.derive import verify_curved, verify_structural
 from funicular.derive.gram import Gram
 from funicular.derive.laws import LAWS
-from funicular.derive.spec import CABLE_LAWS, Element
+from funicular.derive.spec import Element
 from funicular.derive.verify_motion import cross
-from funicular.derive.verify_reference import Shape, gauss
+from funicular.derive.verify_reference import Shape, density, gauss, spatial
 
 mp = mpmath.mp
 
 
-def is_cable(law: str) -> bool:
-    """Whether a law is along an axis alone, with S = EA, EI."""
-    return law in CABLE_LAWS
-
-
 def energy(element: Element, law: str, s):
     """Elastic energy."""
-    roots = {"continuum": continuum_energy, "structural": verify_structural.energy}
+    roots = {"continuum": continuum_energy, "continuum_curved": verify_curved.energy,
+             "structural": verify_structural.energy}
     return roots.get(law, cable_energy)(element, law, s)
 
 
 def dissipation(element: Element, law: str, s):
     """Power that Kelvin-Voigt damping takes out."""
-    roots = {"continuum": continuum_dissipation, "structural": verify_structural.dissipation}
+    roots = {"continuum": continuum_dissipation, "continuum_curved": continuum_dissipation,
+             "structural": verify_structural.dissipation}
     return roots.get(law, cable_dissipation)(element, law, s)
-
-
-def density(D, E: np.ndarray):
-    """Strain energy density of the orthotropic law: 1/2 sum D_ij E_ii E_jj + 1/2 sum G (2 E_ij)^2."""
-    dim = len(E)
-    off = [(i, j) for i in range(dim) for j in range(i + 1, dim)]
-    normal, cross, shear = D[:dim], D[dim : dim + len(off)], D[dim + len(off) :]
-    total = sum(normal[i] * E[i, i] ** 2 for i in range(dim)) / 2
-    total += sum(d * E[i, i] * E[j, j] for d, (i, j) in zip(cross, off, strict=True))
-    return total + 2 * sum(g * E[i, j] ** 2 for g, (i, j) in zip(shear, off, strict=True))
 
 
 def continuum_energy(element: Element, law: str, s):
@@ -67,24 +54,26 @@ def continuum_dissipation(element: Element, law: str, s):
 
 
 def _material_points(element: Element, s) -> Iterator[tuple]:
-    """Gradient of the shape functions, weight and elastic constants: D[0] over the volume, D[1] on the axis alone."""
+    """Gradient of the shape functions, weight and elastic constants: D over the volume, D_axis on the axis alone."""
     shape = Shape(element, s["l"].item())
     height, width = s["rectangle"]
     for at, weight in shape.points(height, width):
-        yield shape.gradient(at), weight, s["D"][0]
+        yield shape.gradient(at), weight, s["D"]
     for t, weight in gauss(2 * max(p[0] for p in shape.powers) + 1):
-        yield shape.gradient((shape.l / 2 * (1 + t), 0, 0)), weight * shape.l / 2 * height * width, s["D"][1]
+        yield shape.gradient((shape.l / 2 * (1 + t), 0, 0)), weight * shape.l / 2 * height * width, s["D_axis"]
 
 
 def cable_energy(element: Element, law: str, s):
-    """1/2 EA strain^2 + 1/2 EI curvature^2 along the axis."""
-    strain, curvature = law.split("_")
+    """1/2 EA strain^2 + 1/2 EI curvature^2 along the axis; strain and curvature from the stress-free shape's."""
+    strain, curvature, *curved = law.split("_")
     EA, EI = s["S"]
     kernels = LAWS[law](Gram(element))
     n_axial, n_bending = len(kernels.axial_points), len(kernels.bending_points)
     # two points more, where the kernels' number is claimed to be exact
     axial = _along(element, s, n_axial + 2 * (strain == "green" and n_axial >= 2 * kernels.degree - 1))
     bending = _along(element, s, n_bending + 2 * (curvature == "linear"))
+    if curved:
+        return verify_curved.cable_energy(element, strain, s, n_bending)
     total = mp.mpf(0)
     for weight, r_x, _, _, _ in axial:
         square = r_x.dot(r_x)
@@ -99,7 +88,7 @@ def cable_energy(element: Element, law: str, s):
 
 def cable_dissipation(element: Element, law: str, s):
     """EA tau strain'^2 + EI tau |D_t r''|^2, D_t the rate as seen from a frame that turns with the tangent."""
-    strain, _ = law.split("_")
+    strain, *_ = law.split("_")
     EA, EI = s["S"]
     degree = max(p[0] for p in Shape(element, s["l"].item()).powers)
     total = mp.mpf(0)
@@ -119,8 +108,3 @@ def _along(element: Element, s, n: int) -> Iterator[tuple]:
         at = (half * (1 + t), 0, 0)
         N_x, N_xx = shape(at, (1, 0, 0)), shape(at, (2, 0, 0))
         yield weight * half, *(spatial(N.dot(d)) for d in (s["e"], s["v"]) for N in (N_x, N_xx))
-
-
-def spatial(vector: np.ndarray) -> np.ndarray:
-    """In three dimensions."""
-    return np.concatenate([vector, [mp.mpf(0)] * (3 - len(vector))])

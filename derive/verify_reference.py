@@ -93,3 +93,41 @@ def gravity(element: Element, s) -> np.ndarray:
     shape = Shape(element, s["l"].item())
     weights = sum(weight * shape(at) for at, weight in shape.points(*s["rectangle"]))
     return np.outer(s["density"].item() * weights, s["g"])
+
+
+def density(D, E: np.ndarray):
+    """Strain energy density of the orthotropic law: 1/2 sum D_ij E_ii E_jj + 1/2 sum G (2 E_ij)^2."""
+    dim = len(E)
+    off = [(i, j) for i in range(dim) for j in range(i + 1, dim)]
+    normal, cross, shear = D[:dim], D[dim : dim + len(off)], D[dim + len(off) :]
+    total = sum(normal[i] * E[i, i] ** 2 for i in range(dim)) / 2
+    total += sum(d * E[i, i] * E[j, j] for d, (i, j) in zip(cross, off, strict=True))
+    return total + 2 * sum(g * E[i, j] ** 2 for g, (i, j) in zip(shear, off, strict=True))
+
+
+def stress(D, E: np.ndarray) -> np.ndarray:
+    """Second Piola-Kirchhoff stress of the orthotropic law."""
+    dim = len(E)
+    off = [(i, j) for i in range(dim) for j in range(i + 1, dim)]
+    law = np.diag(list(D[:dim]))
+    found = np.zeros((dim, dim), dtype=object)
+    for k, (i, j) in enumerate(off):
+        law[i, j] = law[j, i] = D[dim + k]
+        found[i, j] = found[j, i] = 2 * D[dim + len(off) + k] * E[i, j]
+    normal = law.dot(np.diag(E))
+    for i in range(dim):
+        found[i, i] = normal[i]
+    return found
+
+
+def section_points(s) -> Iterator[tuple]:
+    """y, z, area and elastic constants of the sample's section: D all over it, D_axis on the axis alone."""
+    height, width = (mp.mpf(v) for v in s["rectangle"])
+    for (a, p), (b, q) in product(gauss(3), gauss(3)):
+        yield a * height / 2, b * width / 2, p * q * height * width / 4, s["D"]
+    yield mp.mpf(0), mp.mpf(0), height * width, s["D_axis"]
+
+
+def spatial(vector: np.ndarray) -> np.ndarray:
+    """In three dimensions."""
+    return np.concatenate([vector, [mp.mpf(0)] * (3 - len(vector))])

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from funicular.derive import verify_laws, verify_sections
+from funicular.derive import verify_curved, verify_laws, verify_sections
 from funicular.derive import verify_reference as reference
 from funicular.derive.spec import Element, Family
 from funicular.derive.verify_methods import Relation
@@ -82,10 +82,13 @@ def law(family: Family) -> list[Relation]:
         section = [(output, "as derived, at 50 digits", from_kernel("section_forces", output))
                    for output in verify_sections.TEXTS]
     force_by_both = from_kernel("damping_force", "f", e=entry("e"), v=lambda s, j: s["rate"] * unit(s["v"], j))
-    return [
+    stiffness = [
         Relation("stiffness", "A", "the law's constants at 50 digits", 0, from_kernel("stiffness", "A")),
         Relation("stiffness", "A", "energy from A against its integral by quadrature", 0, energy,
                  of=energy_of_constants),
+    ]
+    return [
+        *(_stiffness_at(spec) if family.law == "continuum_curved" else stiffness),
         Relation("energy", "U", "the law's integral by quadrature", 0, energy),
         Relation("elastic_force", "f", "dU/de", 1, from_kernel("energy", "U", e=entry("e")), n),
         Relation("elastic_tangent", "K", "df/de", 1, from_kernel("elastic_force", "f", e=entry("e")), n),
@@ -93,6 +96,30 @@ def law(family: Family) -> list[Relation]:
         Relation("damping_tangent", "K", "df/de + rate df/dv", 1, force_by_both, n),
         Relation("dissipation", "P", "the law's integral by quadrature", 0, power),
         *(Relation("section_forces", output, text, 0, path) for output, text, path in section),
+    ]
+
+
+def _stiffness_at(spec: Element) -> list[Relation]:
+    """A point of the volume, tried by the energy that it adds in many states."""
+    def shares(k, s):
+        point = k("stiffness_at", s)
+        A = s["A"].copy()
+        A[: point["A"].size + point["G0"].size] = [*point["A"], *point["G0"]]
+        return [k("energy", s, A=A, e=e)["U"][0] for e in near(s)]
+
+    def densities(k, s, t, j):
+        return [verify_curved.density_at(spec, s | {"e": e}) for e in near(s)]
+
+    def near(s):
+        """So many that no other quadratic form in their Gram products gives these energies."""
+        moves = np.random.default_rng(1).normal(size=(450, *s["e"].shape))
+        return [s["e"] + move for move in moves]
+
+    return [
+        Relation("stiffness_at", "A", "a point's share at 50 digits", 0, from_kernel("stiffness_at", "A")),
+        Relation("stiffness_at", "A", "energy that a point adds in 450 states", 0, densities, of=shares),
+        Relation("stiffness_at", "G0", "at 50 digits; the energies need it", 0,
+                 from_kernel("stiffness_at", "G0")),
     ]
 
 

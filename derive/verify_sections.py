@@ -5,16 +5,14 @@ All at 50 digits from the shape functions of verify_reference.py; derivatives ar
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from itertools import product
+from collections.abc import Callable
 
 import mpmath
 import numpy as np
-from funicular.derive import verify_structural
+from funicular.derive import verify_curved, verify_structural
 from funicular.derive.spec import Element
-from funicular.derive.verify_laws import is_cable, spatial
 from funicular.derive.verify_motion import cross, frame
-from funicular.derive.verify_reference import Shape, gauss
+from funicular.derive.verify_reference import Shape, section_points, spatial, stress
 
 mp = mpmath.mp
 TEXTS = {"force": "∫ P e_x dA; of a cable W_r' - (W_r'')'", "moment": "∫ arm x P e_x dA; of a cable r' x W_r''",
@@ -29,7 +27,8 @@ def resultant(output: str) -> Callable:
             return verify_structural.section(element, law, s)[output]
         if output == "axes":
             return axes(element, s)
-        return (_cable if is_cable(law) else _continuum)(element, law, s)[output]
+        roots = {"continuum": _continuum, "continuum_curved": verify_curved.section}
+        return roots.get(law, _cable)(element, law, s)[output]
     return value
 
 
@@ -48,10 +47,10 @@ def _continuum(element: Element, law: str, s) -> dict[str, np.ndarray]:
     shape, dim, x = Shape(element, s["l"].item()), element.dim, s["x"].item()
     force, moment = np.zeros(3, dtype=object), np.zeros(3, dtype=object)
     axis = shape((x, 0, 0)).dot(s["e"])
-    for at, weight, D in _section_points(s, x):
+    for y, z, area, D in section_points(s):
+        at = (x, y, z)
         F = s["e"].T.dot(shape.gradient(at))
-        stress = stress_of(D, green(F))
-        traction = weight * spatial(F.dot(stress)[:, 0])
+        traction = area * spatial(F.dot(stress(D, green(F)))[:, 0])
         force = force + traction
         moment = moment + cross(spatial(shape(at).dot(s["e"]) - axis), traction)
 
@@ -69,40 +68,17 @@ def _continuum(element: Element, law: str, s) -> dict[str, np.ndarray]:
     return {"force": force, "moment": moment, "strain": np.array(measures)}
 
 
-def _section_points(s, x) -> Iterator[tuple]:
-    """Point, weight and elastic constants: D[0] over the section, D[1] on the axis alone."""
-    height, width = (mp.mpf(v) for v in s["rectangle"])
-    for (a, p), (b, q) in product(gauss(4), gauss(4)):
-        yield (x, a * height / 2, b * width / 2), p * q * height * width / 4, s["D"][0]
-    yield (x, 0, 0), height * width, s["D"][1]
-
-
 def green(F: np.ndarray) -> np.ndarray:
     """Green's strain."""
     return (F.T.dot(F) - np.eye(len(F), dtype=int)) / 2
 
 
-def stress_of(D, E: np.ndarray) -> np.ndarray:
-    """Second Piola-Kirchhoff stress of the orthotropic law."""
-    dim = len(E)
-    off = [(i, j) for i in range(dim) for j in range(i + 1, dim)]
-    law = np.diag(list(D[:dim]))
-    stress = np.zeros((dim, dim), dtype=object)
-    for k, (i, j) in enumerate(off):
-        law[i, j] = law[j, i] = D[dim + k]
-        stress[i, j] = stress[j, i] = 2 * D[dim + len(off) + k] * E[i, j]
-    normal = law.dot(np.diag(E))
-    for i in range(dim):
-        stress[i, i] = normal[i]
-    return stress
-
-
 def _cable(element: Element, law: str, s) -> dict[str, np.ndarray]:
-    strain, curvature = law.split("_")
+    strain, curvature, *curved = law.split("_")
     shape, (EA, EI), x = Shape(element, s["l"].item()), s["S"], s["x"].item()
 
-    def derivatives(at):
-        return [spatial(shape((at, 0, 0), (k, 0, 0)).dot(s["e"])) for k in (1, 2)]
+    def derivatives(at, of="e"):
+        return [spatial(shape((at, 0, 0), (k, 0, 0)).dot(s[of])) for k in (1, 2)]
 
     def measures(r1, r2):
         length, normal = mp.sqrt(r1.dot(r1)), cross(r1, r2)
@@ -116,6 +92,8 @@ def _cable(element: Element, law: str, s) -> dict[str, np.ndarray]:
         def energy(t, axis):
             vectors = derivatives(at)
             vectors[by] = vectors[by] + t * np.eye(3, dtype=int)[axis]
+            if curved:
+                return verify_curved.cable_density(strain, vectors, derivatives(at, "e0"), EA, EI, s["l"].item())
             eps, kappa = measures(*vectors)
             return (EA * eps**2 + EI * kappa**2) / 2
 
@@ -125,6 +103,6 @@ def _cable(element: Element, law: str, s) -> dict[str, np.ndarray]:
     change = (8 * (variation(x + h, 1) - variation(x - h, 1))
               - (variation(x + 2 * h, 1) - variation(x - 2 * h, 1))) / (12 * h)
     r1, r2 = derivatives(x)
-    eps, kappa = measures(r1, r2)
+    eps, kappa = verify_curved.cable_measures(strain, [r1, r2], derivatives(x, "e0")) if curved else measures(r1, r2)
     return {"force": variation(x, 0) - change, "moment": cross(r1, variation(x, 1)),
             "strain": np.array([eps, 0, 0, 0, 0, kappa])}

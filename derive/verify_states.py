@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 import sympy as sp
+from funicular.derive import law_kernels, verify_curved
 from funicular.derive.spec import Element, Family, x
+from funicular.derive.verify_exact import ExactProgram
 from funicular.derive.verify_motion import RIDERS, exponential
 from funicular.derive.verify_numbers import Numbers
 from funicular.derive.verify_reference import Shape
@@ -29,7 +31,7 @@ def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
         dim = family.element.dim if family.element else RIDERS[family.rider].dim
         if family.element:
             state |= element_state(family.element, random)
-            if not any(a.name == "e0" for program in exact.programs.values() for a in program.inputs):
+            if family.role != "law" or not _takes_shape(exact):
                 del state["e0"]
         if family.rider:
             near = on_axis(family.element, state) if family.element else random.normal(size=dim)
@@ -43,7 +45,16 @@ def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
         if family.role == "element":
             state |= loads(family.element, random)
         found.append(state)
-    return [*found, found[0] | at_rest(family)]
+    rest = found[0] | at_rest(family)
+    if family.law and family.law.endswith("_curved"):
+        rest["e0"] = rest["e"]
+        rest |= _from_kernels(family, exact, rest)
+    return [*found, rest]
+
+
+def _takes_shape(exact: Numbers) -> bool:
+    """Whether a kernel asks for the stress-free shape."""
+    return any(a.name == "e0" for program in exact.programs.values() for a in program.inputs)
 
 
 def at_rest(family: Family) -> dict[str, np.ndarray]:
@@ -132,23 +143,33 @@ def _constants(family: Family, exact: Numbers, state: dict, random: np.random.Ge
     made = {"a": random.normal(size=(family.element.n_vectors, dim))}
     if family.role == "law":
         made |= section_stiffness(family.like, dim, state["section"], random)
-    s = exact.state(state | made)
+    return made | _from_kernels(family, exact, state | made)
+
+
+def _from_kernels(family: Family, exact: Numbers, state: dict) -> dict[str, np.ndarray]:
+    """Constants that kernels make for others."""
+    made, s = {}, exact.state(state)
     for kernel, output in (("stiffness", "A"), ("mass", "m")):
         if kernel in exact.programs:
             made[output] = exact(kernel, s)[output].astype(float)
+    if "stiffness_at" in exact.programs:
+        points = [exact("stiffness_at", s, at=at, D=D) for at, D in verify_curved.weighted_points(family.element, s)]
+        straight = ExactProgram(law_kernels.Kernels(family.element, "continuum").set_up())([s["l"], s["S"]])["A"]
+        made["A"] = np.concatenate([sum(p["A"] for p in points), points[0]["G0"], straight]).astype(float)
     return made
 
 
 def section_stiffness(law: str, dim: int, moments: np.ndarray, random: np.random.Generator) -> dict[str, np.ndarray]:
-    """Argument S of a law; for a continuum also D, elastic constants over the section and on the axis alone."""
+    """Argument S of a law; for a continuum also elastic constants, D over the section and D_axis on the axis alone."""
     if law == "structural":
         return {"S": random.uniform(1, 4, 9 if dim == 3 else 4)}
-    if law != "continuum":
+    if not law.startswith("continuum"):
         return {"S": 53.0 * moments[:2]}
     pairs = dim * (dim - 1) // 2
-    D = np.array([np.concatenate([random.uniform(40, 60, dim), random.uniform(5, 15, pairs),
-                                  random.uniform(10, 20, pairs)]) for _ in range(2)])
-    return {"S": np.outer(D[0], moments) + np.outer(D[1], moments * [1, 0, 0, 0, 0, 0]), "D": D}
+    D, on_axis_alone = (np.concatenate([random.uniform(40, 60, dim), random.uniform(5, 15, pairs),
+                                        random.uniform(10, 20, pairs)]) for _ in range(2))
+    return {"S": np.outer(D, moments) + np.outer(on_axis_alone, moments * [1, 0, 0, 0, 0, 0]), "D": D,
+            "D_axis": on_axis_alone}
 
 
 def loads(element: Element, random: np.random.Generator) -> dict[str, np.ndarray]:

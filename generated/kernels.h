@@ -71,6 +71,16 @@ void beam24_continuum_damping_tangent(fu_real l, const fu_real *e, const fu_real
 void beam24_continuum_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 void beam24_continuum_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
+/* beam24_continuum_curved: elastic law continuum_curved on beam24 */
+void beam24_continuum_curved_stiffness_at(fu_real l, const fu_real *e0, const fu_real *at, const fu_real *D, fu_real *A, fu_real *G0);
+void beam24_continuum_curved_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void beam24_continuum_curved_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void beam24_continuum_curved_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void beam24_continuum_curved_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
+void beam24_continuum_curved_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
+void beam24_continuum_curved_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+void beam24_continuum_curved_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
+
 /* beam24_structural: elastic law structural on beam24 */
 void beam24_structural_stiffness(fu_real l, const fu_real *e0, const fu_real *S, fu_real *A);
 void beam24_structural_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
@@ -121,6 +131,26 @@ void cable12_engineering_linear_damping_tangent(fu_real l, const fu_real *e, con
 void cable12_engineering_linear_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 void cable12_engineering_linear_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
+/* cable12_green_exact_curved: elastic law green_exact_curved on cable12 */
+void cable12_green_exact_curved_stiffness(fu_real l, const fu_real *e0, const fu_real *S, fu_real *A);
+void cable12_green_exact_curved_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void cable12_green_exact_curved_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void cable12_green_exact_curved_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable12_green_exact_curved_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
+void cable12_green_exact_curved_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
+void cable12_green_exact_curved_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+void cable12_green_exact_curved_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
+
+/* cable12_engineering_exact_curved: elastic law engineering_exact_curved on cable12 */
+void cable12_engineering_exact_curved_stiffness(fu_real l, const fu_real *e0, const fu_real *S, fu_real *A);
+void cable12_engineering_exact_curved_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void cable12_engineering_exact_curved_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void cable12_engineering_exact_curved_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable12_engineering_exact_curved_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
+void cable12_engineering_exact_curved_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
+void cable12_engineering_exact_curved_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+void cable12_engineering_exact_curved_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
+
 /* cable18_green_exact: elastic law green_exact on cable18 */
 void cable18_green_exact_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void cable18_green_exact_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
@@ -150,6 +180,16 @@ void beam12p_continuum_damping_force(fu_real l, const fu_real *e, const fu_real 
 void beam12p_continuum_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void beam12p_continuum_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 void beam12p_continuum_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
+
+/* beam12p_continuum_curved: elastic law continuum_curved on beam12p */
+void beam12p_continuum_curved_stiffness_at(fu_real l, const fu_real *e0, const fu_real *at, const fu_real *D, fu_real *A, fu_real *G0);
+void beam12p_continuum_curved_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void beam12p_continuum_curved_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void beam12p_continuum_curved_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void beam12p_continuum_curved_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
+void beam12p_continuum_curved_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
+void beam12p_continuum_curved_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+void beam12p_continuum_curved_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* beam12p_structural: elastic law structural on beam12p */
 void beam12p_structural_stiffness(fu_real l, const fu_real *e0, const fu_real *S, fu_real *A);

@@ -73,6 +73,14 @@ static const fu_law laws[] = {
      beam24_continuum_damping_tangent,
      beam24_continuum_dissipation
     },
+    {"beam24_continuum_curved",
+     beam24_continuum_curved_energy,
+     beam24_continuum_curved_elastic_force,
+     beam24_continuum_curved_elastic_tangent,
+     beam24_continuum_curved_damping_force,
+     beam24_continuum_curved_damping_tangent,
+     beam24_continuum_curved_dissipation
+    },
     {"beam24_structural",
      beam24_structural_energy,
      beam24_structural_elastic_force,
@@ -113,6 +121,22 @@ static const fu_law laws[] = {
      cable12_engineering_linear_damping_tangent,
      cable12_engineering_linear_dissipation
     },
+    {"cable12_green_exact_curved",
+     cable12_green_exact_curved_energy,
+     cable12_green_exact_curved_elastic_force,
+     cable12_green_exact_curved_elastic_tangent,
+     cable12_green_exact_curved_damping_force,
+     cable12_green_exact_curved_damping_tangent,
+     cable12_green_exact_curved_dissipation
+    },
+    {"cable12_engineering_exact_curved",
+     cable12_engineering_exact_curved_energy,
+     cable12_engineering_exact_curved_elastic_force,
+     cable12_engineering_exact_curved_elastic_tangent,
+     cable12_engineering_exact_curved_damping_force,
+     cable12_engineering_exact_curved_damping_tangent,
+     cable12_engineering_exact_curved_dissipation
+    },
     {"cable18_green_exact",
      cable18_green_exact_energy,
      cable18_green_exact_elastic_force,
@@ -136,6 +160,14 @@ static const fu_law laws[] = {
      beam12p_continuum_damping_force,
      beam12p_continuum_damping_tangent,
      beam12p_continuum_dissipation
+    },
+    {"beam12p_continuum_curved",
+     beam12p_continuum_curved_energy,
+     beam12p_continuum_curved_elastic_force,
+     beam12p_continuum_curved_elastic_tangent,
+     beam12p_continuum_curved_damping_force,
+     beam12p_continuum_curved_damping_tangent,
+     beam12p_continuum_curved_dissipation
     },
     {"beam12p_structural",
      beam12p_structural_energy,
@@ -417,6 +449,38 @@ static void call_beam24_continuum_section_forces(const fu_real *const *a, fu_rea
 {
     beam24_continuum_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
 }
+static void call_beam24_continuum_curved_stiffness_at(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_curved_stiffness_at(*a[0], a[1], a[2], a[3], out[0], out[1]);
+}
+static void call_beam24_continuum_curved_energy(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_curved_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam24_continuum_curved_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_curved_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam24_continuum_curved_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_curved_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam24_continuum_curved_damping_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_curved_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_beam24_continuum_curved_damping_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_curved_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
+}
+static void call_beam24_continuum_curved_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_curved_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_beam24_continuum_curved_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_curved_section_forces(*a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]);
+}
 static void call_beam24_structural_stiffness(const fu_real *const *a, fu_real *const *out)
 {
     beam24_structural_stiffness(*a[0], a[1], a[2], out[0]);
@@ -577,6 +641,70 @@ static void call_cable12_engineering_linear_section_forces(const fu_real *const 
 {
     cable12_engineering_linear_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
 }
+static void call_cable12_green_exact_curved_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_curved_stiffness(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_green_exact_curved_energy(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_curved_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_green_exact_curved_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_curved_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_green_exact_curved_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_curved_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_green_exact_curved_damping_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_curved_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable12_green_exact_curved_damping_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_curved_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
+}
+static void call_cable12_green_exact_curved_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_curved_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable12_green_exact_curved_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_curved_section_forces(*a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]);
+}
+static void call_cable12_engineering_exact_curved_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_curved_stiffness(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_engineering_exact_curved_energy(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_curved_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_engineering_exact_curved_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_curved_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_engineering_exact_curved_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_curved_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_engineering_exact_curved_damping_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_curved_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable12_engineering_exact_curved_damping_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_curved_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
+}
+static void call_cable12_engineering_exact_curved_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_curved_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable12_engineering_exact_curved_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_curved_section_forces(*a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]);
+}
 static void call_cable18_green_exact_stiffness(const fu_real *const *a, fu_real *const *out)
 {
     cable18_green_exact_stiffness(*a[0], a[1], out[0]);
@@ -672,6 +800,38 @@ static void call_beam12p_continuum_dissipation(const fu_real *const *a, fu_real 
 static void call_beam12p_continuum_section_forces(const fu_real *const *a, fu_real *const *out)
 {
     beam12p_continuum_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
+}
+static void call_beam12p_continuum_curved_stiffness_at(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_curved_stiffness_at(*a[0], a[1], a[2], a[3], out[0], out[1]);
+}
+static void call_beam12p_continuum_curved_energy(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_curved_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam12p_continuum_curved_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_curved_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam12p_continuum_curved_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_curved_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam12p_continuum_curved_damping_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_curved_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_beam12p_continuum_curved_damping_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_curved_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
+}
+static void call_beam12p_continuum_curved_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_curved_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_beam12p_continuum_curved_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_curved_section_forces(*a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]);
 }
 static void call_beam12p_structural_stiffness(const fu_real *const *a, fu_real *const *out)
 {
@@ -998,6 +1158,14 @@ const fu_kernel fu_kernels[] = {
     {"beam24_continuum_damping_tangent", call_beam24_continuum_damping_tangent},
     {"beam24_continuum_dissipation", call_beam24_continuum_dissipation},
     {"beam24_continuum_section_forces", call_beam24_continuum_section_forces},
+    {"beam24_continuum_curved_stiffness_at", call_beam24_continuum_curved_stiffness_at},
+    {"beam24_continuum_curved_energy", call_beam24_continuum_curved_energy},
+    {"beam24_continuum_curved_elastic_force", call_beam24_continuum_curved_elastic_force},
+    {"beam24_continuum_curved_elastic_tangent", call_beam24_continuum_curved_elastic_tangent},
+    {"beam24_continuum_curved_damping_force", call_beam24_continuum_curved_damping_force},
+    {"beam24_continuum_curved_damping_tangent", call_beam24_continuum_curved_damping_tangent},
+    {"beam24_continuum_curved_dissipation", call_beam24_continuum_curved_dissipation},
+    {"beam24_continuum_curved_section_forces", call_beam24_continuum_curved_section_forces},
     {"beam24_structural_stiffness", call_beam24_structural_stiffness},
     {"beam24_structural_energy", call_beam24_structural_energy},
     {"beam24_structural_elastic_force", call_beam24_structural_elastic_force},
@@ -1038,6 +1206,22 @@ const fu_kernel fu_kernels[] = {
     {"cable12_engineering_linear_damping_tangent", call_cable12_engineering_linear_damping_tangent},
     {"cable12_engineering_linear_dissipation", call_cable12_engineering_linear_dissipation},
     {"cable12_engineering_linear_section_forces", call_cable12_engineering_linear_section_forces},
+    {"cable12_green_exact_curved_stiffness", call_cable12_green_exact_curved_stiffness},
+    {"cable12_green_exact_curved_energy", call_cable12_green_exact_curved_energy},
+    {"cable12_green_exact_curved_elastic_force", call_cable12_green_exact_curved_elastic_force},
+    {"cable12_green_exact_curved_elastic_tangent", call_cable12_green_exact_curved_elastic_tangent},
+    {"cable12_green_exact_curved_damping_force", call_cable12_green_exact_curved_damping_force},
+    {"cable12_green_exact_curved_damping_tangent", call_cable12_green_exact_curved_damping_tangent},
+    {"cable12_green_exact_curved_dissipation", call_cable12_green_exact_curved_dissipation},
+    {"cable12_green_exact_curved_section_forces", call_cable12_green_exact_curved_section_forces},
+    {"cable12_engineering_exact_curved_stiffness", call_cable12_engineering_exact_curved_stiffness},
+    {"cable12_engineering_exact_curved_energy", call_cable12_engineering_exact_curved_energy},
+    {"cable12_engineering_exact_curved_elastic_force", call_cable12_engineering_exact_curved_elastic_force},
+    {"cable12_engineering_exact_curved_elastic_tangent", call_cable12_engineering_exact_curved_elastic_tangent},
+    {"cable12_engineering_exact_curved_damping_force", call_cable12_engineering_exact_curved_damping_force},
+    {"cable12_engineering_exact_curved_damping_tangent", call_cable12_engineering_exact_curved_damping_tangent},
+    {"cable12_engineering_exact_curved_dissipation", call_cable12_engineering_exact_curved_dissipation},
+    {"cable12_engineering_exact_curved_section_forces", call_cable12_engineering_exact_curved_section_forces},
     {"cable18_green_exact_stiffness", call_cable18_green_exact_stiffness},
     {"cable18_green_exact_energy", call_cable18_green_exact_energy},
     {"cable18_green_exact_elastic_force", call_cable18_green_exact_elastic_force},
@@ -1062,6 +1246,14 @@ const fu_kernel fu_kernels[] = {
     {"beam12p_continuum_damping_tangent", call_beam12p_continuum_damping_tangent},
     {"beam12p_continuum_dissipation", call_beam12p_continuum_dissipation},
     {"beam12p_continuum_section_forces", call_beam12p_continuum_section_forces},
+    {"beam12p_continuum_curved_stiffness_at", call_beam12p_continuum_curved_stiffness_at},
+    {"beam12p_continuum_curved_energy", call_beam12p_continuum_curved_energy},
+    {"beam12p_continuum_curved_elastic_force", call_beam12p_continuum_curved_elastic_force},
+    {"beam12p_continuum_curved_elastic_tangent", call_beam12p_continuum_curved_elastic_tangent},
+    {"beam12p_continuum_curved_damping_force", call_beam12p_continuum_curved_damping_force},
+    {"beam12p_continuum_curved_damping_tangent", call_beam12p_continuum_curved_damping_tangent},
+    {"beam12p_continuum_curved_dissipation", call_beam12p_continuum_curved_dissipation},
+    {"beam12p_continuum_curved_section_forces", call_beam12p_continuum_curved_section_forces},
     {"beam12p_structural_stiffness", call_beam12p_structural_stiffness},
     {"beam12p_structural_energy", call_beam12p_structural_energy},
     {"beam12p_structural_elastic_force", call_beam12p_structural_elastic_force},
@@ -1137,7 +1329,7 @@ const int fu_n_kernels = sizeof fu_kernels / sizeof fu_kernels[0];
 
 const fu_tables fu_all = {
     5, elements,
-    14, laws,
+    18, laws,
     2, bodys,
     5, slides
 };

@@ -68,6 +68,10 @@ class Cable(Part):
     height in it. ``law``: for beams "continuum" (the default), "poisson_split" or "structural"; for cables
     ``strain`` ("green" or "engineering") and ``curvature`` ("exact" or "linear"), the measures that their axial and
     bending stiffness act on, by default green and exact.
+
+    A cable that is stress-free where it is curved has the exact curvature, whose size alone it measures: it resists in
+    the plane of its curve, and across that plane by tension alone. Of the beams' laws, "structural" is the one for thin
+    arcs: the continuum locks there, unless its elements are about as short as two heights.
     """
 
     kind: ClassVar[str] = "cable"

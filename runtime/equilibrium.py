@@ -6,9 +6,11 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
-from funicular.recording import body_state, end_points, join_force, spatial, support_reaction
+from funicular.recording import body_state, join_force, spatial, spring_state, support_reaction
 
 if TYPE_CHECKING:
+    import xarray
+    from funicular.cables import Cable
     from funicular.model import Model
     from funicular.scene import Scene
 
@@ -20,7 +22,9 @@ class Equilibrium:
     Quantities by name as in a `Run`, without the time: ``state["wire.nodal_vectors"]`` (node, vector, 3),
     ``state["A.position"]``, ``state["trolley.s"]``, ``state["wire@0.force"]`` ... load_fraction: how much of the load
     is on, 1 but in the `EquilibriumError` that says how far it got; iterations of Newton; residual: the largest force
-    left over, in N. """
+    left over, in N; path: the states of rest on the way, in their order, this one last: what a curve of load and
+    displacement is drawn from.
+    """
 
     scene: Scene
     model: Model
@@ -30,6 +34,7 @@ class Equilibrium:
     iterations: int
     residual: float
     quantities: dict[str, np.ndarray] = field(default_factory=dict)
+    path: list[Equilibrium] = field(default_factory=list, repr=False)
 
     @classmethod
     def of(cls, scene: Scene, path, fraction: float) -> Equilibrium:
@@ -39,6 +44,7 @@ class Equilibrium:
         state = cls(scene, path.model, path.keep(), path.engine.reaction(), fraction, path.iterations,
                     float(np.max(np.abs(left) / units, initial=0.0)))
         state.quantities = state._quantities()
+        state.path = [*path.history, state]
         return state
 
     def __getitem__(self, name: str) -> np.ndarray:
@@ -48,6 +54,12 @@ class Equilibrium:
         if name not in self.quantities:
             raise KeyError(f'no quantity "{name}"; {near(name, self.quantities)}')
         return self.quantities[name]
+
+    def section_forces(self, cable: Cable | str, s=None) -> xarray.Dataset:
+        """Forces and moments in sections of ``cable`` as `Run.section_forces` has them, over s alone."""
+        from funicular.section_forces import dataset
+
+        return dataset(self, cable, s)
 
     def start(self, model: Model) -> None:
         """Put a freshly built model of the same scene into this state."""
@@ -77,9 +89,8 @@ class Equilibrium:
         for name, join in scene.joins.items():
             found |= {f"{name}.{part}": value[0] for part, value in join_force(model, scene, join, reaction, q).items()}
         for k, spring in enumerate(model.springs):
-            gap = end_points(model, spring.ends[1], q) - end_points(model, spring.ends[0], q)
-            found[f"{spring.name}.length"] = np.linalg.norm(gap[0])
-            found[f"{spring.name}.force"] = self.placed["spring"][k]
+            values = spring_state(model, spring, self.placed["spring"][k][None], q)
+            found |= {f"{spring.name}.{name}": value[0] for name, value in values.items()}
         return found
 
 

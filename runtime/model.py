@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from funicular.actions import Actions, DeadLoad, LoadModel, SignalModel, SpringModel
+from funicular.constants import constants
 from funicular.elements import gauge
 from funicular.errors import FunicularWarning, SceneError
 from funicular.libraries import kernels_of, tables_of
@@ -20,7 +21,6 @@ from funicular.recording import Recording, recorded
 from funicular.reduction import Node, half_width, supports
 from funicular.scene import Scene
 from funicular.settings import RunSettings
-from funicular.stiffness import section_stiffness
 from scipy.sparse import csr_array
 
 MOST_OUTPUT = 4e9  # bytes
@@ -195,17 +195,11 @@ def build(scene: Scene) -> Model:
 def _cable(cable: Cable, first: int) -> CableModel:
     element, law, length = cable.element, cable.kernel_law, cable.length / cable.elements
     kernels, vectors = kernels_of(cable.library), cable.kind_of_element.nodal_vectors
-    S = section_stiffness(cable.stiffness_law, cable.section, cable.material, cable.dim)
-    stiffness = getattr(kernels, f"{element}_{law}_stiffness")
-    if law.endswith("_curved") or cable.stiffness_law == "structural":  # these know the stress-free shape e0
-        rest = cable.rest_nodal_vectors[..., : cable.dim]
-        A = np.array([stiffness(length, rest[k : k + 2], S) for k in range(cable.elements if cable.is_curved else 1)])
-    else:
-        A = np.array([stiffness(length, S)])
     m = getattr(kernels, f"{element}_mass")(length, cable.material.density, cable.section.moments())
     return CableModel(
         cable.name, element, law, cable.elements, first, length, cable.material.damping_time,
-        cable.material.mass_damping, m, A, (cable.elements + 1, len(vectors), cable.dim), vectors, cable.library)
+        cable.material.mass_damping, m, constants(cable), (cable.elements + 1, len(vectors), cable.dim), vectors,
+        cable.library)
 
 
 def _gravity(model: CableModel, cable: Cable, gravity: np.ndarray) -> np.ndarray:

@@ -151,7 +151,7 @@ def recorded(model: Model, scene: Scene, engine, settings: RunSettings, status: 
         clamps={clamp.label: held(clamp) for clamp in scene.clamps},
         motions={motion.label: held(motion) for motion in scene.motions},
         joins={name: join_force(model, scene, join, rows["reaction"], q) for name, join in scene.joins.items()},
-        springs={spring.name: _spring(model, spring, rows["spring"][:, k], q)
+        springs={spring.name: spring_state(model, spring, rows["spring"][:, k], q)
                  for k, spring in enumerate(model.springs)},
         energy={name: rows[name] for name in ("kinetic", "elastic", "potential", "dissipated", "external")},
         report=report,
@@ -163,9 +163,9 @@ def _turning(rates: np.ndarray) -> np.ndarray:
     return rates if rates.shape[1] == 3 else np.concatenate([np.zeros((len(rates), 2)), rates], axis=1)
 
 
-def _spring(model: Model, spring, force: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray]:
+def spring_state(model: Model, spring, force: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray]:
     """Force on the first end, (time, 3) in N; length between the ends, in m; tension, in N, negative in compression."""
-    gap = end_points(model, spring.ends[1], q) - end_points(model, spring.ends[0], q)
+    gap, force = end_points(model, spring.ends[1], q) - end_points(model, spring.ends[0], q), spatial(force)
     length = np.linalg.norm(gap, axis=1)
     along = gap / np.where(length > 0, length, 1.0)[:, None]
     return {"force": force, "length": length, "tension": np.sum(force * along, axis=1)}

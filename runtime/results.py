@@ -57,6 +57,7 @@ QUANTITIES = {
     "motions": _SUPPORT,
     "joins": _SUPPORT,
     "springs": {
+        "force": (_XYZ, "N", "force on the first end"),
         "tension": (_TIME, "N", "force with which the ends are drawn together"),
         "length": (_TIME, "m", "distance of the ends"),
     },

@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from funicular.cables import EXACT, Cable
 from funicular.errors import FunicularError, UnknownResultError, near
+from funicular.libraries import kernels_of
 from funicular.stiffness import section_stiffness
 from funicular.validation import show
 
 if TYPE_CHECKING:
     import xarray
+    from funicular.equilibrium import Equilibrium
     from funicular.results import Run
 
 PLACES = 8
@@ -51,9 +53,7 @@ def section_forces(cable: Cable, nodal_vectors: np.ndarray, s: np.ndarray) -> di
     may jump, those of the element that begins there. Returns force and moment (times, n, 3), along the ground's axes,
     and the components that `CABLE` or `BEAM` lists (times, n).
     """
-    from funicular.generated import kernels
-
-    kernel = getattr(kernels, f"{cable.element}_{cable.kernel_law}_section_forces")
+    kernel = getattr(kernels_of(cable.library), f"{cable.element}_{cable.kernel_law}_section_forces")
     length, dim = cable.length / cable.elements, cable.dim
     stiffness = section_stiffness(cable.stiffness_law, cable.section, cable.material, dim)
     element = np.clip(np.floor(s / length * (1 + EXACT)).astype(int), 0, cable.elements - 1)
@@ -81,14 +81,14 @@ def _components(cable: Cable, force, moment, axes, strain) -> dict[str, np.ndarr
     return dict(zip(BEAM, (tension, across, shear_y, shear_z, *moments, *strains), strict=True))
 
 
-def dataset(run: Run, name: str, s=None) -> xarray.Dataset:
-    """See `Run.section_forces`."""
+def dataset(state: Run | Equilibrium, name: str, s=None) -> xarray.Dataset:
+    """See `Run.section_forces`; of an equilibrium without the time."""
     import xarray
 
-    cables = run.scene.cables
+    cables = state.scene.cables
     name = getattr(name, "name", name)
     if name not in cables:
-        raise UnknownResultError(f'the run has no cable "{name}"; {near(name, cables)}')
+        raise UnknownResultError(f'there is no cable "{name}"; {near(name, cables)}')
     cable = cables[name]
     if s is None:
         s = np.linspace(0, cable.length, PLACES * cable.elements + 1)
@@ -98,12 +98,14 @@ def dataset(run: Run, name: str, s=None) -> xarray.Dataset:
         wrong = show(float(s[off][0]), "m") if s.ndim == 1 else f"an array of shape {s.shape}"
         raise FunicularError(f'section forces of "{name}": s must lie on the cable, in [0, {cable.length:.9g}] m, '
                              f"got {wrong}")
-    values = section_forces(cable, run[f"{name}.nodal_vectors"], s)
+    vectors = state[f"{name}.nodal_vectors"]
+    values = section_forces(cable, vectors if vectors.ndim == 4 else vectors[None], s)
     labels = GLOBAL | (BEAM if cable.kind_of_element.director else CABLE)
-    dims = {"force": ("time", "s", "xyz"), "moment": ("time", "s", "xyz")}
-    return xarray.Dataset(
-        {key: (dims.get(key, ("time", "s")), value, {"units": labels[key][0], "long_name": labels[key][1]})
+    found = xarray.Dataset(
+        {key: (("time", "s", "xyz")[: value.ndim], value, {"units": labels[key][0], "long_name": labels[key][1]})
          for key, value in values.items()},
-        {"time": ("time", run.time, {"units": "s", "long_name": "time"}),
-         "s": ("s", s, {"units": "m", "long_name": "undeformed arc-length"}), "xyz": ["x", "y", "z"]},
+        {"s": ("s", s, {"units": "m", "long_name": "undeformed arc-length"}), "xyz": ["x", "y", "z"]},
         {"cable": name, "element": cable.element, "law": cable.law})
+    if vectors.ndim == 3:
+        return found.isel(time=0)
+    return found.assign_coords(time=("time", state.time, {"units": "s", "long_name": "time"}))

@@ -50,6 +50,7 @@ class Path:
         # rad²/s², of the fastest vibration: what is left free (a rider that may turn about its rope) has no stiffness
         self.fastest = float(np.max(np.abs(stiffness[heavy]) / inertia[heavy], initial=0.0))
         self.iterations = 0
+        self.history: list[Equilibrium] = []
 
     def _extent(self) -> float:
         """The scene's size in m."""
@@ -86,6 +87,11 @@ class Path:
         self.engine.move(change)
         if self.model.joints:
             self.engine.place(0.0, **self.engine.placed())
+
+    def remember(self, fraction: float) -> None:
+        """Add a state of rest to the history."""
+        if fraction < 1.0:
+            self.history.append(Equilibrium.of(self.scene, self, fraction))
 
     def newton(self, fraction: float) -> bool:
         """Newton at a load fraction, full steps.
@@ -163,10 +169,13 @@ def _load(path: Path) -> float:
     """Load steps, halved where neither Newton nor relaxation ends; returns the fraction of the load reached."""
     reached, step = 0.0, 1.0 / path.settings.load_steps
     while reached < 1.0:
-        kept, target = path.keep(), min(1.0, reached + step)
+        kept, target = path.keep(), reached + step
+        if target > 1.0 - SMALLEST_STEP / 2:  # a sum of steps is not 1 to the last digit
+            target = 1.0
         for solve in (path.newton, path.relax):
             if solve(target):
                 reached = target
+                path.remember(reached)
                 break
             path.restore(kept)
         else:
@@ -209,6 +218,7 @@ def _follow(path: Path) -> float:
             if step < 1e-8:
                 return reached
         reached, tangent_before, step = fraction, direction, 1.5 * step
+        path.remember(reached)
     return reached
 
 

@@ -100,7 +100,7 @@ class Motion(Support):
 
     displacement: three signals in m, from where the node is drawn, or numbers, 0 for a direction that is held; without
     it the position stays free. rotation: an axis and a signal in rad, by which the section turns from where it is
-    drawn (of cables the tangent, whose length stays free; of beams r_y and r_z); without it the section stays free.
+    drawn (of cables r_x, whose length is held, too; of beams r_y and r_z); without it the section stays free.
     """
 
     kind: ClassVar[str] = "motion"
@@ -117,8 +117,8 @@ class Motion(Support):
 class Join(Part):
     """Joins the node at ``s`` (m) of one cable to the node at arc-length ``at`` of another one, ``to``.
 
-    They share their position and, with rotation "rigid", keep the angle at which they are drawn (a frame's corner);
-    with "free" they turn freely (a hinge).
+    They share their position. With rotation "rigid" (a frame's corner) they share the gradient of the deformation, too:
+    slopes of one are the other's, turned by the angle at which they are drawn. With "free" they turn freely (a hinge).
     """
 
     kind: ClassVar[str] = "join"

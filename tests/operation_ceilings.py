@@ -5,85 +5,101 @@ on purpose.
 CEILINGS = {
     "beam24": {
         "mass": 58, "gravity": 26, "inertia_force": 120, "position": 70,
-        "on_axis": 34, "follower_force": 615, "moment": 1158
+        "on_axis": 35, "follower_force": 620, "moment": 1161
     },
     "cable12": {
         "mass": 40, "gravity": 26, "inertia_force": 84, "position": 40,
-        "on_axis": 34, "follower_force": 327, "moment": 303
+        "on_axis": 35, "follower_force": 330, "moment": 305
     },
     "cable18": {
         "mass": 105, "gravity": 42, "inertia_force": 198, "position": 85,
-        "on_axis": 94, "follower_force": 633, "moment": 546
+        "on_axis": 95, "follower_force": 636, "moment": 548
     },
     "beam12p": {
         "mass": 49, "gravity": 22, "inertia_force": 68, "position": 44,
-        "on_axis": 34, "follower_force": 167, "moment": 61
+        "on_axis": 35, "follower_force": 170, "moment": 63
     },
     "cable8p": {
         "mass": 40, "gravity": 22, "inertia_force": 56, "position": 33,
-        "on_axis": 34, "follower_force": 167, "moment": 141
+        "on_axis": 35, "follower_force": 170, "moment": 143
     },
     "beam24_continuum": {
-        "stiffness": 217, "energy": 485, "elastic_force": 756, "elastic_tangent": 5124, "damping_force": 991,
-        "damping_tangent": 8797, "dissipation": 692, "section_forces": 487
+        "stiffness": 217, "energy": 486, "elastic_force": 757, "elastic_tangent": 5125, "damping_force": 992,
+        "damping_tangent": 8798, "dissipation": 693, "section_forces": 490
+    },
+    "beam24_continuum_curved": {
+        "stiffness_at": 1953, "energy": 1858, "elastic_force": 2129, "elastic_tangent": 12611, "damping_force": 992,
+        "damping_tangent": 8798, "dissipation": 693, "section_forces": 4578
+    },
+    "cable12_green_exact_curved": {
+        "stiffness": 266, "energy": 310, "elastic_force": 735, "elastic_tangent": 2865, "damping_force": 561,
+        "damping_tangent": 3501, "dissipation": 301, "section_forces": 608
+    },
+    "cable12_engineering_exact_curved": {
+        "stiffness": 266, "energy": 325, "elastic_force": 760, "elastic_tangent": 2940, "damping_force": 594,
+        "damping_tangent": 3759, "dissipation": 325, "section_forces": 616
+    },
+    "beam12p_continuum_curved": {
+        "stiffness_at": 521, "energy": 572, "elastic_force": 656, "elastic_tangent": 2590, "damping_force": 396,
+        "damping_tangent": 2126, "dissipation": 297, "section_forces": 616
     },
     "cable12_green_exact": {
-        "stiffness": 0, "energy": 229, "elastic_force": 485, "elastic_tangent": 2012, "damping_force": 558,
-        "damping_tangent": 3498, "dissipation": 298, "section_forces": 262
+        "stiffness": 0, "energy": 251, "elastic_force": 476, "elastic_tangent": 1681, "damping_force": 561,
+        "damping_tangent": 3501, "dissipation": 301, "section_forces": 258
     },
     "cable12_green_linear": {
-        "stiffness": 0, "energy": 143, "elastic_force": 252, "elastic_tangent": 766, "damping_force": 558,
-        "damping_tangent": 3498, "dissipation": 298, "section_forces": 154
+        "stiffness": 0, "energy": 150, "elastic_force": 222, "elastic_tangent": 661, "damping_force": 561,
+        "damping_tangent": 3501, "dissipation": 301, "section_forces": 156
     },
     "cable12_engineering_exact": {
-        "stiffness": 0, "energy": 239, "elastic_force": 490, "elastic_tangent": 2027, "damping_force": 588,
-        "damping_tangent": 3753, "dissipation": 319, "section_forces": 257
+        "stiffness": 0, "energy": 266, "elastic_force": 501, "elastic_tangent": 1741, "damping_force": 594,
+        "damping_tangent": 3759, "dissipation": 325, "section_forces": 260
     },
     "cable12_engineering_linear": {
-        "stiffness": 0, "energy": 158, "elastic_force": 277, "elastic_tangent": 841, "damping_force": 588,
-        "damping_tangent": 3753, "dissipation": 319, "section_forces": 158
+        "stiffness": 0, "energy": 165, "elastic_force": 257, "elastic_tangent": 746, "damping_force": 594,
+        "damping_tangent": 3759, "dissipation": 325, "section_forces": 161
     },
     "cable18_green_exact": {
-        "stiffness": 0, "energy": 591, "elastic_force": 1251, "elastic_tangent": 5776, "damping_force": 1771,
-        "damping_tangent": 12937, "dissipation": 1018, "section_forces": 520
+        "stiffness": 0, "energy": 410, "elastic_force": 788, "elastic_tangent": 5134, "damping_force": 1776,
+        "damping_tangent": 12942, "dissipation": 1023, "section_forces": 516
     },
     "cable18_engineering_exact": {
-        "stiffness": 0, "energy": 601, "elastic_force": 1256, "elastic_tangent": 5791, "damping_force": 1821,
-        "damping_tangent": 13362, "dissipation": 1053, "section_forces": 515
+        "stiffness": 0, "energy": 425, "elastic_force": 813, "elastic_tangent": 5194, "damping_force": 1831,
+        "damping_tangent": 13372, "dissipation": 1063, "section_forces": 518
     },
     "beam12p_continuum": {
-        "stiffness": 94, "energy": 218, "elastic_force": 302, "elastic_tangent": 1294, "damping_force": 395,
-        "damping_tangent": 2125, "dissipation": 296, "section_forces": 142
+        "stiffness": 94, "energy": 219, "elastic_force": 303, "elastic_tangent": 1295, "damping_force": 396,
+        "damping_tangent": 2126, "dissipation": 297, "section_forces": 144
     },
     "cable8p_green_exact": {
-        "stiffness": 0, "energy": 208, "elastic_force": 438, "elastic_tangent": 1276, "damping_force": 335,
-        "damping_tangent": 1371, "dissipation": 202, "section_forces": 186
+        "stiffness": 0, "energy": 194, "elastic_force": 356, "elastic_tangent": 990, "damping_force": 338,
+        "damping_tangent": 1374, "dissipation": 205, "section_forces": 182
     },
     "cable8p_green_linear": {
-        "stiffness": 0, "energy": 122, "elastic_force": 205, "elastic_tangent": 433, "damping_force": 335,
-        "damping_tangent": 1371, "dissipation": 202, "section_forces": 100
+        "stiffness": 0, "energy": 112, "elastic_force": 154, "elastic_tangent": 351, "damping_force": 338,
+        "damping_tangent": 1374, "dissipation": 205, "section_forces": 102
     },
     "cable8p_engineering_exact": {
-        "stiffness": 0, "energy": 218, "elastic_force": 443, "elastic_tangent": 1291, "damping_force": 356,
-        "damping_tangent": 1500, "dissipation": 217, "section_forces": 181
+        "stiffness": 0, "energy": 209, "elastic_force": 381, "elastic_tangent": 1050, "damping_force": 362,
+        "damping_tangent": 1506, "dissipation": 223, "section_forces": 184
     },
     "cable8p_engineering_linear": {
-        "stiffness": 0, "energy": 137, "elastic_force": 230, "elastic_tangent": 508, "damping_force": 356,
-        "damping_tangent": 1500, "dissipation": 217, "section_forces": 104
+        "stiffness": 0, "energy": 127, "elastic_force": 189, "elastic_tangent": 436, "damping_force": 362,
+        "damping_tangent": 1506, "dissipation": 223, "section_forces": 107
     },
     "beam24_structural": {
-        "stiffness": 313, "energy": 510, "elastic_force": 997, "elastic_tangent": 6802, "damping_force": 1286,
-        "damping_tangent": 13055, "dissipation": 849, "section_forces": 724
+        "stiffness": 321, "energy": 518, "elastic_force": 1005, "elastic_tangent": 6813, "damping_force": 1294,
+        "damping_tangent": 13066, "dissipation": 857, "section_forces": 742
     },
     "beam12p_structural": {
-        "stiffness": 105, "energy": 207, "elastic_force": 302, "elastic_tangent": 1081, "damping_force": 394,
-        "damping_tangent": 2006, "dissipation": 296, "section_forces": 263
+        "stiffness": 110, "energy": 212, "elastic_force": 307, "elastic_tangent": 1087, "damping_force": 399,
+        "damping_tangent": 2012, "dissipation": 301, "section_forces": 274
     },
     "rigid": {"point": 207, "point_force": 183, "inertia_force": 45, "inertia_tangent": 48, "kinetic_energy": 31},
     "planar_rigid": {"point": 40, "point_force": 23, "inertia_force": 3, "inertia_tangent": 0, "kinetic_energy": 9},
-    "slide_beam24_rigid": {"constraint": 596, "terms": 1646, "residual": 208, "tangent": 285},
-    "slide_cable12_rigid": {"constraint": 469, "terms": 1429, "residual": 208, "tangent": 285},
-    "slide_cable18_rigid": {"constraint": 695, "terms": 2198, "residual": 331, "tangent": 511},
-    "slide_beam12p_planar_rigid": {"constraint": 154, "terms": 568, "residual": 96, "tangent": 112},
-    "slide_cable8p_planar_rigid": {"constraint": 154, "terms": 568, "residual": 96, "tangent": 112},
+    "slide_beam24_rigid": {"constraint": 599, "terms": 1646, "residual": 209, "tangent": 286},
+    "slide_cable12_rigid": {"constraint": 472, "terms": 1429, "residual": 209, "tangent": 286},
+    "slide_cable18_rigid": {"constraint": 698, "terms": 2198, "residual": 332, "tangent": 512},
+    "slide_beam12p_planar_rigid": {"constraint": 156, "terms": 569, "residual": 97, "tangent": 113},
+    "slide_cable8p_planar_rigid": {"constraint": 156, "terms": 569, "residual": 97, "tangent": 113},
 }

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import sympy as sp
+from funicular.constants import element_constants
 from funicular.derive.elements import ELEMENTS
 from funicular.derive.gram import Gram
 from funicular.derive.laws.continuum import Form
@@ -25,6 +26,11 @@ def kernel(*name: str):
     return getattr(kernels, "_".join(name))
 
 
+def at_rest(name: str, law: str, l: float) -> tuple:
+    """The straight reference, for a law that asks for one."""
+    return (reference(ELEMENTS[name], l),) if law == "structural" or law.endswith("_curved") else ()
+
+
 class Elastic:
     """A law on an element, in a deformed state."""
 
@@ -33,20 +39,19 @@ class Elastic:
         self.state = element_state(self.element, np.random.default_rng(7))
         self.l, self.e, self.v = (self.state[key] for key in ("l", "e", "v"))
         self.section = self.state["section"]
-        if law == "continuum":
+        area, EI = YOUNGS_MODULUS * self.section[0], YOUNGS_MODULUS * self.section[1]
+        self.energy_scale = max(area * self.l, EI / self.l)
+        if law.startswith("continuum"):
             pairs = self.element.dim * (self.element.dim - 1) // 2
             D = np.concatenate([np.full(self.element.dim, YOUNGS_MODULUS), np.full(pairs, 10.0), np.full(pairs, 20.0)])
-            self.A = self("stiffness")(self.l, np.outer(D, self.section))
-            self.energy_scale = np.abs(self.A).max()
+            S = np.outer(D, self.section)
+            self.energy_scale = np.abs(kernel(name, "continuum", "stiffness")(self.l, S)).max()
         elif law == "structural":
-            area, EI = YOUNGS_MODULUS * self.section[0], YOUNGS_MODULUS * self.section[1]
             S = area * np.array([1, 0.4, 0.3, 0, 0, 0, 0.8, 0.9, 0.5]) + EI * np.array([0, 0, 0, 0.6, 0.7, 1, 0, 0, 0])
-            self.A = self("stiffness")(self.l, reference(self.element, self.l),
-                                       S if self.element.dim == 3 else S[[0, 1, 5, 6]])
-            self.energy_scale = max(area * self.l, EI / self.l)
+            S = S if self.element.dim == 3 else S[[0, 1, 5, 6]]
         else:
-            self.A = self("stiffness")(self.l, YOUNGS_MODULUS * self.section[:2])
-            self.energy_scale = max(self.A[0] * self.l, self.A[1] / self.l)
+            S = np.array([area, EI])
+        self.A = element_constants(kernels, name, law, self.l, S, *at_rest(name, law, self.l))
 
     def __call__(self, name: str):
         return kernel(self._family, name)

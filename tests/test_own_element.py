@@ -200,8 +200,8 @@ STRAIN = """
         return program.define(name, {strain})
 """
 ENERGY = """
-    def energy(self, program, A, G, w):
-        return super().energy(program, A, G, w) + {more}
+    def energy(self, program, A, c, w):
+        return super().energy(program, A, c, w) + {more}
 """
 
 
@@ -214,12 +214,12 @@ ENERGY = """
     (STRAIN.format(strain="sp.Abs(a1)"), "the energy has a kink: kernel mine8p_own_energy has Abs in Abs(a1_0)"),
     (STRAIN.format(strain="a1 + sp.sqrt(a1**2)"),
      "the energy has a kink in its slope: along r_1[x] its second derivative "),
-    (ENERGY.format(more="A[1] * w * sp.sqrt(G[-1])"), "the energy has a kink: along r_1[x] its slope is -"),
-    (ENERGY.format(more="A[1] * w / G[-1]"), "the energy is not a finite number: kernel mine8p_own_energy, at the "
-                                             "straight reference"),
+    (ENERGY.format(more="A[1] * w * sp.sqrt(c[-1].dot(c[-1]))"), "the energy has a kink: along r_1[x] its slope is -"),
+    (ENERGY.format(more="A[1] * w / c[-1].dot(c[-1])"),
+     "the energy is not a finite number: kernel mine8p_own_energy, at the straight reference"),
     (STRAIN.format(strain="sp.sin(a1)"), "kernel mine8p_own_energy is not plain arithmetic: sin(a1_0)"),
     (STRAIN.format(strain="a1 + sp.Rational(1, 10)"), "the undeformed element is not at rest: it stores "),
-    ("    def stress(self, program, A, G, w):\n        return [2 * u for u in super().stress(program, A, G, w)]\n",
+    ("    def forces(self, program, A, c, w):\n        return 2 * super().forces(program, A, c, w)\n",
      "checks of verification fail, the first: mine8p_own_elastic_force: f["),
     ("    def damping_forces(self, program, *given):\n        raise RuntimeError('not written yet')\n",
      "line 14: RuntimeError: not written yet"),

@@ -29,6 +29,17 @@ def test_both_ways_of_writing_the_scene_are_one(tmp_path, monkeypatch, capsys):
     assert from_file.to_toml() == space["scene"].to_toml()
 
 
+def test_rest_vibrations_and_section_forces(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (example,) = re.findall(r"^```python\n(.*?)^```", README.split("## What a scene may hold")[1].split("\n## ")[0],
+                            re.MULTILINE | re.DOTALL)
+    space = {}
+    exec(example, space)
+    rest, run = space["rest"], space["run"]
+    assert rest["rope@0.force"][1] > 1000
+    assert abs(run["rope.nodal_vectors"][-1] - rest["rope.nodal_vectors"]).max() < 1e-8
+
+
 def test_its_scene_is_the_bundled_one():
     scene, bundled = loads(block("toml"), "README.md"), funicular.load_scene("paper51")
     for parts in ("pins", "bodies", "slides"):

@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from funicular.constants import element_constants
 from funicular.derive.elements import ELEMENTS
 from funicular.derive.verify_states import reference, rotation, section
 from funicular.generated import kernels
-from test_elements import CABLES, LAWS, arc
+from test_elements import CABLES, LAWS, arc, at_rest
 
 E, SIDE = 1e6, 0.1
 MOMENTS = section(SIDE, SIDE)
@@ -25,11 +26,6 @@ def stiffness(name: str, law: str) -> np.ndarray:
 
 def kernel(*name: str):
     return getattr(kernels, "_".join(name))
-
-
-def at_rest(name: str, law: str, l: float) -> tuple:
-    """The straight reference, for the law that asks for one."""
-    return (reference(ELEMENTS[name], l),) if law == "structural" else ()
 
 
 @pytest.mark.parametrize(("name", "law"), LAWS)
@@ -67,7 +63,7 @@ class Cantilever:
     """Length 1, clamped, a dead load on the position of its end, solved by Newton on the kernels alone."""
 
     def __init__(self, name: str, law: str, n: int, load: np.ndarray):
-        self.element, self.family, self.l, self.n = ELEMENTS[name], f"{name}_{law}", 1 / n, n
+        self.element, self.law, self.family, self.l, self.n = ELEMENTS[name], law, f"{name}_{law}", 1 / n, n
         self.S, self.load = stiffness(name, law), load[: self.element.dim]
         self.at_rest = at_rest(name, law, self.l)
         per_node, dim = len(self.element.nodal_vectors), self.element.dim
@@ -87,7 +83,7 @@ class Cantilever:
         return [slice(k * self.step, k * self.step + self.size) for k in range(self.n)]
 
     def solve(self):
-        A = kernel(self.family, "stiffness")(self.l, *self.at_rest, self.S)
+        A = element_constants(kernels, self.element.name, self.law, self.l, self.S, *self.at_rest)
         force, tangent = kernel(self.family, "elastic_force"), kernel(self.family, "elastic_tangent")
         for part in np.linspace(0.1, 1, 10):
             for _ in range(30):

@@ -107,7 +107,7 @@ def test_a_taut_cable_by_its_own_kernel(element):
 
 
 def test_what_is_not_there(run):
-    with pytest.raises(UnknownResultError, match=r'^the run has no cable "wir"; did you mean "wire"\?$'):
+    with pytest.raises(UnknownResultError, match=r'^there is no cable "wir"; did you mean "wire"\?$'):
         run.section_forces("wir")
     for s, shown in ((1.6, "1.6 m"), ([0, -1], "-1 m"), ([[0]], "an array of shape (1, 1)"), (np.nan, "nan m")):
         message = f'section forces of "wire": s must lie on the cable, in [0, 1.5] m, got {shown}'

@@ -8,7 +8,7 @@ BEAM12P = Element(
     basis=(1, x, y, x * y, x**2, x**3),
     nodal_vectors=("r", "r_x", "r_y"),
     director="r_y",
-    laws=("continuum", "structural"),
+    laws=("continuum", "continuum_curved", "structural"),
     doc="fully parameterised planar ANCF beam, shear deformable",
     source="Omar & Shabana, J. Sound and Vibration 243 (2001) 565-576",
 )

@@ -8,7 +8,7 @@ CABLE12 = Element(
     basis=(1, x, x**2, x**3),
     nodal_vectors=("r", "r_x"),
     director="",
-    laws=CABLE_LAWS,
+    laws=(*CABLE_LAWS, "green_exact_curved", "engineering_exact_curved"),
     doc="spatial ANCF cable, cubic, axial and bending stiffness",
     source="Gerstmayr & Shabana, Nonlinear Dynamics 45 (2006) 109-130",
 )

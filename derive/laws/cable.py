@@ -8,7 +8,7 @@ and never through the coordinates.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
@@ -19,6 +19,7 @@ from funicular.derive import moments
 from funicular.derive.gram import Gram
 from funicular.derive.laws.cable_blocks import by_vectors, named_blocks, spread
 from funicular.derive.laws.cable_damping import Damping
+from funicular.derive.laws.cable_points import gathered, on_vectors, values
 from funicular.derive.laws.cable_section import resultants
 from funicular.derive.stages import Program, jacobian
 
@@ -37,19 +38,21 @@ class Point:
 
 @dataclass(frozen=True)
 class Term:
-    """A point's share of the energy: weight times density, its invariants by name, and their rows over Gram pairs."""
+    """A point's share of twice the energy, its invariants by name, the vectors that these are products of, and the
+    series of the vectors over the strain vectors.
+    """
 
     names: str
-    point: Point
-    density: sp.Expr
+    twice: sp.Expr
     invariants: list[sp.Expr]
-    rows: list[list[sp.Expr]]
+    vectors: list[np.ndarray]
+    series: list[tuple[sp.Float, ...]]
 
 
 class Cable(Damping):
-    """The law over an element's Gram products."""
+    """The law over an element's strain vectors."""
 
-    source = SOURCE
+    source, curved, set_up_kernel = SOURCE, False, "stiffness"
 
     def __init__(self, gram: Gram, strain: str, curvature: str):
         self.gram, self.strain, self.curvature = gram, strain, curvature
@@ -106,9 +109,9 @@ class Cable(Damping):
         program.input("l", (), "m", "length of the element")
         program.output("A", self.section_stiffness(program), "N, N m^2", STIFFNESS_DOC)
 
-    def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, w: sp.Expr) -> tuple:
-        """Stages: force and moment in space, and strain, at X."""
-        return resultants(self, program, S, c, X, w)
+    def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X, w, c0=None) -> tuple:
+        """Stages: force and moment in space, and strain, at X; c0 of a curved stress-free shape."""
+        return resultants(self, program, S, c, X, w, c0)
 
     # --- the energy through the invariants ------------------------------------------------------------------
 
@@ -116,97 +119,106 @@ class Cable(Damping):
         """From a - 1, without losing the digits of a small strain."""
         if self.strain == "green":
             return program.define(f"eps{tag}", a1 / 2)
-        length = program.define(f"len{tag}", sp.sqrt(1 + a1))
+        length = program.once(f"len{tag}", sp.sqrt(1 + a1))
+        program.once(f"inv_len{tag}", 1 / length)
         return program.define(f"eps{tag}", a1 / (1 + length), moves_as=length)  # |r'| - 1
 
-    def _invariants(self, program: Program, tag: str, point: Point, G, names: str) -> tuple[list, list]:
-        """a - 1, b, c at a point, as far as named: symbols, and rows over the pairs."""
-        every = {"a": ("a1", point.value, point.value), "b": ("b", point.value, point.slope),
-                 "c": ("c", point.slope, point.slope)}
-        rows = [self._row(*every[name][1:]) for name in names]
-        return [program.define(f"{every[name][0]}_{tag}", _dot(row, G))
-                for name, row in zip(names, rows, strict=True)], rows
+    def _at_points(self, program: Program, rule: str, names: str, points: list[Point], c: np.ndarray) -> list[tuple]:
+        """Invariants, vectors and series at each point: a - 1, b, c of r' and (l/2) r'', as far as named."""
+        kinds = {"a": ["value"], "c": ["slope"], "abc": ["value", "slope"]}[names]
+        series = [[getattr(point, kind) for point in points] for kind in kinds]
+        along = [c[m] for m in self.axis_indices]
+        every = [values(program, f"r{1 + (kind == 'slope')}{rule}", s, along)
+                 for kind, s in zip(kinds, series, strict=True)]
+        found = []
+        for g, vectors in enumerate(zip(*every, strict=True)):
+            first, last = vectors[0], vectors[-1]
+            products = {"a": ("a1", first.dot(first) - 1), "b": ("b", first.dot(last)), "c": ("c", last.dot(last))}
+            found.append(([program.define(f"{products[name][0]}{rule}_{g}", products[name][1]) for name in names],
+                          list(vectors), [s[g] for s in series]))
+        return found
 
-    def _terms(self, program: Program, A, G, w) -> Iterator[Term]:
+    def _terms(self, program: Program, A, c, w) -> Iterator[Term]:
         """Stages: the energy point by point."""
         program.stage("strain at the quadrature points")
         EA, EI = program.define("EA_l", A[0] / (2 * w)), program.define("EI_l", 2 * A[1] * w)
         if self.curvature == "exact":
-            for g, point in enumerate(self.bending_points):
-                invariants, rows = self._invariants(program, f"{g}", point, G, "abc")
-                strain, k2, _ = self.measures(program, f"_{g}", *invariants)
-                yield Term("abc", point, point.weight * (EA * strain**2 + EI * k2) / 2, invariants, rows)
+            points = self.bending_points
+            for g, (invariants, *at) in enumerate(self._at_points(program, "", "abc", points, c)):
+                axial, bending = (self._weighted(program, points, g, *stiff) for stiff in (("EA", EA), ("EI", EI)))
+                strain, k2, _ = self.measures(program, f"_{g}", *invariants, bending)
+                yield Term("abc", axial * strain**2 + k2, invariants, *at)
             return
-        for g, point in enumerate(self.axial_points):
-            invariants, rows = self._invariants(program, f"{g}", point, G, "a")
+        points = self.axial_points
+        for g, (invariants, *at) in enumerate(self._at_points(program, "", "a", points, c)):
             strain = self._axial_strain(program, f"_{g}", *invariants)
-            yield Term("a", point, point.weight * EA * strain**2 / 2, invariants, rows)
+            yield Term("a", self._weighted(program, points, g, "EA", EA) * strain**2, invariants, *at)
         program.stage("curvature at the quadrature points")
-        for g, point in enumerate(self.bending_points):
-            invariants, rows = self._invariants(program, f"b{g}", point, G, "c")
-            yield Term("c", point, point.weight * EI * invariants[0] / 2, invariants, rows)
+        points = self.bending_points
+        for g, (invariants, *at) in enumerate(self._at_points(program, "b", "c", points, c)):
+            yield Term("c", self._weighted(program, points, g, "EI", EI) * invariants[0], invariants, *at)
 
-    def measures(self, program: Program, tag: str, a1: sp.Expr, b: sp.Expr, c: sp.Expr) -> tuple:
-        """Axial strain, squared curvature, and what leads to it from |r' x r''|^2; None where it is |r''|^2."""
+    def _weighted(self, program: Program, points: list[Point], g: int, name: str, stiffness: sp.Expr) -> sp.Expr:
+        """Weight of a point times a stiffness; points that mirror each other share it."""
+        first = min(g, len(points) - 1 - g)
+        return program.once(f"{name}{len(points)}_{first}", points[first].weight * stiffness)
+
+    def measures(self, program: Program, tag: str, a1, b, c, factor=sp.S.One) -> tuple:
+        """Axial strain, factor times the squared curvature, and what leads to that from |r' x r''|^2; None where it is
+        |r''|^2.
+        """
         strain = self._axial_strain(program, tag, a1)
         if self.curvature == "linear":
-            return strain, c, None
+            return strain, factor * c, None
         a = program.define(f"a{tag}", 1 + a1)
-        scale = program.define(f"inv_a{tag}", 1 / a) ** (3 if self.strain == "green" else 2)
-        return strain, program.define(f"k2{tag}", (a * c - b * b) * scale), scale
+        if self.strain == "green":
+            inverse = program.define(f"inv_a{tag}", 1 / a)
+        else:
+            inverse = program.define(f"inv_a{tag}", sp.Symbol(f"inv_len{tag}") ** 2, moves_as=1 / a)
+        scale = program.define(f"scale{tag}", factor * inverse ** (3 if self.strain == "green" else 2))
+        return strain, program.define(f"cross2{tag}", a * c - b * b) * scale, scale
 
-    def _row(self, f: Sequence, g: Sequence) -> list[sp.Expr]:
-        """Coefficients over the pairs of the product of the series f and g."""
-        value, slope = (dict(zip(self.axis_indices, series, strict=True)) for series in (f, g))
-        row = []
-        for a, b in self.gram.pairs:
-            if a not in value or b not in value:
-                row.append(sp.S.Zero)
-            else:
-                row.append(_number(value[a] * slope[b] + (value[b] * slope[a] if a != b else 0)))
-        return row
-
-    def energy(self, program: Program, A, G, w) -> sp.Expr:
+    def energy(self, program: Program, A, c, w) -> sp.Expr:
         """U."""
-        return sum(term.density for term in self._terms(program, A, G, w))
+        return sum(term.twice for term in self._terms(program, A, c, w)) / 2
 
-    def stress(self, program: Program, A, G, w) -> list[sp.Expr]:
-        """Stages: u = dU/dG."""
-        u = [sp.S.Zero] * len(self.gram.pairs)
-        for term in list(self._terms(program, A, G, w)):
-            for d, row in zip(_first(program, term), term.rows, strict=True):
-                u = [total + d * r for total, r in zip(u, row, strict=True)]
-        program.stage("u = dU/dG")
-        return [program.define(f"u_{self.gram.pair(p)}", value) for p, value in enumerate(u)]
+    def forces(self, program: Program, A, c, w) -> np.ndarray:
+        """Stages: dU/dc on strain vectors."""
+        f = np.zeros((len(self.gram.names), self.gram.element.dim), dtype=object)
+        for names, terms in groupby(list(self._terms(program, A, c, w)), key=lambda term: term.names):
+            terms = list(terms)
+            program.stage("forces at the quadrature points")
+            forces = [on_vectors(program, f"{names}{g}", term.vectors, _first(program, term))
+                      for g, term in enumerate(terms)]
+            for k in range(len(terms[0].vectors)):
+                f[self.axis_indices] += gathered(program, f"{names}{k + 1}", [term.series[k] for term in terms],
+                                                 [force[k] for force in forces])
+        program.stage("forces on strain vectors")
+        return np.array([program.vector(f"f_{name}", v) for name, v in zip(self.gram.names, f, strict=True)])
 
-    def tangent(self, program: Program, A, G, c, w) -> np.ndarray:
+    def tangent(self, program: Program, A, c, w) -> np.ndarray:
         """Stages: d2U/dc2 over strain vectors."""
         total = np.array(0)
-        for _, terms in groupby(list(self._terms(program, A, G, w)), key=lambda term: term.names):
-            total = total + self._second(program, list(terms), c)
+        for _, terms in groupby(list(self._terms(program, A, c, w)), key=lambda term: term.names):
+            total = total + self._second(program, list(terms))
         program.stage("blocks over strain vectors")
         return named_blocks(program, self.gram.names, total, symmetric=True)
 
-    def _second(self, program: Program, terms: list[Term], c: np.ndarray) -> np.ndarray:
+    def _second(self, program: Program, terms: list[Term]) -> np.ndarray:
         """Stages: second derivatives of the terms of a rule, over strain vectors."""
         program.stage("second derivatives at the quadrature points")
-        names, factors, at_points = terms[0].names, [], []
+        names, at_points = terms[0].names, []
         for g, term in enumerate(terms):
-            point = term.point
-            series = {"a": [point.value], "c": [point.slope], "abc": [point.value, point.slope]}[names]
-            vectors = [program.vector(f"r{names[i]}{g}", sum(f * v for f, v in zip(s, c, strict=True)))
-                       for i, s in enumerate(series)]
             first = _first(program, term)
             second = jacobian(program, np.array(first), term.invariants)
-            at_points.append(by_vectors(program, f"{names}{g}", names, vectors, first, second))
-            factors.append(series)
-        return spread(program, names, factors, at_points, symmetric=True)
+            at_points.append(by_vectors(program, f"{names}{g}", names, term.vectors, first, second))
+        return spread(program, names, [term.series for term in terms], at_points, symmetric=True)
 
 
 def _first(program: Program, term: Term) -> list[sp.Expr]:
     """Derivatives of a term by its invariants."""
-    gradient = jacobian(program, np.array([term.density]), term.invariants)[0]
-    return [program.define(f"W_{s.name}", d) for s, d in zip(term.invariants, gradient, strict=True)]
+    gradient = jacobian(program, np.array([term.twice]), term.invariants)[0]
+    return [program.define(f"D_{s.name}", d) for s, d in zip(term.invariants, gradient, strict=True)]
 
 
 def _number(value) -> sp.Expr:
@@ -218,8 +230,4 @@ def _number(value) -> sp.Expr:
 def _at(p, x: float):
     """Value of a ring polynomial in X."""
     return sum(float(c) * x ** k[0] for k, c in p.terms())
-
-
-def _dot(row: Sequence[sp.Expr], G: Sequence[sp.Expr]) -> sp.Expr:
-    return sum((r * g for r, g in zip(row, G, strict=True)), sp.S.Zero)
 

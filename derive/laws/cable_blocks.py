@@ -17,29 +17,32 @@ PointBlocks = Mapping[tuple[int, int], np.ndarray]
 """Derivatives of the forces on a point's vectors i by its vectors k; (i, k) stands for its transpose (k, i) too."""
 
 
-def by_vectors(program: Program, tag: str, names: str, vectors: Sequence[np.ndarray], W: Sequence, H) -> PointBlocks:
-    """From derivatives by invariants, W and H, to those by the vectors that they are products of.
+def by_vectors(program: Program, tag: str, names: str, vectors: Sequence[np.ndarray], D: Sequence, H) -> PointBlocks:
+    """From derivatives of twice the energy by invariants, D and H, to those of the energy by the vectors that they are
+    products of.
 
     names: "a" (r1.r1) or "c" (r2.r2) of the one vector given, or "abc" (r1.r1, r1.r2, r2.r2) of two.
     """
     eye = np.eye(len(vectors[0]), dtype=int)
     if len(vectors) == 1:
         r = vectors[0]
-        along = program.vector(f"{names}1_{tag}", 4 * H[0, 0] * r)
-        return {(0, 0): named_block(program, f"K_{tag}", 2 * W[0] * eye + np.outer(r, along), symmetric=True)}
+        along = program.vector(f"{names}1_{tag}", program.define(f"H_{tag}", 2 * H[0, 0]) * r)
+        return {(0, 0): named_block(program, f"K_{tag}", D[0] * eye + np.outer(r, along), symmetric=True)}
     r1, r2 = vectors
-    second = {names[i] + names[j]: program.define(f"H_{names[i]}{names[j]}_{tag}", H[i, j])
-              for i in range(3) for j in range(i, 3)}
+    half = program.define(f"half_{tag}", D[1] / 2)
+    factors = {"aa": 2, "ab": 1, "bb": sp.Rational(1, 2), "ac": 2, "bc": 1, "cc": 2}
+    pairs = {names[i] + names[j]: H[i, j] for i in range(3) for j in range(i, 3)}
+    second = {pair: program.define(f"H_{pair}_{tag}", factors[pair] * value) for pair, value in pairs.items()}
 
     def combined(name, first, last):
         return program.vector(f"{name}_{tag}", first * r1 + last * r2)
 
-    a1, b1, c1 = (combined(f"{x}1", f * second[p], g * second[q]) for x, f, p, g, q in
-                  (("a", 4, "aa", 2, "ab"), ("b", 2, "ab", 1, "bb"), ("c", 2, "ac", 1, "bc")))
-    b2, c2 = combined("b2", second["bb"], 2 * second["bc"]), combined("c2", 2 * second["bc"], 4 * second["cc"])
-    K11 = 2 * W[0] * eye + np.outer(r1, a1) + np.outer(r2, b1)
-    K12 = W[1] * eye + np.outer(b1, r1) + 2 * np.outer(c1, r2)
-    K22 = 2 * W[2] * eye + np.outer(r1, b2) + np.outer(r2, c2)
+    a1, b1, c1 = (combined(f"{x}1", second[p], second[q]) for x, p, q in
+                  (("a", "aa", "ab"), ("b", "ab", "bb"), ("c", "ac", "bc")))
+    b2, c2 = combined("b2", second["bb"], second["bc"]), combined("c2", second["bc"], second["cc"])
+    K11 = D[0] * eye + np.outer(r1, a1) + np.outer(r2, b1)
+    K12 = half * eye + np.outer(b1, r1) + np.outer(c1, r2)
+    K22 = D[2] * eye + np.outer(r1, b2) + np.outer(r2, c2)
     return {(0, 0): named_block(program, f"K11_{tag}", K11, symmetric=True),
             (0, 1): named_block(program, f"K12_{tag}", K12),
             (1, 1): named_block(program, f"K22_{tag}", K22, symmetric=True)}

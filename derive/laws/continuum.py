@@ -20,6 +20,7 @@ from funicular.derive.stages import Program
 NAME = "continuum"
 DOC = "St. Venant-Kirchhoff continuum, orthotropic, fully integrated"
 SOURCE = "eq 5-8"
+ROWS = {3: ("D11", "D22", "D33", "D12", "D13", "D23", "G12", "G13", "G23"), 2: ("D11", "D22", "D12", "G12")}
 
 
 class Form:
@@ -87,7 +88,7 @@ class Form:
 class Continuum:
     """The law over an element's Gram products."""
 
-    name, doc, source = NAME, DOC, SOURCE
+    name, doc, source, curved, set_up_kernel = NAME, DOC, SOURCE, False, "stiffness"
 
     def __init__(self, gram: Gram):
         self.gram, self.form = gram, Form(gram)
@@ -99,10 +100,10 @@ class Continuum:
 
     def section_stiffness(self, program: Program) -> np.ndarray:
         """Input S: elastic constants integrated over the section, times even powers of y and z."""
-        rows = "D11, D22, D33, D12, D13, D23, G12, G13, G23" if self.gram.element.dim == 3 else "D11, D22, D12, G12"
-        return program.input("S", (len(rows.split(", ")), len(moments.SECTION)), "N, N m^2, N m^2, N m^4, N m^4, N m^4",
-                             f"section stiffness: integrals over A of {rows} (rows; orthotropic, axes x, y, z) times "
-                             "1, y^2, z^2, y^4, y^2 z^2, z^4 (columns)")
+        rows = ROWS[self.gram.element.dim]
+        return program.input("S", (len(rows), len(moments.SECTION)), "N, N m^2, N m^2, N m^4, N m^4, N m^4",
+                             f"section stiffness: integrals over A of {', '.join(rows)} (rows; orthotropic, axes x, y, "
+                             "z) times 1, y^2, z^2, y^4, y^2 z^2, z^4 (columns)")
 
     def set_up(self, program: Program) -> None:
         """Inputs l, S and output A, for any doubly symmetric section and any orthotropic law, alike over it or not."""
@@ -114,23 +115,37 @@ class Continuum:
         program.output("A", [program.define(f"A_{i}", a) for i, a in enumerate(A)], "N m",
                        "different non-zero entries of A")
 
-    def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, w: sp.Expr) -> tuple:
+    def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X, w, c0=None) -> tuple:
         """Stages: force and moment in space, and strain, at X."""
         section = Resultants(self.form, program, S, c, X, w)
         return section.force(), section.moment(), section.strain()
 
-    def energy(self, program: Program, A: np.ndarray, G: Sequence[sp.Expr], w: sp.Expr) -> sp.Expr:
+    def energy(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr) -> sp.Expr:
         """U."""
-        return sum(a * b for a, b in zip(self.stress(program, A, G, w), G, strict=True)) / 2
+        G = self._strain(program, A, c)
+        return sum(a * b for a, b in zip(self._stress(program, A, G), G, strict=True)) / 2
 
-    def stress(self, program: Program, A: np.ndarray, G: Sequence[sp.Expr], w: sp.Expr) -> list[sp.Expr]:
-        """Stage: u = A (G - G0)."""
-        program.stage("u = A (G - G0)")
-        return self._times(program, A, G)
+    def forces(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr) -> np.ndarray:
+        """Stages: dU/dc on strain vectors."""
+        u = self._stress(program, A, self._strain(program, A, c))
+        program.stage("forces on strain vectors")
+        return self.gram.vector_forces(program, c, u)
 
-    def tangent(self, program: Program, A: np.ndarray, G: Sequence[sp.Expr], c: np.ndarray, w: sp.Expr) -> np.ndarray:
+    def tangent(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr) -> np.ndarray:
         """Stages: d2U/dc2 over strain vectors."""
-        return blocks(self.gram, program, c, c, self._moduli(A), self.stress(program, A, G, w))
+        return blocks(self.gram, program, c, c, self._moduli(A), self._stress(program, A, self._strain(program, A, c)))
+
+    def _strain(self, program: Program, A: np.ndarray, c: np.ndarray) -> list[sp.Expr]:
+        """Stage: Gram products, less those of the stress-free shape."""
+        program.stage("Gram products G - G0")
+        return self.gram.gram(program, c)
+
+    def _stress(self, program: Program, A: np.ndarray, G: Sequence[sp.Expr]) -> list[sp.Expr]:
+        program.stage("u = A (G - G0)")
+        return self._times(program, self._moduli(A), G)
+
+    def _viscous_moduli(self, A: np.ndarray) -> dict:
+        return self._moduli(A)
 
     def _moduli(self, A: np.ndarray) -> dict:
         return {pq: A[k] for pq, k in self.form.index.items()}
@@ -141,7 +156,7 @@ class Continuum:
         program.stage("rates of the Gram products")
         dG = self.gram.gram_rate(program, c, dc)
         program.stage("u = tau A dG/dt")
-        return self._times(program, A, dG, tau), dG
+        return self._times(program, self._viscous_moduli(A), dG, tau), dG
 
     def damping_forces(self, program, A, tau, c, dc, w) -> np.ndarray:
         """Forces on strain vectors."""
@@ -155,20 +170,19 @@ class Continuum:
         program.stage("b = tau (dc/dt + rate c)")
         b = np.array([program.vector(f"b_{name}", tau * (dc[m] + rate * c[m]))
                       for m, name in enumerate(self.gram.names)])
-        return blocks(self.gram, program, c, b, self._moduli(A), u)
+        return blocks(self.gram, program, c, b, self._viscous_moduli(A), u)
 
     def dissipation(self, program, A, tau, c, dc, w) -> sp.Expr:
         """Power."""
         u, dG = self._viscous(program, A, tau, c, dc)
         return sum(a * b for a, b in zip(u, dG, strict=True))
 
-    def _times(self, program: Program, A, strain, scale=sp.S.One) -> list[sp.Expr]:
+    def _times(self, program: Program, moduli: dict, strain, scale=sp.S.One) -> list[sp.Expr]:
         u = []
         for p in range(len(self.gram.pairs)):
-            alike: dict[int, sp.Expr] = {}
+            alike: dict[sp.Expr, sp.Expr] = {}
             for q in range(len(self.gram.pairs)):
-                if (p, q) in self.form.index:
-                    k = self.form.index[p, q]
-                    alike[k] = alike.get(k, sp.S.Zero) + strain[q]
-            u.append(program.define(f"u_{self.gram.pair(p)}", scale * sum(A[k] * s for k, s in alike.items())))
+                if (p, q) in moduli:
+                    alike[moduli[p, q]] = alike.get(moduli[p, q], sp.S.Zero) + strain[q]
+            u.append(program.define(f"u_{self.gram.pair(p)}", scale * sum(k * s for k, s in alike.items())))
         return u

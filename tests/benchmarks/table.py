@@ -7,13 +7,18 @@ import csv
 from pathlib import Path
 
 
-def arguments(description: str, **numbers: tuple[int, str]) -> argparse.Namespace:
-    """The command line: --out FILE.csv, and integers by name with default and help."""
-    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=Path, metavar="FILE.csv", help="write the table here as well")
+def parser(description: str, **numbers: tuple[int, str]) -> argparse.ArgumentParser:
+    """A command line: --out FILE.csv, and integers by name with default and help."""
+    made = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    made.add_argument("--out", type=Path, metavar="FILE.csv", help="write the table here as well")
     for name, (default, text) in numbers.items():
-        parser.add_argument(f"--{name}", type=int, default=default, help=f"{text} (default {default})")
-    return parser.parse_args()
+        made.add_argument(f"--{name}", type=int, default=default, help=f"{text} (default {default})")
+    return made
+
+
+def arguments(description: str, **numbers: tuple[int, str]) -> argparse.Namespace:
+    """What was given on the command line of `parser`."""
+    return parser(description, **numbers).parse_args()
 
 
 def show(rows: list[dict], out: Path | None = None) -> None:

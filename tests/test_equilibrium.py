@@ -1,0 +1,147 @@
+"""Equilibrium: states of rest against closed forms, limit points, what does not exist, and runs that start there."""
+
+import numpy as np
+import pytest
+from funicular import General, Material, Scene
+from funicular.errors import EquilibriumError
+from scenery import add_cable, add_rider
+from scipy.optimize import brentq
+
+RISE, STIFFNESS = 0.2, 1e6
+
+
+def truss(load: float) -> Scene:
+    """Two hinged bars, 1 m to each side and RISE high, so stout that they do not buckle; engineering strain."""
+    scene = Scene(gravity=(0, 0, 0))
+    bar = {"elements": 1, "element": "cable8p", "strain": "engineering",
+           "section": General(area=1e-2, second_moment_yy=1e-4, second_moment_zz=1e-4),
+           "material": Material(youngs_modulus=STIFFNESS / 1e-2, poisson_ratio=0, density=1000)}
+    left = scene.cable("left", start=(-1, 0, 0), end=(0, RISE, 0), **bar)
+    right = scene.cable("right", start=(0, RISE, 0), end=(1, 0, 0), **bar)
+    length = np.hypot(1, RISE)
+    scene.pin(left, s=0)
+    scene.pin(right, s=length)
+    scene.join(left, s=length, to=right, at=0, rotation="free")
+    scene.force(left, s=length, value=(0, -load, 0))
+    return scene
+
+
+def load_at(height):
+    """Load that holds the truss's apex at a height (m)."""
+    long, now = np.hypot(1, RISE), np.hypot(1, height)
+    return 2 * STIFFNESS * (long - now) / long * height / now
+
+
+def apex(state) -> float:
+    return state["left.position"][-1, 1]
+
+
+def test_arc_length_passes_both_limit_points():
+    """Every state on the path is on the closed curve, also where the load falls and turns its sign."""
+    state = truss(4000.0).equilibrium(method="arc_length", load_steps=10)
+    heights = np.array([apex(s) for s in state.path])
+    fractions = np.array([s.load_fraction for s in state.path])
+    np.testing.assert_allclose(4000 * fractions, load_at(heights), atol=1e-5)
+    limit = load_at(np.linspace(0, RISE, 1001)).max() / 4000
+    rising = np.sign(np.diff(fractions))
+    assert np.count_nonzero(np.diff(rising)) == 2
+    assert fractions[: np.argmin(rising) + 1].max() == pytest.approx(limit, rel=1e-3)
+    assert fractions.min() == pytest.approx(-limit, rel=1e-2)
+    assert state.load_fraction == fractions[-1] == 1
+    assert load_at(apex(state)) == pytest.approx(4000, rel=1e-9)
+    assert apex(state) < -RISE
+
+
+def test_load_steps_snap_through_where_the_path_turns():
+    state = truss(4000.0).equilibrium(load_steps=10)
+    heights = np.array([apex(s) for s in state.path])
+    np.testing.assert_allclose([s.load_fraction for s in state.path], np.linspace(0.1, 1, 10))
+    np.testing.assert_allclose(load_at(heights), np.linspace(400, 4000, 10), rtol=1e-9)
+    assert np.all(heights[:7] > 0.1)
+    assert np.all(heights[7:] < -RISE)
+
+
+def test_a_run_from_equilibrium_stays():
+    """Pre-tension, a spring, a load, a rider that rests at the lowest point: all accelerations are zero."""
+    scene = Scene()
+    add_cable(scene, pins=(0, 1.49), rest_length=1.49, elements=6)
+    add_rider(scene, s=0.6, speed=0.0)
+    scene.spring(a=("wire", 0.745), b=(0.5, 0.5, 0.1), stiffness=200.0, length=0.2)
+    scene.force("wire", s=1.2, value=(0, 0, 3))
+    state = scene.equilibrium()
+    assert abs(state["trolley.force"] @ [1, 0, 0]) < 1e-6, "a frictionless rider rests where the cable is level"
+    run = scene.run(0.2, step=1e-3, initial=state)
+    assert np.ptp(run["A.position"], axis=0).max() < 1e-9
+    assert np.ptp(run["wire.nodal_vectors"], axis=0).max() < 1e-9
+    np.testing.assert_allclose(run["A.acceleration"], 0, atol=1e-5)
+    np.testing.assert_allclose(run["trolley.force"][0], state["trolley.force"], atol=1e-5)
+
+
+def test_supports_carry_the_weight():
+    scene = Scene()
+    cable = add_cable(scene, elements=4)
+    add_rider(scene, s=0.6, speed=0.0)
+    state = scene.equilibrium()
+    weight = 9.81 * (cable.section.area * 4200 * 1.5 + 1.0)
+    total = state["wire@0.force"] + state["wire@1.5.force"]
+    np.testing.assert_allclose(total, [0, weight, 0], atol=1e-7 * weight)
+
+
+def test_a_slack_cable_hangs():
+    """20 % longer than its span, as soft as a chain: a catenary, its sag by the closed form."""
+    scene = Scene()
+    u = np.linspace(0, 1, 41)[:, None]
+    drawn = np.hstack([u, -1.2 * u * (1 - u), 0 * u])
+    cable = scene.cable("chain", points=drawn, elements=40, element="cable12", rest="straight", rest_length=1.2,
+                        section=General(area=1e-4, second_moment_yy=1e-15, second_moment_zz=1e-15),
+                        material=Material(youngs_modulus=1e11, poisson_ratio=0, density=1e4))
+    scene.pin(cable, s=0)
+    scene.pin(cable, s=1.2)
+    state = scene.equilibrium()
+    a = brentq(lambda a: 2 * a * np.sinh(0.5 / a) - 1.2, 0.1, 10)
+    sag = a * (np.cosh(0.5 / a) - 1)
+    assert -state["chain.position"][:, 1].min() == pytest.approx(sag, rel=1e-4)
+
+
+def test_none_exists():
+    """A body that falls."""
+    scene = Scene()
+    add_cable(scene)
+    scene.rigid_body("stone", mass=1.0, inertia=(1e-3, 1e-3, 1e-3), position=(0, 1, 0))
+    with pytest.raises(EquilibriumError, match="no equilibrium was reached: the path from the drawn state ends at "
+                                               r"[0-9.]+ % of the load") as refused:
+        scene.equilibrium()
+    assert 0 <= refused.value.load_fraction < 1
+    assert refused.value.state["stone.position"] == pytest.approx([0, 1, 0], abs=10)
+    assert refused.value.state.load_fraction == refused.value.load_fraction
+
+
+def test_beyond_the_limit_of_a_strut_in_few_iterations():
+    """What is not reached is kept: the state is one of rest under the part of the load that is named."""
+    with pytest.raises(EquilibriumError) as refused:
+        truss(4000.0).equilibrium(max_iterations=1)
+    state = refused.value.state
+    assert state.load_fraction < 1
+    assert load_at(apex(state)) == pytest.approx(4000 * state.load_fraction, abs=1e-3)
+
+
+def test_tolerance_is_met():
+    scene = Scene()
+    add_cable(scene)
+    loose, tight = (scene.equilibrium(tolerance=t) for t in (1e-3, 1e-12))
+    assert tight.iterations > loose.iterations
+    assert tight.residual < 1e-6
+
+
+def test_section_forces_at_rest():
+    """A weight at the end of a rope: its tension everywhere, the rope's own below."""
+    scene = Scene()
+    rope = scene.cable("rope", start=(0, 0, 0), end=(0, -2, 0), up=(1, 0, 0), elements=4, element="cable12",
+                       section=General(area=1e-4, second_moment_yy=1e-9, second_moment_zz=1e-9),
+                       material=Material(youngs_modulus=1e9, poisson_ratio=0, density=1e4))
+    scene.pin(rope, s=0)
+    scene.force(rope, s=2.0, value=(0, -50, 0))
+    forces = scene.equilibrium().section_forces("rope", s=[0.25, 1.25])
+    assert forces["tension"].dims == ("s",)
+    assert forces["force"].dims == ("s", "xyz")
+    np.testing.assert_allclose(forces["tension"], 50 + 9.81 * (2 - forces["s"]), rtol=1e-4)
