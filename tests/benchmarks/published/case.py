@@ -1,0 +1,110 @@
+"""What a published case is: numbers with their source, and the scene that finds them with an element and a law."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cache
+from typing import TypeVar
+
+import numpy as np
+
+Value = TypeVar("Value")
+
+
+@dataclass(frozen=True)
+class Kind:
+    """An element and its elastic law, by the names that a scene takes."""
+
+    element: str
+    law: str
+
+    def __str__(self) -> str:
+        return f"{self.element} {self.law}"
+
+    @property
+    def is_cable(self) -> bool:
+        """Whether axial and bending stiffness are all that it has."""
+        return self.element.startswith("cable")
+
+    @property
+    def is_planar(self) -> bool:
+        """Whether it moves in the plane z = 0 only."""
+        return self.element.endswith("p")
+
+    @property
+    def is_green(self) -> bool:
+        """Whether it is a cable with green strain, whose curvature is by length as deformed."""
+        return self.law.startswith("green")
+
+
+CABLES = [Kind(element, law) for element in ("cable12", "cable18", "cable8p")
+          for law in ("green_exact", "engineering_exact")]
+BEAMS = [Kind(element, law) for element in ("beam24", "beam12p")
+         for law in ("structural", "poisson_split", "continuum")]
+STRUCTURAL = [kind for kind in BEAMS if kind.law == "structural"]
+SPATIAL_BEAMS = [kind for kind in BEAMS if not kind.is_planar]
+KINDS = CABLES + BEAMS
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A published number, and what errors are relative to: its own size if no scale is given."""
+
+    name: str
+    unit: str
+    reference: float
+    scale: float | None = None
+
+    def error(self, value: float) -> float:
+        """Deviation of a value over the scale."""
+        return abs(value - self.reference) / (abs(self.reference) if self.scale is None else self.scale)
+
+
+def lookup(table: dict[str, Value], kind: Kind, default: Value) -> Value:
+    """What a table says of an element with its law, else of its law, else of the element."""
+    return table.get(str(kind), table.get(kind.law, table.get(kind.element, default)))
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """A published case.
+
+    quantities and values: of a kind and a number of elements, the numbers to find and those that a scene finds;
+    elements: how many the table takes, own_elements where a kind takes others; ordered: whose order of convergence the
+    table has, from half as many elements. notes: what an error is due to; cannot: why there is no number. Both,
+    and own_elements, by kind, law or element, see `lookup`.
+    """
+
+    name: str
+    title: str
+    source: str
+    quantities: Callable[[Kind, int], list[Quantity]]
+    values: Callable[[Kind, int], tuple[float, ...]]
+    elements: int
+    kinds: list[Kind]
+    own_elements: dict[str, int] = field(default_factory=dict)
+    ordered: list[Kind] = field(default_factory=list)
+    notes: dict[str, str] = field(default_factory=dict)
+    cannot: dict[str, str] = field(default_factory=dict)
+
+    def count(self, kind: Kind) -> int:
+        """Number of elements in the table."""
+        return lookup(self.own_elements, kind, self.elements)
+
+    @cache  # noqa: B019 - cases live as long as the program
+    def found(self, kind: Kind, elements: int) -> list[tuple[Quantity, float]]:
+        """The quantities and what the scene finds, the worst first."""
+        values = map(float, self.values(kind, elements))
+        pairs = zip(self.quantities(kind, elements), values, strict=True)
+        return sorted(pairs, key=lambda pair: -pair[0].error(pair[1]))
+
+    def error(self, kind: Kind, elements: int | None = None) -> float:
+        """Largest error of the quantities."""
+        quantity, value = self.found(kind, elements or self.count(kind))[0]
+        return quantity.error(value)
+
+    def observed_order(self, kind: Kind) -> float:
+        """Order of convergence in the length of the elements: error ~ length^order."""
+        n = self.count(kind)
+        return float(np.log2(self.error(kind, n // 2) / self.error(kind, n)))
