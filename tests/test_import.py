@@ -5,6 +5,8 @@ import resource
 import subprocess
 import sys
 
+import numpy as np
+
 HEAVY = {"sympy", "jinja2", "matplotlib", "xarray", "h5py", "h5netcdf", "scipy", "pandas", "rich", "typer"}
 
 
@@ -32,9 +34,11 @@ def cpu_seconds(code: str) -> float:
     return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
-def test_it_takes_less_than_a_quarter_second():
-    bare = min(cpu_seconds("pass") for _ in range(3))
-    assert min(cpu_seconds("import funicular") for _ in range(7)) - bare < 0.25  # measured 0.16
+def test_most_of_its_time_is_that_of_numpy_and_pydantic():
+    """Measured on a quiet machine: 0.16 s, of which 0.11 s for these two. Taken in turns, as seconds tell of the load."""
+    codes = ("pass", "import numpy; from pydantic import BaseModel; type('Model', (BaseModel,), {})", "import funicular")
+    bare, needed, whole = np.min([[cpu_seconds(code) for code in codes] for _ in range(7)], axis=0)
+    assert whole - bare < 1.7 * (needed - bare)
 
 
 def test_everything_it_announces_is_there():
