@@ -112,6 +112,7 @@ class Table(Signal):
         """See `Signal.pieces`."""
         time, values = np.array(self.time), np.array(self.values)
         breaks = np.array([time[0] - 1, *time, time[-1] + 1])
+        breaks[-2] = np.nextafter(time[-1], np.inf)  # a run that ends with the table ends on its slope
         coefficients = np.zeros((len(breaks) - 1, DEGREE + 1))
         coefficients[0, 0], coefficients[1:, 0] = values[0], values
         if self.interpolation == "linear":

@@ -82,3 +82,13 @@ def test_numbers_and_tables_are_signals():
 def test_refused(make, complaint):
     with pytest.raises(SceneError, match="^" + re.escape(complaint) + "$"):
         make()
+
+
+@pytest.mark.parametrize("interpolation", ["cubic", "linear"])
+def test_a_table_ends_on_its_slope(interpolation):
+    """A motion that a run ends with does not stop with a jolt; after it the value stays."""
+    table = Table(time=[0, 1, 2, 3], value=[0, 2, 4, 6], interpolation=interpolation)
+    assert table.value(3.0, derivative=1) == pytest.approx(2)
+    assert table.value(3.0) == pytest.approx(6)
+    assert table.value(3.1, derivative=1) == 0
+    assert table.value(3.1) == 6
