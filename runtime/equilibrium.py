@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
+from funicular.errors import SceneError, UnknownResultError, near
 from funicular.recording import body_state, join_force, spatial, spring_state, support_reaction
 
 if TYPE_CHECKING:
@@ -15,9 +16,15 @@ if TYPE_CHECKING:
     from funicular.scene import Scene
 
 
+def layout(scene: Scene) -> dict[str, list]:
+    """What must be the same in two scenes for a state of one to be a state of the other."""
+    return {"cables": [(c.name, c.element, c.elements, c.length) for c in scene.cables.values()],
+            "bodies": list(scene.bodies), "slides": list(scene.slides), "springs": list(scene.springs)}
+
+
 @dataclass
 class Equilibrium:
-    """A state of rest of a scene.
+    """A state of rest of a scene; whether it is a stable one, the growth rates of `Scene.modes` about it tell.
 
     Quantities by name as in a `Run`, without the time: ``state["wire.nodal_vectors"]`` (node, vector, 3),
     ``state["A.position"]``, ``state["trolley.s"]``, ``state["wire@0.force"]`` ... load_fraction: how much of the load
@@ -35,6 +42,7 @@ class Equilibrium:
     residual: float
     quantities: dict[str, np.ndarray] = field(default_factory=dict)
     path: list[Equilibrium] = field(default_factory=list, repr=False)
+    layout: dict[str, list] = field(default_factory=dict, repr=False)
 
     @classmethod
     def of(cls, scene: Scene, path, fraction: float) -> Equilibrium:
@@ -44,16 +52,25 @@ class Equilibrium:
         state = cls(scene, path.model, path.keep(), path.engine.reaction(), fraction, path.iterations,
                     float(np.max(np.abs(left) / units, initial=0.0)))
         state.quantities = state._quantities()
-        state.path = [*path.history, state]
+        state.path, state.layout = [*path.history, state], layout(scene)
         return state
 
-    def __getitem__(self, name: str) -> np.ndarray:
-        """A quantity by its name. Raises KeyError naming the near ones."""
-        from funicular.errors import near
+    def keys(self) -> list[str]:
+        """Names of all quantities."""
+        return list(self.quantities)
 
+    def __getitem__(self, name: str) -> np.ndarray:
+        """A quantity by its name. Raises UnknownResultError naming the near ones."""
         if name not in self.quantities:
-            raise KeyError(f'no quantity "{name}"; {near(name, self.quantities)}')
+            raise UnknownResultError(f'no result "{name}"; {near(name, self.quantities)}')
         return self.quantities[name]
+
+    def check_fits(self, scene: Scene) -> None:
+        """Raise SceneError where the state is of a scene with other parts; supports and loads may be others."""
+        for kind, here in layout(scene).items():
+            if here != self.layout[kind]:
+                raise SceneError("scene", f"the state to start from is of another scene: its {kind} are "
+                                 f"{self.layout[kind]}, here they are {here}", "take an equilibrium of this scene")
 
     def section_forces(self, cable: Cable | str, s=None) -> xarray.Dataset:
         """Forces and moments in sections of ``cable`` as `Run.section_forces` has them, over s alone."""

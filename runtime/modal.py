@@ -55,7 +55,7 @@ def modes(scene: Scene, n: int, about: Equilibrium | None = None) -> Modes:
     model = build(scene)
     engine = Engine(model)
     engine.place(0.0, **({} if about is None else about.placed))
-    K, constraints = _condensed(engine.matrix(0.0, 0.0, 1.0), model)
+    K, constraints = condensed(engine.matrix(0.0, 0.0, 1.0), model)
     size = K.shape[0]
     M = engine.matrix(1.0, 0.0, 0.0)[:size, :size]
     possible = size - constraints.shape[0]
@@ -65,16 +65,17 @@ def modes(scene: Scene, n: int, about: Equilibrium | None = None) -> Modes:
     squares, vectors = _solve(K, M, constraints, n)
     dofs = np.array([engine.spread(np.append(x, np.zeros(model.n_band + model.n_border_dof + model.n_extra - len(x))))
                      for x in vectors.T])
-    return _named(model, np.where(np.abs(squares) < ROUNDING * _fastest(K, M), 0.0, squares), dofs)
+    return _named(model, np.where(np.abs(squares) < ROUNDING * fastest(K, M), 0.0, squares), dofs)
 
 
-def _fastest(K: csc_array, M: csc_array) -> float:
-    """rad²/s², about the square of the highest frequency."""
-    heavy = M.diagonal() > 0
-    return float(np.max(np.abs(K.diagonal()[heavy]) / M.diagonal()[heavy], initial=0.0))
+def fastest(K: csc_array, M: csc_array) -> float:
+    """rad²/s², about the square of the highest frequency; M may have more unknowns after those of K."""
+    inertia = M.diagonal()[: K.shape[0]]
+    heavy = inertia > 0
+    return float(np.max(np.abs(K.diagonal()[heavy]) / inertia[heavy], initial=0.0))
 
 
-def _condensed(full: csc_array, model) -> tuple[csc_array, csc_array]:
+def condensed(full: csc_array, model) -> tuple[csc_array, csc_array]:
     """Stiffness over coordinates and arc-lengths, springs' forces eliminated; the joints' constraints on them."""
     n = model.n_band + model.n_border_dof
     dim = model.dim

@@ -214,6 +214,8 @@ class Run:
     def section_forces(self, cable: Cable | str, s=None) -> xarray.Dataset:
         """Forces and moments in sections of ``cable``, at arc-lengths ``s`` (n,) in m; none given: along all of it.
 
+        Those of the elastic law: what Kelvin-Voigt damping adds is not in them.
+
         Returns a Dataset over (time, s): force and moment, on the part before the cut along the ground's axes (xyz), in
         N and N m; tension, shear and strain; curvature of cables; components along the section's axes of beams. At a
         node, where the forces of an element may jump, they are those of the element that begins there.

@@ -267,7 +267,7 @@ class Scene:
         Raises SceneError, ResultFileError, EquilibriumError; EndOfCableError and ConvergenceError, whose ``run`` holds
         everything up to then. Ctrl-C returns what was computed, with a `FunicularWarning`.
         """
-        state = None if initial is None or isinstance(initial, str) else _equilibrium_state(initial)
+        state = None if initial is None or isinstance(initial, str) else _equilibrium_state(self, initial)
         given = {
             "duration": duration,
             "tol": tol,
@@ -331,7 +331,7 @@ class Scene:
         Raises SceneError.
         """
         settings = ModeSettings(n=n)
-        state = None if about is None else _equilibrium_state(about)
+        state = None if about is None else _equilibrium_state(self, about)
         self.check()
 
         from funicular.modal import modes
@@ -429,9 +429,10 @@ def _named(name: str | None) -> dict:
     return {} if name is None else {"name": name}
 
 
-def _equilibrium_state(state: Equilibrium) -> Equilibrium:
+def _equilibrium_state(scene: Scene, state: Equilibrium) -> Equilibrium:
     from funicular.static import Equilibrium
 
     if not isinstance(state, Equilibrium):
         raise SceneError("scene", f"the state to start from must be one that equilibrium() returned, got {state!r}")
+    state.check_fits(scene)
     return state

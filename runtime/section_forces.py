@@ -1,4 +1,4 @@
-"""Section forces: what one part of a cable exerts on the other across a cut."""
+"""Section forces: what one part of a cable exerts on the other across a cut, by the elastic law (not by damping)."""
 
 from __future__ import annotations
 
@@ -92,7 +92,10 @@ def dataset(state: Run | Equilibrium, name: str, s=None) -> xarray.Dataset:
     cable = cables[name]
     if s is None:
         s = np.linspace(0, cable.length, PLACES * cable.elements + 1)
-    s = np.atleast_1d(np.asarray(s, dtype=float))
+    try:
+        s = np.atleast_1d(np.asarray(s, dtype=float))
+    except (TypeError, ValueError):
+        raise FunicularError(f'section forces of "{name}": s must be arc-lengths in m, got {s!r}') from None
     off = (s < -EXACT * cable.length) | (s > (1 + EXACT) * cable.length) | ~np.isfinite(s)
     if s.ndim != 1 or off.any():
         wrong = show(float(s[off][0]), "m") if s.ndim == 1 else f"an array of shape {s.shape}"

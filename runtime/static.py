@@ -12,7 +12,9 @@ from collections.abc import Callable
 import numpy as np
 from funicular.equilibrium import Equilibrium
 from funicular.errors import EquilibriumError
+from funicular.modal import condensed, fastest
 from funicular.model import build
+from funicular.recording import end_points
 from funicular.scene import Scene
 from funicular.settings import EquilibriumSettings
 from scipy.sparse import csc_array
@@ -44,18 +46,21 @@ class Path:
         self.weight = np.zeros(len(self.start))  # forces and arc-lengths do not count in the size of a correction
         self.weight[place[free]] = self.model.weight[free]
         self.size = self._extent()
-        stiffness = self.engine.matrix(0.0, 0.0, 1.0).diagonal()
-        inertia = self.engine.matrix(1.0, 0.0, 0.0).diagonal()
-        heavy = inertia > 0
-        # rad²/s², of the fastest vibration: what is left free (a rider that may turn about its rope) has no stiffness
-        self.fastest = float(np.max(np.abs(stiffness[heavy]) / inertia[heavy], initial=0.0))
+        self.mass = self.engine.matrix(1.0, 0.0, 0.0)
+        stiffness, _ = condensed(self.engine.matrix(0.0, 0.0, 1.0), self.model)
+        # rad²/s²: what is left free (a rider that may turn about its rope) has no stiffness
+        self.fastest = fastest(stiffness, self.mass)
         self.iterations = 0
         self.history: list[Equilibrium] = []
 
     def _extent(self) -> float:
         """The scene's size in m."""
-        lengths = [cable.length * cable.n_elements for cable in self.model.cables]
-        return max([*lengths, *np.abs(self.model.q[[b.configuration for b in self.model.rigids]]), 1e-30])
+        model = self.model
+        lengths = [cable.length * cable.n_elements for cable in model.cables]
+        lengths += [np.linalg.norm(model.q[b.configuration : b.configuration + model.dim]) for b in model.rigids]
+        gaps = [end_points(model, s.ends[1], model.q[None]) - end_points(model, s.ends[0], model.q[None])
+                for s in model.springs]
+        return max([*lengths, *(np.linalg.norm(gap) for gap in gaps)], default=0.0) or 1.0
 
     def residual(self) -> np.ndarray:
         """R at the static state."""
@@ -67,7 +72,7 @@ class Path:
 
     def factor(self, inertia: float = 0.0) -> Callable[[np.ndarray], np.ndarray]:
         """Solver of the tangent, with some mass added."""
-        return _solver(self.engine.matrix(inertia or FREE * self.fastest, 0.0, 1.0))
+        return _solver(self.engine.matrix(0.0, 0.0, 1.0) + (inertia or FREE * self.fastest) * self.mass)
 
     def length(self, change: np.ndarray) -> float:
         """Size of a correction in m."""
@@ -162,9 +167,10 @@ def equilibrium(scene: Scene, settings: EquilibriumSettings) -> Equilibrium:
     reached = _follow(path) if settings.method == "arc_length" else _load(path)
     state = Equilibrium.of(scene, path, reached)
     if reached < 1.0:
-        remedy = "" if settings.method == "arc_length" else (
-            '; smaller steps of the load do not converge either: it may be a limit point, which method="arc_length" '
-            "passes, or take more load_steps or max_iterations")
+        remedy = ('; take method="newton", which also relaxes, or draw the scene nearer to its rest'
+                  if settings.method == "arc_length" else
+                  "; smaller steps of the load do not converge either: something may be free to move away, or it is a "
+                  'limit point, which method="arc_length" passes; or take more load_steps or max_iterations')
         raise EquilibriumError(
             f"no equilibrium was reached: the path from the drawn state ends at {100 * reached:.4g} % of the load"
             f"{remedy}; the state there is kept in .state", state, reached)
@@ -218,7 +224,7 @@ def _follow(path: Path) -> float:
                 return 1.0
             path.restore(kept)
             fraction = _correct(path, reached, rate, forward, direction)
-            if fraction is not None:
+            if fraction is not None and fraction < 1.0:
                 break
             path.restore(kept)
             step *= 0.25

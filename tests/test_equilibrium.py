@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from funicular import General, Material, Scene
-from funicular.errors import EquilibriumError
+from funicular import Circle, General, Material, Scene
+from funicular.errors import EquilibriumError, SceneError, UnknownResultError
 from scenery import add_cable, add_rider
 from scipy.optimize import brentq
 
@@ -150,3 +150,51 @@ def test_section_forces_at_rest():
     assert forces["tension"].dims == ("s",)
     assert forces["force"].dims == ("s", "xyz")
     np.testing.assert_allclose(forces["tension"], 50 + 9.81 * (2 - forces["s"]), rtol=1e-4)
+
+
+def spring_mid_span(element: str, **given) -> Scene:
+    scene = Scene()
+    scene.cable("w", start=(0, 0, 0), end=(1, 0, 0), elements=4, element=element, section=Circle(radius=0.01),
+                material=Material(youngs_modulus=1e8, poisson_ratio=0.3, density=1000), **given)
+    scene.clamp("w", s=0)
+    scene.clamp("w", s=1)
+    scene.spring(("w", 0.5), (0.5, -1, 0), stiffness=100, length=0.9, name="tie")
+    return scene
+
+
+@pytest.mark.parametrize("method", ["newton", "arc_length"])
+@pytest.mark.parametrize(("element", "given"), [("beam24", {"law": "structural"}), ("cable12", {}), ("cable8p", {})])
+def test_springs_pull_by_their_law(element, given, method):
+    state = spring_mid_span(element, **given).equilibrium(method=method)
+    assert state["tie.tension"] == pytest.approx(100 * (state["tie.length"] - 0.9), rel=1e-9)
+    assert state.residual < 1e-8
+
+
+@pytest.mark.parametrize("at", [(0, 0, 0), (0.1, 0, 0)])
+def test_a_body_hangs_on_its_spring(at):
+    """Below the anchor by the stretched length, turned until the attachment is above its centre."""
+    scene = Scene()
+    scene.rigid_body("B", mass=1, inertia=(1e-3, 1e-3, 1e-3), position=(0, -1, 0))
+    scene.spring(("B", at), (0, 0, 0), stiffness=100, length=1.0, name="tie")
+    state = scene.equilibrium()
+    np.testing.assert_allclose(state["B.position"], [0, -1 - 9.81 / 100 - np.linalg.norm(at), 0], atol=1e-9)
+    assert state["tie.tension"] == pytest.approx(9.81)
+
+
+def test_a_trolley_rolls_to_the_lowest_point():
+    scene = Scene()
+    add_cable(scene, elements=4)
+    add_rider(scene, s=0.6, speed=0.0)
+    assert scene.equilibrium()["trolley.s"] == pytest.approx(0.75, abs=1e-9)
+
+
+def test_a_state_of_another_scene_is_refused():
+    state = spring_mid_span("cable12").equilibrium()
+    other = Scene()
+    add_cable(other)
+    for use in (lambda: other.run(0.1, initial=state), lambda: other.modes(1, about=state)):
+        with pytest.raises(SceneError, match="the state to start from is of another scene: its cables are"):
+            use()
+    with pytest.raises(UnknownResultError, match='no result "tie.tensoin"; did you mean "tie.tension"'):
+        state["tie.tensoin"]
+    assert "tie.tension" in state.keys()

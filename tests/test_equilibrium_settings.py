@@ -16,7 +16,8 @@ def solvers(monkeypatch):
     static, modal, model = (ModuleType(f"funicular.{name}") for name in ("static", "modal", "model"))
 
     class Equilibrium:
-        pass
+        def check_fits(self, scene):
+            pass
 
     def equilibrium(scene, settings):
         calls.static.append(settings)

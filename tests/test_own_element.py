@@ -230,6 +230,12 @@ def test_a_law_that_cannot_be_is_told_its_property(tmp_path, law, told, capsys):
     assert told in message, message
 
 
+def test_a_law_without_a_name(tmp_path):
+    file = spec(tmp_path, law="    pass\n")
+    file.write_text(file.read_text().replace('name, like = "own", "green_linear"', 'like = "green_linear"'))
+    assert "law Own has no class attribute name" in refused(file, tmp_path / "library")
+
+
 def test_two_elements_of_one_name(tmp_path):
     file = spec(tmp_path)
     file.write_text(file.read_text() + "from dataclasses import replace\nTWIN = replace(MINE, doc='another')\n")

@@ -52,6 +52,12 @@ def _names(element: Element) -> Iterator[tuple[str, str]]:
     name = element.name
     if not re.fullmatch(r"[a-zA-Z][a-zA-Z0-9_]*", name) or keyword.iskeyword(name) or name in C_WORDS:
         yield "the name must be letters, digits and _, begin with a letter, and be no word of C or Python", ""
+    classes = [law for law in element.laws if isinstance(law, type)]
+    nameless = [law.__name__ for law in classes if not isinstance(getattr(law, "name", None), str)]
+    if nameless:
+        yield (f"law {nameless[0]} has no class attribute name",
+               'such as name = "own"; what __init__ sets comes too late')
+        return
     for of_own in (name, *(f"{name}_{law_name(law)}" for law in element.laws)):
         if of_own in taken():
             yield f'funicular has a family "{of_own}" of its own', "give another name"
