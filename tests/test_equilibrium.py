@@ -195,6 +195,6 @@ def test_a_state_of_another_scene_is_refused():
     for use in (lambda: other.run(0.1, initial=state), lambda: other.modes(1, about=state)):
         with pytest.raises(SceneError, match="the state to start from is of another scene: its cables are"):
             use()
-    with pytest.raises(UnknownResultError, match='no result "tie.tensoin"; did you mean "tie.tension"'):
+    with pytest.raises(UnknownResultError, match=r'no result "tie\.tensoin"; did you mean "tie\.tension"'):
         state["tie.tensoin"]
     assert "tie.tension" in state.keys()
