@@ -45,8 +45,8 @@ class EquilibriumSettings(Part):
     """How a static equilibrium is sought.
 
     load_steps: in how many steps the loads are raised from 0, more where one does not converge; tolerance: of the
-    forces out of balance, relative to the largest forces in the scene; max_iterations of a load step; method:
-    "newton", or "arc_length", which also follows a path on which the load falls again.
+    last correction of positions, relative to the size of the scene; max_iterations of a load step; method: "newton",
+    or "arc_length", which also follows a path on which the load falls again.
     """
 
     kind: ClassVar[str] = "equilibrium"
