@@ -41,7 +41,7 @@ class Tangent(Forces):
         forces = np.array([*(f for slope in self.slopes for f in slope),
                            *(moment[k] for moment in self.moments for k in self.law.spins)])
         hessian = self._hessian()
-        for column in range(first, count):
+        for column in [*(configuration.stretch(1, i) for i in self.law.axes), *range(first, count)]:
             motion = configuration.motions[column]
             moved = self._scalars_moved(motion)
             by_scalar = {v: self.program.define(f"dV_{s.name}_{column}", row.dot(moved))
@@ -49,7 +49,7 @@ class Tangent(Forces):
             rate = Derivation(self.program, f"turn{column}", self.held | motion | by_scalar)
             for row in range(column + 1):
                 self.parts[row, column] = self.program.define(f"P_{row}_{column}", rate(forces[row]))
-        self._mirror(first)
+        self._mirror()
         self.velocity, self.late, self.across = None, None, {}
 
     def _scalars_moved(self, motion: dict[sp.Symbol, sp.Expr]) -> np.ndarray:
@@ -59,10 +59,10 @@ class Tangent(Forces):
                    for a, b in zip(*configuration.between, strict=True) if a.is_Symbol]
         return np.array([*of_mean, *(motion[g] for g in configuration.gibbs if g.is_Symbol)])
 
-    def _mirror(self, first: int) -> None:
+    def _mirror(self) -> None:
         """Motions commute but for the spins of one frame, of which (k, l) and (l, k) differ by the third."""
         for row in range(len(self.parts)):
-            for column in range(max(first, row + 1), len(self.parts)):
+            for column in range(row + 1, len(self.parts)):
                 self.parts[column, row] = self.parts[row, column]
         if len(self.law.spins) == 3:
             for node, moment in enumerate(self.moments):
@@ -72,12 +72,10 @@ class Tangent(Forces):
                     self.parts[column, row] = self.parts[row, column] + sign * moment[(k + 2) % 3]
 
     def _hessian(self) -> np.ndarray:
-        """Of V by the scalars; it is linear in the mean components."""
-        n = sum(m.is_Symbol for m in self.configuration.mean)
-        H = np.full((len(self.scalars), len(self.scalars)), ZERO, dtype=object)
-        H[:, n:] = self.by(self.scalars[n:], self.by_scalar)
+        """Of V by the scalars."""
+        H = self.by(self.scalars, self.by_scalar)
         for i in range(len(H)):
-            for j in range(max(i, n), len(H)):
+            for j in range(i, len(H)):
                 H[i, j] = H[j, i] = self.program.define(f"V_{self.scalars[i].name}_{self.scalars[j].name}", H[i, j])
         return H
 

@@ -1,5 +1,6 @@
 """The structural law of one element; published cases of beams of it are in test_cases.py."""
 
+import funicular as fu
 import numpy as np
 import pytest
 from funicular.derive.elements import ELEMENTS
@@ -72,3 +73,40 @@ def test_the_planar_beam_is_the_spatial_one_in_a_plane():
     np.testing.assert_allclose(spatial[[0, 1, 2, 4, 5, 6], :2], f, rtol=1e-13, atol=1e-15)
     np.testing.assert_allclose(spatial[:, 2], 0, atol=1e-16)
     np.testing.assert_allclose(spatial[[3, 7]], 0, atol=1e-16)
+
+
+@pytest.mark.parametrize("slenderness", [1, 1e1, 1e2, 1e4, 1e6])
+@pytest.mark.parametrize("name", ["beam12p", "beam24"])
+def test_a_taut_element_is_stable(name, slenderness):
+    """slenderness: T l^2/EI. Shifts, and turns about its own axis, are all that costs nothing."""
+    element, length, strain = ELEMENTS[name], 0.7, 1e-3
+    dim, rest = element.dim, reference(ELEMENTS[name], length)
+    S = rectangle(1.0, 0.3, 1.0, 1.0, dim)
+    S[slice(2, 3) if dim == 2 else slice(3, 6)] = bending = strain * length**2 / slenderness
+    A = getattr(kernels, f"{name}_structural_stiffness")(length, rest, S)
+    taut = rest.copy()
+    taut[:, 0] *= 1 + strain
+    values = np.linalg.eigvalsh(getattr(kernels, f"{name}_structural_elastic_tangent")(length, taut, A))
+    free = dim if dim == 2 else dim + 1
+    assert np.abs(values[:free]).max() < 1e-14
+    assert values[free] > 0.1 * bending
+
+
+@pytest.mark.parametrize("name", ["beam12p", "beam24"])
+def test_frequencies_of_a_taut_beam_are_those_of_a_string(name):
+    """T l^2/EI 1e4 with 4 elements, where bending hardly matters; order 4."""
+    length, strain, k, error = 1.0, 1e-2, np.pi * np.arange(1, 4), {}
+    height = length * np.sqrt(12 * strain / 16e4)
+    for elements in (4, 8):
+        scene = fu.Scene(gravity=(0, 0, 0))
+        scene.cable("string", start=(0, 0, 0), end=(length * (1 + strain), 0, 0), rest_length=length, elements=elements,
+                    element=name, law="structural", section=fu.Rectangle(height=height, width=height),
+                    material=fu.Material(youngs_modulus=1 / height**2, poisson_ratio=0, density=1 / height**2))
+        scene.pin("string", s=0)
+        scene.pin("string", s=length)
+        modes = scene.modes(6 if name == "beam24" else 3)
+        assert np.abs(modes.growth_rate).max() < 1e-6
+        found = modes.angular_frequency[:: 2 if name == "beam24" else 1]
+        stiff = strain * height**2 / 12  # bending over tension, times the tension
+        error[elements] = found / np.sqrt(strain * k**2 + height**2 / 12 * k**4) - 1
+    assert False, (error, stiff)

@@ -10,9 +10,13 @@ are as many as the element can have (18 in space, 9 in the plane): nothing to lo
 is that of half the rotation between the nodes. Its Gibbs vector g = tan(angle/2) axis comes from the two frames.
 
 Rotations are linear, and so forbid the linear curvature of a beam under shear force. An inner bubble of rotation,
-amplitude beta (1 - X^2), takes it up; it is condensed: exact for Timoshenko's beam under end loads. Strains are
-counted from those of a reference e0, which may be curved; x is its arc-length. Section constants of order: EA, GA_y,
-GA_z, GJ, EI_yy, EI_zz, and stiffness against r_y.r_y, r_z.r_z, r_y.r_z; planar EA, GA, EI, r_y.r_y.
+amplitude beta (1 - X^2), takes it up; it is condensed: exact for Timoshenko's beam under end loads. It turns the
+section, so that shear half way which it takes is stretch: of (r_x . t_1)^2 + (r_x . t_i)^2 the stretch squared has all
+but what shear is left, on the mean over the element. Without, a taut element would turn its chord away and lengthen for
+the bubble's bending alone; with all shear taken the stretch is that of r_x, as it is in a string.
+
+Strains are counted from those of a reference e0, which may be curved; x is its arc-length. Section constants of order:
+EA, GA_y, GA_z, GJ, EI_yy, EI_zz, and stiffness against r_y.r_y, r_z.r_z, r_y.r_z; planar EA, GA, EI, r_y.r_y.
 """
 
 from __future__ import annotations
@@ -48,6 +52,7 @@ def _mean(f: sp.Expr) -> sp.Expr:
 QUADRATIC = sp.Matrix(3, 3, lambda i, j: _mean(LAGRANGE[i] * LAGRANGE[j]))
 BUBBLE_WITH_STRAIN = [_mean(f * BUBBLE) for f in LAGRANGE]
 BUBBLE_SQUARED = _mean(BUBBLE**2)
+BUBBLE_AS_STRAIN = BUBBLE_SQUARED / _mean(BUBBLE)  # the parabola through 0, this, 0 has the mean of its square
 BUBBLE_CURVATURE = _mean((2 * BUBBLE.diff(X)) ** 2)  # times 1/l^2
 LINEAR = sp.Matrix(2, 2, lambda i, j: _mean((1 + PLACES[2 * i] * X) * (1 + PLACES[2 * j] * X) / 4))
 
@@ -86,6 +91,11 @@ class Structural:
         return self.n_section + len(self.shears)
 
     @property
+    def n_constants(self) -> int:
+        """Length of A without the reference: stiffness, and by shear how much of its square half way is stretch."""
+        return self.n_stiffness + len(self.shears)
+
+    @property
     def n_strains(self) -> int:
         """Stretch and shears at three places, curvatures, strains of the section at both nodes."""
         return 3 * len(self.axes) + len(self.spins) + 2 * len(self.across)
@@ -99,8 +109,8 @@ class Structural:
         return program.input("S", self.n_section, "N, N m^2", "section stiffness: EA, GA, EI; against r_y.r_y/2")
 
     def constants(self, program: Program) -> np.ndarray:
-        """Input A: S, stiffness that the bubble takes off the shears, reference strains."""
-        return program.input("A", self.n_stiffness + self.n_strains, "N, N m^2, 1, 1/m",
+        """Input A: S, stiffness that the bubble takes off the shears, shares of stretch, reference strains."""
+        return program.input("A", self.n_constants + self.n_strains, "N, N m^2, 1, 1/m",
                              f"constants from {self.element.name}_{NAME}_stiffness")
 
     def set_up(self, program: Program) -> None:
@@ -108,12 +118,22 @@ class Structural:
         length = program.input("l", (), "m", "length of the element")
         e0 = program.input("e0", (self.element.n_vectors, self.element.dim), "m, 1", REFERENCE_DOC)
         S = self.section_stiffness(program)
-        program.stage("strains of the reference")
-        configuration = Configuration(self, program, e0, program.define("w", 1 / length))
         program.stage("stiffness that the bubble takes off the shears")
         bubble = [program.define(f"bubble_{i}", self._condensed(S, i, length)) for i in self.shears]
-        program.output("A", [*S, *bubble, *configuration.strains], "N, N m^2, 1, 1/m",
-                       "S, stiffness that the bubble takes off the shears, reference strains")
+        shares = self.shares(program, S, length)
+        program.stage("strains of the reference")
+        configuration = Configuration(self, program, e0, program.define("w", 1 / length), shares)
+        program.output("A", [*S, *bubble, *shares, *configuration.strains], "N, N m^2, 1, 1/m",
+                       "S, stiffness that the bubble takes off the shears, how much of the square of each shear half "
+                       "way is stretch, reference strains")
+
+    def shares(self, program: Program, S: Sequence[sp.Expr], length: sp.Expr) -> list[sp.Expr]:
+        """Stage: how much of the square of each shear half way is stretch, since the bubble turns the section."""
+        program.stage("stretch of the bubble")
+        left = [program.define(f"left_{i}", 1 - S[i] * BUBBLE_SQUARED / self._bubble_stiffness(S, i, length))
+                for i in self.shears]
+        return [program.define(f"share_{i}", BUBBLE_AS_STRAIN * (1 - c**2))
+                for i, c in zip(self.shears, left, strict=True)]
 
     def bending(self, S: Sequence[sp.Expr], shear: int) -> sp.Expr:
         """Stiffness of the bending that goes with a shear: about z with y, about y with z."""
@@ -135,7 +155,7 @@ class Structural:
     def from_reference(self, program: Program, A: np.ndarray, strains: Sequence[sp.Expr]) -> list[sp.Expr]:
         """Stage: strains less those of the reference."""
         program.stage("strains from the reference")
-        return [program.define(f"d_{name}", s - A[self.n_stiffness + i])
+        return [program.define(f"d_{name}", s - A[self.n_constants + i])
                 for i, (name, s) in enumerate(zip(self.names, strains, strict=True))]
 
     @cached_property
@@ -210,8 +230,8 @@ class Configuration:
     `parts` are these scalars and the frames: a motion is known by the rates that it gives to them.
     """
 
-    def __init__(self, law: Structural, program: Program, e: np.ndarray, w: sp.Expr):
-        self.law, self.program, self.w = law, program, w
+    def __init__(self, law: Structural, program: Program, e: np.ndarray, w: sp.Expr, shares: Sequence[sp.Expr]):
+        self.law, self.program, self.w, self.shares = law, program, w, shares
         names = [name.partition("_")[2] for name in law.element.names]  # 1, x1, y1, z1, 2, x2, ...
         at = {name: spatial(e[k]) for k, name in enumerate(names)}
         self.directors = [(at[f"y{n}"], at.get(f"z{n}", spatial([0, 0, 1]))) for n in (1, 2)]
@@ -245,7 +265,7 @@ class Configuration:
                          for i in range(3)])
 
     def _middle(self) -> list[sp.Expr]:
-        """Components of r_x half way in the frame half way; curvatures.
+        """Stretch and shears half way, in the frame half way; curvatures.
 
         (t_1 + t_2)/2 is the frame of half the rotation, its part across the axis shorter by cos(angle/2).
         """
@@ -255,7 +275,11 @@ class Configuration:
         along = define("along", g.dot(self.mean) * define("inv_secant", 1 / (1 + secant)))
         above, below = arc(square)
         per_length = define("arc", 2 * self.w * above * define("inv_arc", 1 / below))
-        return ([define(f"m{i + 1}", secant * self.mean[i] - g[i] * along) for i in self.law.axes]
+        m = [define(f"m{i + 1}", secant * self.mean[i] - g[i] * along) for i in self.law.axes]
+        shared = sum((define("shared", share * m[i]) * m[i] for i, share in zip(self.law.shears, self.shares, strict=True)), m[0]**2)
+        m[0] = define("stretch", sp.sqrt(define("stretched", shared)))
+        define("inv_stretch", 1 / m[0])
+        return (m
                 + [define(f"k{k + 1}", per_length * g[k]) for k in self.law.spins])
 
     def _across(self) -> list[sp.Expr]:
