@@ -64,9 +64,11 @@ class Forces:
         self.program.stage("forces on the parts")
         middle = np.array([*resultants[n:2 * n], *resultants[3 * n:3 * n + len(self.law.spins)]])
         self.scalars = [s for s in (*configuration.mean, *configuration.gibbs) if s.is_Symbol]
+        fixed = self.held | dict.fromkeys(self.scalars, ZERO)
+        self.by = [Derivation(self.program, f"d_{s.name}", fixed | {s: sp.S.One}) for s in self.scalars]
         self.middle = np.array([[self.program.define(f"d_{strain}_{s.name}", d)
                                  for s, d in zip(self.scalars, row, strict=True)] for strain, row in
-                                zip(configuration.middle, self.by(self.scalars, configuration.middle), strict=True)])
+                                zip(configuration.middle, self.gradients(configuration.middle), strict=True)])
         self.by_scalar = [self.program.define(f"V_{s.name}", d)
                           for s, d in zip(self.scalars, middle.dot(self.middle), strict=True)]
         self.by_part = self._by_part()
@@ -83,11 +85,9 @@ class Forces:
         """Resultants, which V does not differentiate."""
         return {r: ZERO for r in self.resultants if r.is_Symbol}
 
-    def by(self, scalars: Sequence[sp.Symbol], values: Sequence[sp.Expr]) -> np.ndarray:
-        """Derivatives of values (n,) by some of the scalars of the middle, the others and the resultants held."""
-        fixed = self.held | dict.fromkeys(self.scalars, ZERO)
-        return np.stack([Derivation(self.program, f"d_{s.name}", fixed | {s: sp.S.One}).array(np.array(values))
-                         for s in scalars], axis=-1)
+    def gradients(self, values: Sequence[sp.Expr]) -> np.ndarray:
+        """Derivatives of values (n,) by the scalars of the middle, each with the others and the resultants held."""
+        return np.stack([by.array(np.array(values)) for by in self.by], axis=-1)
 
     def _by_part(self) -> dict[sp.Symbol, sp.Expr]:
         """dV by each scalar part."""

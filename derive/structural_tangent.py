@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import sympy as sp
@@ -43,7 +44,7 @@ class Tangent(Forces):
         hessian = self._hessian()
         for column in [*(configuration.stretch(1, i) for i in self.law.axes), *range(first, count)]:
             motion = configuration.motions[column]
-            moved = self._scalars_moved(motion)
+            moved = self._scalars_moved[column]
             by_scalar = {v: self.program.define(f"dV_{s.name}_{column}", row.dot(moved))
                          for v, s, row in zip(self.by_scalar, self.scalars, hessian, strict=True)}
             rate = Derivation(self.program, f"turn{column}", self.held | motion | by_scalar)
@@ -52,8 +53,12 @@ class Tangent(Forces):
         self._mirror()
         self.velocity, self.late, self.across = None, None, {}
 
-    def _scalars_moved(self, motion: dict[sp.Symbol, sp.Expr]) -> np.ndarray:
-        """Rates of the scalars of the middle."""
+    @cached_property
+    def _scalars_moved(self) -> list[np.ndarray]:
+        """Rates of the scalars of the middle by motion."""
+        return [self._moved_by(motion) for motion in self.configuration.motions]
+
+    def _moved_by(self, motion: dict[sp.Symbol, sp.Expr]) -> np.ndarray:
         configuration = self.configuration
         of_mean = [self.program.define("moved", (motion[a] + motion[b]) / 2)
                    for a, b in zip(*configuration.between, strict=True) if a.is_Symbol]
@@ -73,7 +78,7 @@ class Tangent(Forces):
 
     def _hessian(self) -> np.ndarray:
         """Of V by the scalars."""
-        H = self.by(self.scalars, self.by_scalar)
+        H = self.gradients(self.by_scalar)
         for i in range(len(H)):
             for j in range(i, len(H)):
                 H[i, j] = H[j, i] = self.program.define(f"V_{self.scalars[i].name}_{self.scalars[j].name}", H[i, j])
@@ -130,7 +135,7 @@ class Tangent(Forces):
         B = np.full((self.law.n_strains, len(configuration.motions)), ZERO, dtype=object)
         for column, motion in enumerate(configuration.motions):
             values = [self.program.define(f"B_{row}_{column}", v)
-                      for row, v in enumerate(self.middle.dot(self._scalars_moved(motion)))]
+                      for row, v in enumerate(self.middle.dot(self._scalars_moved[column]))]
             for i in self.law.axes:
                 for node in range(2):
                     B[2 * n * node + i, column] = motion[configuration.along[node][i]]

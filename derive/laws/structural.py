@@ -92,7 +92,7 @@ class Structural:
 
     @property
     def n_constants(self) -> int:
-        """Length of A without the reference: stiffness, and by shear how much of its square half way is stretch."""
+        """Length of A without the reference: stiffness, and how much of each shear half way is stretch."""
         return self.n_stiffness + len(self.shears)
 
     @property
@@ -124,15 +124,15 @@ class Structural:
         program.stage("strains of the reference")
         configuration = Configuration(self, program, e0, program.define("w", 1 / length), shares)
         program.output("A", [*S, *bubble, *shares, *configuration.strains], "N, N m^2, 1, 1/m",
-                       "S, stiffness that the bubble takes off the shears, how much of the square of each shear half "
-                       "way is stretch, reference strains")
+                       "S, stiffness that the bubble takes off the shears, shares of stretch in the shears half way, "
+                       "reference strains")
 
     def shares(self, program: Program, S: Sequence[sp.Expr], length: sp.Expr) -> list[sp.Expr]:
-        """Stage: how much of the square of each shear half way is stretch, since the bubble turns the section."""
+        """Stage: how much of each shear half way is stretch, since the bubble turns the section."""
         program.stage("stretch of the bubble")
         left = [program.define(f"left_{i}", 1 - S[i] * BUBBLE_SQUARED / self._bubble_stiffness(S, i, length))
                 for i in self.shears]
-        return [program.define(f"share_{i}", BUBBLE_AS_STRAIN * (1 - c**2))
+        return [program.define(f"share_{i}", sp.sqrt(BUBBLE_AS_STRAIN * (1 - c**2)))
                 for i, c in zip(self.shears, left, strict=True)]
 
     def bending(self, S: Sequence[sp.Expr], shear: int) -> sp.Expr:
@@ -276,8 +276,9 @@ class Configuration:
         above, below = arc(square)
         per_length = define("arc", 2 * self.w * above * define("inv_arc", 1 / below))
         m = [define(f"m{i + 1}", secant * self.mean[i] - g[i] * along) for i in self.law.axes]
-        shared = sum((define("shared", share * m[i]) * m[i] for i, share in zip(self.law.shears, self.shares, strict=True)), m[0]**2)
-        m[0] = define("stretch", sp.sqrt(define("stretched", shared)))
+        stretched = [m[0], *(define(f"turned{i + 1}", share * m[i])
+                             for i, share in zip(self.law.shears, self.shares, strict=True))]
+        m[0] = define("stretch", sp.sqrt(sum(c**2 for c in stretched)))
         define("inv_stretch", 1 / m[0])
         return (m
                 + [define(f"k{k + 1}", per_length * g[k]) for k in self.law.spins])
