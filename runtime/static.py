@@ -46,7 +46,8 @@ class Path:
         self.size = self._extent()
         stiffness = self.engine.matrix(0.0, 0.0, 1.0).diagonal()
         inertia = self.engine.matrix(1.0, 0.0, 0.0).diagonal()
-        heavy = inertia > 0
+        # of points, not of directors: a thin beam's section vibrates so fast that its share of mass would stop the beam
+        heavy = (inertia > 0) & (self.weight == 1.0)
         # rad²/s², of the fastest vibration: what is left free (a rider that may turn about its rope) has no stiffness
         self.fastest = float(np.max(np.abs(stiffness[heavy]) / inertia[heavy], initial=0.0))
         self.iterations = 0
