@@ -278,8 +278,10 @@ class Configuration:
         m = [define(f"m{i + 1}", secant * self.mean[i] - g[i] * along) for i in self.law.axes]
         stretched = [m[0], *(define(f"turned{i + 1}", share * m[i])
                              for i, share in zip(self.law.shears, self.shares, strict=True))]
-        m[0] = define("stretch", sp.sqrt(sum(c**2 for c in stretched)))
-        define("inv_stretch", 1 / m[0])
+        stretch = define("stretch", sp.sqrt(sum(c**2 for c in stretched)))
+        cosine = define("cosine", m[0] * define("inv_stretch", 1 / stretch))
+        half = define("half", 2 * define("inv_half", 1 / (1 + cosine)))
+        m = [stretch, *(define(f"shear{i + 1}", half * m[i]) for i in self.law.shears)]
         return (m
                 + [define(f"k{k + 1}", per_length * g[k]) for k in self.law.spins])
 
