@@ -41,12 +41,12 @@ class Tangent(Forces):
         self.parts = np.full((count, count), ZERO, dtype=object)
         forces = np.array([*(f for slope in self.slopes for f in slope),
                            *(moment[k] for moment in self.moments for k in self.law.spins)])
-        hessian = self._hessian()
+        hessian = self.middle.hessian()
         for column in [*(configuration.stretch(1, i) for i in self.law.axes), *range(first, count)]:
             motion = configuration.motions[column]
             moved = self._scalars_moved[column]
             by_scalar = {v: self.program.define(f"dV_{s.name}_{column}", row.dot(moved))
-                         for v, s, row in zip(self.by_scalar, self.scalars, hessian, strict=True)}
+                         for v, s, row in zip(self.middle.gradient, self.middle.scalars, hessian, strict=True)}
             rate = Derivation(self.program, f"turn{column}", self.held | motion | by_scalar)
             for row in range(column + 1):
                 self.parts[row, column] = self.program.define(f"P_{row}_{column}", rate(forces[row]))
@@ -75,14 +75,6 @@ class Tangent(Forces):
                     row, column = sorted((self.configuration.turn(node, k), self.configuration.turn(node, (k + 1) % 3)))
                     sign = 1 if k < 2 else -1
                     self.parts[column, row] = self.parts[row, column] + sign * moment[(k + 2) % 3]
-
-    def _hessian(self) -> np.ndarray:
-        """Of V by the scalars."""
-        H = self.gradients(self.by_scalar)
-        for i in range(len(H)):
-            for j in range(i, len(H)):
-                H[i, j] = H[j, i] = self.program.define(f"V_{self.scalars[i].name}_{self.scalars[j].name}", H[i, j])
-        return H
 
     def add_material(self, stiffness: Sequence[sp.Expr], velocity: Velocity | None = None, rate=None) -> None:
         """Stages: what the resultants change by, for the elastic law, or the viscous one at a velocity."""
@@ -135,7 +127,7 @@ class Tangent(Forces):
         B = np.full((self.law.n_strains, len(configuration.motions)), ZERO, dtype=object)
         for column, motion in enumerate(configuration.motions):
             values = [self.program.define(f"B_{row}_{column}", v)
-                      for row, v in enumerate(self.middle.dot(self._scalars_moved[column]))]
+                      for row, v in enumerate(self.middle.strains.dot(self._scalars_moved[column]))]
             for i in self.law.axes:
                 for node in range(2):
                     B[2 * n * node + i, column] = motion[configuration.along[node][i]]

@@ -61,7 +61,7 @@ def _strains(element: Element, S: np.ndarray, l, e: np.ndarray) -> dict[str, np.
     turn = _rotation_vector(frames[0].T.dot(frames[1]))
     middle = frames[0].dot(_rotation(turn / 2))
     along = [frame.T.dot(F[:, 0]) for frame, F in zip((frames[0], middle, frames[1]), gradients, strict=True)]
-    along[1][0] = _stretch(along[1], S, l)
+    along[1] = _half_way(along[1], S, l)
     half = mp.sqrt(turn.dot(turn)) / 2
     measured = 1 if half == 0 else _arc(mp.tan(half) ** 2) * mp.tan(half) / half
     products = [F.T.dot(F) for F in (gradients[0], gradients[2])]
@@ -69,11 +69,11 @@ def _strains(element: Element, S: np.ndarray, l, e: np.ndarray) -> dict[str, np.
             "across": np.array([[G[1, 1] / 2, G[2, 2] / 2, G[1, 2]] for G in products])}
 
 
-def _stretch(r, S: np.ndarray, l):
-    """Of r_x half way, its components in a frame that the bubble does not turn; each shear alone, the others zero.
+def _half_way(r: np.ndarray, S: np.ndarray, l) -> np.ndarray:
+    """Stretch and shears of r_x half way, its components in a frame that the bubble does not turn.
 
-    What the bubble leaves of the shears across is not stretch; the difference is that of a parabola with the bubble's
-    zeros and the mean of the bubble's square.
+    What the bubble leaves of each shear, the others zero, is not stretch; the rest is that of a parabola with the
+    bubble's zeros and the mean of the bubble's square. Shears go with twice the tangent of half an angle for its sine.
     """
     _, GAy, GAz, _, EIyy, EIzz, *_ = _spatial_stiffness(S)
     found, ratio = r[0] ** 2, _square(lambda t: 1 - t * t) / (mp.mpf(2) / 3)
@@ -81,7 +81,10 @@ def _stretch(r, S: np.ndarray, l):
         if shear:
             beta = _least(_with_bubble(lambda t, value=value: value * (1 - t * t), 0, shear, bending, 1, l))
             found += ratio * (value**2 - (value - beta) ** 2)
-    return mp.sqrt(found)
+    stretch = mp.sqrt(found)
+    angle = mp.acos(r[0] / stretch)
+    larger = 1 if angle == 0 else 2 * mp.tan(angle / 2) / mp.sin(angle)
+    return np.array([stretch, larger * r[1], larger * r[2]])
 
 
 def _spatial_stiffness(S: np.ndarray):

@@ -275,15 +275,13 @@ class Configuration:
         along = define("along", g.dot(self.mean) * define("inv_secant", 1 / (1 + secant)))
         above, below = arc(square)
         per_length = define("arc", 2 * self.w * above * define("inv_arc", 1 / below))
-        m = [define(f"m{i + 1}", secant * self.mean[i] - g[i] * along) for i in self.law.axes]
-        stretched = [m[0], *(define(f"turned{i + 1}", share * m[i])
-                             for i, share in zip(self.law.shears, self.shares, strict=True))]
-        stretch = define("stretch", sp.sqrt(sum(c**2 for c in stretched)))
+        self.components = m = [define(f"m{i + 1}", secant * self.mean[i] - g[i] * along) for i in self.law.axes]
+        turned = [define(f"turned{i + 1}", share * m[i]) for i, share in zip(self.law.shears, self.shares, strict=True)]
+        stretch = define("stretch", sp.sqrt(m[0] ** 2 + sum(c**2 for c in turned)))
         cosine = define("cosine", m[0] * define("inv_stretch", 1 / stretch))
-        half = define("half", 2 * define("inv_half", 1 / (1 + cosine)))
-        m = [stretch, *(define(f"shear{i + 1}", half * m[i]) for i in self.law.shears)]
-        return (m
-                + [define(f"k{k + 1}", per_length * g[k]) for k in self.law.spins])
+        longer = define("longer", 1 / (sp.Rational(1, 2) + cosine / 2))
+        return [stretch, *(define(f"shear{i + 1}", longer * m[i]) for i in self.law.shears),
+                *(define(f"k{k + 1}", per_length * g[k]) for k in self.law.spins)]
 
     def _across(self) -> list[sp.Expr]:
         pairs = [(self.directors[n][i - 1], self.directors[n][j - 1], i == j)
