@@ -11,9 +11,14 @@ is that of half the rotation between the nodes. Its Gibbs vector g = tan(angle/2
 
 Rotations are linear, and so forbid the linear curvature of a beam under shear force. An inner bubble of rotation,
 amplitude beta (1 - X^2), takes it up; it is condensed: exact for Timoshenko's beam under end loads. It turns the
-section, so that shear half way which it takes is stretch: of (r_x . t_1)^2 + (r_x . t_i)^2 the stretch squared has all
-but what shear is left, on the mean over the element. Without, a taut element would turn its chord away and lengthen for
-the bubble's bending alone; with all shear taken the stretch is that of r_x, as it is in a string.
+section, so that what shear it takes is stretch; half way, by components of r_x and shares c_i,
+
+    stretch  s = sqrt(m_1^2 + (c_2 m_2)^2 + (c_3 m_3)^2)      c_i^2 = 4/5 (1 - (shear that is left / m_i)^2)
+    shear    2 m_i / (1 + m_1/s)
+
+exact to second order on the mean of the element: r_x turned until the shear that is left is. A string's stretch is so
+that of r_x; by r_x . t_1 alone a taut element would turn its chord away and lengthen for the bubble's bending. Shear is
+m_i to second order, and beyond twice the tangent of half the bubble's angle for its sine: no chord can turn back.
 
 Strains are counted from those of a reference e0, which may be curved; x is its arc-length. Section constants of order:
 EA, GA_y, GA_z, GJ, EI_yy, EI_zz, and stiffness against r_y.r_y, r_z.r_z, r_y.r_z; planar EA, GA, EI, r_y.r_y.
@@ -265,7 +270,7 @@ class Configuration:
                          for i in range(3)])
 
     def _middle(self) -> list[sp.Expr]:
-        """Stretch and shears half way, in the frame half way; curvatures.
+        """Stretch, shears half way; curvatures.
 
         (t_1 + t_2)/2 is the frame of half the rotation, its part across the axis shorter by cos(angle/2).
         """
@@ -279,8 +284,8 @@ class Configuration:
         turned = [define(f"turned{i + 1}", share * m[i]) for i, share in zip(self.law.shears, self.shares, strict=True)]
         stretch = define("stretch", sp.sqrt(m[0] ** 2 + sum(c**2 for c in turned)))
         cosine = define("cosine", m[0] * define("inv_stretch", 1 / stretch))
-        longer = define("longer", 1 / (sp.Rational(1, 2) + cosine / 2))
-        return [stretch, *(define(f"shear{i + 1}", longer * m[i]) for i in self.law.shears),
+        larger = define("larger", 1 / (sp.Rational(1, 2) + cosine / 2))
+        return [stretch, *(define(f"shear{i + 1}", larger * m[i]) for i in self.law.shears),
                 *(define(f"k{k + 1}", per_length * g[k]) for k in self.law.spins)]
 
     def _across(self) -> list[sp.Expr]:
