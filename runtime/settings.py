@@ -52,7 +52,7 @@ class EquilibriumSettings(Part):
     kind: ClassVar[str] = "equilibrium"
     load_steps: Count = 1
     tolerance: Annotated[float, within(0, 1, ends=False)] = 1e-9
-    max_iterations: Count = 15
+    max_iterations: Count = 50
     method: Annotated[str, one_of(("newton", "arc_length"))] = "newton"
 
 

@@ -120,7 +120,7 @@ class Path:
         """Pseudo-transient continuation: implicit Euler without regard to accuracy, its step growing as R falls
         (Kelley & Keyes 1998). It finds the stable equilibria that Newton misses: far turns of stiff cables, slack ones.
         """
-        mass, kept = 1e-3 * self.fastest, self.keep()
+        mass, near, kept = 1e-3 * self.fastest, 1e-5, self.keep()
         for _ in range(MOST_RELAXATIONS):
             self.iterations += 1
             try:
@@ -141,8 +141,13 @@ class Path:
                 continue
             kept = self.keep()
             mass *= 0.5 if size < 0.02 * self.size else 1.0
-            if mass < 1e-10 * self.fastest or size < 1e-5 * self.size:
-                return self.newton(fraction)
+            if mass < 1e-10 * self.fastest or size < near * self.size:
+                if self.newton(fraction):
+                    return True
+                self.restore(kept)
+                near *= 1e-2
+                if near < 1e-10:
+                    break
         return False
 
 
@@ -158,24 +163,26 @@ def equilibrium(scene: Scene, settings: EquilibriumSettings) -> Equilibrium:
     reached = _follow(path) if settings.method == "arc_length" else _load(path)
     state = Equilibrium.of(scene, path, reached)
     if reached < 1.0:
-        near = " (a limit point: beyond it no equilibrium is near)" if settings.method == "newton" else ""
+        remedy = "" if settings.method == "arc_length" else (
+            '; smaller steps of the load do not converge either: it may be a limit point, which method="arc_length" '
+            "passes, or take more load_steps or max_iterations")
         raise EquilibriumError(
             f"no equilibrium was reached: the path from the drawn state ends at {100 * reached:.4g} % of the load"
-            f"{near}; "
-            "the state there is kept in .state", state, reached)
+            f"{remedy}; the state there is kept in .state", state, reached)
     return state
 
 
 def _load(path: Path) -> float:
     """Load steps, halved where neither Newton nor relaxation ends; returns the fraction of the load reached."""
-    reached, step = 0.0, 1.0 / path.settings.load_steps
+    reached = 0.0
+    step = largest = 1.0 / path.settings.load_steps
     while reached < 1.0:
         kept, target = path.keep(), reached + step
         if target > 1.0 - SMALLEST_STEP / 2:  # a sum of steps is not 1 to the last digit
             target = 1.0
         for solve in (path.newton, path.relax):
             if solve(target):
-                reached = target
+                reached, step = target, min(2 * step, largest)
                 path.remember(reached)
                 break
             path.restore(kept)

@@ -6,7 +6,6 @@ from math import cos, pi, sin, sqrt
 
 import numpy as np
 from funicular import Material, Rectangle, Scene
-from funicular.equilibrium import Equilibrium
 from funicular.sections import Section
 
 from .case import CABLES, KINDS, STRUCTURAL, Case, Kind, Quantity
@@ -23,11 +22,6 @@ def cantilever(kind: Kind, elements: int, length: float, section: Section, young
     return scene
 
 
-def rest(scene: Scene) -> Equilibrium:
-    """Equilibrium; the very slender and the rolled up need more iterations than most."""
-    return scene.equilibrium(max_iterations=100)
-
-
 def tip(scene: Scene, *, force=None, moment=None) -> tuple[np.ndarray, np.ndarray]:
     """Position of the free end, and slope there, under loads on it."""
     length = scene.cables["beam"].length
@@ -35,7 +29,7 @@ def tip(scene: Scene, *, force=None, moment=None) -> tuple[np.ndarray, np.ndarra
         scene.force("beam", s=length, value=force)
     if moment is not None:
         scene.moment("beam", s=length, value=moment)
-    return tuple(rest(scene)["beam.nodal_vectors"][-1, :2])
+    return tuple(scene.equilibrium()["beam.nodal_vectors"][-1, :2])
 
 
 # --- B1: the elastica -------------------------------------------------------------------------------------------------

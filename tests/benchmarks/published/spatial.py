@@ -8,7 +8,7 @@ import numpy as np
 from funicular import Material, Rectangle, Scene
 from scipy.optimize import brentq
 
-from .cantilevers import cantilever, rest, tip
+from .cantilevers import cantilever, tip
 from .case import CABLES, SPATIAL_BEAMS, Case, Kind, Quantity
 
 NO_TORSION = "no torsion"
@@ -98,7 +98,7 @@ def frame(kind: Kind, elements: int, force: float) -> Scene:
 
 def lowest_square(scene: Scene) -> float:
     """Of the natural angular frequency about equilibrium; negative where it is not stable."""
-    modes = scene.modes(1, about=rest(scene))
+    modes = scene.modes(1, about=scene.equilibrium())
     return float(modes.angular_frequency[0] ** 2 - modes.growth_rate[0] ** 2)
 
 
