@@ -113,8 +113,15 @@ class Path:
             least = min(least, size)
             self.move(change)
             if size <= self.settings.tolerance * self.size:
-                return True
+                return self.on_cables()
         return False
+
+    def on_cables(self) -> bool:
+        """Whether no slide is past an end of its cable, where the last element would go on for ever."""
+        ends = np.array([self.model.cables[j.cable].length * self.model.cables[j.cable].n_elements
+                         for j in self.model.joints])
+        past = np.maximum(-self.engine.placed()["s"], self.engine.placed()["s"] - ends)
+        return bool(np.all(past <= self.settings.tolerance * self.size))
 
     def relax(self, fraction: float) -> bool:
         """Pseudo-transient continuation: implicit Euler without regard to accuracy, its step growing as R falls
