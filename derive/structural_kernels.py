@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 import sympy as sp
 from funicular.derive import spec
-from funicular.derive.frames import spatial
+from funicular.derive.frames import cross, spatial
 from funicular.derive.laws.section_frame import SectionFrame
 from funicular.derive.laws.structural import REFERENCE_DOC, Configuration, Structural
 from funicular.derive.spec import Element
@@ -133,18 +133,22 @@ class Kernels:
         p.stage("strains from the reference")
         strains = [p.define(f"d_{name}", a - b) for name, a, b in zip(self.law.names, now, before, strict=True)]
         p.stage("strains at x")
-        strain = self.law.at(p, S, length, p.define("X", 2 * x / length - 1), strains)
+        strain, turn = self.law.at(p, S, length, p.define("X", 2 * x / length - 1), strains)
         p.stage("axes of the section")
         shapes = [N.subs({spec.x: x, spec.l: length}) for N in self.law.director_shapes]
         nodal = {name.partition("_")[2]: spatial(e[k]) for k, name in enumerate(self.element.names)}
         directors = [sum((N * nodal.get(f"{d}{n + 1}", spatial([0, 0, 1])) for n, N in enumerate(shapes)), spatial([]))
                      for d in "yz"]
-        axes = SectionFrame(p, "", *(p.vector(f"r_{d}", v) for d, v in zip("yz", directors, strict=True))).t
+        frame = SectionFrame(p, "", *(p.vector(f"r_{d}", v) for d, v in zip("yz", directors, strict=True))).t
+        twice = p.define("twice", 2 / (1 + turn.dot(turn)))
+        across = [p.vector(f"across{i + 1}", cross(turn, unit)) for i, unit in enumerate(np.eye(3, dtype=int))]
+        axes = np.array([p.vector(f"t{i + 1}", frame[i] + (twice * (c + cross(turn, c))).dot(frame))
+                         for i, c in enumerate(across)])
         stiffness = self.law.spatial_stiffness(S)
         resultant = [p.define(f"N{i + 1}", k * s) for i, (k, s) in enumerate(zip(stiffness, strain, strict=True))]
         p.output("force", np.array(resultant[:3]).dot(axes), "N", "resultant of the stress, global axes")
         p.output("moment", np.array(resultant[3:]).dot(axes), "N m", "its moment about the axis, global axes")
-        p.output("axes", axes, "1", "rows: normal of the section t1, t2 along r_y, t3 = t1 x t2")
+        p.output("axes", axes, "1", "rows: normal of the section t1, t2 along r_y, t3 = t1 x t2, turned by the bubble")
         p.output("strain", strain, "1, 1/m", "axial, shear along y and z, twist, curvature about y and z")
         return p
 

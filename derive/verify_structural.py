@@ -41,14 +41,18 @@ def section(element: Element, law: str, s) -> dict[str, np.ndarray]:
     strains = {name: now[name] - before[name] for name in now}
     EA, GAy, GAz, GJ, EIyy, EIzz, *_ = _spatial_stiffness(s["S"])
     here = [_interpolated(strains["along"][:, axis])(at) for axis in range(3)] + list(strains["curvature"])
+    gibbs = np.array([mp.mpf(0)] * 3)
     for axis, shear, bending, sign in ((1, GAy, EIzz, 1), (2, GAz, EIyy, -1)):
         if shear:
             gamma = _interpolated(strains["along"][:, axis])
             beta = _least(_with_bubble(gamma, here[6 - axis], shear, bending, sign, l))
             here[axis] -= sign * beta * (1 - at**2)
             here[6 - axis] -= beta * 2 * at * 2 / l
+            gibbs[3 - axis] = beta * (1 - at**2) / 2
     F = _spatial(s["e"].T.dot(Shape(element, l).gradient((s["x"].item(), 0, 0))))
-    axes = _frame(F[:, 1], F[:, 2]).T
+    size = mp.sqrt(gibbs.dot(gibbs))
+    turn = gibbs if size == 0 else gibbs * 2 * mp.atan(size) / size
+    axes = _frame(F[:, 1], F[:, 2]).dot(_rotation(turn)).T
     local = np.array([k * strain for k, strain in zip((EA, GAy, GAz, GJ, EIyy, EIzz), here, strict=True)])
     return {"force": axes.T.dot(local[:3]), "moment": axes.T.dot(local[3:]), "axes": axes, "strain": np.array(here)}
 

@@ -190,10 +190,13 @@ class Structural:
                 found[3 * n + m + node * len(self.across) + p] = stiffness[n + m + p] * _times(LINEAR.row(node), at)
         return found
 
-    def at(self, program: Program, S, length: sp.Expr, at: sp.Expr, strains: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """Axial strain, shears, twist, curvatures at X, the bubble's among them; zero out of the plane."""
+    def at(self, program: Program, S, length: sp.Expr, at: sp.Expr,
+           strains: Sequence[sp.Expr]) -> tuple[list[sp.Expr], np.ndarray]:
+        """Axial strain, shears, twist, curvatures at X, the bubble's among them, and its turn, a Gibbs vector in the
+        section's frame; zero out of the plane.
+        """
         n = len(self.axes)
-        found = [sp.S.Zero] * 6
+        found, turn = [sp.S.Zero] * 6, np.full(3, sp.S.Zero)
         for k in self.spins:
             found[3 + k] = strains[3 * n + list(self.spins).index(k)]
         for i in self.axes:
@@ -205,7 +208,8 @@ class Structural:
                 bubble = program.define(f"bubble_{i}", self.bubble(S, i, length, places))
                 found[i] -= bubble * BUBBLE.subs(X, at)
                 found[6 - i] += sign * bubble * (2 / length) * BUBBLE.diff(X).subs(X, at)
-        return [program.define(f"at_{'ek'[i // 3]}{i % 3 + 1}", f) for i, f in enumerate(found)]
+                turn[3 - i] = program.define(f"turn_{3 - i + 1}", sign * bubble * BUBBLE.subs(X, at) / 2)
+        return [program.define(f"at_{'ek'[i // 3]}{i % 3 + 1}", f) for i, f in enumerate(found)], turn
 
     def spatial_stiffness(self, S: Sequence[sp.Expr]) -> list[sp.Expr]:
         """EA, GA_y, GA_z, GJ, EI_yy, EI_zz; of a planar element those that it has."""
