@@ -2,7 +2,7 @@
 
 The section's frame t is made of the directors r_y, r_z. With r_x cubic and the directors linear in x, the strains
 
-    stretch, shear  r_x . t_i            at the nodes and half way, quadratic in between,
+    stretch, shear  m_i = r_x . t_i      at the nodes and, turned, half way; quadratic in between,
     twist, curvature                     constant: the rotation vector from node to node over l,
     of the section  r_y.r_y/2, r_z.r_z/2, r_y.r_z   at the nodes, linear in between,
 
@@ -11,14 +11,13 @@ is that of half the rotation between the nodes. Its Gibbs vector g = tan(angle/2
 
 Rotations are linear, and so forbid the linear curvature of a beam under shear force. An inner bubble of rotation,
 amplitude beta (1 - X^2), takes it up; it is condensed: exact for Timoshenko's beam under end loads. It turns the
-section, so that what shear it takes is stretch; half way, by components of r_x and shares c_i,
+section, too: where it leaves a part a_i of the shear m_i half way, r_x is stretched by s there, not by m_1,
 
-    stretch  s = sqrt(m_1^2 + (c_2 m_2)^2 + (c_3 m_3)^2)      c_i^2 = 4/5 (1 - (shear that is left / m_i)^2)
-    shear    2 m_i / (1 + m_1/s)
+    s^2 = m_1^2 + c_2^2 m_2^2 + c_3^2 m_3^2      c_i^2 = 4/5 (1 - a_i^2),
 
-exact to second order on the mean of the element: r_x turned until the shear that is left is. A string's stretch is so
-that of r_x; by r_x . t_1 alone a taut element would turn its chord away and lengthen for the bubble's bending. Shear is
-m_i to second order, and beyond twice the tangent of half the bubble's angle for its sine: no chord can turn back.
+4/5 for the mean of the bubble's square over the element. With m_1 a taut element could turn its chord away and lengthen
+for the bubble's bending alone; with s it is as stable as a string. The shears half way are 2 m_i/(1 + m_1/s): the
+bubble's angle by twice the tangent of its half, for its sine would let a chord turn back and rest there.
 
 Strains are counted from those of a reference e0, which may be curved; x is its arc-length. Section constants of order:
 EA, GA_y, GA_z, GJ, EI_yy, EI_zz, and stiffness against r_y.r_y, r_z.r_z, r_y.r_z; planar EA, GA, EI, r_y.r_y.
@@ -285,8 +284,8 @@ class Configuration:
         above, below = arc(square)
         per_length = define("arc", 2 * self.w * above * define("inv_arc", 1 / below))
         self.components = m = [define(f"m{i + 1}", secant * self.mean[i] - g[i] * along) for i in self.law.axes]
-        turned = [define(f"turned{i + 1}", share * m[i]) for i, share in zip(self.law.shears, self.shares, strict=True)]
-        stretch = define("stretch", sp.sqrt(m[0] ** 2 + sum(c**2 for c in turned)))
+        shared = [define(f"shared{i + 1}", share * m[i]) for i, share in zip(self.law.shears, self.shares, strict=True)]
+        stretch = define("stretch", sp.sqrt(m[0] ** 2 + sum(c**2 for c in shared)))
         cosine = define("cosine", m[0] * define("inv_stretch", 1 / stretch))
         larger = define("larger", 1 / (sp.Rational(1, 2) + cosine / 2))
         return [stretch, *(define(f"shear{i + 1}", larger * m[i]) for i in self.law.shears),
