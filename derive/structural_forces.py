@@ -9,6 +9,7 @@ import sympy as sp
 from funicular.derive.frames import spatial
 from funicular.derive.laws.structural import Configuration
 from funicular.derive.stages import Derivation
+from funicular.derive.structural_middle import Middle
 
 ZERO = sp.S.Zero
 Slot = tuple[str, int]  # "x" and a place, or "y", "z" and a node
@@ -62,13 +63,7 @@ class Forces:
         self.configuration, self.program, self.law = configuration, configuration.program, configuration.law
         self.resultants, n = resultants, len(self.law.axes)
         self.program.stage("forces on the parts")
-        middle = np.array([*resultants[n:2 * n], *resultants[3 * n:3 * n + len(self.law.spins)]])
-        self.scalars = [s for s in (*configuration.mean, *configuration.gibbs) if s.is_Symbol]
-        self.middle = np.array([[self.program.define(f"d_{strain}_{s.name}", d)
-                                 for s, d in zip(self.scalars, row, strict=True)] for strain, row in
-                                zip(configuration.middle, self.by(self.scalars, configuration.middle), strict=True)])
-        self.by_scalar = [self.program.define(f"V_{s.name}", d)
-                          for s, d in zip(self.scalars, middle.dot(self.middle), strict=True)]
+        self.middle = Middle(configuration, [*resultants[n:2 * n], *resultants[3 * n:3 * n + len(self.law.spins)]])
         self.by_part = self._by_part()
         along = [sum((d * motion[s] for s, d in self.by_part.items()), ZERO) for motion in configuration.motions]
         self.slopes = [self.program.vector(f"f_x{tag}", along[place * n:(place + 1) * n])
@@ -83,16 +78,10 @@ class Forces:
         """Resultants, which V does not differentiate."""
         return {r: ZERO for r in self.resultants if r.is_Symbol}
 
-    def by(self, scalars: Sequence[sp.Symbol], values: Sequence[sp.Expr]) -> np.ndarray:
-        """Derivatives of values (n,) by some of the scalars of the middle, the others and the resultants held."""
-        fixed = self.held | dict.fromkeys(self.scalars, ZERO)
-        return np.stack([Derivation(self.program, f"d_{s.name}", fixed | {s: sp.S.One}).array(np.array(values))
-                         for s in scalars], axis=-1)
-
     def _by_part(self) -> dict[sp.Symbol, sp.Expr]:
         """dV by each scalar part."""
         configuration, n = self.configuration, len(self.law.axes)
-        by_scalar, values = dict(zip(self.scalars, self.by_scalar, strict=True)), {}
+        by_scalar, values = dict(zip(self.middle.scalars, self.middle.gradient, strict=True)), {}
         for i in self.law.axes:
             values |= {configuration.along[node][i]: self.resultants[2 * n * node + i] for node in range(2)}
             values |= {p[i]: by_scalar[configuration.mean[i]] / 2 for p in configuration.between}

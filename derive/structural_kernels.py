@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 import sympy as sp
 from funicular.derive import spec
-from funicular.derive.frames import spatial
+from funicular.derive.frames import cross, spatial
 from funicular.derive.laws.section_frame import SectionFrame
 from funicular.derive.laws.structural import REFERENCE_DOC, Configuration, Structural
 from funicular.derive.spec import Element
@@ -46,9 +46,12 @@ class Kernels:
     def _tau(self, program: Program) -> sp.Symbol:
         return program.input("tau", (), "s", "retardation time of the Kelvin-Voigt law")
 
-    def _configuration(self, program: Program, e: np.ndarray, length: sp.Symbol) -> Configuration:
+    def _configuration(self, program: Program, e: np.ndarray, length: sp.Symbol, shares) -> Configuration:
         program.stage("frames, strains")
-        return Configuration(self.law, program, e, program.define("w", 1 / length))
+        return Configuration(self.law, program, e, program.define("w", 1 / length), shares)
+
+    def _shares(self, A: np.ndarray) -> np.ndarray:
+        return A[self.law.n_stiffness:self.law.n_constants]
 
     def stiffness(self) -> Program:
         """The law's constants."""
@@ -60,7 +63,7 @@ class Kernels:
         """Half of strains times resultants."""
         p = self._program("energy", "elastic energy")
         length, e, A = self._inputs(p, "e")
-        strains = self.law.from_reference(p, A, self._configuration(p, e, length).strains)
+        strains = self.law.from_reference(p, A, self._configuration(p, e, length, self._shares(A)).strains)
         resultants = self.law.resultants(self._stiffness(p, A, length), strains)
         p.output("U", [sum(s * r for s, r in zip(strains, resultants, strict=True)) / 2], "J", "elastic energy")
         return p
@@ -69,7 +72,7 @@ class Kernels:
         """dU/de."""
         p = self._program("elastic_force", "dU/de, minus the elastic force Q_k")
         length, e, A = self._inputs(p, "e")
-        configuration = self._configuration(p, e, length)
+        configuration = self._configuration(p, e, length, self._shares(A))
         forces = Forces(configuration, self._elastic(p, A, self._stiffness(p, A, length), configuration))
         p.output("f", forces.nodal(), "N, N m", "dU/de")
         return p
@@ -78,7 +81,7 @@ class Kernels:
         """d2U/de2."""
         p = self._program("elastic_tangent", "d2U/de2")
         length, e, A = self._inputs(p, "e")
-        configuration = self._configuration(p, e, length)
+        configuration = self._configuration(p, e, length, self._shares(A))
         stiffness = self._stiffness(p, A, length)
         tangent = Tangent(configuration, self._elastic(p, A, stiffness, configuration))
         tangent.add_material(stiffness)
@@ -89,7 +92,7 @@ class Kernels:
         """tau times the elastic law on the rates of strain."""
         p = self._program("damping_force", "minus the Kelvin-Voigt damping force Q_d")
         length, e, v, A = self._inputs(p, "e", "v")
-        configuration = self._configuration(p, e, length)
+        configuration = self._configuration(p, e, length, self._shares(A))
         rates = Velocity(configuration, v).strains()
         resultants = self._resultants(p, self._stiffness(p, A, self._tau(p) * length), rates)
         p.output("f", Forces(configuration, resultants).nodal(), "N, N m", "-Q_d")
@@ -101,7 +104,7 @@ class Kernels:
         length, e, v, A = self._inputs(p, "e", "v")
         tau = self._tau(p)
         rate = p.input("rate", (), "1/s", "dv/de of the integrator")
-        configuration = self._configuration(p, e, length)
+        configuration = self._configuration(p, e, length, self._shares(A))
         velocity = Velocity(configuration, v)
         stiffness = self._stiffness(p, A, tau * length)
         tangent = Tangent(configuration, self._resultants(p, stiffness, velocity.strains()))
@@ -113,7 +116,7 @@ class Kernels:
         """Rates of strain times viscous resultants."""
         p = self._program("dissipation", "power dissipated by the damping force")
         length, e, v, A = self._inputs(p, "e", "v")
-        rates = Velocity(self._configuration(p, e, length), v).strains()
+        rates = Velocity(self._configuration(p, e, length, self._shares(A)), v).strains()
         power = self._resultants(p, self._stiffness(p, A, self._tau(p) * length), rates)
         p.output("P", [sum(a * b for a, b in zip(rates, power, strict=True))], "W", "dissipated power, never negative")
         return p
@@ -125,22 +128,27 @@ class Kernels:
         shape = (self.element.n_vectors, self.element.dim)
         e, S = p.input("e", shape, "m, 1", "nodal vectors (eq 1)"), self.law.section_stiffness(p)
         e0 = p.input("e0", shape, "m, 1", REFERENCE_DOC)
-        now, before = self._configuration(p, e, length).strains, self._configuration(p, e0, length).strains
+        shares = self.law.shares(p, S, length)
+        now, before = (self._configuration(p, vectors, length, shares).strains for vectors in (e, e0))
         p.stage("strains from the reference")
         strains = [p.define(f"d_{name}", a - b) for name, a, b in zip(self.law.names, now, before, strict=True)]
         p.stage("strains at x")
-        strain = self.law.at(p, S, length, p.define("X", 2 * x / length - 1), strains)
+        strain, turn = self.law.at(p, S, length, p.define("X", 2 * x / length - 1), strains)
         p.stage("axes of the section")
         shapes = [N.subs({spec.x: x, spec.l: length}) for N in self.law.director_shapes]
         nodal = {name.partition("_")[2]: spatial(e[k]) for k, name in enumerate(self.element.names)}
         directors = [sum((N * nodal.get(f"{d}{n + 1}", spatial([0, 0, 1])) for n, N in enumerate(shapes)), spatial([]))
                      for d in "yz"]
-        axes = SectionFrame(p, "", *(p.vector(f"r_{d}", v) for d, v in zip("yz", directors, strict=True))).t
+        frame = SectionFrame(p, "", *(p.vector(f"r_{d}", v) for d, v in zip("yz", directors, strict=True))).t
+        twice = p.define("twice", 2 / (1 + turn.dot(turn)))
+        across = [p.vector(f"across{i + 1}", cross(turn, unit)) for i, unit in enumerate(np.eye(3, dtype=int))]
+        axes = np.array([p.vector(f"t{i + 1}", frame[i] + (twice * (c + cross(turn, c))).dot(frame))
+                         for i, c in enumerate(across)])
         stiffness = self.law.spatial_stiffness(S)
         resultant = [p.define(f"N{i + 1}", k * s) for i, (k, s) in enumerate(zip(stiffness, strain, strict=True))]
         p.output("force", np.array(resultant[:3]).dot(axes), "N", "resultant of the stress, global axes")
         p.output("moment", np.array(resultant[3:]).dot(axes), "N m", "its moment about the axis, global axes")
-        p.output("axes", axes, "1", "rows: normal of the section t1, t2 along r_y, t3 = t1 x t2")
+        p.output("axes", axes, "1", "rows: normal of the section t1, t2 along r_y, t3 = t1 x t2, turned by the bubble")
         p.output("strain", strain, "1, 1/m", "axial, shear along y and z, twist, curvature about y and z")
         return p
 

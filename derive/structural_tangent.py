@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import sympy as sp
@@ -40,29 +41,33 @@ class Tangent(Forces):
         self.parts = np.full((count, count), ZERO, dtype=object)
         forces = np.array([*(f for slope in self.slopes for f in slope),
                            *(moment[k] for moment in self.moments for k in self.law.spins)])
-        hessian = self._hessian()
-        for column in range(first, count):
+        hessian = self.middle.hessian()
+        for column in [*(configuration.stretch(1, i) for i in self.law.axes), *range(first, count)]:
             motion = configuration.motions[column]
-            moved = self._scalars_moved(motion)
+            moved = self._scalars_moved[column]
             by_scalar = {v: self.program.define(f"dV_{s.name}_{column}", row.dot(moved))
-                         for v, s, row in zip(self.by_scalar, self.scalars, hessian, strict=True)}
+                         for v, s, row in zip(self.middle.gradient, self.middle.scalars, hessian, strict=True)}
             rate = Derivation(self.program, f"turn{column}", self.held | motion | by_scalar)
             for row in range(column + 1):
                 self.parts[row, column] = self.program.define(f"P_{row}_{column}", rate(forces[row]))
-        self._mirror(first)
+        self._mirror()
         self.velocity, self.late, self.across = None, None, {}
 
-    def _scalars_moved(self, motion: dict[sp.Symbol, sp.Expr]) -> np.ndarray:
-        """Rates of the scalars of the middle."""
+    @cached_property
+    def _scalars_moved(self) -> list[np.ndarray]:
+        """Rates of the scalars of the middle by motion."""
+        return [self._moved_by(motion) for motion in self.configuration.motions]
+
+    def _moved_by(self, motion: dict[sp.Symbol, sp.Expr]) -> np.ndarray:
         configuration = self.configuration
         of_mean = [self.program.define("moved", (motion[a] + motion[b]) / 2)
                    for a, b in zip(*configuration.between, strict=True) if a.is_Symbol]
         return np.array([*of_mean, *(motion[g] for g in configuration.gibbs if g.is_Symbol)])
 
-    def _mirror(self, first: int) -> None:
+    def _mirror(self) -> None:
         """Motions commute but for the spins of one frame, of which (k, l) and (l, k) differ by the third."""
         for row in range(len(self.parts)):
-            for column in range(max(first, row + 1), len(self.parts)):
+            for column in range(row + 1, len(self.parts)):
                 self.parts[column, row] = self.parts[row, column]
         if len(self.law.spins) == 3:
             for node, moment in enumerate(self.moments):
@@ -70,16 +75,6 @@ class Tangent(Forces):
                     row, column = sorted((self.configuration.turn(node, k), self.configuration.turn(node, (k + 1) % 3)))
                     sign = 1 if k < 2 else -1
                     self.parts[column, row] = self.parts[row, column] + sign * moment[(k + 2) % 3]
-
-    def _hessian(self) -> np.ndarray:
-        """Of V by the scalars; it is linear in the mean components."""
-        n = sum(m.is_Symbol for m in self.configuration.mean)
-        H = np.full((len(self.scalars), len(self.scalars)), ZERO, dtype=object)
-        H[:, n:] = self.by(self.scalars[n:], self.by_scalar)
-        for i in range(len(H)):
-            for j in range(max(i, n), len(H)):
-                H[i, j] = H[j, i] = self.program.define(f"V_{self.scalars[i].name}_{self.scalars[j].name}", H[i, j])
-        return H
 
     def add_material(self, stiffness: Sequence[sp.Expr], velocity: Velocity | None = None, rate=None) -> None:
         """Stages: what the resultants change by, for the elastic law, or the viscous one at a velocity."""
@@ -132,7 +127,7 @@ class Tangent(Forces):
         B = np.full((self.law.n_strains, len(configuration.motions)), ZERO, dtype=object)
         for column, motion in enumerate(configuration.motions):
             values = [self.program.define(f"B_{row}_{column}", v)
-                      for row, v in enumerate(self.middle.dot(self._scalars_moved(motion)))]
+                      for row, v in enumerate(self.middle.strains.dot(self._scalars_moved[column]))]
             for i in self.law.axes:
                 for node in range(2):
                     B[2 * n * node + i, column] = motion[configuration.along[node][i]]

@@ -22,13 +22,13 @@ STEP = mpmath.mpf(10) ** -16
 
 def energy(element: Element, law: str, s):
     """Elastic energy."""
-    now, before = (_strains(element, s["l"].item(), s[name]) for name in ("e", "e0"))
+    now, before = (_strains(element, s["S"], s["l"].item(), s[name]) for name in ("e", "e0"))
     return _form(s["S"], s["l"].item(), {name: now[name] - before[name] for name in now}) / 2
 
 
 def dissipation(element: Element, law: str, s):
     """Power: the law on the rates of strain, times tau."""
-    strains = partial(_strains, element, s["l"].item())
+    strains = partial(_strains, element, s["S"], s["l"].item())
     after, before = strains(s["e"] + STEP * s["v"]), strains(s["e"] - STEP * s["v"])
     rates = {name: (after[name] - before[name]) / (2 * STEP) for name in after}
     return s["tau"].item() * _form(s["S"], s["l"].item(), rates)
@@ -37,23 +37,27 @@ def dissipation(element: Element, law: str, s):
 def section(element: Element, law: str, s) -> dict[str, np.ndarray]:
     """Resultants, axes and strains of the section at x."""
     l, at = s["l"].item(), 2 * s["x"].item() / s["l"].item() - 1
-    now, before = (_strains(element, l, s[name]) for name in ("e", "e0"))
+    now, before = (_strains(element, s["S"], l, s[name]) for name in ("e", "e0"))
     strains = {name: now[name] - before[name] for name in now}
     EA, GAy, GAz, GJ, EIyy, EIzz, *_ = _spatial_stiffness(s["S"])
     here = [_interpolated(strains["along"][:, axis])(at) for axis in range(3)] + list(strains["curvature"])
+    gibbs = np.array([mp.mpf(0)] * 3)
     for axis, shear, bending, sign in ((1, GAy, EIzz, 1), (2, GAz, EIyy, -1)):
         if shear:
             gamma = _interpolated(strains["along"][:, axis])
             beta = _least(_with_bubble(gamma, here[6 - axis], shear, bending, sign, l))
             here[axis] -= sign * beta * (1 - at**2)
             here[6 - axis] -= beta * 2 * at * 2 / l
+            gibbs[3 - axis] = beta * (1 - at**2) / 2
     F = _spatial(s["e"].T.dot(Shape(element, l).gradient((s["x"].item(), 0, 0))))
-    axes = _frame(F[:, 1], F[:, 2]).T
+    size = mp.sqrt(gibbs.dot(gibbs))
+    turn = gibbs if size == 0 else gibbs * 2 * mp.atan(size) / size
+    axes = _frame(F[:, 1], F[:, 2]).dot(_rotation(turn)).T
     local = np.array([k * strain for k, strain in zip((EA, GAy, GAz, GJ, EIyy, EIzz), here, strict=True)])
     return {"force": axes.T.dot(local[:3]), "moment": axes.T.dot(local[3:]), "axes": axes, "strain": np.array(here)}
 
 
-def _strains(element: Element, l, e: np.ndarray) -> dict[str, np.ndarray]:
+def _strains(element: Element, S: np.ndarray, l, e: np.ndarray) -> dict[str, np.ndarray]:
     """Stretch and shears at nodes and half way (3, 3), curvatures (3,), strains of the section at nodes (2, 3)."""
     shape = Shape(element, l)
     gradients = [_spatial(e.T.dot(shape.gradient((x, 0, 0)))) for x in (0, l / 2, l)]
@@ -61,11 +65,30 @@ def _strains(element: Element, l, e: np.ndarray) -> dict[str, np.ndarray]:
     turn = _rotation_vector(frames[0].T.dot(frames[1]))
     middle = frames[0].dot(_rotation(turn / 2))
     along = [frame.T.dot(F[:, 0]) for frame, F in zip((frames[0], middle, frames[1]), gradients, strict=True)]
+    along[1] = _half_way(along[1], S, l)
     half = mp.sqrt(turn.dot(turn)) / 2
     measured = 1 if half == 0 else _arc(mp.tan(half) ** 2) * mp.tan(half) / half
     products = [F.T.dot(F) for F in (gradients[0], gradients[2])]
     return {"along": np.array(along), "curvature": measured * turn / l,
             "across": np.array([[G[1, 1] / 2, G[2, 2] / 2, G[1, 2]] for G in products])}
+
+
+def _half_way(r: np.ndarray, S: np.ndarray, l) -> np.ndarray:
+    """Stretch and shears of r_x half way, its components in a frame that the bubble does not turn.
+
+    What the bubble leaves of each shear, the others zero, is not stretch; the rest is that of a parabola with the
+    bubble's zeros and the mean of the bubble's square. Shears go with twice the tangent of half an angle for its sine.
+    """
+    _, GAy, GAz, _, EIyy, EIzz, *_ = _spatial_stiffness(S)
+    found, ratio = r[0] ** 2, _square(lambda t: 1 - t * t) / (mp.mpf(2) / 3)
+    for value, shear, bending in ((r[1], GAy, EIzz), (r[2], GAz, EIyy)):
+        if shear:
+            beta = _least(_with_bubble(lambda t, value=value: value * (1 - t * t), 0, shear, bending, 1, l))
+            found += ratio * (value**2 - (value - beta) ** 2)
+    stretch = mp.sqrt(found)
+    angle = mp.acos(r[0] / stretch)
+    larger = 1 if angle == 0 else 2 * mp.tan(angle / 2) / mp.sin(angle)
+    return np.array([stretch, larger * r[1], larger * r[2]])
 
 
 def _spatial_stiffness(S: np.ndarray):

@@ -68,11 +68,11 @@ def modes(scene: Scene, n: int, about: Equilibrium | None = None) -> Modes:
     return _named(model, np.where(np.abs(squares) < ROUNDING * fastest(K, M), 0.0, squares), dofs)
 
 
-def fastest(K: csc_array, M: csc_array) -> float:
-    """rad²/s², about the square of the highest frequency; M may have more unknowns after those of K."""
-    inertia = M.diagonal()[: K.shape[0]]
+def fastest(K: csc_array, M: csc_array, unknowns=slice(None)) -> float:
+    """rad²/s², about the square of the highest frequency, of some unknowns; M may have more of them after those of K."""
+    inertia, stiffness = M.diagonal()[: K.shape[0]][unknowns], K.diagonal()[unknowns]
     heavy = inertia > 0
-    return float(np.max(np.abs(K.diagonal()[heavy]) / inertia[heavy], initial=0.0))
+    return float(np.max(np.abs(stiffness[heavy]) / inertia[heavy], initial=0.0))
 
 
 def condensed(full: csc_array, model) -> tuple[csc_array, csc_array]:

@@ -48,8 +48,9 @@ class Path:
         self.size = self._extent()
         self.mass = self.engine.matrix(1.0, 0.0, 0.0)
         stiffness, _ = condensed(self.engine.matrix(0.0, 0.0, 1.0), self.model)
-        # rad²/s²: what is left free (a rider that may turn about its rope) has no stiffness
-        self.fastest = fastest(stiffness, self.mass)
+        # rad²/s²: what is left free (a rider that may turn about its rope) has no stiffness. Of points, not of directors:
+        # a thin beam's section vibrates so fast that its share of mass would stop the beam
+        self.fastest = fastest(stiffness, self.mass, np.flatnonzero(self.weight == 1.0))
         self.iterations = 0
         self.history: list[Equilibrium] = []
 
@@ -117,8 +118,15 @@ class Path:
             least = min(least, size)
             self.move(change)
             if size <= self.settings.tolerance * self.size:
-                return True
+                return self.on_cables()
         return False
+
+    def on_cables(self) -> bool:
+        """Whether no slide is past an end of its cable, where the last element would go on for ever."""
+        ends = np.array([self.model.cables[j.cable].length * self.model.cables[j.cable].n_elements
+                         for j in self.model.joints])
+        past = np.maximum(-self.engine.placed()["s"], self.engine.placed()["s"] - ends)
+        return bool(np.all(past <= self.settings.tolerance * self.size))
 
     def relax(self, fraction: float) -> bool:
         """Pseudo-transient continuation: implicit Euler without regard to accuracy, its step growing as R falls

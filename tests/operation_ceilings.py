@@ -88,12 +88,12 @@ CEILINGS = {
         "damping_tangent": 1506, "dissipation": 223, "section_forces": 107
     },
     "beam24_structural": {
-        "stiffness": 321, "energy": 518, "elastic_force": 1005, "elastic_tangent": 6813, "damping_force": 1294,
-        "damping_tangent": 13066, "dissipation": 857, "section_forces": 742
+        "stiffness": 360, "energy": 533, "elastic_force": 1067, "elastic_tangent": 7419, "damping_force": 1385,
+        "damping_tangent": 13981, "dissipation": 901, "section_forces": 911
     },
     "beam12p_structural": {
-        "stiffness": 110, "energy": 212, "elastic_force": 307, "elastic_tangent": 1087, "damping_force": 399,
-        "damping_tangent": 2012, "dissipation": 301, "section_forces": 274
+        "stiffness": 133, "energy": 223, "elastic_force": 343, "elastic_tangent": 1266, "damping_force": 452,
+        "damping_tangent": 2313, "dissipation": 329, "section_forces": 343
     },
     "rigid": {"point": 207, "point_force": 183, "inertia_force": 45, "inertia_tangent": 48, "kinetic_energy": 31},
     "planar_rigid": {"point": 40, "point_force": 23, "inertia_force": 3, "inertia_tangent": 0, "kinetic_energy": 9},

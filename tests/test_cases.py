@@ -16,10 +16,10 @@ WITHIN = {
     "E2 bending": {"structural": 5e-3, "poisson_split": 1.8e-2},
     "E2 axial": {"cable12": 1e-7, "cable18": 1e-7, "cable8p": 1e-7, "structural": 1e-7},  # digits printed
     "E2 torsion": {"poisson_split": 4e-3},
-    "B1": {"cable12": 1.2e-4, "cable8p": 1.2e-4, "cable18": 3e-5, "structural": 1.5e-4},
-    "B2": {"cable12": 1e-6, "cable8p": 1e-6, "cable18": 2e-10, "structural": 2.5e-5},
+    "B1": {"cable12": 1.2e-4, "cable8p": 1.2e-4, "cable18": 3e-5, "structural": 7e-5},
+    "B2": {"cable12": 1e-6, "cable8p": 1e-6, "cable18": 2e-10, "structural": 7e-6},
     "B3 small": {"structural": 3e-7, "poisson_split": 2e-3},  # structural: the second order of w/L
-    "B3 large": {"structural": 7e-5},
+    "B3 large": {"structural": 7e-6},
     "B4 once": {"cable12": 2e-4, "cable8p": 2e-4, "cable18": 3e-10, "structural": 4e-9},
     "B4 twice": {"cable12": 2e-4, "cable8p": 2e-4, "cable18": 3e-10, "structural": 4e-9},
     "B5 J = 1/6": {"structural": 6e-5, "poisson_split": 7e-4, "continuum": 7e-4},
@@ -27,16 +27,16 @@ WITHIN = {
     "B6": {"structural": 4e-5, "poisson_split": 1.8e-2},
     "B8": {"structural": 1e-2, "poisson_split": 1e-2},  # published as "near"
     # bending of the rope, and digits printed; green strain (beams: and locking) takes another force
-    "B11 level": {"engineering_exact": 1e-8, "green_exact": 4e-6, "structural": 2e-6, "poisson_split": 4e-5,
+    "B11 level": {"engineering_exact": 1e-8, "green_exact": 4e-6, "structural": 2e-7, "poisson_split": 4e-5,
                   "continuum": 4e-5},
-    "B11 drop": {"engineering_exact": 1e-8, "green_exact": 6e-6, "structural": 2e-6, "poisson_split": 3e-5,
+    "B11 drop": {"engineering_exact": 1e-8, "green_exact": 6e-6, "structural": 5e-8, "poisson_split": 3e-5,
                  "continuum": 3e-5},
-    "B11 wire": {"engineering_exact": 1e-8, "green_exact": 4e-4, "structural": 2e-5, "poisson_split": 4e-4,
+    "B11 wire": {"engineering_exact": 1e-8, "green_exact": 4e-4, "structural": 1e-8, "poisson_split": 4e-4,
                  "continuum": 4e-4},
     "S1, 3 elements": {"cable12": 3e-5, "cable8p": 3e-5},  # tol 1e-6 of the motion
     "S1, 12 elements": {"cable12": 1e-5, "cable8p": 1e-5, "cable18": 3e-4},  # cable18: the mesh of the reference
     "D0": {"cable12": 2e-5, "cable8p": 2e-5},  # quadrature of the curvature (laws/cable.py)
-    "D0 mesh": {"cable12": 1.2e-4, "cable8p": 1.2e-4, "cable18": 8e-4, "structural": 2.5e-5},
+    "D0 mesh": {"cable12": 1.2e-4, "cable8p": 1.2e-4, "cable18": 8e-4, "structural": 3e-4},
     "D1": {"cable12": 2e-3, "cable18": 2e-3, "cable8p": 2e-3, "structural": 2e-3},  # 3 digits printed
     # three digits printed, and "about"
     "D3 lag": {"cable12": 3e-3, "cable18": 3e-3, "cable8p": 3e-3, "structural": 3e-3, "poisson_split": 2.5e-2},
@@ -78,12 +78,12 @@ OFF = {
 """Errors that stay, and why: locking, and what an element has not."""
 
 ORDERS = {
-    "B1": {"cable12": 3.2, "cable8p": 3.2, "cable18": 4.1, "structural": 3.9},
-    "B2": {"cable12": 5.3, "cable8p": 5.3, "cable18": 8.3, "structural": 4.0},
-    "B3 large": {"structural": 2.0},
+    "B1": {"cable12": 3.2, "cable8p": 3.2, "cable18": 4.1, "structural": 3.6},
+    "B2": {"cable12": 5.3, "cable8p": 5.3, "cable18": 8.3, "structural": 4.3},
+    "B3 large": {"structural": 3.8},
     "B4 once": {"cable12": 4.2, "cable8p": 4.2, "cable18": 9.5, "structural": 9.5},
     "B4 twice": {"cable12": 3.9, "cable8p": 3.9, "cable18": 8.5, "structural": 9.5},
-    "D0 mesh": {"cable12": 3.5, "cable8p": 3.5, "cable18": 4.0, "structural": 3.6},
+    "D0 mesh": {"cable12": 3.5, "cable8p": 3.5, "cable18": 4.0, "structural": 2.3},
 }
 """Least orders of convergence; the table has the measured ones."""
 

@@ -1,5 +1,6 @@
 """The structural law of one element; published cases of beams of it are in test_cases.py."""
 
+import funicular as fu
 import numpy as np
 import pytest
 from funicular.derive.elements import ELEMENTS
@@ -72,3 +73,56 @@ def test_the_planar_beam_is_the_spatial_one_in_a_plane():
     np.testing.assert_allclose(spatial[[0, 1, 2, 4, 5, 6], :2], f, rtol=1e-13, atol=1e-15)
     np.testing.assert_allclose(spatial[:, 2], 0, atol=1e-16)
     np.testing.assert_allclose(spatial[[3, 7]], 0, atol=1e-16)
+
+
+@pytest.mark.parametrize("slenderness", [1, 1e1, 1e2, 1e4, 1e6])
+@pytest.mark.parametrize("name", ["beam12p", "beam24"])
+def test_a_taut_element_is_stable(name, slenderness):
+    """slenderness: T l^2/EI. Shifts, and turns about its own axis, are all that costs nothing."""
+    element, length, strain = ELEMENTS[name], 0.7, 1e-3
+    S = rectangle(1.0, 0.3, 1.0, 1.0, element.dim)
+    S[slice(2, 3) if element.dim == 2 else slice(3, 6)] = bending = strain * length**2 / slenderness
+    rest = reference(element, length)
+    A = getattr(kernels, f"{name}_structural_stiffness")(length, rest, S)
+    taut = rest * np.array([1 + strain, *np.ones(element.dim - 1)])
+    values = np.linalg.eigvalsh(getattr(kernels, f"{name}_structural_elastic_tangent")(length, taut, A))
+    free = 2 * element.dim - 2
+    assert np.abs(values[:free]).max() < 1e-14
+    assert values[free] > 0.1 * bending
+
+
+@pytest.mark.parametrize("name", ["beam12p", "beam24"])
+def test_frequencies_of_a_taut_beam_are_those_of_a_string(name):
+    """T l^2/EI 1e5 with 4 elements."""
+    strain, k, each = 1e-2, np.pi * np.arange(1, 4), 2 if name == "beam24" else 1
+    height = np.sqrt(12 * strain / 16e5)
+    string = k * np.sqrt(strain / (1 + strain) + height**2 / 12 * (k / (1 + strain)) ** 2)  # its bending is 1e-5 of it
+    error = []
+    for elements in (4, 8):
+        scene = fu.Scene(gravity=(0, 0, 0))
+        scene.cable("string", start=(0, 0, 0), end=(1 + strain, 0, 0), rest_length=1.0, elements=elements, element=name,
+                    law="structural", section=fu.Rectangle(height=height, width=height),
+                    material=fu.Material(youngs_modulus=1 / height**2, poisson_ratio=0, density=1 / height**2))
+        scene.pin("string", s=0)
+        scene.pin("string", s=1.0)
+        modes = scene.modes(3 * each + (name == "beam24"))  # it is free to turn about its axis
+        assert modes.growth_rate.max() < 1e-6
+        error.append(np.abs(modes.angular_frequency[-3 * each :: each] / string - 1))
+    assert error[0].max() < 2e-3
+    assert error[1].max() < 3e-5
+
+
+@pytest.mark.parametrize("name", ["beam12p", "beam24"])
+def test_a_chord_does_not_turn_back(name):
+    """Turned against its ends, a slender element bends more and more; there is no rest with the chord reversed."""
+    element, half = ELEMENTS[name], ELEMENTS[name].n_vectors // 2
+    S = rectangle(1.0, 0.3, 1.0, 1.0, element.dim)
+    S[slice(2, 3) if element.dim == 2 else slice(3, 6)] = 1e-6
+    bent = reference(element, 1.0)
+    A = getattr(kernels, f"{name}_structural_stiffness")(1.0, bent, S)
+    energies = []
+    for angle in np.radians([10, 50, 90, 130, 170, 179]):
+        half_way = np.cos(angle), np.sqrt(5 / 4) * np.sin(angle)  # r_x, as long as before on the mean of the element
+        bent[half, :2] = (half_way + 0.5 * bent[1, :2]) / 1.5
+        energies.append(getattr(kernels, f"{name}_structural_energy")(1.0, bent, A)[0])
+    assert (np.diff(energies) > 0).all()

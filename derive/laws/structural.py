@@ -2,7 +2,7 @@
 
 The section's frame t is made of the directors r_y, r_z. With r_x cubic and the directors linear in x, the strains
 
-    stretch, shear  r_x . t_i            at the nodes and half way, quadratic in between,
+    stretch, shear  m_i = r_x . t_i      at the nodes and, turned, half way; quadratic in between,
     twist, curvature                     constant: the rotation vector from node to node over l,
     of the section  r_y.r_y/2, r_z.r_z/2, r_y.r_z   at the nodes, linear in between,
 
@@ -10,9 +10,17 @@ are as many as the element can have (18 in space, 9 in the plane): nothing to lo
 is that of half the rotation between the nodes. Its Gibbs vector g = tan(angle/2) axis comes from the two frames.
 
 Rotations are linear, and so forbid the linear curvature of a beam under shear force. An inner bubble of rotation,
-amplitude beta (1 - X^2), takes it up; it is condensed: exact for Timoshenko's beam under end loads. Strains are
-counted from those of a reference e0, which may be curved; x is its arc-length. Section constants of order: EA, GA_y,
-GA_z, GJ, EI_yy, EI_zz, and stiffness against r_y.r_y, r_z.r_z, r_y.r_z; planar EA, GA, EI, r_y.r_y.
+amplitude beta (1 - X^2), takes it up; it is condensed: exact for Timoshenko's beam under end loads. It turns the
+section, too: where it leaves a part a_i of the shear m_i half way, r_x is stretched by s there, not by m_1,
+
+    s^2 = m_1^2 + c_2^2 m_2^2 + c_3^2 m_3^2      c_i^2 = 4/5 (1 - a_i^2),
+
+4/5 for the mean of the bubble's square over the element. With m_1 a taut element could turn its chord away and lengthen
+for the bubble's bending alone; with s it is as stable as a string. The shears half way are 2 m_i/(1 + m_1/s): the
+bubble's angle by twice the tangent of its half, for its sine would let a chord turn back and rest there.
+
+Strains are counted from those of a reference e0, which may be curved; x is its arc-length. Section constants of order:
+EA, GA_y, GA_z, GJ, EI_yy, EI_zz, and stiffness against r_y.r_y, r_z.r_z, r_y.r_z; planar EA, GA, EI, r_y.r_y.
 """
 
 from __future__ import annotations
@@ -48,6 +56,7 @@ def _mean(f: sp.Expr) -> sp.Expr:
 QUADRATIC = sp.Matrix(3, 3, lambda i, j: _mean(LAGRANGE[i] * LAGRANGE[j]))
 BUBBLE_WITH_STRAIN = [_mean(f * BUBBLE) for f in LAGRANGE]
 BUBBLE_SQUARED = _mean(BUBBLE**2)
+BUBBLE_AS_STRAIN = BUBBLE_SQUARED / _mean(BUBBLE)  # the parabola through 0, this, 0 has the mean of its square
 BUBBLE_CURVATURE = _mean((2 * BUBBLE.diff(X)) ** 2)  # times 1/l^2
 LINEAR = sp.Matrix(2, 2, lambda i, j: _mean((1 + PLACES[2 * i] * X) * (1 + PLACES[2 * j] * X) / 4))
 
@@ -86,6 +95,11 @@ class Structural:
         return self.n_section + len(self.shears)
 
     @property
+    def n_constants(self) -> int:
+        """Length of A without the reference: stiffness, and how much of each shear half way is stretch."""
+        return self.n_stiffness + len(self.shears)
+
+    @property
     def n_strains(self) -> int:
         """Stretch and shears at three places, curvatures, strains of the section at both nodes."""
         return 3 * len(self.axes) + len(self.spins) + 2 * len(self.across)
@@ -99,8 +113,8 @@ class Structural:
         return program.input("S", self.n_section, "N, N m^2", "section stiffness: EA, GA, EI; against r_y.r_y/2")
 
     def constants(self, program: Program) -> np.ndarray:
-        """Input A: S, stiffness that the bubble takes off the shears, reference strains."""
-        return program.input("A", self.n_stiffness + self.n_strains, "N, N m^2, 1, 1/m",
+        """Input A: S, stiffness that the bubble takes off the shears, shares of stretch, reference strains."""
+        return program.input("A", self.n_constants + self.n_strains, "N, N m^2, 1, 1/m",
                              f"constants from {self.element.name}_{NAME}_stiffness")
 
     def set_up(self, program: Program) -> None:
@@ -108,12 +122,22 @@ class Structural:
         length = program.input("l", (), "m", "length of the element")
         e0 = program.input("e0", (self.element.n_vectors, self.element.dim), "m, 1", REFERENCE_DOC)
         S = self.section_stiffness(program)
-        program.stage("strains of the reference")
-        configuration = Configuration(self, program, e0, program.define("w", 1 / length))
         program.stage("stiffness that the bubble takes off the shears")
         bubble = [program.define(f"bubble_{i}", self._condensed(S, i, length)) for i in self.shears]
-        program.output("A", [*S, *bubble, *configuration.strains], "N, N m^2, 1, 1/m",
-                       "S, stiffness that the bubble takes off the shears, reference strains")
+        shares = self.shares(program, S, length)
+        program.stage("strains of the reference")
+        configuration = Configuration(self, program, e0, program.define("w", 1 / length), shares)
+        program.output("A", [*S, *bubble, *shares, *configuration.strains], "N, N m^2, 1, 1/m",
+                       "S, stiffness that the bubble takes off the shears, shares of stretch in the shears half way, "
+                       "reference strains")
+
+    def shares(self, program: Program, S: Sequence[sp.Expr], length: sp.Expr) -> list[sp.Expr]:
+        """Stage: how much of each shear half way is stretch, since the bubble turns the section."""
+        program.stage("stretch of the bubble")
+        left = [program.define(f"left_{i}", 1 - S[i] * BUBBLE_SQUARED / self._bubble_stiffness(S, i, length))
+                for i in self.shears]
+        return [program.define(f"share_{i}", sp.sqrt(BUBBLE_AS_STRAIN * (1 - c**2)))
+                for i, c in zip(self.shears, left, strict=True)]
 
     def bending(self, S: Sequence[sp.Expr], shear: int) -> sp.Expr:
         """Stiffness of the bending that goes with a shear: about z with y, about y with z."""
@@ -135,7 +159,7 @@ class Structural:
     def from_reference(self, program: Program, A: np.ndarray, strains: Sequence[sp.Expr]) -> list[sp.Expr]:
         """Stage: strains less those of the reference."""
         program.stage("strains from the reference")
-        return [program.define(f"d_{name}", s - A[self.n_stiffness + i])
+        return [program.define(f"d_{name}", s - A[self.n_constants + i])
                 for i, (name, s) in enumerate(zip(self.names, strains, strict=True))]
 
     @cached_property
@@ -165,10 +189,13 @@ class Structural:
                 found[3 * n + m + node * len(self.across) + p] = stiffness[n + m + p] * _times(LINEAR.row(node), at)
         return found
 
-    def at(self, program: Program, S, length: sp.Expr, at: sp.Expr, strains: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """Axial strain, shears, twist, curvatures at X, the bubble's among them; zero out of the plane."""
+    def at(self, program: Program, S, length: sp.Expr, at: sp.Expr,
+           strains: Sequence[sp.Expr]) -> tuple[list[sp.Expr], np.ndarray]:
+        """Axial strain, shears, twist, curvatures at X, the bubble's among them, and its turn, a Gibbs vector in the
+        section's frame; zero out of the plane.
+        """
         n = len(self.axes)
-        found = [sp.S.Zero] * 6
+        found, turn = [sp.S.Zero] * 6, np.full(3, sp.S.Zero)
         for k in self.spins:
             found[3 + k] = strains[3 * n + list(self.spins).index(k)]
         for i in self.axes:
@@ -180,7 +207,8 @@ class Structural:
                 bubble = program.define(f"bubble_{i}", self.bubble(S, i, length, places))
                 found[i] -= bubble * BUBBLE.subs(X, at)
                 found[6 - i] += sign * bubble * (2 / length) * BUBBLE.diff(X).subs(X, at)
-        return [program.define(f"at_{'ek'[i // 3]}{i % 3 + 1}", f) for i, f in enumerate(found)]
+                turn[3 - i] = program.define(f"turn_{3 - i + 1}", sign * bubble * BUBBLE.subs(X, at) / 2)
+        return [program.define(f"at_{'ek'[i // 3]}{i % 3 + 1}", f) for i, f in enumerate(found)], turn
 
     def spatial_stiffness(self, S: Sequence[sp.Expr]) -> list[sp.Expr]:
         """EA, GA_y, GA_z, GJ, EI_yy, EI_zz; of a planar element those that it has."""
@@ -210,8 +238,8 @@ class Configuration:
     `parts` are these scalars and the frames: a motion is known by the rates that it gives to them.
     """
 
-    def __init__(self, law: Structural, program: Program, e: np.ndarray, w: sp.Expr):
-        self.law, self.program, self.w = law, program, w
+    def __init__(self, law: Structural, program: Program, e: np.ndarray, w: sp.Expr, shares: Sequence[sp.Expr]):
+        self.law, self.program, self.w, self.shares = law, program, w, shares
         names = [name.partition("_")[2] for name in law.element.names]  # 1, x1, y1, z1, 2, x2, ...
         at = {name: spatial(e[k]) for k, name in enumerate(names)}
         self.directors = [(at[f"y{n}"], at.get(f"z{n}", spatial([0, 0, 1]))) for n in (1, 2)]
@@ -245,7 +273,7 @@ class Configuration:
                          for i in range(3)])
 
     def _middle(self) -> list[sp.Expr]:
-        """Components of r_x half way in the frame half way; curvatures.
+        """Stretch, shears half way; curvatures.
 
         (t_1 + t_2)/2 is the frame of half the rotation, its part across the axis shorter by cos(angle/2).
         """
@@ -255,8 +283,13 @@ class Configuration:
         along = define("along", g.dot(self.mean) * define("inv_secant", 1 / (1 + secant)))
         above, below = arc(square)
         per_length = define("arc", 2 * self.w * above * define("inv_arc", 1 / below))
-        return ([define(f"m{i + 1}", secant * self.mean[i] - g[i] * along) for i in self.law.axes]
-                + [define(f"k{k + 1}", per_length * g[k]) for k in self.law.spins])
+        self.components = m = [define(f"m{i + 1}", secant * self.mean[i] - g[i] * along) for i in self.law.axes]
+        shared = [define(f"shared{i + 1}", share * m[i]) for i, share in zip(self.law.shears, self.shares, strict=True)]
+        stretch = define("stretch", sp.sqrt(m[0] ** 2 + sum(c**2 for c in shared)))
+        cosine = define("cosine", m[0] * define("inv_stretch", 1 / stretch))
+        larger = define("larger", 1 / (sp.Rational(1, 2) + cosine / 2))
+        return [stretch, *(define(f"shear{i + 1}", larger * m[i]) for i in self.law.shears),
+                *(define(f"k{k + 1}", per_length * g[k]) for k in self.law.spins)]
 
     def _across(self) -> list[sp.Expr]:
         pairs = [(self.directors[n][i - 1], self.directors[n][j - 1], i == j)
