@@ -69,7 +69,7 @@ def modes(scene: Scene, n: int, about: Equilibrium | None = None) -> Modes:
 
 
 def fastest(K: csc_array, M: csc_array, unknowns=slice(None)) -> float:
-    """rad²/s², about the square of the highest frequency, of some unknowns; M may have more of them after those of K."""
+    """rad²/s², about the square of the highest frequency of some unknowns; M may have more after those of K."""
     inertia, stiffness = M.diagonal()[: K.shape[0]][unknowns], K.diagonal()[unknowns]
     heavy = inertia > 0
     return float(np.max(np.abs(stiffness[heavy]) / inertia[heavy], initial=0.0))

@@ -48,8 +48,8 @@ class Path:
         self.size = self._extent()
         self.mass = self.engine.matrix(1.0, 0.0, 0.0)
         stiffness, _ = condensed(self.engine.matrix(0.0, 0.0, 1.0), self.model)
-        # rad²/s²: what is left free (a rider that may turn about its rope) has no stiffness. Of points, not of directors:
-        # a thin beam's section vibrates so fast that its share of mass would stop the beam
+        # rad²/s²: what is left free (a rider that may turn about its rope) has no stiffness. Of points, not of
+        # directors: a thin beam's section vibrates so fast that its share of mass would stop the beam
         self.fastest = fastest(stiffness, self.mass, np.flatnonzero(self.weight == 1.0))
         self.iterations = 0
         self.history: list[Equilibrium] = []
