@@ -36,6 +36,7 @@ STYLE = {
 }
 SNAPSHOTS = 11
 POINTS_PER_ELEMENT = 24
+INSIDE = 1e-8
 
 
 class View(NamedTuple):
@@ -153,7 +154,14 @@ def draw_shape(run: Run) -> Figure | None:
             zorder=4,
             label=None if number else "rider",
         )
-    for marker, label, supports in (("^", "pin", scene.pins), ("s", "clamp", scene.clamps)):
+    riding = {slide.body for slide in scene.slides.values()}
+    for number, name in enumerate(name for name in scene.bodies if name not in riding):
+        path = run[f"{name}.position"] @ plane.T
+        axes.plot(*path.T, color="0.25", linewidth=0.9, linestyle=":", zorder=3)
+        axes.scatter(*path[shown].T, c=colour.to_rgba(run.time[shown]), marker="h", s=48, edgecolors="0.1",
+                     linewidths=0.8, zorder=4, label=None if number else "body")
+    for marker, label, supports in (("^", "pin", scene.pins), ("s", "clamp", scene.clamps),
+                                    ("D", "moved", scene.motions)):
         if supports:
             held = np.array([scene.cables[support.cable].point(support.s) for support in supports]) @ plane.T
             axes.scatter(*held.T, marker=marker, s=60, color="0.1", zorder=5, label=label)
@@ -227,7 +235,9 @@ def draw_section_forces(run: Run, cable: str) -> Figure:
     from matplotlib.figure import Figure
 
     described = run.scene.cables[cable]
-    s = np.linspace(0, described.length, PLACES * described.elements + 1)
+    # up to both ends of each element, just inside: forces may jump at nodes
+    inside = np.linspace(INSIDE, 1 - INSIDE, PLACES + 1)
+    s = (np.arange(described.elements)[:, None] + inside).ravel() * (described.length / described.elements)
     shown = np.unique(np.linspace(0, len(run.time) - 1, SNAPSHOTS).round().astype(int))
     colour = ScalarMappable(Normalize(run.time[0], max(run.time[-1], run.time[0] + 1e-9)), "viridis")
     forces = section_forces(described, run[f"{cable}.nodal_vectors"][shown], s)

@@ -61,6 +61,16 @@ def test_a_tall_shape_is_not_stretched(run):
     assert (shape.get_aspect(), shape.get_ylabel()) == (1, "y / m")
 
 
+def test_what_does_not_slide_is_drawn_too():
+    scene = Scene()
+    soft = Material(youngs_modulus=1e6, density=1000, poisson_ratio=0.3)
+    scene.cable("rope", start=(0, 0, 0), end=(1, 0, 0), elements=1, section=Circle(radius=0.01), material=soft)
+    scene.motion("rope", s=0, displacement=(0, 0, 0))
+    scene.rigid_body("ball", mass=1, inertia=(1, 1, 1), position=(0.5, 1, 0))
+    shape = draw_shape(scene.run(0.01)).axes[0]
+    assert [t.get_text() for t in shape.get_legend().get_texts()] == ["body", "moved"]
+
+
 def hanging(end, gravity):
     scene = Scene(gravity=gravity)
     soft = Material(youngs_modulus=1e6, density=1000, poisson_ratio=0.3)
