@@ -298,6 +298,14 @@ class Cable(Part):
                              stretch**2 * self._shape.curvature(drawn))
 
     @property
+    def reference(self) -> np.ndarray | None:
+        """(elements, 2 vectors, dim): stress-free nodal vectors of each element; None where the law takes none."""
+        if not self.is_curved and self.stiffness_law != "structural":
+            return None
+        rest = self.rest_nodal_vectors[..., : self.dim]
+        return np.concatenate([rest[:-1], rest[1:]], axis=1)
+
+    @property
     def rest_nodal_vectors(self) -> np.ndarray:
         """(nodes, vectors, 3): those of the stress-free cable, with the drawn one's start and direction there."""
         start = self._shape.point(0.0)

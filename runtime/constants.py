@@ -17,10 +17,8 @@ def constants(cable: Cable) -> np.ndarray:
     """(1, n), or (elements, n) where they differ because the stress-free shape is curved."""
     kernels, length = kernels_of(cable.library), cable.length / cable.elements
     S = section_stiffness(cable.stiffness_law, cable.section, cable.material, cable.dim)
-    shapes: list[np.ndarray | None] = [None]
-    if cable.is_curved or cable.stiffness_law == "structural":
-        rest = cable.rest_nodal_vectors[..., : cable.dim]
-        shapes = [np.concatenate(rest[k : k + 2]) for k in range(cable.elements if cable.is_curved else 1)]
+    reference = cable.reference
+    shapes = [None] if reference is None else reference if cable.is_curved else reference[:1]
     return np.array([element_constants(kernels, cable.element, cable.kernel_law, length, S, e0) for e0 in shapes])
 
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from funicular.results import Run
     from funicular.scene import Scene
+    from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure
 
 STYLE = {
@@ -116,10 +117,17 @@ def rider_path(run: Run, slide: str) -> np.ndarray:
     return run[f"{joint.body}.position"] + rotate(run[f"{joint.body}.orientation"], joint.at)
 
 
-def draw_shape(run: Run) -> Figure | None:
-    """The cables at a few times, coloured by time, with the riders and their paths; None without cables."""
+def _snapshots(run: Run) -> tuple[np.ndarray, ScalarMappable]:
+    """Numbers of the few times that are drawn, and the colours of times."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
+
+    shown = np.unique(np.linspace(0, len(run.time) - 1, SNAPSHOTS).round().astype(int))
+    return shown, ScalarMappable(Normalize(run.time[0], max(run.time[-1], run.time[0] + 1e-9)), "viridis")
+
+
+def draw_shape(run: Run) -> Figure | None:
+    """The cables at a few times, coloured by time, with the riders and their paths; None without cables."""
     from matplotlib.figure import Figure
 
     scene = run.scene
@@ -127,8 +135,7 @@ def draw_shape(run: Run) -> Figure | None:
         return None
     view = view_of(scene)
     plane = np.array([view.across, view.up])
-    shown = np.unique(np.linspace(0, len(run.time) - 1, SNAPSHOTS).round().astype(int))
-    colour = ScalarMappable(Normalize(run.time[0], max(run.time[-1], run.time[0] + 1e-9)), "viridis")
+    shown, colour = _snapshots(run)
     figure = Figure(figsize=(8, 3.6))
     axes = figure.add_subplot()
     for name in scene.cables:
@@ -230,16 +237,13 @@ def draw_slide(run: Run) -> Figure | None:
 
 def draw_section_forces(run: Run, cable: str) -> Figure:
     """Tension and size of the moment along a cable, at a few times, coloured by time."""
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import Normalize
     from matplotlib.figure import Figure
 
     described = run.scene.cables[cable]
     # up to both ends of each element, just inside: forces may jump at nodes
     inside = np.linspace(INSIDE, 1 - INSIDE, PLACES + 1)
     s = (np.arange(described.elements)[:, None] + inside).ravel() * (described.length / described.elements)
-    shown = np.unique(np.linspace(0, len(run.time) - 1, SNAPSHOTS).round().astype(int))
-    colour = ScalarMappable(Normalize(run.time[0], max(run.time[-1], run.time[0] + 1e-9)), "viridis")
+    shown, colour = _snapshots(run)
     forces = section_forces(described, run[f"{cable}.nodal_vectors"][shown], s)
     figure = Figure(figsize=(7, 4.8))
     tension, moment = figure.subplots(2, sharex=True)

@@ -57,16 +57,15 @@ def section_forces(cable: Cable, nodal_vectors: np.ndarray, s: np.ndarray) -> di
     length, dim = cable.length / cable.elements, cable.dim
     stiffness = section_stiffness(cable.stiffness_law, cable.section, cable.material, dim)
     element = np.clip(np.floor(s / length * (1 + EXACT)).astype(int), 0, cable.elements - 1)
-    with_rest = cable.kernel_law == "structural" or cable.is_curved
-    rest = cable.rest_nodal_vectors[..., :dim]
+    reference = cable.reference
     shape = (len(nodal_vectors), len(s))
     force, moment, strain = (np.zeros((*shape, n)) for n in (3, 3, 6))
     axes = np.zeros((*shape, 3, 3))
     for k, (place, at) in enumerate(zip(s, element, strict=True)):
         x = min(max(place - at * length, 0.0), length)
-        reference = [np.concatenate(rest[at : at + 2])] if with_rest else []
+        e0 = [] if reference is None else [reference[at]]
         for time, e in enumerate(nodal_vectors[:, at : at + 2, :, :dim].reshape(len(nodal_vectors), -1, dim)):
-            cut = kernel(length, x, e, stiffness, *reference)
+            cut = kernel(length, x, e, stiffness, *e0)
             force[time, k], moment[time, k], axes[time, k], strain[time, k] = cut
     return {"force": force, "moment": moment} | _components(cable, force, moment, axes, strain)
 

@@ -125,7 +125,8 @@ class Path:
         """Whether no slide is past an end of its cable, where the last element would go on for ever."""
         ends = np.array([self.model.cables[j.cable].length * self.model.cables[j.cable].n_elements
                          for j in self.model.joints])
-        past = np.maximum(-self.engine.placed()["s"], self.engine.placed()["s"] - ends)
+        s = self.engine.placed()["s"]
+        past = np.maximum(-s, s - ends)
         return bool(np.all(past <= self.settings.tolerance * self.size))
 
     def relax(self, fraction: float) -> bool:

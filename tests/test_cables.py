@@ -1,9 +1,11 @@
 """Cables in motion, against two independent formulations (CASES S1, D0; tests/reference)."""
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
+import sliding
 from funicular import Material, Rectangle, Scene, SceneError
 
 REFERENCE = Path(__file__).parent / "reference"
@@ -13,17 +15,7 @@ def read(name: str) -> np.ndarray:
     return np.genfromtxt(REFERENCE / name, delimiter=",", names=True)
 
 
-def sliding_mass(elements=3, element="cable12", strain="engineering", youngs_modulus=0.4e9, mass=1.0) -> Scene:
-    """S1, and its flexible variant."""
-    scene = Scene()
-    wire = scene.cable("wire", start=(0, 0, 0), end=(1.5, 0, 0), elements=elements, element=element, strain=strain,
-                       section=Rectangle(height=0.05, width=0.05),
-                       material=Material(youngs_modulus=youngs_modulus, poisson_ratio=0.0, density=4200))
-    scene.pin(wire, s=0.0)
-    scene.pin(wire, s=1.5)
-    scene.rigid_body("A", mass=mass, inertia=(1e-3, 1e-3, 1e-3), position=(0.25, 0, 0), velocity=(1, 0, 0))
-    scene.slide("A", along=wire, s=0.25, name="trolley")
-    return scene
+sliding_mass = partial(sliding.sliding_mass, strain="engineering")  # S1, and its flexible variant
 
 
 def pendulum(strain: str, damping_time=0.0) -> Scene:

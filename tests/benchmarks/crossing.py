@@ -13,7 +13,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from funicular import Material, Rectangle, Run, Scene
+from funicular import Run
+from sliding import sliding_mass
 from table import parser, show
 
 ELEMENTS, DURATION = 12, 1.0
@@ -23,15 +24,8 @@ DAMPING_TIME = 1e-2  # the sudden start's vibrations would hide what the nodes d
 
 def simulate(element: str, step: float) -> Run:
     """The flexible sliding mass; outputs at every step."""
-    scene = Scene()
-    wire = scene.cable("wire", start=(0, 0, 0), end=(1.5, 0, 0), elements=ELEMENTS, element=element,
-                       strain="engineering", section=Rectangle(height=0.05, width=0.05),
-                       material=Material(youngs_modulus=2e6, poisson_ratio=0.0, density=4200,
-                                         damping_time=DAMPING_TIME))
-    scene.pin(wire, s=0.0)
-    scene.pin(wire, s=1.5)
-    scene.rigid_body("A", mass=5.0, inertia=(1e-3, 1e-3, 1e-3), position=(0.25, 0, 0), velocity=(1, 0, 0))
-    scene.slide("A", along=wire, s=0.25, name="trolley")
+    scene = sliding_mass(ELEMENTS, element, strain="engineering", youngs_modulus=2e6, mass=5.0,
+                         damping_time=DAMPING_TIME)
     return scene.run(DURATION, step=step, output_step=step)
 
 

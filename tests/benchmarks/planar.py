@@ -16,7 +16,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from funicular import Material, Rectangle, Run, Scene
+from funicular import Run
+from sliding import sliding_mass
 from table import parser, show
 
 PAIRS = [
@@ -32,15 +33,8 @@ QUANTITIES = {"x, y / m": "A.position", "s / m": "trolley.s", "force / N": "trol
 
 def simulate(element: str, law: str = "continuum", poisson_ratio: float = 0.0, duration: float = 1.0) -> Run:
     """Table 1 with another element."""
-    scene = Scene()
-    wire = scene.cable("wire", start=(0, 0, 0), end=(1.5, 0, 0), elements=3, element=element,
-                       section=Rectangle(height=0.05, width=0.05),
-                       material=Material(youngs_modulus=0.4e9, poisson_ratio=poisson_ratio, density=4200),
-                       **({"law": law} if "beam" in element else {}))
-    scene.pin(wire, s=0.0)
-    scene.pin(wire, s=1.5)
-    scene.rigid_body("A", mass=1.0, inertia=(1e-3, 1e-3, 1e-3), position=(0.25, 0, 0), velocity=(1, 0, 0))
-    scene.slide("A", along=wire, s=0.25, name="trolley")
+    laws = {"law": law} if "beam" in element else {}
+    scene = sliding_mass(3, element, poisson_ratio=poisson_ratio, **laws)
     return scene.run(duration, step=1e-3, output_step=2e-3)
 
 

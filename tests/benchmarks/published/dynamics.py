@@ -7,6 +7,7 @@ from math import pi, sqrt
 
 import numpy as np
 from funicular import Circle, General, Material, Rectangle, Scene, Table
+from sliding import sliding_mass
 
 from .case import CABLES, KINDS, STRUCTURAL, Case, Kind, Quantity
 
@@ -26,14 +27,7 @@ def rider_quantities(kind: Kind, elements: int) -> list[Quantity]:
 
 def rider(kind: Kind, elements: int) -> np.ndarray:
     """Position of the body after a second."""
-    scene = Scene()
-    wire = scene.cable("wire", start=(0, 0, 0), end=(1.5, 0, 0), elements=elements, element=kind.element, law=kind.law,
-                       section=Rectangle(height=0.05, width=0.05),
-                       material=Material(youngs_modulus=0.4e9, poisson_ratio=0, density=4200))
-    scene.pin(wire, s=0)
-    scene.pin(wire, s=1.5)
-    scene.rigid_body("A", mass=1, inertia=(1e-3, 1e-3, 1e-3), position=(0.25, 0, 0), velocity=(1, 0, 0))
-    scene.slide("A", along=wire, s=0.25)
+    scene = sliding_mass(elements, kind.element, law=kind.law)
     return scene.run(1.0, tol=1e-6, output_step=1.0)["A.position"][-1, :2]
 
 
