@@ -11,7 +11,7 @@ from funicular.derive.frames import spatial, tangent_frame, unit
 from funicular.derive.gram import DIRECTIONS, Gram
 from funicular.derive.gram_point import axis, expansion
 from funicular.derive.gram_tangent import nodal_tangent
-from funicular.derive.laws import law_class, law_name
+from funicular.derive.laws import law_class, law_name, stress_free
 from funicular.derive.spec import Element
 from funicular.derive.stages import Program
 
@@ -112,7 +112,7 @@ class Kernels:
         p = self._program("section_forces", "force and moment resultants of a section", "eq 6-8 at a section")
         length, x = p.input("l", (), "m", "length of the element"), p.input("x", (), "m", "arc-length from its start")
         e, S = self._coordinates(p), self.law.section_stiffness(p)
-        e0 = [self.law.reference_input(p)] if self.law.curved else []
+        e0 = [stress_free.shape(p, self.element)] if self.law.curved else []
         p.stage("strain vectors")
         w = p.define("w", 1 / length)
         X = p.define("X", 2 * w * x - 1)

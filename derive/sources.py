@@ -47,8 +47,8 @@ def _named(node: ast.AST) -> Iterator[str]:
         yield from (a.name for a in node.names)
     elif isinstance(node, ast.ImportFrom) and (node.module or "").startswith(PACKAGE + "."):
         inner = node.module.removeprefix(PACKAGE + ".")
-        submodules = [f"{inner}.{a.name}" for a in node.names if _exists(f"{inner}.{a.name}")]
-        yield from submodules or [inner]
+        for name in (f"{inner}.{a.name}" for a in node.names):
+            yield name if _exists(name) else inner
 
 
 def _exists(module: str) -> bool:

@@ -11,8 +11,9 @@ import numpy as np
 import sympy as sp
 from funicular.derive import spec
 from funicular.derive.frames import cross, spatial
+from funicular.derive.laws import stress_free
 from funicular.derive.laws.section_frame import SectionFrame
-from funicular.derive.laws.structural import REFERENCE_DOC, Configuration, Structural
+from funicular.derive.laws.structural import Configuration, Structural
 from funicular.derive.spec import Element
 from funicular.derive.stages import Program
 from funicular.derive.structural_forces import Forces, Velocity
@@ -127,7 +128,7 @@ class Kernels:
         length, x = p.input("l", (), "m", "length of the element"), p.input("x", (), "m", "arc-length from its start")
         shape = (self.element.n_vectors, self.element.dim)
         e, S = p.input("e", shape, "m, 1", "nodal vectors (eq 1)"), self.law.section_stiffness(p)
-        e0 = p.input("e0", shape, "m, 1", REFERENCE_DOC)
+        e0 = stress_free.shape(p, self.element)
         shares = self.law.shares(p, S, length)
         now, before = (self._configuration(p, vectors, length, shares).strains for vectors in (e, e0))
         p.stage("strains from the reference")

@@ -217,6 +217,7 @@ def test_the_spec_hash_covers_all_that_decides_a_family():
     law = set(sources.deciding(families()["cable12_green_exact"].modules))
     assert law >= {"elements/cable12.py", "law_kernels.py", "laws/cable.py", "gram.py", "gram_tangent.py", "moments.py"}
     assert not any(name.startswith(("gram", "laws")) for name in beam)
+    assert {"laws/__init__.py", "laws/stress_free.py"} <= law, "a package and its module, by one import"
     slide = set(sources.deciding(families()["slide_beam24_rigid"].modules))
     assert slide >= {"joints/slide.py", "elements/beam24.py", "bodies/rigid.py", "frames.py", "stages.py"}
     assert "joints/slide.py" not in beam | law

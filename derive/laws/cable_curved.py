@@ -19,6 +19,7 @@ from dataclasses import astuple, dataclass
 
 import numpy as np
 import sympy as sp
+from funicular.derive.laws import stress_free
 from funicular.derive.laws.cable import Cable, Term
 from funicular.derive.stages import Program
 
@@ -63,7 +64,7 @@ class CurvedCable(Cable):
     def set_up(self, program: Program) -> None:
         """Inputs l, e0, S and output A."""
         length = program.input("l", (), "m", "length of the element")
-        e0 = self.reference_input(program)
+        e0 = stress_free.shape(program, self.gram.element)
         S = self.section_stiffness(program)
         program.stage("stress-free shape at the quadrature points")
         c = self.gram.differences(program, e0, program.define("w", 1 / length))
@@ -73,11 +74,6 @@ class CurvedCable(Cable):
                       for k, series in ((1, point.value), (2, point.slope)))
             found += astuple(self.reference(program, f"_{g}", r1, r2, FLOOR))
         program.output("A", found, "N, N m^2, 1", "EA, EI, and the stress-free shape at each Gauss point")
-
-    def reference_input(self, program: Program) -> np.ndarray:
-        """Input e0."""
-        element = self.gram.element
-        return program.input("e0", (element.n_vectors, element.dim), "m, 1", "nodal vectors of the stress-free shape")
 
     def reference(self, program: Program, tag: str, r1: np.ndarray, r2: np.ndarray, floor: sp.Expr) -> Reference:
         """From r0' and r0''; floor is FLOOR in the units of r0''."""

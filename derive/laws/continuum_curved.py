@@ -13,6 +13,7 @@ import numpy as np
 import sympy as sp
 from funicular.derive.gram import DIRECTIONS, Gram
 from funicular.derive.gram_point import by_section
+from funicular.derive.laws import stress_free
 from funicular.derive.laws.continuum import ROWS, Continuum, Form
 from funicular.derive.laws.curved_point import Metric, at_point, columns, frame, voigt
 from funicular.derive.laws.curved_section import resultants
@@ -56,7 +57,7 @@ class CurvedContinuum(Continuum):
     def set_up(self, program: Program) -> None:
         """Inputs l, e0, at, D and outputs A, G0: what a point of the volume adds."""
         length = program.input("l", (), "m", "length of the element")
-        e0 = self.reference_input(program)
+        e0 = stress_free.shape(program, self.gram.element)
         at = program.input("at", 3, "m", "local coordinates x, y, z of a point")
         D = program.input("D", len(ROWS[self.gram.element.dim]), "N m",
                           "elastic constants there times the volume that it stands for: "
@@ -109,8 +110,3 @@ class CurvedContinuum(Continuum):
     def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X, w, c0=None) -> tuple:
         """Stages: force and moment in space, and strain, at X."""
         return resultants(self.gram, self.form.elasticity, program, S, c, c0, X, w)
-
-    def reference_input(self, program: Program) -> np.ndarray:
-        """Input e0."""
-        element = self.gram.element
-        return program.input("e0", (element.n_vectors, element.dim), "m, 1", "nodal vectors of the stress-free shape")

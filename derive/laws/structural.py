@@ -31,6 +31,7 @@ from functools import cached_property
 import numpy as np
 import sympy as sp
 from funicular.derive.frames import spatial
+from funicular.derive.laws import stress_free
 from funicular.derive.laws.section_frame import SectionFrame, turned
 from funicular.derive.spec import Element, l, x, y, z
 from funicular.derive.stages import Program
@@ -41,7 +42,6 @@ SOURCE = ("Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachba
           "J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 "
           "(1999) 1125-1147")
 
-REFERENCE_DOC = "nodal vectors of the stress-free reference"
 
 X = sp.Symbol("X")
 PLACES = (-1, 0, 1)  # X of the first node, half way, the second node
@@ -120,7 +120,7 @@ class Structural:
     def set_up(self, program: Program) -> None:
         """Inputs l, e0, S and output A."""
         length = program.input("l", (), "m", "length of the element")
-        e0 = program.input("e0", (self.element.n_vectors, self.element.dim), "m, 1", REFERENCE_DOC)
+        e0 = stress_free.shape(program, self.element)
         S = self.section_stiffness(program)
         program.stage("stiffness that the bubble takes off the shears")
         bubble = [program.define(f"bubble_{i}", self._condensed(S, i, length)) for i in self.shears]

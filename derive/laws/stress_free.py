@@ -1,0 +1,12 @@
+"""The stress-free shape of an element, as kernels take it."""
+
+from __future__ import annotations
+
+import numpy as np
+from funicular.derive.spec import Element
+from funicular.derive.stages import Program
+
+
+def shape(program: Program, element: Element) -> np.ndarray:
+    """Input e0 (vectors, dim)."""
+    return program.input("e0", (element.n_vectors, element.dim), "m, 1", "nodal vectors of the stress-free shape")
