@@ -100,7 +100,7 @@ class Equilibrium:
         for k, joint in enumerate(model.joints):
             found[f"{joint.name}.s"] = self.placed["s"][k]
             found[f"{joint.name}.force"] = self.placed["force"][k]
-        for part in (*scene.pins, *scene.clamps, *scene.motions):
+        for part in scene.supports:
             given_ = support_reaction(model, scene, part, reaction, q)
             found |= {f"{part.label}.{name}": value[0] for name, value in given_.items()}
         for name, join in scene.joins.items():

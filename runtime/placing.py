@@ -48,15 +48,24 @@ def node_at(scene: Scene, name: str, place: str, s: float, keyword: str = "s") -
         f"nodes {'near it ' if len(cable.node_s) > 12 else ''}are at " + ", ".join(f"{s:.9g}" for s in nodes) + " m")
 
 
-def joined(scene: Scene, node: Node) -> set[Node]:
-    """All nodes that share the position of ``node``, itself included."""
+def node_of(scene: Scene, support: Support) -> Node:
+    """The node that a support of the scene holds."""
+    return support.cable, scene.cables[support.cable].node_at(support.s)
+
+
+def ends_of(scene: Scene, join: Join) -> tuple[Node, Node]:
+    """The nodes that a join of the scene ties: that of its cable, and the other one."""
+    return ((join.cable, scene.cables[join.cable].node_at(join.s)), (join.to, scene.cables[join.to].node_at(join.at)))
+
+
+def joined(scene: Scene, node: Node, without: Join | None = None) -> set[Node]:
+    """All nodes that joins, but for ``without``, tie to ``node``, itself included."""
     found, new = {node}, [node]
     while new:
         at = new.pop()
         for join in scene.joins.values():
-            pair = {(join.cable, scene.cables[join.cable].node_at(join.s)),
-                    (join.to, scene.cables[join.to].node_at(join.at))}
-            if at in pair:
+            pair = set(ends_of(scene, join))
+            if join is not without and at in pair:
                 new += pair - found
                 found |= pair
     return found
@@ -65,7 +74,7 @@ def joined(scene: Scene, node: Node) -> set[Node]:
 def holder(scene: Scene, node: Node) -> Support | None:
     """What holds ``node`` or one that is joined to it."""
     nodes = joined(scene, node)
-    return next((s for s in scene.supports if (s.cable, scene.cables[s.cable].node_at(s.s)) in nodes), None)
+    return next((s for s in scene.supports if node_of(scene, s) in nodes), None)
 
 
 def check_support(scene: Scene, support: Support) -> None:
@@ -73,7 +82,7 @@ def check_support(scene: Scene, support: Support) -> None:
     node = node_at(scene, support.cable, support.where, support.s)
     if (other := holder(scene, node)) is None:
         return
-    if (other.cable, scene.cables[other.cable].node_at(other.s)) == node:
+    if node_of(scene, other) == node:
         raise SceneError(support.where, f"the node at s = {show(support.s, 'm')} is already {HELD[other.kind]}")
     raise SceneError(support.where, f"the node at s = {show(support.s, 'm')} is joined to that at {other.label}, which "
                      f"is already {HELD[other.kind]}")

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from funicular.placing import ends_of, joined, node_of
 from funicular.rotations import rotate
 from funicular.scene import Scene
 from funicular.settings import RunSettings
@@ -53,23 +54,9 @@ def given(model: Model, nodes, reaction: np.ndarray, q: np.ndarray) -> dict[str,
     return {"force": force, "moment": moment}
 
 
-def _joined(scene: Scene, start: tuple[str, int], without=None) -> set[tuple[str, int]]:
-    """Nodes (cable, number) that joins tie to one, itself among them; `without` leaves one join out."""
-    found, waiting = {start}, [start]
-    links = [((j.cable, scene.cables[j.cable].node_at(j.s)), (j.to, scene.cables[j.to].node_at(j.at)))
-             for j in scene.joins.values() if j is not without]
-    while waiting:
-        node = waiting.pop()
-        for a, b in (*links, *((b, a) for a, b in links)):
-            if a == node and b not in found:
-                found.add(b)
-                waiting.append(b)
-    return found
-
-
 def support_reaction(model: Model, scene: Scene, part, reaction: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray]:
     """Force and moment of a pin, clamp or motion on its node and those joined to it."""
-    nodes = _joined(scene, (part.cable, scene.cables[part.cable].node_at(part.s)))
+    nodes = joined(scene, node_of(scene, part))
     return given(model, [model.nodes[cable][k] for cable, k in nodes], reaction, q)
 
 
@@ -78,11 +65,11 @@ def join_force(model: Model, scene: Scene, join, reaction: np.ndarray, q: np.nda
 
     A support on that side gives a part that is not the join's: then it is minus what the other side is given.
     """
-    held = {(s.cable, scene.cables[s.cable].node_at(s.s)) for s in (*scene.pins, *scene.clamps, *scene.motions)}
-    near = _joined(scene, (join.cable, scene.cables[join.cable].node_at(join.s)), without=join)
-    sign = 1.0
+    held = {node_of(scene, support) for support in scene.supports}
+    one, other = ends_of(scene, join)
+    sign, near = 1.0, joined(scene, one, without=join)
     if near & held:
-        sign, near = -1.0, _joined(scene, (join.to, scene.cables[join.to].node_at(join.at)), without=join)
+        sign, near = -1.0, joined(scene, other, without=join)
     found = given(model, [model.nodes[cable][k] for cable, k in near], reaction, q)
     return {name: sign * value for name, value in found.items()}
 
