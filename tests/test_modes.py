@@ -84,7 +84,7 @@ def test_about_an_equilibrium():
     scene.pin(chain, s=0.0)
     found = scene.modes(6, about=scene.equilibrium()).angular_frequency
     expected = np.repeat(np.array([2.404825557695773, 5.520078110286311, 8.653727912911013]), 2) / 2 * np.sqrt(9.81)
-    np.testing.assert_allclose(found, expected, rtol=1e-3)
+    np.testing.assert_allclose(found, expected, rtol=2e-4)  # measured: 8e-5 in the third pair
 
 
 def test_a_state_that_is_not_stable_grows():
