@@ -11,7 +11,7 @@ from funicular.derive import body_kernels, element_kernels, law_kernels, structu
 from funicular.derive.bodies import BODIES
 from funicular.derive.elements import ELEMENTS
 from funicular.derive.joints import slide
-from funicular.derive.laws import law_like, law_name, structural
+from funicular.derive.laws import DAMPED_LIKE, law_like, law_name, structural
 from funicular.derive.spec import Element, Family
 
 
@@ -25,10 +25,15 @@ def _element(element: Element) -> Family:
 
 def _law(element: Element, law: str | type) -> Family:
     name = law_name(law)
-    builder = structural_kernels if name == structural.NAME else law_kernels
-    return Family(f"{element.name}_{name}", f"elastic law {name} on {element.name}",
-                  partial(builder.build, element, law), (f"elements.{element.name}", builder.__name__.split(".")[-1]),
-                  role="law", own=("stiffness", "stiffness_at", "section_forces"), element=element, law=name,
+    twin = DAMPED_LIKE.get(name)
+    shared = {kernel: f"{element.name}_{twin}" for kernel in law_kernels.DAMPING if twin in element.laws}
+    if name == structural.NAME:
+        builder, build = structural_kernels, partial(structural_kernels.build, element, law)
+    else:
+        builder, build = law_kernels, partial(law_kernels.build, element, law, damping=not shared)
+    return Family(f"{element.name}_{name}", f"elastic law {name} on {element.name}", build,
+                  (f"elements.{element.name}", builder.__name__.split(".")[-1]), role="law",
+                  own=("stiffness", "stiffness_at", "section_forces"), shared=shared, element=element, law=name,
                   like=law_like(law))
 
 

@@ -15,12 +15,14 @@ from funicular.derive.laws import law_class, law_name, stress_free
 from funicular.derive.spec import Element
 from funicular.derive.stages import Program
 
+DAMPING = ("damping_force", "damping_tangent", "dissipation")
 
-def build(element: Element, law: str | type) -> list[Program]:
-    """Every kernel of a law on an element."""
+
+def build(element: Element, law: str | type, damping: bool = True) -> list[Program]:
+    """Every kernel of a law on an element; those of damping where it does not take another law's."""
     kernels = Kernels(element, law)
     return [kernels.set_up(), kernels.energy(), kernels.elastic_force(), kernels.elastic_tangent(),
-            kernels.damping_force(), kernels.damping_tangent(), kernels.dissipation(), kernels.section_forces()]
+            *(getattr(kernels, kernel)() for kernel in DAMPING if damping), kernels.section_forces()]
 
 
 class Kernels:

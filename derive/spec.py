@@ -98,6 +98,7 @@ class Family:
     kernels of the same signatures, but for those in `own`; the engine reaches them through a table, each with its
     `facts` (integers).
     `element`, `law` and `rider` (the name of a body) are what the kernels are about: verification samples their states.
+    `shared` names, by kernel, the family of the role whose kernel this one takes instead of one of its own.
     `like` is the law in laws/ whose section stiffness and scale the law shares: itself, but for a law of the user's.
     `spec` is the user's file that the element stands in, None for those of this package.
     """
@@ -109,8 +110,13 @@ class Family:
     role: str = ""
     facts: dict[str, int] = field(default_factory=dict)
     own: tuple[str, ...] = ()
+    shared: dict[str, str] = field(default_factory=dict)
     element: Element | None = None
     law: str | None = None
     like: str | None = None
     rider: str | None = None
     spec: Path | None = None
+
+    def kernel(self, suffix: str) -> str:
+        """Name of a kernel that the engine's table has."""
+        return f"{self.shared.get(suffix, self.name)}_{suffix}"

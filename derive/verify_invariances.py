@@ -49,7 +49,8 @@ def law(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
     """Rigid motion in every kernel."""
     yield from _rigid_motion(family, k, s)
     yield from _deformed(family, k, s)
-    yield from _damping(family, k, s)
+    if not family.shared:
+        yield from _damping(family, k, s)
 
 
 def _shape_and_mass(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
@@ -94,7 +95,7 @@ def _stiffness(family: Family, s: State) -> float:
         return float(np.max(np.abs(s["A"])))
     if family.law == "continuum_curved":
         n = len(Gram(family.element).pairs)
-        return float(np.max(np.abs(s["A"][: n * (n + 1) // 2])))
+        return float(np.max(np.abs(s["A"][-n * (n + 3) // 2 : -n])))
     if family.law == "structural":
         return float(np.max(s["S"]) * max(s["l"], 1 / s["l"]))
     EA, EI = s["A"][:2]

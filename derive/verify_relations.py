@@ -87,7 +87,7 @@ def law(family: Family) -> list[Relation]:
         Relation("stiffness", "A", "energy from A against its integral by quadrature", 0, energy,
                  of=energy_of_constants),
     ]
-    return [
+    every = [
         *(_stiffness_at(spec) if family.law == "continuum_curved" else stiffness),
         Relation("energy", "U", "the law's integral by quadrature", 0, energy),
         Relation("elastic_force", "f", "dU/de", 1, from_kernel("energy", "U", e=entry("e")), n),
@@ -97,6 +97,7 @@ def law(family: Family) -> list[Relation]:
         Relation("dissipation", "P", "the law's integral by quadrature", 0, power),
         *(Relation("section_forces", output, text, 0, path) for output, text, path in section),
     ]
+    return [relation for relation in every if relation.kernel not in family.shared]
 
 
 def _stiffness_at(spec: Element) -> list[Relation]:
@@ -104,7 +105,7 @@ def _stiffness_at(spec: Element) -> list[Relation]:
     def shares(k, s):
         point = k("stiffness_at", s)
         A = s["A"].copy()
-        A[: point["A"].size + point["G0"].size] = [*point["A"], *point["G0"]]
+        A[-point["A"].size - point["G0"].size :] = [*point["A"], *point["G0"]]
         return [k("energy", s, A=A, e=e)["U"][0] for e in near(s)]
 
     def densities(k, s, t, j):

@@ -155,7 +155,7 @@ def _from_kernels(family: Family, exact: Numbers, state: dict) -> dict[str, np.n
     if "stiffness_at" in exact.programs:
         points = [exact("stiffness_at", s, at=at, D=D) for at, D in verify_curved.weighted_points(family.element, s)]
         straight = ExactProgram(law_kernels.Kernels(family.element, "continuum").set_up())([s["l"], s["S"]])["A"]
-        made["A"] = np.concatenate([sum(p["A"] for p in points), points[0]["G0"], straight]).astype(float)
+        made["A"] = np.concatenate([straight, sum(p["A"] for p in points), points[0]["G0"]]).astype(float)
     return made
 
 

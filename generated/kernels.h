@@ -76,9 +76,6 @@ void beam24_continuum_curved_stiffness_at(fu_real l, const fu_real *e0, const fu
 void beam24_continuum_curved_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void beam24_continuum_curved_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void beam24_continuum_curved_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
-void beam24_continuum_curved_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
-void beam24_continuum_curved_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
-void beam24_continuum_curved_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 void beam24_continuum_curved_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* beam24_structural: elastic law structural on beam24 */
@@ -106,9 +103,6 @@ void cable12_green_linear_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void cable12_green_linear_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable12_green_linear_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable12_green_linear_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
-void cable12_green_linear_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
-void cable12_green_linear_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
-void cable12_green_linear_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 void cable12_green_linear_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable12_engineering_exact: elastic law engineering_exact on cable12 */
@@ -126,9 +120,6 @@ void cable12_engineering_linear_stiffness(fu_real l, const fu_real *S, fu_real *
 void cable12_engineering_linear_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable12_engineering_linear_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable12_engineering_linear_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
-void cable12_engineering_linear_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
-void cable12_engineering_linear_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
-void cable12_engineering_linear_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 void cable12_engineering_linear_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable12_green_exact_curved: elastic law green_exact_curved on cable12 */
@@ -136,9 +127,6 @@ void cable12_green_exact_curved_stiffness(fu_real l, const fu_real *e0, const fu
 void cable12_green_exact_curved_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable12_green_exact_curved_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable12_green_exact_curved_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
-void cable12_green_exact_curved_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
-void cable12_green_exact_curved_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
-void cable12_green_exact_curved_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 void cable12_green_exact_curved_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable12_engineering_exact_curved: elastic law engineering_exact_curved on cable12 */
@@ -146,9 +134,6 @@ void cable12_engineering_exact_curved_stiffness(fu_real l, const fu_real *e0, co
 void cable12_engineering_exact_curved_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable12_engineering_exact_curved_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable12_engineering_exact_curved_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
-void cable12_engineering_exact_curved_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
-void cable12_engineering_exact_curved_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
-void cable12_engineering_exact_curved_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 void cable12_engineering_exact_curved_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable18_green_exact: elastic law green_exact on cable18 */
@@ -186,9 +171,6 @@ void beam12p_continuum_curved_stiffness_at(fu_real l, const fu_real *e0, const f
 void beam12p_continuum_curved_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void beam12p_continuum_curved_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void beam12p_continuum_curved_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
-void beam12p_continuum_curved_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
-void beam12p_continuum_curved_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
-void beam12p_continuum_curved_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 void beam12p_continuum_curved_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* beam12p_structural: elastic law structural on beam12p */
@@ -216,9 +198,6 @@ void cable8p_green_linear_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void cable8p_green_linear_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable8p_green_linear_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable8p_green_linear_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
-void cable8p_green_linear_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
-void cable8p_green_linear_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
-void cable8p_green_linear_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 void cable8p_green_linear_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable8p_engineering_exact: elastic law engineering_exact on cable8p */
@@ -236,9 +215,6 @@ void cable8p_engineering_linear_stiffness(fu_real l, const fu_real *S, fu_real *
 void cable8p_engineering_linear_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable8p_engineering_linear_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable8p_engineering_linear_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
-void cable8p_engineering_linear_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
-void cable8p_engineering_linear_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
-void cable8p_engineering_linear_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
 void cable8p_engineering_linear_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* rigid: rigid body */

@@ -77,9 +77,9 @@ static const fu_law laws[] = {
      beam24_continuum_curved_energy,
      beam24_continuum_curved_elastic_force,
      beam24_continuum_curved_elastic_tangent,
-     beam24_continuum_curved_damping_force,
-     beam24_continuum_curved_damping_tangent,
-     beam24_continuum_curved_dissipation
+     beam24_continuum_damping_force,
+     beam24_continuum_damping_tangent,
+     beam24_continuum_dissipation
     },
     {"beam24_structural",
      beam24_structural_energy,
@@ -101,9 +101,9 @@ static const fu_law laws[] = {
      cable12_green_linear_energy,
      cable12_green_linear_elastic_force,
      cable12_green_linear_elastic_tangent,
-     cable12_green_linear_damping_force,
-     cable12_green_linear_damping_tangent,
-     cable12_green_linear_dissipation
+     cable12_green_exact_damping_force,
+     cable12_green_exact_damping_tangent,
+     cable12_green_exact_dissipation
     },
     {"cable12_engineering_exact",
      cable12_engineering_exact_energy,
@@ -117,25 +117,25 @@ static const fu_law laws[] = {
      cable12_engineering_linear_energy,
      cable12_engineering_linear_elastic_force,
      cable12_engineering_linear_elastic_tangent,
-     cable12_engineering_linear_damping_force,
-     cable12_engineering_linear_damping_tangent,
-     cable12_engineering_linear_dissipation
+     cable12_engineering_exact_damping_force,
+     cable12_engineering_exact_damping_tangent,
+     cable12_engineering_exact_dissipation
     },
     {"cable12_green_exact_curved",
      cable12_green_exact_curved_energy,
      cable12_green_exact_curved_elastic_force,
      cable12_green_exact_curved_elastic_tangent,
-     cable12_green_exact_curved_damping_force,
-     cable12_green_exact_curved_damping_tangent,
-     cable12_green_exact_curved_dissipation
+     cable12_green_exact_damping_force,
+     cable12_green_exact_damping_tangent,
+     cable12_green_exact_dissipation
     },
     {"cable12_engineering_exact_curved",
      cable12_engineering_exact_curved_energy,
      cable12_engineering_exact_curved_elastic_force,
      cable12_engineering_exact_curved_elastic_tangent,
-     cable12_engineering_exact_curved_damping_force,
-     cable12_engineering_exact_curved_damping_tangent,
-     cable12_engineering_exact_curved_dissipation
+     cable12_engineering_exact_damping_force,
+     cable12_engineering_exact_damping_tangent,
+     cable12_engineering_exact_dissipation
     },
     {"cable18_green_exact",
      cable18_green_exact_energy,
@@ -165,9 +165,9 @@ static const fu_law laws[] = {
      beam12p_continuum_curved_energy,
      beam12p_continuum_curved_elastic_force,
      beam12p_continuum_curved_elastic_tangent,
-     beam12p_continuum_curved_damping_force,
-     beam12p_continuum_curved_damping_tangent,
-     beam12p_continuum_curved_dissipation
+     beam12p_continuum_damping_force,
+     beam12p_continuum_damping_tangent,
+     beam12p_continuum_dissipation
     },
     {"beam12p_structural",
      beam12p_structural_energy,
@@ -189,9 +189,9 @@ static const fu_law laws[] = {
      cable8p_green_linear_energy,
      cable8p_green_linear_elastic_force,
      cable8p_green_linear_elastic_tangent,
-     cable8p_green_linear_damping_force,
-     cable8p_green_linear_damping_tangent,
-     cable8p_green_linear_dissipation
+     cable8p_green_exact_damping_force,
+     cable8p_green_exact_damping_tangent,
+     cable8p_green_exact_dissipation
     },
     {"cable8p_engineering_exact",
      cable8p_engineering_exact_energy,
@@ -205,9 +205,9 @@ static const fu_law laws[] = {
      cable8p_engineering_linear_energy,
      cable8p_engineering_linear_elastic_force,
      cable8p_engineering_linear_elastic_tangent,
-     cable8p_engineering_linear_damping_force,
-     cable8p_engineering_linear_damping_tangent,
-     cable8p_engineering_linear_dissipation
+     cable8p_engineering_exact_damping_force,
+     cable8p_engineering_exact_damping_tangent,
+     cable8p_engineering_exact_dissipation
     }
 };
 
@@ -465,18 +465,6 @@ static void call_beam24_continuum_curved_elastic_tangent(const fu_real *const *a
 {
     beam24_continuum_curved_elastic_tangent(*a[0], a[1], a[2], out[0]);
 }
-static void call_beam24_continuum_curved_damping_force(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_continuum_curved_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_beam24_continuum_curved_damping_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_continuum_curved_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
-}
-static void call_beam24_continuum_curved_dissipation(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_continuum_curved_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
 static void call_beam24_continuum_curved_section_forces(const fu_real *const *a, fu_real *const *out)
 {
     beam24_continuum_curved_section_forces(*a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]);
@@ -561,18 +549,6 @@ static void call_cable12_green_linear_elastic_tangent(const fu_real *const *a, f
 {
     cable12_green_linear_elastic_tangent(*a[0], a[1], a[2], out[0]);
 }
-static void call_cable12_green_linear_damping_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_linear_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_cable12_green_linear_damping_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_linear_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
-}
-static void call_cable12_green_linear_dissipation(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_linear_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
 static void call_cable12_green_linear_section_forces(const fu_real *const *a, fu_real *const *out)
 {
     cable12_green_linear_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
@@ -625,18 +601,6 @@ static void call_cable12_engineering_linear_elastic_tangent(const fu_real *const
 {
     cable12_engineering_linear_elastic_tangent(*a[0], a[1], a[2], out[0]);
 }
-static void call_cable12_engineering_linear_damping_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_linear_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_cable12_engineering_linear_damping_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_linear_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
-}
-static void call_cable12_engineering_linear_dissipation(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_linear_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
 static void call_cable12_engineering_linear_section_forces(const fu_real *const *a, fu_real *const *out)
 {
     cable12_engineering_linear_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
@@ -657,18 +621,6 @@ static void call_cable12_green_exact_curved_elastic_tangent(const fu_real *const
 {
     cable12_green_exact_curved_elastic_tangent(*a[0], a[1], a[2], out[0]);
 }
-static void call_cable12_green_exact_curved_damping_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_curved_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_cable12_green_exact_curved_damping_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_curved_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
-}
-static void call_cable12_green_exact_curved_dissipation(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_curved_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
 static void call_cable12_green_exact_curved_section_forces(const fu_real *const *a, fu_real *const *out)
 {
     cable12_green_exact_curved_section_forces(*a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]);
@@ -688,18 +640,6 @@ static void call_cable12_engineering_exact_curved_elastic_force(const fu_real *c
 static void call_cable12_engineering_exact_curved_elastic_tangent(const fu_real *const *a, fu_real *const *out)
 {
     cable12_engineering_exact_curved_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_engineering_exact_curved_damping_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_curved_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_cable12_engineering_exact_curved_damping_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_curved_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
-}
-static void call_cable12_engineering_exact_curved_dissipation(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_curved_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
 }
 static void call_cable12_engineering_exact_curved_section_forces(const fu_real *const *a, fu_real *const *out)
 {
@@ -817,18 +757,6 @@ static void call_beam12p_continuum_curved_elastic_tangent(const fu_real *const *
 {
     beam12p_continuum_curved_elastic_tangent(*a[0], a[1], a[2], out[0]);
 }
-static void call_beam12p_continuum_curved_damping_force(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_continuum_curved_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_beam12p_continuum_curved_damping_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_continuum_curved_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
-}
-static void call_beam12p_continuum_curved_dissipation(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_continuum_curved_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
 static void call_beam12p_continuum_curved_section_forces(const fu_real *const *a, fu_real *const *out)
 {
     beam12p_continuum_curved_section_forces(*a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]);
@@ -913,18 +841,6 @@ static void call_cable8p_green_linear_elastic_tangent(const fu_real *const *a, f
 {
     cable8p_green_linear_elastic_tangent(*a[0], a[1], a[2], out[0]);
 }
-static void call_cable8p_green_linear_damping_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_linear_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_cable8p_green_linear_damping_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_linear_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
-}
-static void call_cable8p_green_linear_dissipation(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_linear_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
 static void call_cable8p_green_linear_section_forces(const fu_real *const *a, fu_real *const *out)
 {
     cable8p_green_linear_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
@@ -976,18 +892,6 @@ static void call_cable8p_engineering_linear_elastic_force(const fu_real *const *
 static void call_cable8p_engineering_linear_elastic_tangent(const fu_real *const *a, fu_real *const *out)
 {
     cable8p_engineering_linear_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable8p_engineering_linear_damping_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_linear_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_cable8p_engineering_linear_damping_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_linear_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
-}
-static void call_cable8p_engineering_linear_dissipation(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_linear_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
 }
 static void call_cable8p_engineering_linear_section_forces(const fu_real *const *a, fu_real *const *out)
 {
@@ -1162,9 +1066,6 @@ const fu_kernel fu_kernels[] = {
     {"beam24_continuum_curved_energy", call_beam24_continuum_curved_energy},
     {"beam24_continuum_curved_elastic_force", call_beam24_continuum_curved_elastic_force},
     {"beam24_continuum_curved_elastic_tangent", call_beam24_continuum_curved_elastic_tangent},
-    {"beam24_continuum_curved_damping_force", call_beam24_continuum_curved_damping_force},
-    {"beam24_continuum_curved_damping_tangent", call_beam24_continuum_curved_damping_tangent},
-    {"beam24_continuum_curved_dissipation", call_beam24_continuum_curved_dissipation},
     {"beam24_continuum_curved_section_forces", call_beam24_continuum_curved_section_forces},
     {"beam24_structural_stiffness", call_beam24_structural_stiffness},
     {"beam24_structural_energy", call_beam24_structural_energy},
@@ -1186,9 +1087,6 @@ const fu_kernel fu_kernels[] = {
     {"cable12_green_linear_energy", call_cable12_green_linear_energy},
     {"cable12_green_linear_elastic_force", call_cable12_green_linear_elastic_force},
     {"cable12_green_linear_elastic_tangent", call_cable12_green_linear_elastic_tangent},
-    {"cable12_green_linear_damping_force", call_cable12_green_linear_damping_force},
-    {"cable12_green_linear_damping_tangent", call_cable12_green_linear_damping_tangent},
-    {"cable12_green_linear_dissipation", call_cable12_green_linear_dissipation},
     {"cable12_green_linear_section_forces", call_cable12_green_linear_section_forces},
     {"cable12_engineering_exact_stiffness", call_cable12_engineering_exact_stiffness},
     {"cable12_engineering_exact_energy", call_cable12_engineering_exact_energy},
@@ -1202,25 +1100,16 @@ const fu_kernel fu_kernels[] = {
     {"cable12_engineering_linear_energy", call_cable12_engineering_linear_energy},
     {"cable12_engineering_linear_elastic_force", call_cable12_engineering_linear_elastic_force},
     {"cable12_engineering_linear_elastic_tangent", call_cable12_engineering_linear_elastic_tangent},
-    {"cable12_engineering_linear_damping_force", call_cable12_engineering_linear_damping_force},
-    {"cable12_engineering_linear_damping_tangent", call_cable12_engineering_linear_damping_tangent},
-    {"cable12_engineering_linear_dissipation", call_cable12_engineering_linear_dissipation},
     {"cable12_engineering_linear_section_forces", call_cable12_engineering_linear_section_forces},
     {"cable12_green_exact_curved_stiffness", call_cable12_green_exact_curved_stiffness},
     {"cable12_green_exact_curved_energy", call_cable12_green_exact_curved_energy},
     {"cable12_green_exact_curved_elastic_force", call_cable12_green_exact_curved_elastic_force},
     {"cable12_green_exact_curved_elastic_tangent", call_cable12_green_exact_curved_elastic_tangent},
-    {"cable12_green_exact_curved_damping_force", call_cable12_green_exact_curved_damping_force},
-    {"cable12_green_exact_curved_damping_tangent", call_cable12_green_exact_curved_damping_tangent},
-    {"cable12_green_exact_curved_dissipation", call_cable12_green_exact_curved_dissipation},
     {"cable12_green_exact_curved_section_forces", call_cable12_green_exact_curved_section_forces},
     {"cable12_engineering_exact_curved_stiffness", call_cable12_engineering_exact_curved_stiffness},
     {"cable12_engineering_exact_curved_energy", call_cable12_engineering_exact_curved_energy},
     {"cable12_engineering_exact_curved_elastic_force", call_cable12_engineering_exact_curved_elastic_force},
     {"cable12_engineering_exact_curved_elastic_tangent", call_cable12_engineering_exact_curved_elastic_tangent},
-    {"cable12_engineering_exact_curved_damping_force", call_cable12_engineering_exact_curved_damping_force},
-    {"cable12_engineering_exact_curved_damping_tangent", call_cable12_engineering_exact_curved_damping_tangent},
-    {"cable12_engineering_exact_curved_dissipation", call_cable12_engineering_exact_curved_dissipation},
     {"cable12_engineering_exact_curved_section_forces", call_cable12_engineering_exact_curved_section_forces},
     {"cable18_green_exact_stiffness", call_cable18_green_exact_stiffness},
     {"cable18_green_exact_energy", call_cable18_green_exact_energy},
@@ -1250,9 +1139,6 @@ const fu_kernel fu_kernels[] = {
     {"beam12p_continuum_curved_energy", call_beam12p_continuum_curved_energy},
     {"beam12p_continuum_curved_elastic_force", call_beam12p_continuum_curved_elastic_force},
     {"beam12p_continuum_curved_elastic_tangent", call_beam12p_continuum_curved_elastic_tangent},
-    {"beam12p_continuum_curved_damping_force", call_beam12p_continuum_curved_damping_force},
-    {"beam12p_continuum_curved_damping_tangent", call_beam12p_continuum_curved_damping_tangent},
-    {"beam12p_continuum_curved_dissipation", call_beam12p_continuum_curved_dissipation},
     {"beam12p_continuum_curved_section_forces", call_beam12p_continuum_curved_section_forces},
     {"beam12p_structural_stiffness", call_beam12p_structural_stiffness},
     {"beam12p_structural_energy", call_beam12p_structural_energy},
@@ -1274,9 +1160,6 @@ const fu_kernel fu_kernels[] = {
     {"cable8p_green_linear_energy", call_cable8p_green_linear_energy},
     {"cable8p_green_linear_elastic_force", call_cable8p_green_linear_elastic_force},
     {"cable8p_green_linear_elastic_tangent", call_cable8p_green_linear_elastic_tangent},
-    {"cable8p_green_linear_damping_force", call_cable8p_green_linear_damping_force},
-    {"cable8p_green_linear_damping_tangent", call_cable8p_green_linear_damping_tangent},
-    {"cable8p_green_linear_dissipation", call_cable8p_green_linear_dissipation},
     {"cable8p_green_linear_section_forces", call_cable8p_green_linear_section_forces},
     {"cable8p_engineering_exact_stiffness", call_cable8p_engineering_exact_stiffness},
     {"cable8p_engineering_exact_energy", call_cable8p_engineering_exact_energy},
@@ -1290,9 +1173,6 @@ const fu_kernel fu_kernels[] = {
     {"cable8p_engineering_linear_energy", call_cable8p_engineering_linear_energy},
     {"cable8p_engineering_linear_elastic_force", call_cable8p_engineering_linear_elastic_force},
     {"cable8p_engineering_linear_elastic_tangent", call_cable8p_engineering_linear_elastic_tangent},
-    {"cable8p_engineering_linear_damping_force", call_cable8p_engineering_linear_damping_force},
-    {"cable8p_engineering_linear_damping_tangent", call_cable8p_engineering_linear_damping_tangent},
-    {"cable8p_engineering_linear_dissipation", call_cable8p_engineering_linear_dissipation},
     {"cable8p_engineering_linear_section_forces", call_cable8p_engineering_linear_section_forces},
     {"rigid_point", call_rigid_point},
     {"rigid_point_force", call_rigid_point_force},

@@ -27,8 +27,8 @@ def element_constants(kernels, element: str, law: str, length: float, S: np.ndar
     """(n,): A of one element; e0 (nodal vectors, dim) is its stress-free shape, for laws that take it."""
     if hasattr(kernels, f"{element}_{law}_stiffness_at"):
         straight = getattr(kernels, f"{element}_{law.removesuffix('_curved')}_stiffness")
-        return np.concatenate([*integral_over_volume(getattr(kernels, f"{element}_{law}_stiffness_at"), length, e0, S),
-                               straight(length, S)])
+        return np.concatenate([straight(length, S),
+                               *integral_over_volume(getattr(kernels, f"{element}_{law}_stiffness_at"), length, e0, S)])
     return getattr(kernels, f"{element}_{law}_stiffness")(length, *([] if e0 is None else [e0]), S)
 
 

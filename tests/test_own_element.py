@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from funicular.cli import app
 from funicular.derive.elements.cable18 import CABLE18
+from funicular.derive.families import families
 from funicular.derive.own import command, load
 from funicular.derive.own.load import SpecError
 from funicular.elements import built_in, gauge
@@ -105,7 +106,7 @@ def test_its_kernels_are_those_of_the_same_element_here(made):
     l, e, S = 0.7, random.normal(size=(4, 2)), [3.0, 2.0]
     A = own.mine8p_green_linear_stiffness(l, S)
     for name, inputs in (("elastic_force", (l, e, A)), ("damping_tangent", (l, e, 2 * e, A, 0.1, 3.0))):
-        here = getattr(kernels, f"cable8p_green_linear_{name}")(*inputs)
+        here = getattr(kernels, families()["cable8p_green_linear"].kernel(name))(*inputs)
         np.testing.assert_allclose(getattr(own, f"mine8p_green_linear_{name}")(*inputs), here, rtol=1e-14, atol=1e-14)
     N, r = own.mine8p_position(l=l, at=[0.1, 0, 0], e=e)
     assert (N.shape, r.shape) == ((4,), (2,))

@@ -14,6 +14,11 @@ LAWS = {"continuum": Continuum, "continuum_curved": CurvedContinuum} | {
     f"{strain}_exact_curved": partial(CurvedCable, strain=strain, curvature="exact")
     for strain in ("green", "engineering")}
 
+DAMPED_LIKE = {"continuum_curved": "continuum"} | {
+    f"{strain}_{other}": f"{strain}_exact"
+    for strain in ("green", "engineering") for other in ("linear", "exact_curved")}
+"""The law whose damping kernels another takes; its constants lead the other's A."""
+
 
 def law_name(law: str | type) -> str:
     """Name of an entry of an element's `laws`."""

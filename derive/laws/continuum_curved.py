@@ -23,14 +23,14 @@ NAME = "continuum_curved"
 
 
 class DenseForm(Form):
-    """All entries of a symmetric A, row by row from the diagonal."""
+    """All entries of a symmetric A, row by row from the diagonal, `start` other constants before them."""
 
-    def __init__(self, gram: Gram):
+    def __init__(self, gram: Gram, start: int):
         super().__init__(gram)
         n = len(gram.pairs)
         upper = [(p, q) for p in range(n) for q in range(p, n)]
-        self.size = len(upper)
-        self.places = {pq: k for k, pq in enumerate(upper)} | {(q, p): k for k, (p, q) in enumerate(upper)}
+        self.stop = start + len(upper)
+        self.places = {place: k for k, (p, q) in enumerate(upper, start) for place in ((p, q), (q, p))}
 
     @property
     def index(self) -> dict[tuple[int, int], int]:
@@ -45,14 +45,15 @@ class CurvedContinuum(Continuum):
     name, doc, curved = NAME, "St. Venant-Kirchhoff continuum, orthotropic, its stress-free shape curved", True
 
     def __init__(self, gram: Gram):
-        self.gram, self.form, self.straight = gram, DenseForm(gram), Form(gram)
+        self.gram, self.straight = gram, Form(gram)
+        self.form = DenseForm(gram, len(self.straight.constants))
 
     def constants(self, program: Program) -> np.ndarray:
         """Input A."""
         element = self.gram.element.name
-        return program.input("A", self.form.size + len(self.gram.pairs) + len(self.straight.constants), "N m, 1",
-                             f"form over Gram pairs, summed over {element}_{NAME}_stiffness_at; its G0; then A of "
-                             f"{element}_continuum_stiffness")
+        return program.input("A", self.form.stop + len(self.gram.pairs), "N m, 1",
+                             f"A of {element}_continuum_stiffness; form over Gram pairs, summed over "
+                             f"{element}_{NAME}_stiffness_at; its G0")
 
     def set_up(self, program: Program) -> None:
         """Inputs l, e0, at, D and outputs A, G0: what a point of the volume adds."""
@@ -101,11 +102,10 @@ class CurvedContinuum(Continuum):
         """Stages: Gram products, less those of the stress-free shape."""
         G = super()._strain(program, A, c)
         program.stage("Gram products less those of e0")
-        return [program.define(f"g_{self.gram.pair(p)}", value - A[self.form.size + p]) for p, value in enumerate(G)]
+        return [program.define(f"g_{self.gram.pair(p)}", value - A[self.form.stop + p]) for p, value in enumerate(G)]
 
     def _viscous_moduli(self, A: np.ndarray) -> dict:
-        after = self.form.size + len(self.gram.pairs)
-        return {pq: A[after + k] for pq, k in self.straight.index.items()}
+        return {pq: A[k] for pq, k in self.straight.index.items()}
 
     def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X, w, c0=None) -> tuple:
         """Stages: force and moment in space, and strain, at X."""
