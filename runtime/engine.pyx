@@ -10,7 +10,7 @@ import numpy as np
 from cpython.exc cimport PyErr_CheckSignals
 from cpython.mem cimport PyMem_Calloc, PyMem_Free
 from cpython.pycapsule cimport PyCapsule_GetPointer
-from scipy.linalg cimport cython_blas, cython_lapack
+from scipy.linalg cimport cython_lapack
 
 from funicular.generated import kernels
 
@@ -37,7 +37,9 @@ cdef extern from "engine.h" nogil:
     int FU_JOINT_TERMS, FU_JOINT_OUTPUTS, FU_MAX_COORDINATES
     int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT
     int FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_CALL
-    int FU_SIGNAL_TERMS
+    int FU_SIGNAL_TERMS, FU_BAND_GROUP
+    long FU_BAND_BEYOND(int width)
+    long FU_BAND_LENGTH(int n, int width)
     ctypedef struct fu_cable:
         const fu_element *kernel
         const fu_law *law
@@ -81,17 +83,22 @@ cdef extern from "engine.h" nogil:
     ctypedef struct fu_lapack:
         void *dgbtrf
         void *dgbtrs
+        void *dpbtrf
         void *dgetrf
         void *dgetrs
-        void *dgemm
-        void *dgemv
+    ctypedef struct fu_span:
+        int first, end
     ctypedef struct fu_system:
-        int n, width, m
+        int n, width, m, definite
         double *K
+        double *L
         double *B
         double *C
         double *D
         double *X
+        fu_span *span_B
+        fu_span *span_C
+        int *coupled
         int *pivot_band
         int *pivot_border
     ctypedef struct fu_model:
@@ -215,10 +222,9 @@ cdef const fu_tables *TABLES = <const fu_tables *>PyCapsule_GetPointer(kernels.t
 cdef fu_lapack LAPACK
 LAPACK.dgbtrf = <void *>cython_lapack.dgbtrf
 LAPACK.dgbtrs = <void *>cython_lapack.dgbtrs
+LAPACK.dpbtrf = <void *>cython_lapack.dpbtrf
 LAPACK.dgetrf = <void *>cython_lapack.dgetrf
 LAPACK.dgetrs = <void *>cython_lapack.dgetrs
-LAPACK.dgemm = <void *>cython_blas.dgemm
-LAPACK.dgemv = <void *>cython_blas.dgemv
 
 STATUS = {FU_DONE: "completed", FU_END_OF_CABLE: "end_of_cable", FU_NO_CONVERGENCE: "no_convergence",
           FU_SINGULAR: "singular"}
@@ -400,6 +406,13 @@ cdef class Engine:
         self.kept.append(array)
         return &view[0]
 
+    cdef double *_zeros(self, long size):
+        # kept as they come: memory that nothing is written to is not taken from the machine
+        array = np.zeros(max(1, size))
+        cdef double[::1] view = array
+        self.kept.append(array)
+        return &view[0]
+
     cdef int *_ints(self, values):
         array = np.array(values, dtype=np.intc).ravel()
         if array.size == 0:
@@ -418,9 +431,12 @@ cdef class Engine:
 
     cdef void _system(self, fu_system *system, int n, int width, int m):
         system.n, system.width, system.m = n, width, m
-        system.K, system.D = self._doubles(np.zeros((3 * width + 1) * n)), self._doubles(np.zeros(m * m))
-        system.B, system.C = self._doubles(np.zeros(n * m)), self._doubles(np.zeros(n * m))
-        system.X = self._doubles(np.zeros(n * m))
+        system.K, system.D = self._zeros((3 * width + 1) * n), self._zeros(m * m)
+        system.L = self._zeros((width + FU_BAND_GROUP) * (n + FU_BAND_GROUP))
+        system.B, system.C = self._zeros(n * m), self._zeros(n * m)
+        system.X = self._zeros(FU_BAND_LENGTH(n, width) * m)
+        system.span_B, system.span_C = <fu_span *>self._ints(np.zeros(2 * m)), <fu_span *>self._ints(np.zeros(2 * m))
+        system.coupled = self._ints(np.zeros(m))
         system.pivot_band, system.pivot_border = self._ints(np.zeros(n)), self._ints(np.zeros(m))
 
     cdef void _state(self, fu_state *state, model):
@@ -442,12 +458,12 @@ cdef class Engine:
         self._system(&run.newton, model.n_band, model.width, model.n_border_dof + model.n_extra)
         a = &run.accelerator
         self._system(&a.mass, model.n_band, model.width, model.n_border_dof + model.n_multipliers)
-        a.rhs = self._doubles(np.zeros(unknowns + model.n_multipliers))
+        a.rhs = self._zeros(unknowns + model.n_multipliers + FU_BAND_BEYOND(model.width))
         a.terms = self._doubles(np.zeros(n_joints * FU_JOINT_TERMS))
         a.joints = self._doubles(np.zeros(n_joints * FU_JOINT_OUTPUTS))
         a.force, a.work = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         a.prescribed = self._doubles(np.zeros(n_dof))
-        run.rhs = self._doubles(np.zeros(unknowns + model.n_extra))
+        run.rhs = self._zeros(unknowns + model.n_extra + FU_BAND_BEYOND(model.width))
         run.psi, run.force = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         run.work, run.before = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         run.first, run.s_slope = self._doubles(np.zeros(model.n_q)), self._doubles(np.zeros(n_joints))

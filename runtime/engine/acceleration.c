@@ -51,8 +51,7 @@ static int factor_border(const fu_model *model, const fu_state *state, fu_accele
     fu_system *s = &work->mass;
     double M[36], D[36];
     const double rest[6] = {0};
-    for (long i = 0; i < (long)s->n * s->m; ++i) s->B[i] = s->C[i] = 0.0;
-    for (int i = 0; i < s->m * s->m; ++i) s->D[i] = 0.0;
+    fu_system_clear_border(s);
     for (int b = 0; b < model->n_rigids; ++b) {
         const fu_rigid *body = &model->rigids[b];
         const int n = body->kernel->velocity;

@@ -93,27 +93,39 @@ typedef struct {
     double stiffness, damping, length, mass; /* N/m, N s/m, m; kg: scale of its rows */
 } fu_spring;
 
-/* LAPACK and BLAS, as scipy hands them out. */
+/* LAPACK, as scipy hands it out. */
 typedef struct {
     void (*dgbtrf)(int *, int *, int *, int *, double *, int *, int *, int *);
     void (*dgbtrs)(char *, int *, int *, int *, int *, double *, int *, int *, double *, int *, int *);
+    void (*dpbtrf)(char *, int *, int *, double *, int *, int *);
     void (*dgetrf)(int *, int *, double *, int *, int *, int *);
     void (*dgetrs)(char *, int *, int *, double *, int *, int *, double *, int *, int *);
-    void (*dgemm)(char *, char *, int *, int *, int *, double *, double *, int *, double *, int *, double *, double *,
-                  int *);
-    void (*dgemv)(char *, int *, int *, double *, double *, int *, double *, int *, double *, double *, int *);
 } fu_lapack;
+
+/* band.c eliminates so many columns at once, and touches so many numbers beyond the end of a column of n. */
+#define FU_BAND_GROUP 4
+#define FU_BAND_BEYOND(width) ((width) + 2 * FU_BAND_GROUP)
+#define FU_BAND_LENGTH(n, width) ((long)(n) + FU_BAND_BEYOND(width))
+
+/* rows [first, end) of a column: the others are zero */
+typedef struct {
+    int first, end;
+} fu_span;
 
 /* A banded matrix with a border: [K B; C D]. Only K is large. */
 typedef struct {
     int n, width;      /* band part: size, half bandwidth */
     int m;             /* border */
+    int definite;      /* the band is factored in L (band.c), else in K (dgbtrf) */
+    int n_coupled;     /* columns of B that are not zero */
     double *K;         /* LAPACK band storage, (3 width + 1) x n */
+    double *L;         /* (width + FU_BAND_GROUP) x n, and a group more */
     double *B;         /* n x m, column by column */
     double *C;         /* the border's rows, transposed: n x m */
     double *D;         /* m x m, column by column */
-    double *X;         /* K^-1 B */
-    int *pivot_band, *pivot_border;
+    double *X;         /* K^-1 B, its n_coupled columns, FU_BAND_LENGTH each */
+    fu_span *span_B, *span_C;
+    int *coupled, *pivot_band, *pivot_border;
 } fu_system;
 
 typedef struct {
@@ -151,8 +163,13 @@ typedef struct {
     double *director; /* per joint: unit vector across the tangent, carried along with the slide */
 } fu_state;
 
+/* band.c */
+int fu_band_factor(const fu_lapack *lapack, int n, int width, double *A);
+void fu_band_solve(int n, int width, const double *A, int first, double *x);
+
 /* linear.c */
 void fu_system_clear(fu_system *system);
+void fu_system_clear_border(fu_system *system);
 void fu_system_add(fu_system *system, int row, int column, double value);
 int fu_system_factor_band(fu_system *system, const fu_lapack *lapack);
 int fu_system_factor_border(fu_system *system, const fu_lapack *lapack);
@@ -207,7 +224,7 @@ void fu_turn_columns(const fu_body *kernel, double *rows, int n_rows, int n_colu
 /* acceleration.c: eq 38 and what comes out of it */
 typedef struct {
     fu_system mass;   /* [M H'; H 0], its band factored once */
-    double *rhs;      /* unknowns */
+    double *rhs;      /* unknowns, and FU_BAND_BEYOND */
     double *terms;    /* per joint: C, C_q, C_s, G, s_rate, Q_d, H, W, s_bias */
     double *force, *work, *prescribed; /* n_dof */
     double *joints;       /* FU_JOINT_OUTPUTS a joint */
@@ -293,7 +310,7 @@ struct fu_run {
     fu_accelerator accelerator;
     fu_record record;
     fu_statistics statistics;
-    double *rhs;                              /* unknowns */
+    double *rhs;                              /* unknowns, and FU_BAND_BEYOND */
     double *psi, *force, *work, *before;      /* n_dof; force is what supports and motions give, once Newton is done */
     double *first;                            /* n_q: the configuration at the start */
     double *s_slope;                          /* per joint: predicts ds/dt */

@@ -1,0 +1,56 @@
+/* Symmetric positive definite band matrices: Cholesky by LAPACK, substitution here. LAPACK's calls a BLAS kernel for
+ * each column, which for the short columns of cables takes three times as long as their arithmetic
+ * (tests/benchmarks/linear_cost.py).
+ *
+ * Storage: columns of the lower triangle from the diagonal down, FU_BAND_GROUP - 1 zeros below each, and columns of a
+ * unit matrix to a whole number of groups: a group is eliminated at once. */
+#include "engine.h"
+
+/* A = L D L': L below the diagonal, 1/D on it; not zero where A is not positive definite. */
+int fu_band_factor(const fu_lapack *lapack, int n, int width, double *A)
+{
+    int stride = width + FU_BAND_GROUP, info = 0;
+    if (n) lapack->dpbtrf("L", &n, &width, A, &stride, &info);
+    for (int j = 0; j < n && !info; ++j) {
+        double *column = A + (long)j * stride;
+        const double scale = 1.0 / column[0];
+        for (int i = 1; i <= width; ++i) column[i] *= scale;
+        column[0] = scale * scale;
+    }
+    for (int j = n; j % FU_BAND_GROUP; ++j) A[(long)j * stride] = 1.0;
+    return info;
+}
+
+/* x <- A^-1 x, where x is zero before `first`. Entries of x beyond n are read and left as they are: there must be
+ * FU_BAND_BEYOND(width) of them, all finite. */
+void fu_band_solve(int n, int width, const double *A, int first, double *x)
+{
+    const int stride = width + FU_BAND_GROUP;
+    int j = first - first % FU_BAND_GROUP;
+    for (; j < n; j += FU_BAND_GROUP) {
+        const double *a = A + (long)j * stride, *b = a + stride - 1, *c = b + stride - 1, *d = c + stride - 1;
+        double *restrict y = x + j;
+        const double x0 = y[0], x1 = y[1] - a[1] * x0, x2 = y[2] - a[2] * x0 - b[2] * x1;
+        const double x3 = y[3] - a[3] * x0 - b[3] * x1 - c[3] * x2;
+        for (int k = FU_BAND_GROUP; k < stride; ++k) y[k] -= a[k] * x0 + b[k] * x1 + c[k] * x2 + d[k] * x3;
+        y[1] = x1;
+        y[2] = x2;
+        y[3] = x3;
+    }
+    for (j -= FU_BAND_GROUP; j >= 0; j -= FU_BAND_GROUP) {
+        const double *a = A + (long)j * stride, *b = a + stride - 1, *c = b + stride - 1, *d = c + stride - 1;
+        double *y = x + j, x0 = y[0] * a[0], x1 = y[1] * b[1], x2 = y[2] * c[2], x3 = y[3] * d[3];
+        for (int k = FU_BAND_GROUP; k < stride; ++k) {
+            x0 -= a[k] * y[k];
+            x1 -= b[k] * y[k];
+            x2 -= c[k] * y[k];
+            x3 -= d[k] * y[k];
+        }
+        x2 -= c[3] * x3;
+        x1 -= b[2] * x2 + b[3] * x3;
+        y[0] = x0 - (a[1] * x1 + a[2] * x2 + a[3] * x3);
+        y[1] = x1;
+        y[2] = x2;
+        y[3] = x3;
+    }
+}
