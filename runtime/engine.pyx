@@ -135,6 +135,7 @@ cdef extern from "engine.h" nogil:
         double *director
     ctypedef struct fu_accelerator:
         fu_system mass
+        double *bodies
         double *rhs
         double *terms
         double *force
@@ -207,6 +208,9 @@ cdef extern from "engine.h" nogil:
         double h, h_factored, contraction, motion
         int factored, stopped_joint, rest_start
     void fu_linearise(fu_run *run, double h, const double *change)
+    int fu_system_factor_band(fu_system *system, const fu_lapack *lapack)
+    int fu_system_factor_border(fu_system *system, const fu_lapack *lapack)
+    void fu_system_solve(const fu_system *system, const fu_lapack *lapack, double *x)
     void fu_static_move(fu_run *run, const double *change)
     void fu_static_residual(fu_run *run)
     void fu_matrix(fu_run *run, fu_weights weights)
@@ -458,6 +462,7 @@ cdef class Engine:
         self._system(&run.newton, model.n_band, model.width, model.n_border_dof + model.n_extra)
         a = &run.accelerator
         self._system(&a.mass, model.n_band, model.width, model.n_border_dof + model.n_multipliers)
+        a.bodies = self._zeros(a.mass.m * a.mass.m)
         a.rhs = self._zeros(unknowns + model.n_multipliers + FU_BAND_BEYOND(model.width))
         a.terms = self._doubles(np.zeros(n_joints * FU_JOINT_TERMS))
         a.joints = self._doubles(np.zeros(n_joints * FU_JOINT_OUTPUTS))
@@ -512,6 +517,23 @@ cdef class Engine:
             raise ValueError(f"change must have {total} entries")
         fu_linearise(&self.run, h, &moved[0])
         return -np.array([self.run.rhs[i] for i in range(total)]), self._matrix().toarray()
+
+    def solve(self, right):
+        """Solve with the matrix that `linearise` has left, once: (unknowns,) to (unknowns,); and whether the band was
+        positive definite. For tests.
+
+        Raises ArithmeticError where the matrix is singular.
+        """
+        cdef double[::1] given = np.ascontiguousarray(right, dtype=float)
+        cdef int i, total = self.run.newton.n + self.run.newton.m
+        if given.shape[0] != total:
+            raise ValueError(f"right must have {total} entries")
+        for i in range(total):
+            self.run.rhs[i] = given[i]
+        if fu_system_factor_band(&self.run.newton, &LAPACK) or fu_system_factor_border(&self.run.newton, &LAPACK):
+            raise ArithmeticError("singular")
+        fu_system_solve(&self.run.newton, &LAPACK, self.run.rhs)
+        return np.array([self.run.rhs[i] for i in range(total)]), bool(self.run.newton.definite)
 
     # --- statics: `next` is the state, moved by unknowns ---------------------------------------------------------
 
@@ -660,6 +682,16 @@ cdef class Engine:
     def unknowns(self):
         """Number of unknowns of a Newton system."""
         return self.run.newton.n + self.run.newton.m
+
+    @property
+    def band(self):
+        """Unknowns in the band of a Newton system, its half width, and unknowns in its border."""
+        return self.run.newton.n, self.run.newton.width, self.run.newton.m
+
+    @property
+    def memory(self):
+        """Bytes of the engine's arrays; recorded rows count only after `start`."""
+        return sum(array.nbytes for array in self.kept)
 
     @property
     def time(self):

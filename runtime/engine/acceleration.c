@@ -1,6 +1,8 @@
 /* Eq 38: accelerations and multipliers of a state, from M, H, W; and what else needs M and H. */
 #include "engine.h"
 
+#include <string.h>
+
 /* Layout of one joint's terms in the work space; n = coordinates of element and rider. */
 typedef struct {
     double *C, *C_q, *C_s, *G, *s_rate, *Q_d, *H, *W, *s_bias;
@@ -37,11 +39,12 @@ static void evaluate(const fu_model *model, const fu_state *state, fu_accelerato
     }
 }
 
-/* Factor the band of M once: it is constant. */
+/* The band of M factored, once: it is constant, and so is the bodies' part, by body axes. */
 int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
 {
     fu_system_clear(&work->mass);
     fu_dynamic_matrix(model, model->zero, model->zero, 1.0, 0.0, 0.0, &work->mass);
+    memcpy(work->bodies, work->mass.D, sizeof(double) * (size_t)(work->mass.m * work->mass.m));
     return fu_system_factor_band(&work->mass, model->lapack);
 }
 
@@ -49,16 +52,8 @@ int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
 static int factor_border(const fu_model *model, const fu_state *state, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
-    double M[36], D[36];
-    const double rest[6] = {0};
     fu_system_clear_border(s);
-    for (int b = 0; b < model->n_rigids; ++b) {
-        const fu_rigid *body = &model->rigids[b];
-        const int n = body->kernel->velocity;
-        body->kernel->inertia_tangent(body->mass, body->J, rest, M, D);
-        for (int i = 0; i < n; ++i)
-            for (int j = 0; j < n; ++j) fu_add(model, s, body->dof + i, body->dof + j, M[n * i + j]);
-    }
+    memcpy(s->D, work->bodies, sizeof(double) * (size_t)(s->m * s->m));
     for (int j = 0; j < model->n_joints; ++j) {
         const fu_joint *joint = &model->joints[j];
         const terms_view t = view(work, j);

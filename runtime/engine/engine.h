@@ -170,7 +170,6 @@ void fu_band_solve(int n, int width, const double *A, int first, double *x);
 /* linear.c */
 void fu_system_clear(fu_system *system);
 void fu_system_clear_border(fu_system *system);
-void fu_system_add(fu_system *system, int row, int column, double value);
 int fu_system_factor_band(fu_system *system, const fu_lapack *lapack);
 int fu_system_factor_border(fu_system *system, const fu_lapack *lapack);
 void fu_system_solve(const fu_system *system, const fu_lapack *lapack, double *x);
@@ -224,6 +223,7 @@ void fu_turn_columns(const fu_body *kernel, double *rows, int n_rows, int n_colu
 /* acceleration.c: eq 38 and what comes out of it */
 typedef struct {
     fu_system mass;   /* [M H'; H 0], its band factored once */
+    double *bodies;   /* m x m: the bodies' part of the border */
     double *rhs;      /* unknowns, and FU_BAND_BEYOND */
     double *terms;    /* per joint: C, C_q, C_s, G, s_rate, Q_d, H, W, s_bias */
     double *force, *work, *prescribed; /* n_dof */

@@ -23,28 +23,6 @@ void fu_system_clear_border(fu_system *s)
     for (int i = 0; i < s->m * s->m; ++i) s->D[i] = 0.0;
 }
 
-static void touch(fu_span *span, int row)
-{
-    if (row < span->first) span->first = row;
-    if (row >= span->end) span->end = row + 1;
-}
-
-void fu_system_add(fu_system *s, int row, int column, double value)
-{
-    const int n = s->n;
-    if (row < 0 || column < 0) return; /* a fixed dof */
-    if (row < n && column < n)
-        s->K[(long)column * (3 * s->width + 1) + 2 * s->width + row - column] += value;
-    else if (row < n) {
-        s->B[(long)(column - n) * n + row] += value;
-        touch(&s->span_B[column - n], row);
-    } else if (column < n) {
-        s->C[(long)(row - n) * n + column] += value;
-        touch(&s->span_C[row - n], column);
-    } else
-        s->D[(long)(column - n) * s->m + row - n] += value;
-}
-
 /* The lower half of K as band.c wants it; zero where K is not symmetric or its diagonal not positive. */
 static int pack(fu_system *s)
 {

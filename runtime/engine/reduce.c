@@ -49,6 +49,29 @@ int fu_extra(const fu_model *model, int k)
     return model->n_dof + k;
 }
 
+static void touch(fu_span *span, int row)
+{
+    if (row < span->first) span->first = row;
+    if (row >= span->end) span->end = row + 1;
+}
+
+/* system += value at these places of the unknowns */
+static void add(fu_system *s, int row, int column, double value)
+{
+    const int n = s->n;
+    if (row < 0 || column < 0) return; /* a fixed dof */
+    if (row < n && column < n)
+        s->K[(long)column * (3 * s->width + 1) + 2 * s->width + row - column] += value;
+    else if (row < n) {
+        s->B[(long)(column - n) * n + row] += value;
+        touch(&s->span_B[column - n], row);
+    } else if (column < n) {
+        s->C[(long)(row - n) * n + column] += value;
+        touch(&s->span_C[row - n], column);
+    } else
+        s->D[(long)(column - n) * s->m + row - n] += value;
+}
+
 /* system += value at dofs (or extra unknowns) i, j: T' value T */
 void fu_add(const fu_model *model, fu_system *system, int i, int j, double value)
 {
@@ -56,22 +79,31 @@ void fu_add(const fu_model *model, fu_system *system, int i, int j, double value
     const int place_i = i < model->n_dof ? model->place[i] : beyond + i;
     const int place_j = j < model->n_dof ? model->place[j] : beyond + j;
     if (place_i >= -1 && place_j >= -1) {
-        fu_system_add(system, place_i, place_j, value);
+        add(system, place_i, place_j, value);
         return;
     }
     const row a = row_of(model, &place_i), b = row_of(model, &place_j);
     for (int k = 0; k < a.n; ++k)
         for (int m = 0; m < b.n; ++m)
-            fu_system_add(system, a.place[k], b.place[m], value * a.value[k] * b.value[m]);
+            add(system, a.place[k], b.place[m], value * a.value[k] * b.value[m]);
 }
 
 /* largest of what the dofs move points by, as a length; a NaN where one is */
 double fu_size(const fu_model *model, const double *dofs)
 {
-    double largest = 0.0;
-    for (int i = 0; i < model->n_dof; ++i) {
-        const double size = fabs(dofs[i]) * model->weight[i];
-        if (!(size <= largest)) largest = size;
+    const double *weight = model->weight;
+    double largest[4] = {0.0}, check = 0.0; /* maxima that do not wait for each other, and do not see a NaN */
+    int i = 0;
+    for (; i + 4 <= model->n_dof; i += 4)
+        for (int k = 0; k < 4; ++k) {
+            const double size = fabs(dofs[i + k]) * weight[i + k];
+            largest[k] = size > largest[k] ? size : largest[k];
+            check += 0.0 * size;
+        }
+    for (; i < model->n_dof; ++i) {
+        const double size = fabs(dofs[i]) * weight[i];
+        largest[0] = size > largest[0] ? size : largest[0];
+        check += 0.0 * size;
     }
-    return largest;
+    return check + fmax(fmax(largest[0], largest[1]), fmax(largest[2], largest[3]));
 }

@@ -1,0 +1,137 @@
+"""Cost of a step against the number of elements: time, iterations, memory.
+
+    python tests/benchmarks/linear_cost.py [--out FILE.csv] [--plot FILE.png] [--repetitions 3] [--steps 300]
+
+Steps of 0.1 ms of generalised-alpha, one thread, on cable12 with E = 2 MPa: a pendulum of 1.5 m let go level (its
+first steps are a shock: three times the iterations of later ones, so every size takes the same number of them), the same held at both ends with one and with three riders, and three
+cables joined at a node with a rider. Microseconds of CPU a step and an element: the least of repetitions that take
+turns. Memory: of the engine's arrays, without what it records.
+
+The aim: at 2,000 elements at most 1.3 times the time a step and an element at 100.
+"""
+
+import os
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import time
+from pathlib import Path
+
+from funicular import Material, Rectangle, Scene
+from funicular.engine import Engine
+from funicular.integrators import GeneralisedAlpha
+from funicular.model import build
+from table import parser, show
+
+SIZES = (3, 9, 30, 99, 501, 2001)
+LENGTH = 1.5
+STEP = 1e-4
+
+
+def cable(made: Scene, name: str, start: tuple, end: tuple, elements: int) -> None:
+    """One cable12 of the scene."""
+    made.cable(name, start=start, end=end, elements=elements, element="cable12",
+               section=Rectangle(height=0.02, width=0.02),
+               material=Material(youngs_modulus=2e6, poisson_ratio=0.3, density=1000))
+
+
+def ride(made: Scene, along: str, count: int) -> None:
+    """Riders of the scene, at rest on the x-axis."""
+    for k in range(count):
+        s = LENGTH * (0.21 + 0.2 * k)
+        made.rigid_body(f"rider{k}", mass=0.3, inertia=(1e-3, 1e-3, 1e-3), position=(s, 0, 0))
+        made.slide(f"rider{k}", along=along, s=s)
+
+
+def pendulum(elements: int, riders: int = 0) -> Scene:
+    """Level, held at its start, and with riders at its end too."""
+    made = Scene()
+    cable(made, "wire", (0, 0, 0), (LENGTH, 0, 0), elements)
+    made.pin("wire", s=0.0)
+    if riders:
+        made.pin("wire", s=LENGTH)
+    ride(made, "wire", riders)
+    return made
+
+
+def joined(elements: int) -> Scene:
+    """Three cables of a third of the elements each, held at one end and joined at the other; a rider on the first."""
+    made = Scene()
+    for name, start in (("a", (0, 0, 0)), ("b", (2, 0, 1)), ("c", (2, 0, -1))):
+        cable(made, name, start, (LENGTH, 0, 0), elements // 3)
+        made.pin(name, s=0.0)
+    for name in "bc":
+        made.join("a", s=LENGTH, to=name, at=made.cables[name].length, rotation="free")
+    ride(made, "a", 1)
+    return made
+
+
+SCENES = {"pendulum": lambda n: pendulum(n), "one rider": lambda n: pendulum(n, 1),
+          "three riders": lambda n: pendulum(n, 3), "three cables": joined}
+
+
+def scene(name: str, elements: int) -> Scene:
+    """One of SCENES with so many elements in all."""
+    return SCENES[name](elements)
+
+
+def measure(name: str, elements: int, steps: int) -> dict:
+    """One run."""
+    engine = Engine(build(scene(name, elements)))
+    memory = engine.memory
+    duration = steps * STEP
+    status, _ = engine.start(duration=duration, output_step=duration, tol=1e-4, step=STEP,
+                             method=GeneralisedAlpha(0.8), first_step=STEP)
+    begin = time.process_time()
+    status = status or engine.advance(lambda _: None)
+    taken = time.process_time() - begin
+    if status != "completed":
+        raise RuntimeError(f"{name} with {elements} elements: {status}")
+    counts = engine.statistics
+    n = counts["steps"]
+    return {"scene": name, "elements": elements, "us_per_step_and_element": 1e6 * taken / n / elements,
+            "iterations_per_step": counts["newton_iterations"] / n,
+            "factorisations_per_step": counts["factorisations"] / n, "kB_per_element": memory / 1e3 / elements}
+
+
+def plot(rows: list[dict], file: Path) -> None:
+    """Time a step and an element, and memory, against the number of elements."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(8, 3.6), layout="constrained")
+    for axes, key, label in zip(figure.subplots(1, 2), ("us_per_step_and_element", "kB_per_element"),
+                                ("µs per step and element", "kB per element"), strict=True):
+        for name in SCENES:
+            of = [row for row in rows if row["scene"] == name]
+            axes.plot([row["elements"] for row in of], [row[key] for row in of], "o-", label=name)
+        axes.set(xscale="log", xlabel="elements", ylabel=label, ylim=(0, None))
+    axes.legend()
+    figure.savefig(file, dpi=130)
+    print(f"written: {file}")
+
+
+def main() -> None:
+    """Measure, print, draw."""
+    made = parser(__doc__, repetitions=(3, "of every run"), steps=(300, "of a run"))
+    made.add_argument("--plot", type=Path, metavar="FILE.png", help="draw time and memory against the elements")
+    options = made.parse_args()
+    best = {}
+    for _ in range(options.repetitions):
+        for name in SCENES:
+            for n in SIZES:
+                found = measure(name, n, options.steps)
+                key = "us_per_step_and_element"
+                if (name, n) not in best or found[key] < best[name, n][key]:
+                    best[name, n] = found
+    rows = list(best.values())
+    show(rows, options.out)
+    for name in SCENES:
+        large, small = (best[name, n]["us_per_step_and_element"] for n in (2001, 99))
+        print(f"{name}: 2,001 elements take {large / small:.2f} times as long a step and an element as 99 (aim 1.3)")
+    if options.plot:
+        plot(rows, options.plot)
+
+
+if __name__ == "__main__":
+    main()

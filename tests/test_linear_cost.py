@@ -1,0 +1,70 @@
+"""Linear algebra of a Newton step: right, and of a size that grows with the number of elements and no faster."""
+
+import numpy as np
+import pytest
+from funicular import Circle, Material, Scene
+from funicular.engine import Engine
+from funicular.integrators import GeneralisedAlpha
+from funicular.model import build
+from linear_cost import SCENES, scene
+from test_newton_matrix import SCENES as DIFFICULT
+
+
+def started(scene: Scene) -> Engine:
+    engine = Engine(build(scene))
+    status, _ = engine.start(duration=1.0, output_step=0.1, tol=1e-4, step=0.0, method=GeneralisedAlpha(0.8),
+                             first_step=1e-3)
+    assert status is None
+    return engine
+
+
+def rope(youngs_modulus=1e7, damping_time=0.0) -> Scene:
+    """Two slides on one element and one on the last: columns of the border that begin in different places."""
+    scene = Scene()
+    wire = scene.cable("wire", start=(0, 0, 0), end=(2, 0, 0), elements=7, element="cable12",
+                       section=Circle(radius=0.01), strain="green",
+                       material=Material(youngs_modulus=youngs_modulus, poisson_ratio=0.3, density=1000,
+                                         damping_time=damping_time))
+    scene.pin(wire, s=0.0)
+    scene.pin(wire, s=2.0)
+    for k, s in enumerate((0.6, 0.8, 1.9)):
+        scene.rigid_body(f"A{k}", mass=0.1, inertia=(1e-4, 1e-4, 1e-4), position=(s, 0, 0), velocity=(1, 0, 0))
+        scene.slide(f"A{k}", along=wire, s=s)
+    return scene
+
+
+def solution_error(engine: Engine, h: float, size: float) -> tuple[float, bool]:
+    """Of a solve against NumPy's, relative; and whether the band was positive definite."""
+    rng = np.random.default_rng(3)
+    _, matrix = engine.linearise(h, size * rng.standard_normal(engine.unknowns))
+    right = rng.standard_normal(engine.unknowns)
+    expected = np.linalg.solve(matrix, right)
+    found, definite = engine.solve(right)
+    return float(np.abs(found - expected).max() / np.abs(expected).max()), definite
+
+
+@pytest.mark.parametrize("name", DIFFICULT)
+def test_solves_any_newton_system(name):
+    error, _ = solution_error(started(DIFFICULT[name]()), 1e-3, 1e-3)
+    assert error < 1e-10
+
+
+@pytest.mark.parametrize(("made", "size", "definite"), [
+    (rope(), 1e-4, True),
+    (rope(damping_time=1e-2), 1e-3, False),  # Kelvin-Voigt: not symmetric
+    (rope(youngs_modulus=1e9), 1e-1, False),  # crumpled: indefinite
+], ids=["cholesky", "unsymmetric", "indefinite"])
+def test_band_is_factored_as_it_allows(made, size, definite):
+    error, found = solution_error(started(made), 1e-3, size)
+    assert found is definite
+    assert error < 1e-9
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_memory_and_factored_entries_are_linear_in_the_elements(name):
+    engines = [Engine(build(scene(name, n))) for n in (60, 120, 240)]
+    memory = np.array([engine.memory for engine in engines])
+    assert memory[2] - memory[1] == pytest.approx(2 * (memory[1] - memory[0]), rel=1e-12)
+    unknowns, widths, borders = np.array([engine.band for engine in engines]).T
+    assert len(set(widths)) == len(set(borders)) == 1
+    assert unknowns[2] - unknowns[1] == 2 * (unknowns[1] - unknowns[0])
