@@ -19,7 +19,12 @@ from funicular.derive.stages import Argument, Program
 
 TOOLS = ("sympy", "mpmath", "jinja2")
 HEADER, REGISTRY = "kernels.h", "registry.c"
-COMMON = (HEADER, REGISTRY, "kernels.pyx", "__init__.py")  # of all families; a library has the first two
+COMMON = (HEADER, REGISTRY, "blocks.h", "blocks.c", "kernels.pyx", "__init__.py")
+"""Files of all families; a library has the first two."""
+BLOCKS = ("elastic_force", "elastic_tangent", "damping_force")
+"""Kernels of a law that are compiled for several elements at once as well (blocks.c) ..."""
+MOST_OPERATIONS = 3000
+"""... unless they have more operations: the tangents of beam24 would take longer to compile than all the others."""
 
 
 @dataclass(frozen=True)
@@ -128,15 +133,17 @@ def render(every: list[Derived], wanted: Iterable[str], done: Callable[[str], No
     environment = jinja2.Environment(loader=jinja2.PackageLoader("funicular.derive"), trim_blocks=True,
                                      lstrip_blocks=True, keep_trailing_newline=True,
                                      undefined=jinja2.StrictUndefined)
-    environment.filters["c"] = c_expression
+    environment.filters["c"], environment.filters["number"] = c_expression, _number
     files = {}
     for derived in every:
         if derived.family.name in wanted:
-            text = environment.get_template("family.c.jinja").render(derived=derived, signature=signature,
-                                                                     operations=_operations_text)
+            text = environment.get_template("family.c.jinja").render(
+                derived=derived, signature=signature, operations=_operations_text, blocks=_blocks(derived))
             files[f"{derived.family.name}.c"] = text
             done(derived.family.name)
-    common = {"every": every, "tables": tables(every, like), "signature": signature, "call": _call}
+    blocks = {name for derived in every for name in _blocks(derived)}
+    common = {"every": every, "tables": tables(every, like), "signature": signature, "call": _call, "blocks": blocks,
+              "laws": [derived for derived in every if _blocks(derived)], "kernels": BLOCKS}
     for name in COMMON if like is None else (HEADER, REGISTRY):
         files[name] = environment.get_template(f"{name}.jinja").render(**common)
     return files
@@ -184,6 +191,19 @@ def signature(program: Program | Recorded) -> str:
     """C parameters."""
     inputs = [f"fu_real {a.name}" if a.shape == () else f"const fu_real *{a.name}" for a in program.inputs]
     return ", ".join([*inputs, *(f"fu_real *{a.name}" for a in program.outputs)])
+
+
+def _blocks(derived: Derived) -> list[str]:
+    """Names of a law's kernels that are compiled for several elements at once as well."""
+    if derived.family.role != "law":
+        return []
+    hot = {f"{derived.family.name}_{kernel}" for kernel in BLOCKS}
+    return [p.name for p in derived.programs if p.name in hot and sum(p.operations().values()) <= MOST_OPERATIONS]
+
+
+def _number(expr) -> str:
+    """An expression where a fu_real is assigned: a constant is not one where that is several numbers."""
+    return f"FU_NUMBER({c_expression(expr)})" if expr.is_number else c_expression(expr)
 
 
 def _operations_text(program: Program) -> str:

@@ -33,6 +33,11 @@ cdef extern from "kernels.h" nogil:
         const fu_body *bodys
         const fu_slide *slides
 
+cdef extern from "blocks.h" nogil:
+    ctypedef struct fu_law_blocks:
+        pass
+    const fu_law_blocks *fu_blocks_of(const char *law)
+
 cdef extern from "engine.h" nogil:
     int FU_JOINT_TERMS, FU_JOINT_OUTPUTS, FU_MAX_COORDINATES
     int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT
@@ -43,6 +48,7 @@ cdef extern from "engine.h" nogil:
     ctypedef struct fu_cable:
         const fu_element *kernel
         const fu_law *law
+        const fu_law_blocks *blocks
         int n_elements, first, coordinates, per_node, A_stride
         double length, tau, mass_damping
         const double *m
@@ -347,6 +353,7 @@ cdef class Engine:
         for i, cable in enumerate(model.cables):
             c = &self.cables[i]
             c.kernel, c.law = _element(tables, cable.element), _law(tables, f"{cable.element}_{cable.law}")
+            c.blocks = fu_blocks_of(c.law.name) if cable.library is None else NULL
             c.n_elements, c.first, c.length = cable.n_elements, cable.first, cable.length
             c.tau, c.mass_damping = cable.tau, cable.mass_damping
             c.per_node = c.kernel.vectors * c.kernel.dim

@@ -1,6 +1,60 @@
 /* Sums over elements and bodies: forces, energies, and the band and body blocks of a Newton matrix. */
 #include "engine.h"
 
+#define CHUNK 16 /* elements whose forces wait to be added: few enough to stay in the first cache */
+
+/* Elements of a cable from the k-th on. */
+static fu_elements elements_from(const fu_cable *cable, const double *q, const double *v, int k)
+{
+    const long at = cable->first + (long)k * cable->per_node;
+    return (fu_elements){cable->length, cable->tau,      q + at, v ? v + at : 0, cable->A + (long)k * cable->A_stride,
+                         cable->per_node, cable->A_stride};
+}
+
+/* How many of n elements a block kernel takes. */
+static int in_blocks(fu_block kernel, int n)
+{
+    return kernel ? n - n % FU_BLOCK_ELEMENTS : 0;
+}
+
+static void elastic_forces(const fu_cable *cable, int n, const fu_elements *of, double *f)
+{
+    const fu_block block = cable->blocks ? cable->blocks->elastic_force : 0;
+    int k = in_blocks(block, n);
+    if (k) block(k, of, f);
+    for (; k < n; ++k)
+        cable->law->elastic_force(of->l, of->e + k * of->per_node, of->A + (long)k * of->A_stride,
+                                  f + k * cable->coordinates);
+}
+
+static void damping_forces(const fu_cable *cable, int n, const fu_elements *of, double *f)
+{
+    const fu_block block = cable->blocks ? cable->blocks->damping_force : 0;
+    int k = in_blocks(block, n);
+    if (k) block(k, of, f);
+    for (; k < n; ++k)
+        cable->law->damping_force(of->l, of->e + k * of->per_node, of->v + k * of->per_node,
+                                  of->A + (long)k * of->A_stride, of->tau, f + k * cable->coordinates);
+}
+
+static void elastic_tangents(const fu_cable *cable, int n, const fu_elements *of, double *K)
+{
+    const fu_block block = cable->blocks ? cable->blocks->elastic_tangent : 0;
+    int k = in_blocks(block, n);
+    if (k) block(k, of, K);
+    for (; k < n; ++k)
+        cable->law->elastic_tangent(of->l, of->e + k * of->per_node, of->A + (long)k * of->A_stride,
+                                    K + k * cable->coordinates * cable->coordinates);
+}
+
+/* f of the cable's dofs += what n elements from the k-th on give, one after the other */
+static void add_forces(const fu_cable *cable, int k, int n, const double *part, double *f)
+{
+    double *at = f + cable->first + (long)k * cable->per_node;
+    for (int j = 0; j < n; ++j, at += cable->per_node, part += cable->coordinates)
+        for (int i = 0; i < cable->coordinates; ++i) at[i] += part[i];
+}
+
 /* f = M a */
 void fu_mass_times(const fu_model *model, const double *a, double *f)
 {
@@ -23,20 +77,25 @@ void fu_mass_times(const fu_model *model, const double *a, double *f)
 /* f += elastic, damping and gyroscopic forces, as they stand on the left of the equations of motion; not springs */
 void fu_internal_forces(const fu_model *model, const double *q, const double *v, double *f)
 {
-    double part[FU_MAX_COORDINATES];
+    double part[CHUNK * FU_MAX_COORDINATES];
     for (int c = 0; c < model->n_cables; ++c) {
         const fu_cable *cable = &model->cables[c];
-        for (int k = 0, at = cable->first; k < cable->n_elements; ++k, at += cable->per_node) {
-            const double *A = cable->A + (long)k * cable->A_stride;
-            cable->law->elastic_force(cable->length, q + at, A, part);
-            for (int i = 0; i < cable->coordinates; ++i) f[at + i] += part[i];
+        for (int k = 0, n; k < cable->n_elements; k += n) {
+            n = cable->n_elements - k < CHUNK ? cable->n_elements - k : CHUNK;
+            const fu_elements of = elements_from(cable, q, v, k);
+            elastic_forces(cable, n, &of, part);
+            add_forces(cable, k, n, part, f);
             if (cable->tau > 0.0) {
-                cable->law->damping_force(cable->length, q + at, v + at, A, cable->tau, part);
-                for (int i = 0; i < cable->coordinates; ++i) f[at + i] += part[i];
+                damping_forces(cable, n, &of, part);
+                add_forces(cable, k, n, part, f);
             }
             if (cable->mass_damping > 0.0) {
-                cable->kernel->inertia_force(cable->m, v + at, part);
-                for (int i = 0; i < cable->coordinates; ++i) f[at + i] += cable->mass_damping * part[i];
+                for (int j = 0; j < n; ++j) {
+                    double *of_element = part + j * cable->coordinates;
+                    cable->kernel->inertia_force(cable->m, of.v + j * of.per_node, of_element);
+                    for (int i = 0; i < cable->coordinates; ++i) of_element[i] *= cable->mass_damping;
+                }
+                add_forces(cable, k, n, part, f);
             }
         }
     }
@@ -48,56 +107,70 @@ void fu_internal_forces(const fu_model *model, const double *q, const double *v,
     }
 }
 
+/* K += mass M of an element */
+static void add_mass(const fu_cable *cable, double mass, double *K)
+{
+    const int n = cable->coordinates, dim = cable->kernel->dim, vectors = n / dim;
+    for (int j = 0; j < vectors; ++j)
+        for (int i = 0; i < vectors; ++i)
+            for (int d = 0; d < dim; ++d) K[(j * dim + d) * n + i * dim + d] += mass * cable->m[j * vectors + i];
+}
+
+/* system += K over n dofs from `first` on */
+static void add_matrix(const fu_model *model, int first, int n, const double *K, fu_system *system)
+{
+    const int rows = 3 * system->width + 1, diagonal = 2 * system->width, *place = model->place + first;
+    int combined = 0;
+    for (int j = 0; j < n; ++j) combined |= place[j] < -1;
+    if (combined) {
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < n; ++j) fu_add(model, system, first + i, first + j, K[i * n + j]);
+        return;
+    }
+    for (int j = 0; j < n; ++j) {
+        if (place[j] < 0) continue;
+        double *column = system->K + (long)place[j] * rows + diagonal - place[j];
+        for (int i = 0; i < n; ++i)
+            if (place[i] >= 0) column[place[i]] += K[i * n + j];
+    }
+}
+
 /* inertia M + stiffness d(forces)/dq + stiffness rate d(forces)/dv, added to a cleared system */
 void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, double inertia, double rate,
                        double stiffness, fu_system *system)
 {
-    double K[FU_MAX_COORDINATES * FU_MAX_COORDINATES], Q[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
-    const int rows = 3 * system->width + 1, diagonal = 2 * system->width;
+    double every[FU_BLOCK_ELEMENTS * FU_MAX_COORDINATES * FU_MAX_COORDINATES];
+    double Q[FU_MAX_COORDINATES * FU_MAX_COORDINATES], *K = every;
     for (int c = 0; c < model->n_cables; ++c) {
         const fu_cable *cable = &model->cables[c];
-        const int n = cable->coordinates, dim = cable->kernel->dim, vectors = n / dim;
+        const int size = cable->coordinates * cable->coordinates;
         const double mass = inertia + stiffness * rate * cable->mass_damping;
-        for (int k = 0, at = cable->first; k < cable->n_elements; ++k, at += cable->per_node) {
-            const double *A = cable->A + (long)k * cable->A_stride;
+        for (int k = 0; k < cable->n_elements; ++k) {
+            const int j = k % FU_BLOCK_ELEMENTS, left = cable->n_elements - k;
+            const fu_elements of = elements_from(cable, q, v, k);
+            K = every + j * size;
             if (stiffness != 0.0) {
-                cable->law->elastic_tangent(cable->length, q + at, A, K);
+                if (j == 0) elastic_tangents(cable, left < FU_BLOCK_ELEMENTS ? left : FU_BLOCK_ELEMENTS, &of, every);
                 if (cable->tau > 0.0) {
-                    cable->law->damping_tangent(cable->length, q + at, v + at, A, cable->tau, rate, Q);
-                    for (int i = 0; i < n * n; ++i) K[i] += Q[i];
+                    cable->law->damping_tangent(of.l, of.e, of.v, of.A, of.tau, rate, Q);
+                    for (int i = 0; i < size; ++i) K[i] += Q[i];
                 }
-                for (int i = 0; i < n * n; ++i) K[i] *= stiffness;
+                for (int i = 0; i < size; ++i) K[i] *= stiffness;
             } else {
-                for (int i = 0; i < n * n; ++i) K[i] = 0.0;
+                for (int i = 0; i < size; ++i) K[i] = 0.0;
             }
-            for (int j = 0; j < vectors; ++j)
-                for (int i = 0; i < vectors; ++i)
-                    for (int d = 0; d < dim; ++d)
-                        K[(j * dim + d) * n + i * dim + d] += mass * cable->m[j * vectors + i];
-            const int *place = model->place + at;
-            int combined = 0;
-            for (int j = 0; j < n; ++j) combined |= place[j] < -1;
-            if (combined) {
-                for (int i = 0; i < n; ++i)
-                    for (int j = 0; j < n; ++j) fu_add(model, system, at + i, at + j, K[i * n + j]);
-                continue;
-            }
-            for (int j = 0; j < n; ++j) {
-                if (place[j] < 0) continue;
-                double *column = system->K + (long)place[j] * rows + diagonal - place[j];
-                for (int i = 0; i < n; ++i)
-                    if (place[i] >= 0) column[place[i]] += K[i * n + j];
-            }
+            add_mass(cable, mass, K);
+            add_matrix(model, cable->first + k * cable->per_node, cable->coordinates, K, system);
         }
     }
     for (int b = 0; b < model->n_rigids; ++b) {
         const fu_rigid *body = &model->rigids[b];
         const int size = body->kernel->velocity;
-        body->kernel->inertia_tangent(body->mass, body->J, v + body->dof, K, Q);
+        body->kernel->inertia_tangent(body->mass, body->J, v + body->dof, every, Q);
         for (int i = 0; i < size; ++i)
             for (int j = 0; j < size; ++j)
                 fu_add(model, system, body->dof + i, body->dof + j,
-                       inertia * K[size * i + j] + stiffness * rate * Q[size * i + j]);
+                       inertia * every[size * i + j] + stiffness * rate * Q[size * i + j]);
     }
 }
 

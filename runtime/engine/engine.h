@@ -14,6 +14,7 @@
 #ifndef FUNICULAR_ENGINE_H
 #define FUNICULAR_ENGINE_H
 
+#include "blocks.h"
 #include "kernels.h"
 
 #define FU_MAX_COORDINATES 32                        /* of one element or one joint; model.py checks */
@@ -23,6 +24,7 @@
 typedef struct {
     const fu_element *kernel;
     const fu_law *law;
+    const fu_law_blocks *blocks; /* null where there are none */
     int n_elements;
     int first;        /* first dof and first entry in q */
     int coordinates;  /* of an element */

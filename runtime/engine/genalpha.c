@@ -17,7 +17,7 @@
 #include <time.h>
 
 #define MOST_ITERATIONS 12
-#define TOO_MANY_ITERATIONS 4 /* a step that took more than these has the matrix made anew for the next: it costs 5 to 8 */
+#define TOO_MANY_ITERATIONS 3 /* a step that took more than these has the matrix made anew for the next */
 
 double fu_clock(void)
 {
