@@ -458,8 +458,7 @@ cdef class Engine:
 
     cdef void _system(self, fu_system *system, int n, int width, int m):
         system.n, system.width, system.m = n, width, m
-        system.K, system.D = self._zeros((3 * width + 1) * n), self._zeros(m * m)
-        system.L = self._zeros((width + FU_BAND_GROUP) * (n + FU_BAND_GROUP))
+        system.D, system.L = self._zeros(m * m), self._zeros((width + 1) * (n + FU_BAND_GROUP))
         system.B, system.C = self._zeros(n * m), self._zeros(n * m)
         system.X = self._zeros(FU_BAND_LENGTH(n, width) * m)
         system.span_B, system.span_C = <fu_span *>self._ints(np.zeros(2 * m)), <fu_span *>self._ints(np.zeros(2 * m))
@@ -482,16 +481,19 @@ cdef class Engine:
         run.model = &self.model
         self._state(&run.now, model)
         self._state(&run.next, model)
-        self._system(&run.newton, model.n_band, model.width, model.n_border_dof + model.n_extra)
+        width = max(model.width, FU_BAND_GROUP - 1)
+        self._system(&run.newton, model.n_band, width, model.n_border_dof + model.n_extra)
         a = &run.accelerator
-        self._system(&a.mass, model.n_band, model.width, model.n_border_dof + model.n_multipliers)
+        self._system(&a.mass, model.n_band, width, model.n_border_dof + model.n_multipliers)
+        # that of the mass is factored elsewhere, before the first of Newton is made
+        run.newton.K = a.mass.K = self._zeros((3 * width + 1) * model.n_band)
         a.bodies = self._zeros(a.mass.m * a.mass.m)
-        a.rhs = self._zeros(unknowns + model.n_multipliers + FU_BAND_BEYOND(model.width))
+        a.rhs = self._zeros(unknowns + model.n_multipliers + FU_BAND_BEYOND(width))
         a.terms = self._doubles(np.zeros(n_joints * FU_JOINT_TERMS))
         a.joints = self._doubles(np.zeros(n_joints * FU_JOINT_OUTPUTS))
         a.force, a.work = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         a.prescribed = self._doubles(np.zeros(n_dof))
-        run.rhs = self._zeros(unknowns + model.n_extra + FU_BAND_BEYOND(model.width))
+        run.rhs = self._zeros(unknowns + model.n_extra + FU_BAND_BEYOND(width))
         run.psi, run.force = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         run.work, run.before = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         run.first, run.s_slope = self._doubles(np.zeros(model.n_q)), self._doubles(np.zeros(n_joints))

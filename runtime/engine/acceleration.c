@@ -45,7 +45,8 @@ int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
     fu_system_clear(&work->mass);
     fu_dynamic_matrix(model, model->zero, model->zero, 1.0, 0.0, 0.0, &work->mass);
     memcpy(work->bodies, work->mass.D, sizeof(double) * (size_t)(work->mass.m * work->mass.m));
-    return fu_system_factor_band(&work->mass, model->lapack);
+    if (fu_system_factor_band(&work->mass, model->lapack)) return 1;
+    return !work->mass.definite; /* else it would be in K, which the Newton matrix takes */
 }
 
 /* Border of [M H'; H 0] at a state whose terms are evaluated. */

@@ -2,14 +2,14 @@
  * each column, which for the short columns of cables takes three times as long as their arithmetic
  * (tests/benchmarks/linear_cost.py).
  *
- * Storage: columns of the lower triangle from the diagonal down, FU_BAND_GROUP - 1 zeros below each, and columns of a
- * unit matrix to a whole number of groups: a group is eliminated at once. */
+ * Storage: columns of the lower triangle from the diagonal down, width + 1 each, and columns of a unit matrix to a whole
+ * number of groups: the columns of a group are eliminated at once. */
 #include "engine.h"
 
 /* A = L D L': L below the diagonal, 1/D on it; not zero where A is not positive definite. */
 int fu_band_factor(const fu_lapack *lapack, int n, int width, double *A)
 {
-    int stride = width + FU_BAND_GROUP, info = 0;
+    int stride = width + 1, info = 0;
     if (n) lapack->dpbtrf("L", &n, &width, A, &stride, &info);
     for (int j = 0; j < n && !info; ++j) {
         double *column = A + (long)j * stride;
@@ -25,22 +25,29 @@ int fu_band_factor(const fu_lapack *lapack, int n, int width, double *A)
  * FU_BAND_BEYOND(width) of them, all finite. */
 void fu_band_solve(int n, int width, const double *A, int first, double *x)
 {
-    const int stride = width + FU_BAND_GROUP;
+    const int stride = width + 1;
     int j = first - first % FU_BAND_GROUP;
     for (; j < n; j += FU_BAND_GROUP) {
-        const double *a = A + (long)j * stride, *b = a + stride - 1, *c = b + stride - 1, *d = c + stride - 1;
+        /* columns j ... j + 3 from row j on: entry k is that of row j + k */
+        const double *a = A + (long)j * stride, *b = a + width, *c = b + width, *d = c + width;
         double *restrict y = x + j;
         const double x0 = y[0], x1 = y[1] - a[1] * x0, x2 = y[2] - a[2] * x0 - b[2] * x1;
         const double x3 = y[3] - a[3] * x0 - b[3] * x1 - c[3] * x2;
-        for (int k = FU_BAND_GROUP; k < stride; ++k) y[k] -= a[k] * x0 + b[k] * x1 + c[k] * x2 + d[k] * x3;
+        for (int k = 4; k < stride; ++k) y[k] -= a[k] * x0 + b[k] * x1 + c[k] * x2 + d[k] * x3;
+        y[stride] -= b[stride] * x1 + c[stride] * x2 + d[stride] * x3;
+        y[stride + 1] -= c[stride + 1] * x2 + d[stride + 1] * x3;
+        y[stride + 2] -= d[stride + 2] * x3;
         y[1] = x1;
         y[2] = x2;
         y[3] = x3;
     }
     for (j -= FU_BAND_GROUP; j >= 0; j -= FU_BAND_GROUP) {
-        const double *a = A + (long)j * stride, *b = a + stride - 1, *c = b + stride - 1, *d = c + stride - 1;
+        const double *a = A + (long)j * stride, *b = a + width, *c = b + width, *d = c + width;
         double *y = x + j, x0 = y[0] * a[0], x1 = y[1] * b[1], x2 = y[2] * c[2], x3 = y[3] * d[3];
-        for (int k = FU_BAND_GROUP; k < stride; ++k) {
+        x1 -= b[stride] * y[stride];
+        x2 -= c[stride] * y[stride] + c[stride + 1] * y[stride + 1];
+        x3 -= d[stride] * y[stride] + d[stride + 1] * y[stride + 1] + d[stride + 2] * y[stride + 2];
+        for (int k = 4; k < stride; ++k) {
             x0 -= a[k] * y[k];
             x1 -= b[k] * y[k];
             x2 -= c[k] * y[k];

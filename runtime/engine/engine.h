@@ -104,9 +104,10 @@ typedef struct {
     void (*dgetrs)(char *, int *, int *, double *, int *, int *, double *, int *, int *);
 } fu_lapack;
 
-/* band.c eliminates so many columns at once, and touches so many numbers beyond the end of a column of n. */
+/* band.c eliminates so many columns at once (a band is one less wide at least), and touches so many numbers beyond the
+ * end of a column of n. */
 #define FU_BAND_GROUP 4
-#define FU_BAND_BEYOND(width) ((width) + 2 * FU_BAND_GROUP)
+#define FU_BAND_BEYOND(width) ((width) + FU_BAND_GROUP)
 #define FU_BAND_LENGTH(n, width) ((long)(n) + FU_BAND_BEYOND(width))
 
 /* rows [first, end) of a column: the others are zero */
@@ -120,8 +121,8 @@ typedef struct {
     int m;             /* border */
     int definite;      /* the band is factored in L (band.c), else in K (dgbtrf) */
     int n_coupled;     /* columns of B that are not zero */
-    double *K;         /* LAPACK band storage, (3 width + 1) x n */
-    double *L;         /* (width + FU_BAND_GROUP) x n, and a group more */
+    double *K;         /* LAPACK band storage, (3 width + 1) x n; of all systems of a run the same */
+    double *L;         /* (width + 1) x n, and a group more */
     double *B;         /* n x m, column by column */
     double *C;         /* the border's rows, transposed: n x m */
     double *D;         /* m x m, column by column */

@@ -26,7 +26,7 @@ void fu_system_clear_border(fu_system *s)
 /* The lower half of K as band.c wants it; zero where K is not symmetric or its diagonal not positive. */
 static int pack(fu_system *s)
 {
-    const int width = s->width, rows = 3 * width + 1, stride = width + FU_BAND_GROUP;
+    const int width = s->width, rows = 3 * width + 1, stride = width + 1;
     for (int j = 0; j < s->n; ++j) {
         const double *below = s->K + (long)j * rows + 2 * width, diagonal = below[0];
         const int most = s->n - 1 - j < width ? s->n - 1 - j : width;
