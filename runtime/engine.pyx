@@ -296,7 +296,10 @@ cdef double _call(void *context, int which, const fu_state *state) noexcept with
 
 
 cdef class Engine:
-    """One run of a model (see model.py for the fields that it reads)."""
+    """One run of a model (see model.py for the fields that it reads).
+
+    blocks: take kernels of several elements at once where there are.
+    """
 
     cdef fu_cable *cables
     cdef fu_rigid *rigids
@@ -313,7 +316,7 @@ cdef class Engine:
     cdef list kept
     cdef readonly dict arrays
 
-    def __cinit__(self, model):
+    def __cinit__(self, model, blocks=True):
         self.cables = <fu_cable *>PyMem_Calloc(len(model.cables) + 1, sizeof(fu_cable))
         self.rigids = <fu_rigid *>PyMem_Calloc(len(model.rigids) + 1, sizeof(fu_rigid))
         self.joints = <fu_joint *>PyMem_Calloc(len(model.joints) + 1, sizeof(fu_joint))
@@ -331,10 +334,10 @@ cdef class Engine:
                         <size_t>self.motions, <size_t>self.dead_loads, <size_t>self.loads, <size_t>self.signals, <size_t>self.watches):
             PyMem_Free(<void *><size_t>pointer)
 
-    def __init__(self, model):
+    def __init__(self, model, blocks=True):
         self.kept, self.arrays = [], {}
         tables = [<size_t>TABLES, *model.tables]
-        self._bodies_and_cables(model, tables)
+        self._bodies_and_cables(model, tables, blocks)
         self._joints_and_springs(model, tables)
         self._loads_and_motions(model)
         m = &self.model
@@ -348,12 +351,12 @@ cdef class Engine:
         m.gravity, m.zero = self._doubles(model.gravity), self._doubles(np.zeros(model.n_dof))
         self._work_space(model)
 
-    def _bodies_and_cables(self, model, list tables):
+    def _bodies_and_cables(self, model, list tables, blocks):
         cdef int i, k
         for i, cable in enumerate(model.cables):
             c = &self.cables[i]
             c.kernel, c.law = _element(tables, cable.element), _law(tables, f"{cable.element}_{cable.law}")
-            c.blocks = fu_blocks_of(c.law.name) if cable.library is None else NULL
+            c.blocks = fu_blocks_of(c.law.name) if blocks and cable.library is None else NULL
             c.n_elements, c.first, c.length = cable.n_elements, cable.first, cable.length
             c.tau, c.mass_damping = cable.tau, cable.mass_damping
             c.per_node = c.kernel.vectors * c.kernel.dim
@@ -738,6 +741,11 @@ cdef class Engine:
     def unknowns(self):
         """Number of unknowns of a Newton system."""
         return self.run.newton.n + self.run.newton.m
+
+    @property
+    def in_blocks(self):
+        """Whether cables have kernels for several elements at once."""
+        return [self.cables[i].blocks != NULL for i in range(self.model.n_cables)]
 
     @property
     def band(self):

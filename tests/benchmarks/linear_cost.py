@@ -26,7 +26,7 @@ from table import parser, show
 
 SIZES = (3, 9, 30, 99, 501, 2001)
 LENGTH = 1.5
-STEP = 1e-4
+STEP = 2e-5
 
 
 def cable(made: Scene, name: str, start: tuple, end: tuple, elements: int) -> None:
