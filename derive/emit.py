@@ -22,9 +22,11 @@ HEADER, REGISTRY = "kernels.h", "registry.c"
 COMMON = (HEADER, REGISTRY, "blocks.h", "blocks.c", "kernels.pyx", "__init__.py")
 """Files of all families; a library has the first two."""
 BLOCKS = ("elastic_force", "elastic_tangent", "damping_force")
-"""Kernels of a law that are compiled for several elements at once as well (blocks.c) ..."""
+"""Kernels of a law that are compiled for several elements at once as well (blocks.c), unless ..."""
 MOST_OPERATIONS = 3000
-"""... unless they have more operations: the tangents of beam24 would take longer to compile than all the others."""
+"""... they have more operations: the tangents of beam24 would take longer to compile than all the others; or ..."""
+LEAST_PER_OUTPUT = 6
+"""... fewer operations a number: sorting the numbers by element then costs what it gains."""
 
 
 @dataclass(frozen=True)
@@ -138,12 +140,12 @@ def render(every: list[Derived], wanted: Iterable[str], done: Callable[[str], No
     for derived in every:
         if derived.family.name in wanted:
             text = environment.get_template("family.c.jinja").render(
-                derived=derived, signature=signature, operations=_operations_text, blocks=_blocks(derived))
+                derived=derived, signature=signature, operations=_operations_text, blocks=block_kernels(derived))
             files[f"{derived.family.name}.c"] = text
             done(derived.family.name)
-    blocks = {name for derived in every for name in _blocks(derived)}
+    blocks = {name for derived in every for name in block_kernels(derived)}
     common = {"every": every, "tables": tables(every, like), "signature": signature, "call": _call, "blocks": blocks,
-              "laws": [derived for derived in every if _blocks(derived)], "kernels": BLOCKS}
+              "laws": [derived for derived in every if block_kernels(derived)], "kernels": BLOCKS}
     for name in COMMON if like is None else (HEADER, REGISTRY):
         files[name] = environment.get_template(f"{name}.jinja").render(**common)
     return files
@@ -193,12 +195,13 @@ def signature(program: Program | Recorded) -> str:
     return ", ".join([*inputs, *(f"fu_real *{a.name}" for a in program.outputs)])
 
 
-def _blocks(derived: Derived) -> list[str]:
+def block_kernels(derived: Derived) -> list[str]:
     """Names of a law's kernels that are compiled for several elements at once as well."""
     if derived.family.role != "law":
         return []
     hot = {f"{derived.family.name}_{kernel}" for kernel in BLOCKS}
-    return [p.name for p in derived.programs if p.name in hot and sum(p.operations().values()) <= MOST_OPERATIONS]
+    return [p.name for p in derived.programs if p.name in hot
+            and LEAST_PER_OUTPUT * p.outputs[0].size <= sum(p.operations().values()) <= MOST_OPERATIONS]
 
 
 def _number(expr) -> str:

@@ -55,7 +55,7 @@ def build(families: Iterable[Family], manifest: dict, kernels, units: Iterable[P
     loops, names = [], []
     for family in families:
         record = emit.recorded(family, manifest)
-        values = _sample(family, record.programs, kernels)
+        values = sample(family, record.programs, kernels)
         loops += [_loop(program, values) for program in record.programs]
         names += [program.name for program in record.programs]
     text = PROGRAM.replace("@LOOPS@", "\n".join(loops))
@@ -88,7 +88,7 @@ def _output(command: Iterable) -> list[str]:
     return subprocess.run(list(command), capture_output=True, text=True, check=True).stdout.splitlines()
 
 
-def _sample(family: Family, programs: list[Recorded], kernels) -> dict[str, np.ndarray]:
+def sample(family: Family, programs: list[Recorded], kernels) -> dict[str, np.ndarray]:
     """The first state on which the family is verified; its constants from the compiled kernels."""
     outputs = {p.name: [a.name for a in p.outputs] for p in programs}
 

@@ -15,8 +15,9 @@ ELEMENTS = 7  # a block and a rest
 SAME_BITS = platform.machine() in ("x86_64", "AMD64")  # no contraction to fused operations there
 CABLE = [{"strain": strain, "curvature": curvature} for strain in ("green", "engineering")
          for curvature in ("exact", "linear")]
+BEAM = [{"law": "continuum"}, {"law": "structural"}]
 STRAIGHT = {"cable12": CABLE, "cable8p": CABLE, "cable18": [{"strain": "green"}, {"strain": "engineering"}],
-            "beam24": [{"law": "continuum"}, {"law": "structural"}], "beam12p": [{"law": "continuum"}, {"law": "structural"}]}
+            "beam24": BEAM, "beam12p": BEAM}
 CURVED = {"cable12": [{"strain": "green"}, {"strain": "engineering"}], "beam24": [{"law": "continuum"}],
           "beam12p": [{"law": "continuum"}]}
 CASES = [(element, law, curved) for table, curved in ((STRAIGHT, False), (CURVED, True))
