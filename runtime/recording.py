@@ -87,7 +87,7 @@ def body_state(model: Model, body, q: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def recorded(model: Model, scene: Scene, engine, settings: RunSettings, status: str, messages: list[str],
-             watcher: Watcher, seconds: dict[str, float]) -> Recording:
+             reason: str, watcher: Watcher, seconds: dict[str, float]) -> Recording:
     """The engine's rows by name."""
     rows = engine.rows()
     q, v, a = rows["q"], rows["v"], rows["acceleration"]
@@ -120,6 +120,7 @@ def recorded(model: Model, scene: Scene, engine, settings: RunSettings, status: 
     report = {
         "status": status,
         "integrator": engine.integrator,
+        "integrator_reason": reason,
         "spectral_radius": settings.spectral_radius,
         "tol": settings.tol if settings.step is None else None,
         "step": settings.step,
