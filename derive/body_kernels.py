@@ -13,7 +13,8 @@ from funicular.derive.stages import Derivation, Program
 
 def build(body: ModuleType) -> list[Program]:
     """Every kernel of a body."""
-    return [point(body), point_force(body), inertia_force(body), inertia_tangent(body), kinetic_energy(body)]
+    return [point(body), point_force(body), inertia_force(body), inertia_tangent(body), kinetic_energy(body),
+            discrete_point(body)]
 
 
 def _position(p: Program, body: ModuleType, b: np.ndarray, u: np.ndarray):
@@ -57,6 +58,27 @@ def point_force(body: ModuleType) -> Program:
     force = np.array([p.define(f"g{k}", f.dot(column)) for k, column in enumerate(p_q.T)])
     p.output("K", np.stack([d.array(force) for d in by], axis=1), "N/m, N, N m",
              "derivatives of p_q' f by translation and rotation")
+    return p
+
+
+def discrete_jacobian(p: Program, body: ModuleType, b: np.ndarray, A: np.ndarray, u: np.ndarray) -> np.ndarray:
+    """Input b_next and stages: P with p_next - p = P psi for the step psi, translation and Cayley vector."""
+    b_next = p.input("b_next", body.N_CONFIGURATION, "m, 1", "the same at the end of the step")
+    p.stage("attitude at the end of the step")
+    A_next = body.axes(p, b_next)
+    p.stage("mean arm, and the axes half-way")
+    arm = p.vector("mean_arm", (body.arm(p, A, u) + body.arm(p, A_next, u)) / 2)
+    return np.concatenate([np.eye(body.DIM, dtype=int), body.discrete_turns(p, b, A, b_next, arm)], axis=1)
+
+
+def discrete_point(body: ModuleType) -> Program:
+    """P."""
+    p = Program(f"{body.NAME}_discrete_point", "Jacobian of a point over a step psi: p_next - p = P psi",
+                f"{body.SOURCE}; Simo & Wong, Int. J. Numer. Meth. Eng. 31 (1991) 19-52")
+    b, u = body.configuration(p), body.attachment(p)
+    p.stage("attitude")
+    p.output("P", discrete_jacobian(p, body, b, body.axes(p, b), u), "1, m",
+             "by translation and Cayley vector; P' f is the force f on the point along axes half-way")
     return p
 
 

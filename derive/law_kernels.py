@@ -11,17 +11,25 @@ from funicular.derive.frames import spatial, tangent_frame, unit
 from funicular.derive.gram import DIRECTIONS, Gram
 from funicular.derive.gram_point import axis, expansion
 from funicular.derive.gram_tangent import nodal_tangent
-from funicular.derive.laws import law_class, law_name, stress_free
+from funicular.derive.laws import LAWS, law_class, law_name, stress_free
 from funicular.derive.spec import Element
 from funicular.derive.stages import Program
 
 DAMPING = ("damping_force", "damping_tangent", "dissipation")
+DISCRETE = "discrete_force"
+
+
+def has_discrete(law: str | type) -> bool:
+    """Whether a law gives a discrete gradient of its energy."""
+    found = LAWS.get(law) if isinstance(law, str) else law
+    return hasattr(getattr(found, "func", found), "discrete_forces")
 
 
 def build(element: Element, law: str | type, damping: bool = True) -> list[Program]:
     """Every kernel of a law on an element; those of damping where it does not take another law's."""
     kernels = Kernels(element, law)
     return [kernels.set_up(), kernels.energy(), kernels.elastic_force(), kernels.elastic_tangent(),
+            *([kernels.discrete_force()] if has_discrete(law) else []),
             *(getattr(kernels, kernel)() for kernel in DAMPING if damping), kernels.section_forces()]
 
 
@@ -75,6 +83,20 @@ class Kernels:
         p = self._program("elastic_force", "dU/de, minus the elastic force Q_k", "eq 8")
         w, A, c = self._strain(p)
         p.output("f", self._nodal(p, self.law.forces(p, A, c, w), w), "N, N m", "dU/de")
+        return p
+
+    def discrete_force(self) -> Program:
+        """Between two configurations: conserves energy and momenta in a step from one to the other."""
+        p = self._program(DISCRETE, "discrete gradient of the energy: f . (e_next - e) is its difference", "eq 8")
+        length = p.input("l", (), "m", "length of the element")
+        e = self._coordinates(p)
+        e_next = self._coordinates(p, "e_next", doc="nodal vectors at the end of the step")
+        A = self.law.constants(p)
+        p.stage("strain vectors at both ends of the step")
+        w = p.define("w", 1 / length)
+        c = [self.gram.differences(p, vectors, w, tag) for vectors, tag in ((e, "now_"), (e_next, "next_"))]
+        f = self.law.discrete_forces(p, A, *c, w)
+        p.output("f", self._nodal(p, f, w), "N, N m", "dU/de where e_next is e")
         return p
 
     def elastic_tangent(self) -> Program:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 import sympy as sp
+from funicular.derive.frames import cross
 from funicular.derive.stages import Derivation, Program
 
 NAME, DIM, N_CONFIGURATION, N_VELOCITY = "planar_rigid", 2, 4, 3
@@ -53,6 +54,11 @@ def origin(b: np.ndarray) -> np.ndarray:
 def arm(program: Program, A: np.ndarray, u: np.ndarray) -> np.ndarray:
     """Stage: A u, the point from the origin."""
     return program.vector("arm", A.dot(u))
+
+
+def discrete_turns(program: Program, b: np.ndarray, A: np.ndarray, b_next: np.ndarray, arm: np.ndarray) -> np.ndarray:
+    """Column t with (A_next - A) u = t Theta, Theta = 2 tan(half the turn), from the mean arm (A + A_next) u/2."""
+    return cross(np.array([1]), arm)[:, None]
 
 
 def turning_inertia(J: np.ndarray) -> np.ndarray:

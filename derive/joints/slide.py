@@ -10,9 +10,11 @@ from __future__ import annotations
 from types import ModuleType
 
 import numpy as np
+from funicular.derive import body_kernels
 from funicular.derive.axis import Axis
 from funicular.derive.frames import tangent_frame
 from funicular.derive.spec import Element
+from funicular.derive.secant import Secant
 from funicular.derive.stages import Derivation, Program, jacobian
 
 ENTRIES = {2: ("l", "m"), 3: ("l", "m1", "m2")}  # of C, by dim
@@ -88,7 +90,7 @@ class Slide:
 def build(element: Element, rider: ModuleType) -> list[Program]:
     """The kernels of the slide of a rider on a cable of this element."""
     name = f"slide_{element.name}_{rider.NAME}"
-    return [kernel(name, element, rider) for kernel in (_constraint, _terms, _residual, _tangent)]
+    return [kernel(name, element, rider) for kernel in (_constraint, _terms, _residual, _tangent, _discrete_gradient)]
 
 
 def _constraint(name: str, element: Element, rider: ModuleType) -> Program:
@@ -172,4 +174,107 @@ def _tangent(name: str, element: Element, rider: ModuleType) -> Program:
     K = np.stack([d.array(g) for d in (*slide.by_e, *slide.by_rider, slide.by_s)], axis=1)
     p.output("J", J, "1, m", "derivatives of phi by (e, rider, s)")
     p.output("K", K, "N/m, N, N m", "derivatives of g by (e, rider, s)")
+    return p
+
+
+def _discrete_gradient(name: str, element: Element, rider: ModuleType) -> Program:
+    """phi_next - phi = G (de, psi, ds) exactly: d(N e) = N~ de + dN e~, with dN = N[s, s_next] ds.
+
+    G' f is the force of the joint over a step that keeps energy and momenta (Gonzalez, Comput. Methods Appl. Mech.
+    Eng. 174 (1999) 165-174); f . (N[s, s_next] e~) = 0 stands for f . r_x = 0.
+    """
+    p = Program(f"{name}_discrete_gradient", "discrete Jacobian of phi over a step: phi_next - phi = G step", "eq 19")
+    law = Program("axis", "shape functions at one place", "")
+    axis = Axis(law, element)
+    N = axis.shape()
+    length = p.input("l", (), "m", "length of the element")
+    x = p.input("x", (), "m", "arc-length from the element's first node")
+    x_next = p.input("x_next", (), "m", "the same at the end of the step")
+    e = p.input("e", (element.n_vectors, element.dim), "m, 1", "nodal vectors (eq 1)")
+    e_next = p.input("e_next", e.shape, "m, 1", "nodal vectors at the end of the step")
+    secant = Secant(p, law, {axis.length: (length, length), axis.x: (x, x_next)})
+    p.stage("mean shape functions, and their divided differences")
+    mean = [p.define(f"mean_N_{node}", secant.mean(n)) for node, n in zip(element.names, N, strict=True)]
+    slope = [p.define(f"D_N_{node}", *secant.gradient(n, [axis.x])) for node, n in zip(element.names, N, strict=True)]
+    b, u = rider.configuration(p), rider.attachment(p)
+    p.stage("attitude")
+    A = rider.axes(p, b)
+    by_rider = body_kernels.discrete_jacobian(p, rider, b, A, u)
+    p.stage("mean nodal vectors from the first node")
+    first = np.array(element.is_position, dtype=int)
+    means = (e - np.outer(first, e[0]) + (e_next - np.outer(first, e_next[0]))) / 2
+    along = sum(d * p.vector(f"mean_{node}", v) for node, d, v in zip(element.names, slope, means, strict=True))
+    p.output("G", G, "1, m", "ds = G dq (eq 24)")
+    p.output("s_rate", [s_rate], "m/s", "rate of s (eq 25)")
+    p.output("Q_d", Q_d, "m/s^2", "second derivative of C at zero accelerations (eq 33)")
+    p.output("H", H, "1, m", "Jacobian of the constraints that stay (eq 31)")
+    p.output("W", W, "m/s^2", "H q'' = W (eq 36-37)")
+    # eq 34 prints the last term with the wrong sign: s'' = -Q_dl/C_sl + G q''
+    p.output("s_bias", [-inverse * Q_d[0]], "m/s^2", "s'' - G q'' (eq 34, sign mended)")
+    return p
+
+
+def _lagrangian(p: Program, element: Element, rider: ModuleType):
+    """phi = r_p, its Jacobian by (e, rider, s), and the gradient of f . phi.
+
+    The integrator carries s and the whole force f on the joint as unknowns instead of C_M and its multipliers:
+    f . r_x = 0, the s-entry of the gradient, is eq 30's statement that the force along the tangent is nil. Same
+    solutions and no frame in the Newton matrix, which is symmetric but for the rider's rotations (their bracket).
+    """
+    slide = Slide(p, element, rider)
+    f = p.input("f", element.dim, "N", "force of the joint on the rider")
+    p.stage("Jacobian of phi")
+    J = np.stack([d.array(slide.r_p) for d in (*slide.by_e, *slide.by_rider, slide.by_s)], axis=1)
+    p.stage("gradient of f . phi")
+    g = np.array([p.define(f"g_{k}", f.dot(column)) for k, column in enumerate(J.T)])
+    return slide, J, g
+
+
+def _residual(name: str, element: Element, rider: ModuleType) -> Program:
+    p = Program(f"{name}_residual", "phi and the gradient of f . phi by (e, rider, s)", "eq 19, 28-30")
+    slide, _, g = _lagrangian(p, element, rider)
+    p.output("phi", slide.r_p, "m", "r(s) - p")
+    p.output("g", g, "N, N m", "gradient of f . phi")
+    return p
+
+
+def _tangent(name: str, element: Element, rider: ModuleType) -> Program:
+    p = Program(f"{name}_tangent", "derivatives of phi and of the gradient of f . phi", "eq 19, 28-30")
+    slide, J, g = _lagrangian(p, element, rider)
+    p.stage("derivative of the gradient")
+    K = np.stack([d.array(g) for d in (*slide.by_e, *slide.by_rider, slide.by_s)], axis=1)
+    p.output("J", J, "1, m", "derivatives of phi by (e, rider, s)")
+    p.output("K", K, "N/m, N, N m", "derivatives of g by (e, rider, s)")
+    return p
+
+
+def _discrete_gradient(name: str, element: Element, rider: ModuleType) -> Program:
+    """phi_next - phi = G (de, psi, ds) exactly: d(N e) = N~ de + dN e~, with dN = N[s, s_next] ds.
+
+    G' f is the force of the joint over a step that keeps energy and momenta (Gonzalez, Comput. Methods Appl. Mech.
+    Eng. 174 (1999) 165-174); f . (N[s, s_next] e~) = 0 stands for f . r_x = 0.
+    """
+    p = Program(f"{name}_discrete_gradient", "discrete Jacobian of phi over a step: phi_next - phi = G step", "eq 19")
+    law = Program("axis", "shape functions at one place", "")
+    axis = Axis(law, element)
+    N = axis.shape()
+    length = p.input("l", (), "m", "length of the element")
+    x = p.input("x", (), "m", "arc-length from the element's first node")
+    x_next = p.input("x_next", (), "m", "the same at the end of the step")
+    e = p.input("e", (element.n_vectors, element.dim), "m, 1", "nodal vectors (eq 1)")
+    e_next = p.input("e_next", e.shape, "m, 1", "nodal vectors at the end of the step")
+    secant = Secant(p, law, {axis.length: (length, length), axis.x: (x, x_next)})
+    p.stage("mean shape functions, and their divided differences")
+    mean = [p.define(f"mean_N_{node}", secant.mean(n)) for node, n in zip(element.names, N, strict=True)]
+    slope = [p.define(f"D_N_{node}", *secant.gradient(n, [axis.x])) for node, n in zip(element.names, N, strict=True)]
+    b, u = rider.configuration(p), rider.attachment(p)
+    p.stage("attitude")
+    A = rider.axes(p, b)
+    by_rider = body_kernels.discrete_jacobian(p, rider, b, A, u)
+    p.stage("mean nodal vectors from the first node")
+    along = sum(d * p.vector(f"mean_{node}", ((v - here) + (w - there)) / 2) for node, d, v, w, here, there in zip(
+        element.names, slope, e, e_next, *(np.outer(element.is_position, vectors[0]) for vectors in (e, e_next)),
+        strict=True) if d != 0)
+    p.output("G", np.concatenate([np.kron(np.array(mean), np.eye(element.dim, dtype=int)), -by_rider, along[:, None]],
+                                 axis=1), "1, m", "by (e, rider, s); the rider's turn by its Cayley vector")
     return p
