@@ -25,6 +25,13 @@ class GeneralisedAlpha:
         return alpha_m, alpha_f, (1 - alpha_m + alpha_f) ** 2 / 4, 0.5 - alpha_m + alpha_f
 
 
+@dataclass(frozen=True)
+class EnergyMomentum:
+    """Keeps energy and momenta to rounding (Simo & Tarnow 1992; Gonzalez 1996)."""
+
+    name, order = "energy", 2
+
+
 class Explicit:
     """A Runge-Kutta method of order 5 (Dormand & Prince 1980) or 8 (Hairer, Norsett & Wanner 1993), as scipy has it.
 
@@ -41,6 +48,13 @@ class Explicit:
         self.A = np.pad(self.A, [(0, 0), (0, len(self.b) - self.A.shape[1])])
         self.error, self.coarse = (np.array(of.E), None) if order == 5 else (np.array(of.E5), np.array(of.E3))
         self.order = of.error_estimator_order
+
+
+def chosen(name: str, tol: float, spectral_radius: float) -> GeneralisedAlpha | EnergyMomentum | Explicit:
+    """The integrator of a name."""
+    if name == "energy":
+        return EnergyMomentum()
+    return explicit(tol) if name == "explicit" else GeneralisedAlpha(spectral_radius)
 
 
 def explicit(tol: float) -> Explicit:

@@ -15,7 +15,7 @@ from funicular.actions import Actions, DeadLoad, LoadModel, SignalModel, SpringM
 from funicular.constants import constants
 from funicular.elements import gauge
 from funicular.errors import FunicularWarning, SceneError
-from funicular.integrators import GeneralisedAlpha, explicit
+from funicular.integrators import chosen
 from funicular.libraries import kernels_of, tables_of
 from funicular.parts import Cable, RigidBody, Slide
 from funicular.recording import Recording, recorded
@@ -287,7 +287,7 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
         step = output_step / np.ceil(output_step / settings.step * (1 - 1e-9))
         if step < settings.step * (1 - 1e-6):
             messages.append(f"step {settings.step:.6g} s was made {step:.6g} s, so that steps end on output times")
-    method = explicit(settings.tol) if settings.integrator == "explicit" else GeneralisedAlpha(settings.spectral_radius)
+    method = chosen(settings.integrator, settings.tol, settings.spectral_radius)
     set_up = time.perf_counter() - begin
     status, change = engine.start(
         duration=settings.duration,
