@@ -333,6 +333,7 @@ typedef struct {
     void (*residual)(fu_run *run, double h);
     void (*matrix)(fu_run *run, double h);
     double (*apply)(fu_run *run, double h);
+    int to_rounding; /* go on below the rounding of positions, until increments shrink no more */
 } fu_newton;
 int fu_newton_step(fu_run *run, const fu_newton *method, double h);
 void fu_predict_extra(fu_run *run, double h);

@@ -140,7 +140,7 @@ static void step_residual(fu_run *run, double h)
     residual(run, 1.0, sigma(&run->scheme, h));
 }
 
-static const fu_newton newton = {predict, kinematics, step_residual, newton_matrix, apply};
+static const fu_newton newton = {predict, kinematics, step_residual, newton_matrix, apply, 0};
 
 /* For tests of the matrix: the residual after moving the predicted step by `change` (unknowns), in run->rhs with
  * its sign turned, and the unfactored matrix there in run->newton. */

@@ -6,6 +6,7 @@
 #include <time.h>
 
 #define MOST_ITERATIONS 12
+#define STAGNANT 0.3 /* increments that shrink less than to this, at the size of rounding, are rounding */
 #define TOO_MANY_ITERATIONS 3 /* a step that took more than these has the matrix made anew for the next */
 
 double fu_clock(void)
@@ -93,7 +94,7 @@ void fu_predict_extra(fu_run *run, double h)
 /* Newton from the prediction with the matrix at hand; 0 when it converged */
 static int iterate(fu_run *run, const fu_newton *method, double h)
 {
-    double last = 0.0;
+    double last = 0.0, ratio = 0.0;
     for (int i = 0; i < MOST_ITERATIONS; ++i) {
         method->kinematics(run, h);
         method->residual(run, h);
@@ -108,11 +109,12 @@ static int iterate(fu_run *run, const fu_newton *method, double h)
         ++run->statistics.newton_iterations;
         if (!(size < 1e30)) return 1;
         if (i > 0) {
-            const double ratio = size / last;
+            ratio = size / last;
             if (ratio >= 1.0 && size > 100.0 * run->round_off) return 1;
             run->contraction = ratio < 1e-3 ? 1e-3 : ratio > 0.9 ? 0.9 : ratio;
         }
-        if (size * run->contraction / (1.0 - run->contraction) <= run->newton_tolerance || size <= run->round_off) {
+        if (size * run->contraction / (1.0 - run->contraction) <= run->newton_tolerance ||
+            (size <= run->round_off && (!method->to_rounding || ratio > STAGNANT))) {
             method->kinematics(run, h);
             if (i + 1 > TOO_MANY_ITERATIONS) run->factored = 0;
             return 0;
