@@ -8,6 +8,7 @@ from __future__ import annotations
 from types import ModuleType
 
 import numpy as np
+from funicular.derive.frames import cross
 from funicular.derive.stages import Derivation, Program
 
 
@@ -61,14 +62,20 @@ def point_force(body: ModuleType) -> Program:
     return p
 
 
-def discrete_jacobian(p: Program, body: ModuleType, b: np.ndarray, A: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """Input b_next and stages: P with p_next - p = P psi for the step psi, translation and Cayley vector."""
-    b_next = p.input("b_next", body.N_CONFIGURATION, "m, 1", "the same at the end of the step")
-    p.stage("attitude at the end of the step")
-    A_next = body.axes(p, b_next)
-    p.stage("mean arm, and the axes half-way")
-    arm = p.vector("mean_arm", (body.arm(p, A, u) + body.arm(p, A_next, u)) / 2)
-    return np.concatenate([np.eye(body.DIM, dtype=int), body.discrete_turns(p, b, A, b_next, arm)], axis=1)
+class Step:
+    """Input b_next and stages: the turn theta of a body over a step, and axes half-way."""
+
+    def __init__(self, p: Program, body: ModuleType, b: np.ndarray):
+        self.b_next = p.input("b_next", body.N_CONFIGURATION, "m, 1", "b at the end of the step")
+        p.stage("attitudes at both ends of the step")
+        self.ends = [body.axes(p, b), body.axes(p, self.b_next)]
+        p.stage("turn, and axes half-way")
+        self.theta, self.axes = body.step_turn(p, b, self.ends[0], self.b_next)
+
+    def jacobian(self, arm: np.ndarray) -> np.ndarray:
+        """By translation and Cayley vector, of a point on this arm."""
+        return np.concatenate([np.eye(len(arm), dtype=int), np.stack([cross(axis, arm) for axis in self.axes.T], axis=1)],
+                              axis=1)
 
 
 def discrete_point(body: ModuleType) -> Program:
@@ -76,8 +83,10 @@ def discrete_point(body: ModuleType) -> Program:
     p = Program(f"{body.NAME}_discrete_point", "Jacobian of a point over a step psi: p_next - p = P psi",
                 f"{body.SOURCE}; Simo & Wong, Int. J. Numer. Meth. Eng. 31 (1991) 19-52")
     b, u = body.configuration(p), body.attachment(p)
-    p.stage("attitude")
-    p.output("P", discrete_jacobian(p, body, b, body.axes(p, b), u), "1, m",
+    step = Step(p, body, b)
+    p.stage("mean arm")
+    arm = p.vector("mean_arm", sum(body.arm(p, A, u) for A in step.ends) / 2)
+    p.output("P", step.jacobian(arm), "1, m",
              "by translation and Cayley vector; P' f is the force f on the point along axes half-way")
     return p
 

@@ -1052,7 +1052,7 @@ static void call_slide_beam24_rigid_tangent(const fu_real *const *a, fu_real *co
 }
 static void call_slide_beam24_rigid_discrete_gradient(const fu_real *const *a, fu_real *const *out)
 {
-    slide_beam24_rigid_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], a[7], out[0]);
+    slide_beam24_rigid_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
 }
 static void call_slide_cable12_rigid_constraint(const fu_real *const *a, fu_real *const *out)
 {
@@ -1072,7 +1072,7 @@ static void call_slide_cable12_rigid_tangent(const fu_real *const *a, fu_real *c
 }
 static void call_slide_cable12_rigid_discrete_gradient(const fu_real *const *a, fu_real *const *out)
 {
-    slide_cable12_rigid_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], a[7], out[0]);
+    slide_cable12_rigid_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
 }
 static void call_slide_cable18_rigid_constraint(const fu_real *const *a, fu_real *const *out)
 {
@@ -1092,7 +1092,7 @@ static void call_slide_cable18_rigid_tangent(const fu_real *const *a, fu_real *c
 }
 static void call_slide_cable18_rigid_discrete_gradient(const fu_real *const *a, fu_real *const *out)
 {
-    slide_cable18_rigid_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], a[7], out[0]);
+    slide_cable18_rigid_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
 }
 static void call_slide_beam12p_planar_rigid_constraint(const fu_real *const *a, fu_real *const *out)
 {
@@ -1112,7 +1112,7 @@ static void call_slide_beam12p_planar_rigid_tangent(const fu_real *const *a, fu_
 }
 static void call_slide_beam12p_planar_rigid_discrete_gradient(const fu_real *const *a, fu_real *const *out)
 {
-    slide_beam12p_planar_rigid_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], a[7], out[0]);
+    slide_beam12p_planar_rigid_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
 }
 static void call_slide_cable8p_planar_rigid_constraint(const fu_real *const *a, fu_real *const *out)
 {
@@ -1132,7 +1132,7 @@ static void call_slide_cable8p_planar_rigid_tangent(const fu_real *const *a, fu_
 }
 static void call_slide_cable8p_planar_rigid_discrete_gradient(const fu_real *const *a, fu_real *const *out)
 {
-    slide_cable8p_planar_rigid_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], a[7], out[0]);
+    slide_cable8p_planar_rigid_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
 }
 
 const fu_kernel fu_kernels[] = {

@@ -12,7 +12,7 @@ from types import ModuleType
 import numpy as np
 from funicular.derive import body_kernels
 from funicular.derive.axis import Axis
-from funicular.derive.frames import tangent_frame
+from funicular.derive.frames import cross, tangent_frame
 from funicular.derive.spec import Element
 from funicular.derive.secant import Secant
 from funicular.derive.stages import Derivation, Program, jacobian
@@ -178,32 +178,40 @@ def _tangent(name: str, element: Element, rider: ModuleType) -> Program:
 
 
 def _discrete_gradient(name: str, element: Element, rider: ModuleType) -> Program:
-    """phi_next - phi = G (de, psi, ds) exactly: d(N e) = N~ de + dN e~, with dN = N[s, s_next] ds.
+    """G (de, psi, ds) = phi_next - phi - theta x (phi_next + phi)/2, theta the rider's turn: zero on the joint.
 
-    G' f is the force of the joint over a step that keeps energy and momenta (Gonzalez, Comput. Methods Appl. Mech.
-    Eng. 174 (1999) 165-174); f . (N[s, s_next] e~) = 0 stands for f . r_x = 0.
+    With N~ = (N(s) + N(s_next))/2 and the divided difference D = N[s, s_next] of the shape functions
+
+        r_next - r = N~ de + D e~ ds,   (r_next + r)/2 = N~ e~ + D de ds/4.
+
+    A force f acts on cable and rider at one place, N~ e~, so that it makes no moment; the part of r along which it does
+    no work for that is D (e~ - theta x de/4) in place of r_x. After Gonzalez, Comput. Methods Appl. Mech. Eng. 174 (1999)
+    165-174, for a constraint that turns with the scene.
     """
-    p = Program(f"{name}_discrete_gradient", "discrete Jacobian of phi over a step: phi_next - phi = G step", "eq 19")
+    p = Program(f"{name}_discrete_gradient", "discrete Jacobian of phi over a step", "eq 19")
     law = Program("axis", "shape functions at one place", "")
     axis = Axis(law, element)
     N = axis.shape()
     length = p.input("l", (), "m", "length of the element")
     x = p.input("x", (), "m", "arc-length from the element's first node")
-    x_next = p.input("x_next", (), "m", "the same at the end of the step")
+    x_next = p.input("x_next", (), "m", "x at the end of the step")
     e = p.input("e", (element.n_vectors, element.dim), "m, 1", "nodal vectors (eq 1)")
     e_next = p.input("e_next", e.shape, "m, 1", "nodal vectors at the end of the step")
     secant = Secant(p, law, {axis.length: (length, length), axis.x: (x, x_next)})
     p.stage("mean shape functions, and their divided differences")
-    mean = [p.define(f"mean_N_{node}", secant.mean(n)) for node, n in zip(element.names, N, strict=True)]
-    slope = [p.define(f"D_N_{node}", *secant.gradient(n, [axis.x])) for node, n in zip(element.names, N, strict=True)]
-    b, u = rider.configuration(p), rider.attachment(p)
-    p.stage("attitude")
-    A = rider.axes(p, b)
-    by_rider = body_kernels.discrete_jacobian(p, rider, b, A, u)
-    p.stage("mean nodal vectors from the first node")
+    mean = np.array([p.define(f"mean_N_{node}", secant.mean(n)) for node, n in zip(element.names, N, strict=True)])
+    slope = np.array([p.define(f"D_N_{node}", *secant.gradient(n, [axis.x]))
+                      for node, n in zip(element.names, N, strict=True)])
+    b = rider.configuration(p)
+    step = body_kernels.Step(p, rider, b)
+    p.stage("mean point and slope of the cable, from its first node")
     first = np.array(element.is_position, dtype=int)
-    means = (e - np.outer(first, e[0]) + (e_next - np.outer(first, e_next[0]))) / 2
-    along = sum(d * p.vector(f"mean_{node}", v) for node, d, v in zip(element.names, slope, means, strict=True))
-    p.output("G", np.concatenate([np.kron(np.array(mean), np.eye(element.dim, dtype=int)), -by_rider, along[:, None]],
+    now, then = (vectors - np.outer(first, vectors[0]) for vectors in (e, e_next))
+    middle, change = np.array([[p.vector(f"{kind}_{node}", v) for node, v in zip(element.names, vectors, strict=True)]
+                               for kind, vectors in (("mean", (now + then) / 2), ("change", then - now))])
+    gap = p.vector("mean_gap", ((e[0] - rider.origin(b)) + (e_next[0] - rider.origin(step.b_next))) / 2)
+    arm = p.vector("arm", gap + mean.dot(middle))
+    along = p.vector("along", slope.dot(middle) - cross(step.theta, p.vector("swing", slope.dot(change) / 4)))
+    p.output("G", np.concatenate([np.kron(mean, np.eye(element.dim, dtype=int)), -step.jacobian(arm), along[:, None]],
                                  axis=1), "1, m", "by (e, rider, s); the rider's turn by its Cayley vector")
     return p

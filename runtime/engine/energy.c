@@ -85,8 +85,7 @@ static void residual(fu_run *run, double h)
         int at[FU_MAX_COORDINATES];
         fu_joint_coordinates(model, next, j, at);
         joint->kernel->discrete_gradient(length, now->s[j] - start, next->s[j] - start, now->q + at[0], next->q + at[0],
-                                         configuration(model, now, joint), joint->u,
-                                         configuration(model, next, joint), G);
+                                         configuration(model, now, joint), configuration(model, next, joint), G);
         joint->kernel->residual(length, next->s[j] - start, next->q + at[0], configuration(model, next, joint), joint->u,
                                 f, phi, unused);
         const int s = joint->kernel->coordinates, dim = joint->kernel->dim, n = s + 1;
@@ -127,7 +126,7 @@ static void joint_matrix(fu_run *run, int j, double stiffness)
     int at[FU_MAX_COORDINATES];
     fu_joint_coordinates(model, next, j, at);
     joint->kernel->discrete_gradient(length, now->s[j] - start, next->s[j] - start, now->q + at[0], next->q + at[0],
-                                     configuration(model, now, joint), joint->u, configuration(model, next, joint), G);
+                                     configuration(model, now, joint), configuration(model, next, joint), G);
     joint->kernel->tangent(length, next->s[j] - start, next->q + at[0], configuration(model, next, joint), joint->u,
                            next->f + 3 * j, J, K);
     fu_cayley_columns(rider->kernel, J, dim, n, turns, run->psi + rider->dof);

@@ -116,7 +116,7 @@ static int iterate(fu_run *run, const fu_newton *method, double h)
         if (size * run->contraction / (1.0 - run->contraction) <= run->newton_tolerance ||
             (size <= run->round_off && (!method->to_rounding || ratio > STAGNANT))) {
             method->kinematics(run, h);
-            if (i + 1 > TOO_MANY_ITERATIONS) run->factored = 0;
+            if (i + 1 > TOO_MANY_ITERATIONS + 3 * method->to_rounding) run->factored = 0;
             return 0;
         }
         last = size;
