@@ -198,7 +198,8 @@ static void book(fu_run *run, double h)
     *m.since = 0.5 * h;
     for (int i = 0; i < model->n_dof; ++i) m.force[i] = 0.0;
     fu_rate_forces(model, m.q, m.v, m.force);
-    for (int i = 0; i < model->n_dof; ++i) run->dissipated += m.force[i] * run->psi[i];
+    const int n_flexible = model->n_rigids ? model->rigids[0].dof : model->n_dof; /* gyroscopic moments do no work */
+    for (int i = 0; i < n_flexible; ++i) run->dissipated += m.force[i] * run->psi[i];
     for (int k = 0; k < model->n_springs; ++k)
         run->dissipated += h * fu_discrete_spring(model, &model->springs[k], now->q, next->q, h, force);
     for (int i = 0; i < model->n_dof; ++i) m.force[i] = 0.0;
@@ -218,4 +219,4 @@ static void book(fu_run *run, double h)
     }
 }
 
-const fu_integrator fu_energy_method = {"energy", start, step, error, book};
+const fu_integrator fu_energy_method = {"energy", start, step, error, book, 1};

@@ -280,6 +280,7 @@ typedef struct {
     int (*step)(fu_run *run, double h);
     double (*error)(fu_run *run, double h);
     void (*book)(fu_run *run, double h);
+    int conserves; /* energy, so that a slide that enters another element must not cost any: velocities stay */
 } fu_integrator;
 extern const fu_integrator fu_genalpha_method, fu_explicit_method, fu_energy_method;
 

@@ -177,7 +177,7 @@ static int start(fu_run *run)
     return FU_RUNNING;
 }
 
-const fu_integrator fu_genalpha_method = {"genalpha", start, step, error, fu_book_trapezoid};
+const fu_integrator fu_genalpha_method = {"genalpha", start, step, error, fu_book_trapezoid, 0};
 
 /* Statics: unknowns move `next`, from where it is. */
 void fu_static_move(fu_run *run, const double *change)

@@ -74,15 +74,23 @@ static int record_row(fu_run *run)
     return info;
 }
 
-/* Start of the scheme, consistent: velocities on the joints, accelerations and forces from eq 38. Starting it from zero
- * accelerations instead makes every error fall with the first power of the step (tests/benchmarks/order.py). */
-static int start_scheme(fu_run *run)
+static int is_short(const fu_run *run, double h)
+{
+    return h < SHORT_STEP * (run->fixed_step > 0.0 ? run->fixed_step : run->h);
+}
+
+/* Start of the scheme, consistent: velocities projected on the joints where that is asked for, accelerations and forces
+ * from eq 38. Starting it from zero accelerations instead makes every error fall with the first power of the step
+ * (tests/benchmarks/order.py). */
+static int start_scheme(fu_run *run, int project)
 {
     const fu_model *model = run->model;
     fu_state *now = &run->now;
     fu_joint_output *joints = (fu_joint_output *)run->accelerator.joints;
-    if (fu_project_velocities(model, now, &run->accelerator, run->before)) return FU_SINGULAR;
-    for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->before[i];
+    if (project) {
+        if (fu_project_velocities(model, now, &run->accelerator, run->before)) return FU_SINGULAR;
+        for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->before[i];
+    }
     if (fu_accelerations(model, now, &run->accelerator, now->acceleration, joints, 0)) return FU_SINGULAR;
     for (int j = 0; j < model->n_joints; ++j) {
         run->s_slope[j] = joints[j].s_rate;
@@ -104,7 +112,7 @@ int fu_start(fu_run *run)
     memset(run->first, 0, sizeof(double) * (size_t)model->n_q);
     run->extent = extent(model, run->first, now->q);
     memcpy(run->first, now->q, sizeof(double) * (size_t)model->n_q);
-    if (start_scheme(run) || record_row(run)) return FU_SINGULAR;
+    if (start_scheme(run, 1) || record_row(run)) return FU_SINGULAR;
     if (run->rest_start) {
         memset(now->acceleration, 0, sizeof(double) * (size_t)model->n_dof);
         memset(now->a, 0, sizeof(double) * (size_t)model->n_dof);
@@ -145,7 +153,7 @@ static void accept(fu_run *run, double h, fu_event event)
  * starts anew. Were they carried over, the short steps around a boundary would raise what the constraints left in them
  * by the ratio of the steps, crossing by crossing, and a spectral radius of 1 never lets it decay. Returns
  * FU_END_OF_CABLE where there is no neighbour. */
-static int enter(fu_run *run, int j, int side)
+static int enter(fu_run *run, int j, int side, double h)
 {
     const fu_model *model = run->model;
     fu_state *now = &run->now;
@@ -157,13 +165,13 @@ static int enter(fu_run *run, int j, int side)
     now->element[j] = element;
     now->s[j] = fu_element_start(model, j, side > 0 ? element : element + 1);
     ++run->statistics.crossings;
-    return start_scheme(run);
+    return start_scheme(run, !run->integrator->conserves || is_short(run, h));
 }
 
-/* What follows from an event that `now` stands on. */
-static int happened(fu_run *run, fu_event event)
+/* What follows from an event that `now` stands on after a step h. */
+static int happened(fu_run *run, fu_event event, double h)
 {
-    if (event.kind == FU_CROSSING) return enter(run, event.which, event.side);
+    if (event.kind == FU_CROSSING) return enter(run, event.which, event.side, h);
     run->event = event;
     return FU_EVENT;
 }
@@ -224,7 +232,7 @@ static int step_towards(fu_run *run, double target)
         if (event.kind && !(event.kind == FU_CROSSING && run->turned >= MOST_TURNS)) {
             if (fu_stands_on_boundary(run, event)) {
                 ++run->turned;
-                return happened(run, event);
+                return happened(run, event, h);
             }
             h = fu_locate(run, event, h);
             if (h == 0.0) {
@@ -237,7 +245,7 @@ static int step_towards(fu_run *run, double target)
                 continue;
             }
             accept(run, h, event);
-            return happened(run, event);
+            return happened(run, event, h);
         }
         accept(run, h, event);
         run->turned = 0;
@@ -246,7 +254,7 @@ static int step_towards(fu_run *run, double target)
         if (adaptive) adapt(run, h, ratio);
         /* what is left between a boundary and an output time can be so short that the rounding of psi, over h^2, is
          * all there is in its accelerations: they must not go on */
-        return h < SHORT_STEP * (adaptive ? run->h : run->fixed_step) ? start_scheme(run) : FU_RUNNING;
+        return is_short(run, h) ? start_scheme(run, 1) : FU_RUNNING;
     }
 }
 
