@@ -7,6 +7,7 @@ Cable and rider are both planar, with C = (C_l, C_m), or both spatial.
 
 from __future__ import annotations
 
+from functools import partial
 from types import ModuleType
 
 import numpy as np
@@ -14,7 +15,7 @@ from funicular.derive import body_kernels
 from funicular.derive.axis import Axis
 from funicular.derive.frames import cross, tangent_frame
 from funicular.derive.spec import Element
-from funicular.derive.secant import Secant
+from funicular.derive.secant import STATES, Secant
 from funicular.derive.stages import Derivation, Program, jacobian
 
 ENTRIES = {2: ("l", "m"), 3: ("l", "m1", "m2")}  # of C, by dim
@@ -206,12 +207,18 @@ def _discrete_gradient(name: str, element: Element, rider: ModuleType) -> Progra
     step = body_kernels.Step(p, rider, b)
     p.stage("mean point and slope of the cable, from its first node")
     first = np.array(element.is_position, dtype=int)
-    now, then = (vectors - np.outer(first, vectors[0]) for vectors in (e, e_next))
-    middle, change = np.array([[p.vector(f"{kind}_{node}", v) for node, v in zip(element.names, vectors, strict=True)]
-                               for kind, vectors in (("mean", (now + then) / 2), ("change", then - now))])
-    gap = p.vector("mean_gap", ((e[0] - rider.origin(b)) + (e_next[0] - rider.origin(step.b_next))) / 2)
-    arm = p.vector("arm", gap + mean.dot(middle))
+    named = partial(_named_rows, p, element)
+    now, then = (named(state, vectors - np.outer(first, vectors[0])) for state, vectors in zip(STATES, (e, e_next),
+                                                                                               strict=True))
+    middle, change = named("mean", (now + then) / 2), named("change", then - now)
+    gaps = [p.vector(f"{state}_gap", vectors[0] - rider.origin(at))
+            for state, vectors, at in zip(STATES, (e, e_next), (b, step.b_next), strict=True)]
+    arm = p.vector("arm", sum(gaps) / 2 + mean.dot(middle))
     along = p.vector("along", slope.dot(middle) - cross(step.theta, p.vector("swing", slope.dot(change) / 4)))
     p.output("G", np.concatenate([np.kron(mean, np.eye(element.dim, dtype=int)), -step.jacobian(arm), along[:, None]],
                                  axis=1), "1, m", "by (e, rider, s); the rider's turn by its Cayley vector")
     return p
+
+
+def _named_rows(p: Program, element: Element, name: str, vectors: np.ndarray) -> np.ndarray:
+    return np.array([p.vector(f"{name}_{node}", v) for node, v in zip(element.names, vectors, strict=True)])
