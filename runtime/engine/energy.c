@@ -219,4 +219,4 @@ static void book(fu_run *run, double h)
     }
 }
 
-const fu_integrator fu_energy_method = {"energy", start, step, error, book, 1};
+const fu_integrator fu_energy_method = {"energy", start, step, error, book, 1, &newton};

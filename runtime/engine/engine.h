@@ -270,10 +270,22 @@ typedef struct {
     double *kinetic, *elastic, *potential, *dissipated, *external, *spring;
 } fu_record;
 
+/* newton.c: what implicit integrators have in common. `predict` makes a first `next`; `kinematics` completes it from the
+ * unknowns; `residual` leaves minus the scaled residual in run->rhs, `matrix` its derivative in run->newton; `apply` adds
+ * the solution in run->rhs and returns its size as a length. */
+typedef struct fu_run fu_run;
+typedef struct {
+    void (*predict)(fu_run *run, double h);
+    void (*kinematics)(fu_run *run, double h);
+    void (*residual)(fu_run *run, double h);
+    void (*matrix)(fu_run *run, double h);
+    double (*apply)(fu_run *run, double h);
+    int to_rounding; /* go on below the rounding of positions, until increments shrink no more */
+} fu_newton;
+
 /* A way through time. `now` has consistent v, accelerations and forces when `start` is called; `step` makes `next` from
  * it and is not zero where that failed; `error` is the local error of positions of the step just made, m; `book` adds
  * what that step, now accepted, has dissipated and got from outside. */
-typedef struct fu_run fu_run;
 typedef struct {
     const char *name;
     int (*start)(fu_run *run);
@@ -281,6 +293,7 @@ typedef struct {
     double (*error)(fu_run *run, double h);
     void (*book)(fu_run *run, double h);
     int conserves; /* energy, so that a slide that enters another element must not cost any: velocities stay */
+    const fu_newton *newton; /* null where there is none */
 } fu_integrator;
 extern const fu_integrator fu_genalpha_method, fu_explicit_method, fu_energy_method;
 
@@ -325,17 +338,7 @@ void fu_static_residual(fu_run *run);
 void fu_matrix(fu_run *run, fu_weights weights);
 double fu_clock(void);
 
-/* newton.c: what implicit integrators have in common. `predict` makes a first `next`; `kinematics` completes it from the
- * unknowns; `residual` leaves minus the scaled residual in run->rhs, `matrix` its derivative in run->newton; `apply` adds
- * the solution in run->rhs and returns its size as a length. */
-typedef struct {
-    void (*predict)(fu_run *run, double h);
-    void (*kinematics)(fu_run *run, double h);
-    void (*residual)(fu_run *run, double h);
-    void (*matrix)(fu_run *run, double h);
-    double (*apply)(fu_run *run, double h);
-    int to_rounding; /* go on below the rounding of positions, until increments shrink no more */
-} fu_newton;
+/* newton.c */
 int fu_newton_step(fu_run *run, const fu_newton *method, double h);
 void fu_predict_extra(fu_run *run, double h);
 void fu_apply_extra(fu_run *run, double inertia, double scale);

@@ -142,19 +142,6 @@ static void step_residual(fu_run *run, double h)
 
 static const fu_newton newton = {predict, kinematics, step_residual, newton_matrix, apply, 0};
 
-/* For tests of the matrix: the residual after moving the predicted step by `change` (unknowns), in run->rhs with
- * its sign turned, and the unfactored matrix there in run->newton. */
-void fu_linearise(fu_run *run, double h, const double *change)
-{
-    predict(run, h);
-    for (int i = 0; i < run->newton.n + run->newton.m; ++i) run->rhs[i] = change[i];
-    apply(run, h);
-    kinematics(run, h);
-    newton_matrix(run, h);
-    step_residual(run, h);
-    run->factored = 0;
-}
-
 static int step(fu_run *run, double h)
 {
     return fu_newton_step(run, &newton, h);
@@ -177,7 +164,7 @@ static int start(fu_run *run)
     return FU_RUNNING;
 }
 
-const fu_integrator fu_genalpha_method = {"genalpha", start, step, error, fu_book_trapezoid, 0};
+const fu_integrator fu_genalpha_method = {"genalpha", start, step, error, fu_book_trapezoid, 0, &newton};
 
 /* Statics: unknowns move `next`, from where it is. */
 void fu_static_move(fu_run *run, const double *change)

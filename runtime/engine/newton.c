@@ -155,3 +155,17 @@ double fu_filtered_size(fu_run *run)
     for (int i = 0; i < model->n_extra; ++i) run->rhs[model->n_band + model->n_border_dof + i] = 0.0;
     return fu_spread_size(run);
 }
+
+/* For tests of the matrix: the residual after moving the predicted step by `change` (unknowns), in run->rhs with
+ * its sign turned, and the unfactored matrix there in run->newton. */
+void fu_linearise(fu_run *run, double h, const double *change)
+{
+    const fu_newton *method = run->integrator->newton;
+    method->predict(run, h);
+    for (int i = 0; i < run->newton.n + run->newton.m; ++i) run->rhs[i] = change[i];
+    method->apply(run, h);
+    method->kinematics(run, h);
+    method->matrix(run, h);
+    method->residual(run, h);
+    run->factored = 0;
+}
