@@ -34,7 +34,7 @@ def _law(element: Element, law: str | type) -> Family:
     return Family(f"{element.name}_{name}", f"elastic law {name} on {element.name}", build,
                   (f"elements.{element.name}", builder.__name__.split(".")[-1]), role="law",
                   own=("stiffness", "stiffness_at", "section_forces"), shared=shared,
-                  lacks=() if law_kernels.has_discrete(law) else (law_kernels.DISCRETE,), element=element, law=name,
+                  lacks=() if law_kernels.has_discrete(law) else law_kernels.DISCRETE, element=element, law=name,
                   like=law_like(law))
 
 

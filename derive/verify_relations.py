@@ -95,6 +95,7 @@ def law(family: Family) -> list[Relation]:
                  of=lambda k, s: k("discrete_force", s)["f"].ravel().dot((s["e_next"] - s["e"]).ravel())),
         Relation("discrete_force", "f", "dU/de where e_next is e", 1, from_kernel("energy", "U", e=entry("e")), n,
                  of=lambda k, s: k("discrete_force", s, e_next=s["e"])["f"]),
+        _step_stiffness(family),
         Relation("elastic_tangent", "K", "df/de", 1, from_kernel("elastic_force", "f", e=entry("e")), n),
         Relation("damping_force", "f", "d(P/2)/dv", 1, _half(from_kernel("dissipation", "P", v=entry("v"))), n),
         Relation("damping_tangent", "K", "df/de + rate df/dv", 1, force_by_both, n),
@@ -107,6 +108,28 @@ def law(family: Family) -> list[Relation]:
 def _difference(energy: Callable) -> Callable:
     """Path of order 0: the energy at the end of the step less that at its start."""
     return lambda k, s, t, j: energy(k, s | {"e": s["e_next"]}, t, j) - energy(k, s, t, j)
+
+
+def _step_stiffness(family: Family) -> Relation:
+    """Of a quadratic form the derivative of the discrete force with both ends moved alike is the tangent half-way with
+    the mean stress; cables take its axial part alone, at unit stretch.
+    """
+    spec = family.element
+    eye = np.eye(spec.dim, dtype=int)
+
+    def tangent(k, s):
+        half_way = k("elastic_tangent", s, e=(s["e"] + s["e_next"]) / 2)["K"]
+        return half_way + np.kron(k("step_stiffness", s)["k"], eye)
+
+    def force(k, s, t, j):
+        motion = t * unit(s["e"], j)
+        return k("discrete_force", s, e=s["e"] + motion, e_next=s["e_next"] + motion)["f"]
+
+    if family.law.startswith("continuum"):
+        return Relation("step_stiffness", "k", "df/d(both ends), less the tangent half-way", 1, force,
+                        spec.n_coordinates, of=tangent)
+    return Relation("step_stiffness", "k", "EA/8 of the change's square, by quadrature", 0,
+                    root(verify_laws.cable_turning, spec))
 
 
 def _stiffness_at(spec: Element) -> list[Relation]:

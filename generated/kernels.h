@@ -67,6 +67,7 @@ void beam24_continuum_energy(fu_real l, const fu_real *e, const fu_real *A, fu_r
 void beam24_continuum_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void beam24_continuum_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
 void beam24_continuum_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void beam24_continuum_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void beam24_continuum_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void beam24_continuum_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void beam24_continuum_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
@@ -78,6 +79,7 @@ void beam24_continuum_curved_energy(fu_real l, const fu_real *e, const fu_real *
 void beam24_continuum_curved_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void beam24_continuum_curved_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
 void beam24_continuum_curved_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void beam24_continuum_curved_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void beam24_continuum_curved_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* beam24_structural: elastic law structural on beam24 */
@@ -96,6 +98,7 @@ void cable12_green_exact_energy(fu_real l, const fu_real *e, const fu_real *A, f
 void cable12_green_exact_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable12_green_exact_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
 void cable12_green_exact_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable12_green_exact_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void cable12_green_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable12_green_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable12_green_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
@@ -107,6 +110,7 @@ void cable12_green_linear_energy(fu_real l, const fu_real *e, const fu_real *A, 
 void cable12_green_linear_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable12_green_linear_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
 void cable12_green_linear_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable12_green_linear_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void cable12_green_linear_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable12_engineering_exact: elastic law engineering_exact on cable12 */
@@ -115,6 +119,7 @@ void cable12_engineering_exact_energy(fu_real l, const fu_real *e, const fu_real
 void cable12_engineering_exact_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable12_engineering_exact_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
 void cable12_engineering_exact_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable12_engineering_exact_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void cable12_engineering_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable12_engineering_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable12_engineering_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
@@ -126,6 +131,7 @@ void cable12_engineering_linear_energy(fu_real l, const fu_real *e, const fu_rea
 void cable12_engineering_linear_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable12_engineering_linear_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
 void cable12_engineering_linear_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable12_engineering_linear_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void cable12_engineering_linear_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable12_green_exact_curved: elastic law green_exact_curved on cable12 */
@@ -134,6 +140,7 @@ void cable12_green_exact_curved_energy(fu_real l, const fu_real *e, const fu_rea
 void cable12_green_exact_curved_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable12_green_exact_curved_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
 void cable12_green_exact_curved_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable12_green_exact_curved_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void cable12_green_exact_curved_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable12_engineering_exact_curved: elastic law engineering_exact_curved on cable12 */
@@ -142,6 +149,7 @@ void cable12_engineering_exact_curved_energy(fu_real l, const fu_real *e, const 
 void cable12_engineering_exact_curved_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable12_engineering_exact_curved_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
 void cable12_engineering_exact_curved_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable12_engineering_exact_curved_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void cable12_engineering_exact_curved_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable18_green_exact: elastic law green_exact on cable18 */
@@ -150,6 +158,7 @@ void cable18_green_exact_energy(fu_real l, const fu_real *e, const fu_real *A, f
 void cable18_green_exact_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable18_green_exact_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
 void cable18_green_exact_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable18_green_exact_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void cable18_green_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable18_green_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable18_green_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
@@ -161,6 +170,7 @@ void cable18_engineering_exact_energy(fu_real l, const fu_real *e, const fu_real
 void cable18_engineering_exact_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable18_engineering_exact_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
 void cable18_engineering_exact_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable18_engineering_exact_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void cable18_engineering_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable18_engineering_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable18_engineering_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
@@ -172,6 +182,7 @@ void beam12p_continuum_energy(fu_real l, const fu_real *e, const fu_real *A, fu_
 void beam12p_continuum_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void beam12p_continuum_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
 void beam12p_continuum_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void beam12p_continuum_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void beam12p_continuum_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void beam12p_continuum_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void beam12p_continuum_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
@@ -183,6 +194,7 @@ void beam12p_continuum_curved_energy(fu_real l, const fu_real *e, const fu_real 
 void beam12p_continuum_curved_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void beam12p_continuum_curved_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
 void beam12p_continuum_curved_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void beam12p_continuum_curved_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void beam12p_continuum_curved_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* beam12p_structural: elastic law structural on beam12p */
@@ -201,6 +213,7 @@ void cable8p_green_exact_energy(fu_real l, const fu_real *e, const fu_real *A, f
 void cable8p_green_exact_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable8p_green_exact_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
 void cable8p_green_exact_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable8p_green_exact_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void cable8p_green_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable8p_green_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable8p_green_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
@@ -212,6 +225,7 @@ void cable8p_green_linear_energy(fu_real l, const fu_real *e, const fu_real *A, 
 void cable8p_green_linear_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable8p_green_linear_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
 void cable8p_green_linear_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable8p_green_linear_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void cable8p_green_linear_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable8p_engineering_exact: elastic law engineering_exact on cable8p */
@@ -220,6 +234,7 @@ void cable8p_engineering_exact_energy(fu_real l, const fu_real *e, const fu_real
 void cable8p_engineering_exact_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable8p_engineering_exact_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
 void cable8p_engineering_exact_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable8p_engineering_exact_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void cable8p_engineering_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable8p_engineering_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable8p_engineering_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
@@ -231,6 +246,7 @@ void cable8p_engineering_linear_energy(fu_real l, const fu_real *e, const fu_rea
 void cable8p_engineering_linear_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable8p_engineering_linear_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
 void cable8p_engineering_linear_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable8p_engineering_linear_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void cable8p_engineering_linear_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* rigid: rigid body */
@@ -306,6 +322,7 @@ typedef struct {
     void (*elastic_force)(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
     void (*elastic_tangent)(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
     void (*discrete_force)(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+    void (*step_stiffness)(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
     void (*damping_force)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
     void (*damping_tangent)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
     void (*dissipation)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);

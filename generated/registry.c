@@ -70,6 +70,7 @@ static const fu_law laws[] = {
      beam24_continuum_elastic_force,
      beam24_continuum_elastic_tangent,
      beam24_continuum_discrete_force,
+     beam24_continuum_step_stiffness,
      beam24_continuum_damping_force,
      beam24_continuum_damping_tangent,
      beam24_continuum_dissipation
@@ -79,6 +80,7 @@ static const fu_law laws[] = {
      beam24_continuum_curved_elastic_force,
      beam24_continuum_curved_elastic_tangent,
      beam24_continuum_curved_discrete_force,
+     beam24_continuum_curved_step_stiffness,
      beam24_continuum_damping_force,
      beam24_continuum_damping_tangent,
      beam24_continuum_dissipation
@@ -87,6 +89,7 @@ static const fu_law laws[] = {
      beam24_structural_energy,
      beam24_structural_elastic_force,
      beam24_structural_elastic_tangent,
+     0,
      0,
      beam24_structural_damping_force,
      beam24_structural_damping_tangent,
@@ -97,6 +100,7 @@ static const fu_law laws[] = {
      cable12_green_exact_elastic_force,
      cable12_green_exact_elastic_tangent,
      cable12_green_exact_discrete_force,
+     cable12_green_exact_step_stiffness,
      cable12_green_exact_damping_force,
      cable12_green_exact_damping_tangent,
      cable12_green_exact_dissipation
@@ -106,6 +110,7 @@ static const fu_law laws[] = {
      cable12_green_linear_elastic_force,
      cable12_green_linear_elastic_tangent,
      cable12_green_linear_discrete_force,
+     cable12_green_linear_step_stiffness,
      cable12_green_exact_damping_force,
      cable12_green_exact_damping_tangent,
      cable12_green_exact_dissipation
@@ -115,6 +120,7 @@ static const fu_law laws[] = {
      cable12_engineering_exact_elastic_force,
      cable12_engineering_exact_elastic_tangent,
      cable12_engineering_exact_discrete_force,
+     cable12_engineering_exact_step_stiffness,
      cable12_engineering_exact_damping_force,
      cable12_engineering_exact_damping_tangent,
      cable12_engineering_exact_dissipation
@@ -124,6 +130,7 @@ static const fu_law laws[] = {
      cable12_engineering_linear_elastic_force,
      cable12_engineering_linear_elastic_tangent,
      cable12_engineering_linear_discrete_force,
+     cable12_engineering_linear_step_stiffness,
      cable12_engineering_exact_damping_force,
      cable12_engineering_exact_damping_tangent,
      cable12_engineering_exact_dissipation
@@ -133,6 +140,7 @@ static const fu_law laws[] = {
      cable12_green_exact_curved_elastic_force,
      cable12_green_exact_curved_elastic_tangent,
      cable12_green_exact_curved_discrete_force,
+     cable12_green_exact_curved_step_stiffness,
      cable12_green_exact_damping_force,
      cable12_green_exact_damping_tangent,
      cable12_green_exact_dissipation
@@ -142,6 +150,7 @@ static const fu_law laws[] = {
      cable12_engineering_exact_curved_elastic_force,
      cable12_engineering_exact_curved_elastic_tangent,
      cable12_engineering_exact_curved_discrete_force,
+     cable12_engineering_exact_curved_step_stiffness,
      cable12_engineering_exact_damping_force,
      cable12_engineering_exact_damping_tangent,
      cable12_engineering_exact_dissipation
@@ -151,6 +160,7 @@ static const fu_law laws[] = {
      cable18_green_exact_elastic_force,
      cable18_green_exact_elastic_tangent,
      cable18_green_exact_discrete_force,
+     cable18_green_exact_step_stiffness,
      cable18_green_exact_damping_force,
      cable18_green_exact_damping_tangent,
      cable18_green_exact_dissipation
@@ -160,6 +170,7 @@ static const fu_law laws[] = {
      cable18_engineering_exact_elastic_force,
      cable18_engineering_exact_elastic_tangent,
      cable18_engineering_exact_discrete_force,
+     cable18_engineering_exact_step_stiffness,
      cable18_engineering_exact_damping_force,
      cable18_engineering_exact_damping_tangent,
      cable18_engineering_exact_dissipation
@@ -169,6 +180,7 @@ static const fu_law laws[] = {
      beam12p_continuum_elastic_force,
      beam12p_continuum_elastic_tangent,
      beam12p_continuum_discrete_force,
+     beam12p_continuum_step_stiffness,
      beam12p_continuum_damping_force,
      beam12p_continuum_damping_tangent,
      beam12p_continuum_dissipation
@@ -178,6 +190,7 @@ static const fu_law laws[] = {
      beam12p_continuum_curved_elastic_force,
      beam12p_continuum_curved_elastic_tangent,
      beam12p_continuum_curved_discrete_force,
+     beam12p_continuum_curved_step_stiffness,
      beam12p_continuum_damping_force,
      beam12p_continuum_damping_tangent,
      beam12p_continuum_dissipation
@@ -186,6 +199,7 @@ static const fu_law laws[] = {
      beam12p_structural_energy,
      beam12p_structural_elastic_force,
      beam12p_structural_elastic_tangent,
+     0,
      0,
      beam12p_structural_damping_force,
      beam12p_structural_damping_tangent,
@@ -196,6 +210,7 @@ static const fu_law laws[] = {
      cable8p_green_exact_elastic_force,
      cable8p_green_exact_elastic_tangent,
      cable8p_green_exact_discrete_force,
+     cable8p_green_exact_step_stiffness,
      cable8p_green_exact_damping_force,
      cable8p_green_exact_damping_tangent,
      cable8p_green_exact_dissipation
@@ -205,6 +220,7 @@ static const fu_law laws[] = {
      cable8p_green_linear_elastic_force,
      cable8p_green_linear_elastic_tangent,
      cable8p_green_linear_discrete_force,
+     cable8p_green_linear_step_stiffness,
      cable8p_green_exact_damping_force,
      cable8p_green_exact_damping_tangent,
      cable8p_green_exact_dissipation
@@ -214,6 +230,7 @@ static const fu_law laws[] = {
      cable8p_engineering_exact_elastic_force,
      cable8p_engineering_exact_elastic_tangent,
      cable8p_engineering_exact_discrete_force,
+     cable8p_engineering_exact_step_stiffness,
      cable8p_engineering_exact_damping_force,
      cable8p_engineering_exact_damping_tangent,
      cable8p_engineering_exact_dissipation
@@ -223,6 +240,7 @@ static const fu_law laws[] = {
      cable8p_engineering_linear_elastic_force,
      cable8p_engineering_linear_elastic_tangent,
      cable8p_engineering_linear_discrete_force,
+     cable8p_engineering_linear_step_stiffness,
      cable8p_engineering_exact_damping_force,
      cable8p_engineering_exact_damping_tangent,
      cable8p_engineering_exact_dissipation
@@ -462,6 +480,10 @@ static void call_beam24_continuum_discrete_force(const fu_real *const *a, fu_rea
 {
     beam24_continuum_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
 }
+static void call_beam24_continuum_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
 static void call_beam24_continuum_damping_force(const fu_real *const *a, fu_real *const *out)
 {
     beam24_continuum_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
@@ -497,6 +519,10 @@ static void call_beam24_continuum_curved_elastic_tangent(const fu_real *const *a
 static void call_beam24_continuum_curved_discrete_force(const fu_real *const *a, fu_real *const *out)
 {
     beam24_continuum_curved_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_beam24_continuum_curved_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_curved_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
 }
 static void call_beam24_continuum_curved_section_forces(const fu_real *const *a, fu_real *const *out)
 {
@@ -554,6 +580,10 @@ static void call_cable12_green_exact_discrete_force(const fu_real *const *a, fu_
 {
     cable12_green_exact_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
 }
+static void call_cable12_green_exact_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
 static void call_cable12_green_exact_damping_force(const fu_real *const *a, fu_real *const *out)
 {
     cable12_green_exact_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
@@ -590,6 +620,10 @@ static void call_cable12_green_linear_discrete_force(const fu_real *const *a, fu
 {
     cable12_green_linear_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
 }
+static void call_cable12_green_linear_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_linear_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
 static void call_cable12_green_linear_section_forces(const fu_real *const *a, fu_real *const *out)
 {
     cable12_green_linear_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
@@ -613,6 +647,10 @@ static void call_cable12_engineering_exact_elastic_tangent(const fu_real *const 
 static void call_cable12_engineering_exact_discrete_force(const fu_real *const *a, fu_real *const *out)
 {
     cable12_engineering_exact_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable12_engineering_exact_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
 }
 static void call_cable12_engineering_exact_damping_force(const fu_real *const *a, fu_real *const *out)
 {
@@ -650,6 +688,10 @@ static void call_cable12_engineering_linear_discrete_force(const fu_real *const 
 {
     cable12_engineering_linear_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
 }
+static void call_cable12_engineering_linear_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_linear_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
 static void call_cable12_engineering_linear_section_forces(const fu_real *const *a, fu_real *const *out)
 {
     cable12_engineering_linear_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
@@ -673,6 +715,10 @@ static void call_cable12_green_exact_curved_elastic_tangent(const fu_real *const
 static void call_cable12_green_exact_curved_discrete_force(const fu_real *const *a, fu_real *const *out)
 {
     cable12_green_exact_curved_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable12_green_exact_curved_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_curved_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
 }
 static void call_cable12_green_exact_curved_section_forces(const fu_real *const *a, fu_real *const *out)
 {
@@ -698,6 +744,10 @@ static void call_cable12_engineering_exact_curved_discrete_force(const fu_real *
 {
     cable12_engineering_exact_curved_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
 }
+static void call_cable12_engineering_exact_curved_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_curved_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
 static void call_cable12_engineering_exact_curved_section_forces(const fu_real *const *a, fu_real *const *out)
 {
     cable12_engineering_exact_curved_section_forces(*a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]);
@@ -721,6 +771,10 @@ static void call_cable18_green_exact_elastic_tangent(const fu_real *const *a, fu
 static void call_cable18_green_exact_discrete_force(const fu_real *const *a, fu_real *const *out)
 {
     cable18_green_exact_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable18_green_exact_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_green_exact_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
 }
 static void call_cable18_green_exact_damping_force(const fu_real *const *a, fu_real *const *out)
 {
@@ -758,6 +812,10 @@ static void call_cable18_engineering_exact_discrete_force(const fu_real *const *
 {
     cable18_engineering_exact_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
 }
+static void call_cable18_engineering_exact_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_engineering_exact_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
 static void call_cable18_engineering_exact_damping_force(const fu_real *const *a, fu_real *const *out)
 {
     cable18_engineering_exact_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
@@ -794,6 +852,10 @@ static void call_beam12p_continuum_discrete_force(const fu_real *const *a, fu_re
 {
     beam12p_continuum_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
 }
+static void call_beam12p_continuum_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
 static void call_beam12p_continuum_damping_force(const fu_real *const *a, fu_real *const *out)
 {
     beam12p_continuum_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
@@ -829,6 +891,10 @@ static void call_beam12p_continuum_curved_elastic_tangent(const fu_real *const *
 static void call_beam12p_continuum_curved_discrete_force(const fu_real *const *a, fu_real *const *out)
 {
     beam12p_continuum_curved_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_beam12p_continuum_curved_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_curved_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
 }
 static void call_beam12p_continuum_curved_section_forces(const fu_real *const *a, fu_real *const *out)
 {
@@ -886,6 +952,10 @@ static void call_cable8p_green_exact_discrete_force(const fu_real *const *a, fu_
 {
     cable8p_green_exact_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
 }
+static void call_cable8p_green_exact_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_exact_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
 static void call_cable8p_green_exact_damping_force(const fu_real *const *a, fu_real *const *out)
 {
     cable8p_green_exact_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
@@ -922,6 +992,10 @@ static void call_cable8p_green_linear_discrete_force(const fu_real *const *a, fu
 {
     cable8p_green_linear_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
 }
+static void call_cable8p_green_linear_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_linear_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
 static void call_cable8p_green_linear_section_forces(const fu_real *const *a, fu_real *const *out)
 {
     cable8p_green_linear_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
@@ -945,6 +1019,10 @@ static void call_cable8p_engineering_exact_elastic_tangent(const fu_real *const 
 static void call_cable8p_engineering_exact_discrete_force(const fu_real *const *a, fu_real *const *out)
 {
     cable8p_engineering_exact_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable8p_engineering_exact_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_exact_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
 }
 static void call_cable8p_engineering_exact_damping_force(const fu_real *const *a, fu_real *const *out)
 {
@@ -981,6 +1059,10 @@ static void call_cable8p_engineering_linear_elastic_tangent(const fu_real *const
 static void call_cable8p_engineering_linear_discrete_force(const fu_real *const *a, fu_real *const *out)
 {
     cable8p_engineering_linear_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable8p_engineering_linear_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_linear_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
 }
 static void call_cable8p_engineering_linear_section_forces(const fu_real *const *a, fu_real *const *out)
 {
@@ -1176,6 +1258,7 @@ const fu_kernel fu_kernels[] = {
     {"beam24_continuum_elastic_force", call_beam24_continuum_elastic_force},
     {"beam24_continuum_elastic_tangent", call_beam24_continuum_elastic_tangent},
     {"beam24_continuum_discrete_force", call_beam24_continuum_discrete_force},
+    {"beam24_continuum_step_stiffness", call_beam24_continuum_step_stiffness},
     {"beam24_continuum_damping_force", call_beam24_continuum_damping_force},
     {"beam24_continuum_damping_tangent", call_beam24_continuum_damping_tangent},
     {"beam24_continuum_dissipation", call_beam24_continuum_dissipation},
@@ -1185,6 +1268,7 @@ const fu_kernel fu_kernels[] = {
     {"beam24_continuum_curved_elastic_force", call_beam24_continuum_curved_elastic_force},
     {"beam24_continuum_curved_elastic_tangent", call_beam24_continuum_curved_elastic_tangent},
     {"beam24_continuum_curved_discrete_force", call_beam24_continuum_curved_discrete_force},
+    {"beam24_continuum_curved_step_stiffness", call_beam24_continuum_curved_step_stiffness},
     {"beam24_continuum_curved_section_forces", call_beam24_continuum_curved_section_forces},
     {"beam24_structural_stiffness", call_beam24_structural_stiffness},
     {"beam24_structural_energy", call_beam24_structural_energy},
@@ -1199,6 +1283,7 @@ const fu_kernel fu_kernels[] = {
     {"cable12_green_exact_elastic_force", call_cable12_green_exact_elastic_force},
     {"cable12_green_exact_elastic_tangent", call_cable12_green_exact_elastic_tangent},
     {"cable12_green_exact_discrete_force", call_cable12_green_exact_discrete_force},
+    {"cable12_green_exact_step_stiffness", call_cable12_green_exact_step_stiffness},
     {"cable12_green_exact_damping_force", call_cable12_green_exact_damping_force},
     {"cable12_green_exact_damping_tangent", call_cable12_green_exact_damping_tangent},
     {"cable12_green_exact_dissipation", call_cable12_green_exact_dissipation},
@@ -1208,12 +1293,14 @@ const fu_kernel fu_kernels[] = {
     {"cable12_green_linear_elastic_force", call_cable12_green_linear_elastic_force},
     {"cable12_green_linear_elastic_tangent", call_cable12_green_linear_elastic_tangent},
     {"cable12_green_linear_discrete_force", call_cable12_green_linear_discrete_force},
+    {"cable12_green_linear_step_stiffness", call_cable12_green_linear_step_stiffness},
     {"cable12_green_linear_section_forces", call_cable12_green_linear_section_forces},
     {"cable12_engineering_exact_stiffness", call_cable12_engineering_exact_stiffness},
     {"cable12_engineering_exact_energy", call_cable12_engineering_exact_energy},
     {"cable12_engineering_exact_elastic_force", call_cable12_engineering_exact_elastic_force},
     {"cable12_engineering_exact_elastic_tangent", call_cable12_engineering_exact_elastic_tangent},
     {"cable12_engineering_exact_discrete_force", call_cable12_engineering_exact_discrete_force},
+    {"cable12_engineering_exact_step_stiffness", call_cable12_engineering_exact_step_stiffness},
     {"cable12_engineering_exact_damping_force", call_cable12_engineering_exact_damping_force},
     {"cable12_engineering_exact_damping_tangent", call_cable12_engineering_exact_damping_tangent},
     {"cable12_engineering_exact_dissipation", call_cable12_engineering_exact_dissipation},
@@ -1223,24 +1310,28 @@ const fu_kernel fu_kernels[] = {
     {"cable12_engineering_linear_elastic_force", call_cable12_engineering_linear_elastic_force},
     {"cable12_engineering_linear_elastic_tangent", call_cable12_engineering_linear_elastic_tangent},
     {"cable12_engineering_linear_discrete_force", call_cable12_engineering_linear_discrete_force},
+    {"cable12_engineering_linear_step_stiffness", call_cable12_engineering_linear_step_stiffness},
     {"cable12_engineering_linear_section_forces", call_cable12_engineering_linear_section_forces},
     {"cable12_green_exact_curved_stiffness", call_cable12_green_exact_curved_stiffness},
     {"cable12_green_exact_curved_energy", call_cable12_green_exact_curved_energy},
     {"cable12_green_exact_curved_elastic_force", call_cable12_green_exact_curved_elastic_force},
     {"cable12_green_exact_curved_elastic_tangent", call_cable12_green_exact_curved_elastic_tangent},
     {"cable12_green_exact_curved_discrete_force", call_cable12_green_exact_curved_discrete_force},
+    {"cable12_green_exact_curved_step_stiffness", call_cable12_green_exact_curved_step_stiffness},
     {"cable12_green_exact_curved_section_forces", call_cable12_green_exact_curved_section_forces},
     {"cable12_engineering_exact_curved_stiffness", call_cable12_engineering_exact_curved_stiffness},
     {"cable12_engineering_exact_curved_energy", call_cable12_engineering_exact_curved_energy},
     {"cable12_engineering_exact_curved_elastic_force", call_cable12_engineering_exact_curved_elastic_force},
     {"cable12_engineering_exact_curved_elastic_tangent", call_cable12_engineering_exact_curved_elastic_tangent},
     {"cable12_engineering_exact_curved_discrete_force", call_cable12_engineering_exact_curved_discrete_force},
+    {"cable12_engineering_exact_curved_step_stiffness", call_cable12_engineering_exact_curved_step_stiffness},
     {"cable12_engineering_exact_curved_section_forces", call_cable12_engineering_exact_curved_section_forces},
     {"cable18_green_exact_stiffness", call_cable18_green_exact_stiffness},
     {"cable18_green_exact_energy", call_cable18_green_exact_energy},
     {"cable18_green_exact_elastic_force", call_cable18_green_exact_elastic_force},
     {"cable18_green_exact_elastic_tangent", call_cable18_green_exact_elastic_tangent},
     {"cable18_green_exact_discrete_force", call_cable18_green_exact_discrete_force},
+    {"cable18_green_exact_step_stiffness", call_cable18_green_exact_step_stiffness},
     {"cable18_green_exact_damping_force", call_cable18_green_exact_damping_force},
     {"cable18_green_exact_damping_tangent", call_cable18_green_exact_damping_tangent},
     {"cable18_green_exact_dissipation", call_cable18_green_exact_dissipation},
@@ -1250,6 +1341,7 @@ const fu_kernel fu_kernels[] = {
     {"cable18_engineering_exact_elastic_force", call_cable18_engineering_exact_elastic_force},
     {"cable18_engineering_exact_elastic_tangent", call_cable18_engineering_exact_elastic_tangent},
     {"cable18_engineering_exact_discrete_force", call_cable18_engineering_exact_discrete_force},
+    {"cable18_engineering_exact_step_stiffness", call_cable18_engineering_exact_step_stiffness},
     {"cable18_engineering_exact_damping_force", call_cable18_engineering_exact_damping_force},
     {"cable18_engineering_exact_damping_tangent", call_cable18_engineering_exact_damping_tangent},
     {"cable18_engineering_exact_dissipation", call_cable18_engineering_exact_dissipation},
@@ -1259,6 +1351,7 @@ const fu_kernel fu_kernels[] = {
     {"beam12p_continuum_elastic_force", call_beam12p_continuum_elastic_force},
     {"beam12p_continuum_elastic_tangent", call_beam12p_continuum_elastic_tangent},
     {"beam12p_continuum_discrete_force", call_beam12p_continuum_discrete_force},
+    {"beam12p_continuum_step_stiffness", call_beam12p_continuum_step_stiffness},
     {"beam12p_continuum_damping_force", call_beam12p_continuum_damping_force},
     {"beam12p_continuum_damping_tangent", call_beam12p_continuum_damping_tangent},
     {"beam12p_continuum_dissipation", call_beam12p_continuum_dissipation},
@@ -1268,6 +1361,7 @@ const fu_kernel fu_kernels[] = {
     {"beam12p_continuum_curved_elastic_force", call_beam12p_continuum_curved_elastic_force},
     {"beam12p_continuum_curved_elastic_tangent", call_beam12p_continuum_curved_elastic_tangent},
     {"beam12p_continuum_curved_discrete_force", call_beam12p_continuum_curved_discrete_force},
+    {"beam12p_continuum_curved_step_stiffness", call_beam12p_continuum_curved_step_stiffness},
     {"beam12p_continuum_curved_section_forces", call_beam12p_continuum_curved_section_forces},
     {"beam12p_structural_stiffness", call_beam12p_structural_stiffness},
     {"beam12p_structural_energy", call_beam12p_structural_energy},
@@ -1282,6 +1376,7 @@ const fu_kernel fu_kernels[] = {
     {"cable8p_green_exact_elastic_force", call_cable8p_green_exact_elastic_force},
     {"cable8p_green_exact_elastic_tangent", call_cable8p_green_exact_elastic_tangent},
     {"cable8p_green_exact_discrete_force", call_cable8p_green_exact_discrete_force},
+    {"cable8p_green_exact_step_stiffness", call_cable8p_green_exact_step_stiffness},
     {"cable8p_green_exact_damping_force", call_cable8p_green_exact_damping_force},
     {"cable8p_green_exact_damping_tangent", call_cable8p_green_exact_damping_tangent},
     {"cable8p_green_exact_dissipation", call_cable8p_green_exact_dissipation},
@@ -1291,12 +1386,14 @@ const fu_kernel fu_kernels[] = {
     {"cable8p_green_linear_elastic_force", call_cable8p_green_linear_elastic_force},
     {"cable8p_green_linear_elastic_tangent", call_cable8p_green_linear_elastic_tangent},
     {"cable8p_green_linear_discrete_force", call_cable8p_green_linear_discrete_force},
+    {"cable8p_green_linear_step_stiffness", call_cable8p_green_linear_step_stiffness},
     {"cable8p_green_linear_section_forces", call_cable8p_green_linear_section_forces},
     {"cable8p_engineering_exact_stiffness", call_cable8p_engineering_exact_stiffness},
     {"cable8p_engineering_exact_energy", call_cable8p_engineering_exact_energy},
     {"cable8p_engineering_exact_elastic_force", call_cable8p_engineering_exact_elastic_force},
     {"cable8p_engineering_exact_elastic_tangent", call_cable8p_engineering_exact_elastic_tangent},
     {"cable8p_engineering_exact_discrete_force", call_cable8p_engineering_exact_discrete_force},
+    {"cable8p_engineering_exact_step_stiffness", call_cable8p_engineering_exact_step_stiffness},
     {"cable8p_engineering_exact_damping_force", call_cable8p_engineering_exact_damping_force},
     {"cable8p_engineering_exact_damping_tangent", call_cable8p_engineering_exact_damping_tangent},
     {"cable8p_engineering_exact_dissipation", call_cable8p_engineering_exact_dissipation},
@@ -1306,6 +1403,7 @@ const fu_kernel fu_kernels[] = {
     {"cable8p_engineering_linear_elastic_force", call_cable8p_engineering_linear_elastic_force},
     {"cable8p_engineering_linear_elastic_tangent", call_cable8p_engineering_linear_elastic_tangent},
     {"cable8p_engineering_linear_discrete_force", call_cable8p_engineering_linear_discrete_force},
+    {"cable8p_engineering_linear_step_stiffness", call_cable8p_engineering_linear_step_stiffness},
     {"cable8p_engineering_linear_section_forces", call_cable8p_engineering_linear_section_forces},
     {"rigid_point", call_rigid_point},
     {"rigid_point_force", call_rigid_point_force},

@@ -222,6 +222,23 @@ class Cable(Damping):
             f[self.axis_indices] += self._gathered(program, names, group, forces)
         return self._named(program, f)
 
+    def stress_of_turning(self, program: Program, A, change, w) -> np.ndarray:
+        """Stages: blocks (n, n, 1, 1) over strain vectors that the mean stress of a step has more than the stress of
+        the mean vectors: EA (dr'.dr')/8, for that is what a turn takes off the strain. Of what bends it is none.
+        """
+        program.stage("strain of the change at the quadrature points")
+        stiffness = program.define("EA_l", A[0] / (2 * w))
+        points = self.points(self.degree)
+        along = [change[m] for m in self.axis_indices]
+        vectors = values(program, "d", [point.value for point in points], along)
+        blocks = np.zeros((len(self.gram.names), len(self.gram.names), 1, 1), dtype=object)
+        for g, (point, d) in enumerate(zip(points, vectors, strict=True)):
+            u = program.define(f"u_{g}", point.weight * stiffness * d.dot(d) / 8)
+            for i, m in enumerate(self.axis_indices):
+                for k, n in enumerate(self.axis_indices):
+                    blocks[m, n] += u * point.value[i] * point.value[k]
+        return blocks
+
     def tangent(self, program: Program, A, c, w) -> np.ndarray:
         """Stages: d2U/dc2 over strain vectors."""
         total = np.array(0)

@@ -141,6 +141,25 @@ static void joint_matrix(fu_run *run, int j, double stiffness)
     }
 }
 
+/* Elasticity half-way knows the stress of the mean vectors: a turn over the step shortens these, the mean stress not. */
+static void mean_stress(fu_run *run, double stiffness)
+{
+    const fu_model *model = run->model;
+    double k[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
+    for (int c = 0; c < model->n_cables; ++c) {
+        const fu_cable *cable = &model->cables[c];
+        const int dim = cable->kernel->dim, n = cable->coordinates / dim;
+        for (int e = 0, at = cable->first; e < cable->n_elements; ++e, at += cable->per_node) {
+            cable->law->step_stiffness(cable->length, run->now.q + at, run->next.q + at,
+                                       cable->A + (long)e * cable->A_stride, k);
+            for (int i = 0; i < n; ++i)
+                for (int j = 0; j < n; ++j)
+                    for (int d = 0; d < dim; ++d)
+                        fu_add(model, &run->newton, at + i * dim + d, at + j * dim + d, stiffness * k[i * n + j]);
+        }
+    }
+}
+
 static void matrix(fu_run *run, double h)
 {
     const fu_model *model = run->model;
@@ -149,6 +168,7 @@ static void matrix(fu_run *run, double h)
     const fu_state state = {.q = m.q, .v = m.v, .spring = run->next.spring};
     fu_system_clear(&run->newton);
     fu_dynamic_matrix(model, m.q, m.v, 1.0, rate, stiffness, &run->newton);
+    mean_stress(run, stiffness);
     fu_loads_matrix(model, run->now.t + 0.5 * h, m.q, 0, stiffness, &run->newton);
     for (int j = 0; j < model->n_joints; ++j) joint_matrix(run, j, stiffness);
     for (int k = 0; k < model->n_springs; ++k)
