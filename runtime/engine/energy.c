@@ -183,7 +183,7 @@ static double apply(fu_run *run, double h)
     return size;
 }
 
-static const fu_newton newton = {predict, kinematics, residual, matrix, apply, 1};
+static const fu_newton newton = {predict, kinematics, residual, matrix, apply, 24, 1};
 
 static int start(fu_run *run)
 {
@@ -194,8 +194,7 @@ static int start(fu_run *run)
 
 static int step(fu_run *run, double h)
 {
-    /* what Newton leaves does work on the step: it is measured by psi and not by positions */
-    run->newton_tolerance = 1e-17 * h * fu_size(run->model, run->now.v);
+    run->newton_tolerance = 1e-3 * run->round_off; /* what Newton leaves does work on every step */
     return fu_newton_step(run, &newton, h);
 }
 

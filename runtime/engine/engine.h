@@ -280,7 +280,7 @@ typedef struct {
     void (*residual)(fu_run *run, double h);
     void (*matrix)(fu_run *run, double h);
     double (*apply)(fu_run *run, double h);
-    int to_rounding; /* go on below the rounding of positions, until increments shrink no more */
+    int most_iterations, to_rounding; /* the latter: go on below the rounding of positions, until increments shrink no more */
 } fu_newton;
 
 /* A way through time. `now` has consistent v, accelerations and forces when `start` is called; `step` makes `next` from

@@ -140,7 +140,7 @@ static void step_residual(fu_run *run, double h)
     residual(run, 1.0, sigma(&run->scheme, h));
 }
 
-static const fu_newton newton = {predict, kinematics, step_residual, newton_matrix, apply, 0};
+static const fu_newton newton = {predict, kinematics, step_residual, newton_matrix, apply, 12, 0};
 
 static int step(fu_run *run, double h)
 {

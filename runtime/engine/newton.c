@@ -5,9 +5,7 @@
 #include <string.h>
 #include <time.h>
 
-#define MOST_ITERATIONS 12
 #define STAGNANT 0.3 /* increments that shrink less than to this, at the size of rounding, are rounding */
-#define TOO_MANY_ITERATIONS 3 /* a step that took more than these has the matrix made anew for the next */
 
 double fu_clock(void)
 {
@@ -95,7 +93,7 @@ void fu_predict_extra(fu_run *run, double h)
 static int iterate(fu_run *run, const fu_newton *method, double h)
 {
     double last = 0.0, ratio = 0.0;
-    for (int i = 0; i < MOST_ITERATIONS; ++i) {
+    for (int i = 0; i < method->most_iterations; ++i) {
         method->kinematics(run, h);
         method->residual(run, h);
         if (!run->factored) {
@@ -116,7 +114,7 @@ static int iterate(fu_run *run, const fu_newton *method, double h)
         if (size * run->contraction / (1.0 - run->contraction) <= run->newton_tolerance ||
             (size <= run->round_off && (!method->to_rounding || ratio > STAGNANT))) {
             method->kinematics(run, h);
-            if (i + 1 > TOO_MANY_ITERATIONS + 3 * method->to_rounding) run->factored = 0;
+            if (4 * (i + 1) > method->most_iterations) run->factored = 0; /* made anew for the next step */
             return 0;
         }
         last = size;
