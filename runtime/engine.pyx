@@ -170,7 +170,7 @@ cdef extern from "engine.h" nogil:
         double inertia, rate, stiffness
     ctypedef struct fu_integrator:
         const char *name
-    const fu_integrator fu_genalpha_method, fu_explicit_method
+    const fu_integrator fu_genalpha_method, fu_explicit_method, fu_energy_method
     ctypedef struct fu_run:
         const fu_model *model
         const fu_integrator *integrator
@@ -620,6 +620,9 @@ cdef class Engine:
         if method.name == "explicit":
             run.integrator = &fu_explicit_method
             self._tableau(method)
+        elif method.name == "energy":
+            run.integrator = &fu_energy_method
+            run.scratch = self._doubles(np.zeros(self.model.n_q + 2 * self.model.n_dof + 1))
         else:
             run.integrator = &fu_genalpha_method
             run.scheme.alpha_m, run.scheme.alpha_f, run.scheme.beta, run.scheme.gamma = method.parameters

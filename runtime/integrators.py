@@ -40,6 +40,13 @@ class GeneralisedAlpha:
         return alpha_m, alpha_f, (1 - alpha_m + alpha_f) ** 2 / 4, 0.5 - alpha_m + alpha_f
 
 
+@dataclass(frozen=True)
+class EnergyMomentum:
+    """Keeps energy and momenta to rounding (Simo & Tarnow 1992; Gonzalez 1996)."""
+
+    name, order = "energy", 2
+
+
 class Explicit:
     """The Runge-Kutta method of order 8 of Dormand & Prince (Hairer, Norsett & Wanner 1993, DOP853), as scipy has it.
 
@@ -57,12 +64,16 @@ class Explicit:
         self.order = DOP853.error_estimator_order
 
 
+Integrator = GeneralisedAlpha | Explicit | EnergyMomentum
+
+
 def choose(settings: RunSettings, scene: Scene, model: Model,
-           engine: Engine) -> tuple[GeneralisedAlpha | Explicit, str]:
+           engine: Engine) -> tuple[Integrator, str]:
     """The integrator of a run, and why it is that one. "auto" takes the cheaper by stiffness and tolerance."""
     implicit = GeneralisedAlpha(settings.spectral_radius)
     if settings.integrator != "auto":
-        return (Explicit() if settings.integrator == "explicit" else implicit), "as asked for"
+        made = {"genalpha": lambda: implicit, "explicit": Explicit, "energy": EnergyMomentum}[settings.integrator]()
+        return made, "as asked for"
     if settings.step is not None:
         return implicit, "the step is fixed: genalpha is stable at any"
     if "spectral_radius" in settings.model_fields_set:

@@ -168,6 +168,8 @@ double fu_size(const fu_model *model, const double *dofs);
 /* assembly.c */
 void fu_mass_times(const fu_model *model, const double *a, double *f);
 void fu_internal_forces(const fu_model *model, const double *q, const double *v, double *f);
+void fu_rate_forces(const fu_model *model, const double *q, const double *v, double *f);
+void fu_discrete_forces(const fu_model *model, const double *q, const double *q_next, double *f);
 void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, double inertia, double rate,
                        double stiffness, fu_system *system);
 double fu_kinetic_energy(const fu_model *model, const double *v);
@@ -195,6 +197,10 @@ void fu_spring_forces(const fu_model *model, const double *q, const double *v, d
 void fu_spring_pull(const fu_model *model, const fu_spring *spring, const double *q, const double force[3], double *f);
 void fu_spring_matrix(const fu_model *model, const fu_spring *spring, const fu_state *state, const double *psi,
                       double rate, double stiffness, double unit, fu_system *system);
+double fu_discrete_spring(const fu_model *model, const fu_spring *spring, const double *q, const double *q_next, double h,
+                          double force[3]);
+void fu_discrete_pull(const fu_model *model, const fu_spring *spring, const double *q, const double *q_next,
+                      const double force[3], double *f);
 double fu_spring_energy(const fu_model *model, const double *q);
 double fu_spring_dissipation(const fu_model *model, const double *q, const double *v);
 
@@ -202,6 +208,9 @@ double fu_spring_dissipation(const fu_model *model, const double *q, const doubl
 void fu_move(const fu_model *model, double *q, const double *dofs);
 void fu_body_rate(const fu_body *kernel, const double *b, const double *w, double *rate);
 void fu_body_increment(const fu_body *kernel, const double *b, const double *change, double *increment);
+void fu_cayley_move(const fu_model *model, double *q, const double *psi);
+void fu_cayley_columns(const fu_body *kernel, double *rows, int n_rows, int n_columns, int first, const double *psi);
+void fu_between(const fu_model *model, const double *q, const double *q_next, double *between);
 void fu_turn_columns(const fu_body *kernel, double *rows, int n_rows, int n_columns, int first, const double *psi);
 
 /* acceleration.c: eq 38 and what comes out of it */
@@ -261,18 +270,32 @@ typedef struct {
     double *kinetic, *elastic, *potential, *dissipated, *external, *spring;
 } fu_record;
 
+/* newton.c: what implicit integrators have in common. `predict` makes a first `next`; `kinematics` completes it from the
+ * unknowns; `residual` leaves minus the scaled residual in run->rhs, `matrix` its derivative in run->newton; `apply` adds
+ * the solution in run->rhs and returns its size as a length. */
+typedef struct fu_run fu_run;
+typedef struct {
+    void (*predict)(fu_run *run, double h);
+    void (*kinematics)(fu_run *run, double h);
+    void (*residual)(fu_run *run, double h);
+    void (*matrix)(fu_run *run, double h);
+    double (*apply)(fu_run *run, double h);
+    int most_iterations, to_rounding; /* the latter: go on below the rounding of positions, until increments shrink no more */
+} fu_newton;
+
 /* A way through time. `now` has consistent v, accelerations and forces when `start` is called; `step` makes `next` from
  * it and is not zero where that failed; `error` is the local error of positions of the step just made, m; `book` adds
  * what that step, now accepted, has dissipated and got from outside. */
-typedef struct fu_run fu_run;
 typedef struct {
     const char *name;
     int (*start)(fu_run *run);
     int (*step)(fu_run *run, double h);
     double (*error)(fu_run *run, double h);
     void (*book)(fu_run *run, double h);
+    int conserves; /* energy, so that a slide that enters another element must not cost any: velocities stay */
+    const fu_newton *newton; /* null where there is none */
 } fu_integrator;
-extern const fu_integrator fu_genalpha_method, fu_explicit_method;
+extern const fu_integrator fu_genalpha_method, fu_explicit_method, fu_energy_method;
 
 struct fu_run {
     const fu_model *model;
@@ -315,6 +338,15 @@ void fu_static_move(fu_run *run, const double *change);
 void fu_static_residual(fu_run *run);
 void fu_matrix(fu_run *run, fu_weights weights);
 double fu_clock(void);
+
+/* newton.c */
+int fu_newton_step(fu_run *run, const fu_newton *method, double h);
+void fu_predict_extra(fu_run *run, double h);
+void fu_apply_extra(fu_run *run, double inertia, double scale);
+double fu_spread_size(fu_run *run);
+double fu_filtered_size(fu_run *run);
+double fu_row_unit(double inertia, double mass);
+void fu_joint_coordinates(const fu_model *model, const fu_state *state, int j, int *at);
 
 /* books.c */
 double fu_external_power(fu_run *run, const fu_state *state, const double *reaction);
