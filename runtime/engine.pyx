@@ -139,7 +139,7 @@ cdef extern from "engine.h" nogil:
         long steps, rejected, newton_iterations, factorisations, crossings, newton_failures
         double h_min, h_max, error_sum, time_factor, time_solve, time_residual, time_output
     ctypedef struct fu_record:
-        int n
+        int n, first, pause
         double *time
         double *q
         double *v
@@ -183,6 +183,9 @@ cdef extern from "engine.h" nogil:
     double fu_elastic_energy(const fu_model *model, const double *q)
     int fu_start(fu_run *run)
     int fu_advance(fu_run *run, double seconds)
+    void fu_pause(fu_run *run)
+    long fu_save(const fu_run *run, char *bytes)
+    void fu_restore(fu_run *run, const char *bytes)
 
 cdef const fu_tables *TABLES = <const fu_tables *>PyCapsule_GetPointer(kernels.tables,
                                                                       "funicular.generated.kernels.tables")
@@ -535,8 +538,8 @@ cdef class Engine:
         fu_spread(&self.model, &x[0], &dofs[0])
         return np.asarray(dofs)[:self.model.n_dof]
 
-    def start(self, *, duration, output_step, tol, step, scheme, first_step, rest_start=False):
-        """Allocate the output rows and compute the consistent start.
+    def start(self, *, duration, output_step, tol, step, scheme, first_step, room=None, rest_start=False):
+        """Allocate output rows, `room` of them or all, and compute the consistent start.
 
         Returns a status where that failed, else None, and the change of velocities that the joints asked for.
         """
@@ -544,7 +547,7 @@ cdef class Engine:
         run.duration, run.output_step, run.tol = duration, output_step, tol
         run.fixed_step, run.h, run.rest_start = step, first_step, rest_start
         run.scheme.alpha_m, run.scheme.alpha_f, run.scheme.beta, run.scheme.gamma = scheme
-        rows = int(np.ceil(duration / output_step * (1 - 1e-12))) + 2
+        rows = int(np.ceil(duration / output_step * (1 - 1e-12))) + 2 if room is None else room
         m = &self.model
         r = &run.record
         r.time, r.kinetic, r.elastic = self._named("time", rows), self._named("kinetic", rows), self._named("elastic", rows)
@@ -559,22 +562,53 @@ cdef class Engine:
             return STATUS[status], np.zeros(m.n_dof)
         return None, np.array([run.before[i] for i in range(m.n_dof)])
 
-    def advance(self, on_progress, double interval=0.05):
-        """Run to the end; returns the status, "interrupted" after Ctrl-C."""
+    def advance(self, on_progress, int every=0, on_pause=None, double interval=0.05):
+        """Run to the end; returns the status, "interrupted" after Ctrl-C.
+
+        every: at each so many output rows the run pauses, which leaves it in a state that `checkpoint` holds in full, and
+        calls on_pause().
+        """
         cdef int status = FU_RUNNING
+        run = &self.run
         try:
             while status == FU_RUNNING:
+                run.record.pause = (run.record.n // every + 1) * every if every else 0
                 with nogil:
-                    status = fu_advance(&self.run, interval)
+                    status = fu_advance(run, interval)
+                if status == FU_RUNNING and run.record.n == run.record.pause:
+                    fu_pause(run)
+                    if on_pause is not None:
+                        on_pause()
                 PyErr_CheckSignals()
-                on_progress(self.run.now.t)
+                on_progress(run.now.t)
         except KeyboardInterrupt:
             return "interrupted"
         return STATUS[status]
 
     def rows(self):
-        """Recorded arrays by name, cut to the rows that were written."""
-        return {name: array[:self.run.record.n] for name, array in self.arrays.items()}
+        """Recorded arrays by name, cut to the rows that are in them."""
+        return {name: array[:self.run.record.n - self.run.record.first] for name, array in self.arrays.items()}
+
+    def take_rows(self):
+        """Make room: the rows that are in the arrays count as taken, and the next ones are written over them."""
+        self.run.record.first = self.run.record.n
+
+    def checkpoint(self):
+        """Bytes from which `restore` goes on exactly; at a pause only."""
+        cdef bytearray taken = bytearray(fu_save(&self.run, NULL))
+        fu_save(&self.run, taken)
+        return bytes(taken)
+
+    def restore(self, bytes checkpoint):
+        """Go on from a checkpoint; after `start` with the same arguments."""
+        if len(checkpoint) != fu_save(&self.run, NULL):
+            raise ValueError("the checkpoint is of another model")
+        fu_restore(&self.run, checkpoint)
+
+    @property
+    def n_rows(self):
+        """Number of output rows since the start."""
+        return self.run.record.n
 
     def joint_row(self, joints):
         """Split joint numbers (..., FU_JOINT_OUTPUTS) by name; see fu_joint_output."""
@@ -608,3 +642,8 @@ cdef class Engine:
     def stopped_joint(self):
         """Index of the slide that ran off its cable."""
         return self.run.stopped_joint
+
+    @property
+    def stopped_s(self):
+        """Arc-length of that slide, m."""
+        return self.run.now.s[self.run.stopped_joint]

@@ -50,7 +50,7 @@ static int record_row(fu_run *run)
     const fu_model *model = run->model;
     const fu_state *now = &run->now;
     fu_record *r = &run->record;
-    const long row = r->n;
+    const long row = r->n - r->first;
     fu_joint_output *joints = (fu_joint_output *)(r->joint + row * model->n_joints * FU_JOINT_OUTPUTS);
     r->time[row] = now->t;
     memcpy(r->q + row * model->n_q, now->q, sizeof(double) * (size_t)model->n_q);
@@ -69,6 +69,7 @@ static int record_row(fu_run *run)
                         by_rate);
     }
     ++r->n;
+    run->recorded = now->t;
     run->statistics.time_output += fu_clock() - begin;
     return info;
 }
@@ -314,7 +315,7 @@ static int step_towards(fu_run *run, double target)
     }
 }
 
-/* Go on for about so many seconds; the status tells whether there is more to do. */
+/* Go on for about so many seconds, or to the pause; the status tells whether there is more to do. */
 int fu_advance(fu_run *run, double seconds)
 {
     const double until = fu_clock() + seconds;
@@ -323,12 +324,13 @@ int fu_advance(fu_run *run, double seconds)
         if (target > run->duration * (1.0 - 1e-12)) target = run->duration;
         const int status = step_towards(run, target);
         if (status) {
-            if (run->now.t > run->record.time[run->record.n - 1] && record_row(run)) return FU_SINGULAR;
+            if (run->now.t > run->recorded && record_row(run)) return FU_SINGULAR;
             return status;
         }
         if (fabs(run->now.t - target) <= 1e-12 * run->duration) {
             run->now.t = target;
             if (record_row(run)) return FU_SINGULAR;
+            if (run->record.n == run->record.pause) break;
         }
         if (fu_clock() > until) break;
     }
