@@ -51,9 +51,9 @@ class File:
     def __init__(self, path: str | os.PathLike, writable: bool = False):
         """Open a file. Raises OSError, ValueError where it is no such file or was cut short."""
         self.path = os.fspath(path)
-        self._descriptor = os.open(path, os.O_RDWR if writable else os.O_RDONLY)
-        weakref.finalize(self, os.close, self._descriptor)
-        size = os.fstat(self._descriptor).st_size
+        self.descriptor = os.open(path, os.O_RDWR if writable else os.O_RDONLY)
+        weakref.finalize(self, os.close, self.descriptor)
+        size = os.fstat(self.descriptor).st_size
         self.rows, self.attributes, self._report_at, self.entries = self._head(size)
         records = {name: entry for name, entry in self.entries.items() if entry.in_rows}
         self._first = first = min((entry.begin for entry in records.values()), default=size)
@@ -69,7 +69,7 @@ class File:
         length = _BLOCK
         while True:
             try:
-                return _parse(os.pread(self._descriptor, length, 0))
+                return _parse(os.pread(self.descriptor, length, 0))
             except (struct.error, IndexError, KeyError, OverflowError, UnicodeDecodeError) as error:
                 if length >= size:
                     raise ValueError("the header is damaged") from error
@@ -84,7 +84,7 @@ class File:
         """All values of a variable, in this machine's order of bytes; texts as str."""
         entry = self.entries[name]
         if not entry.in_rows:
-            raw = os.pread(self._descriptor, _bytes(entry), entry.begin)
+            raw = os.pread(self.descriptor, _bytes(entry), entry.begin)
             values = np.frombuffer(raw, entry.dtype).reshape(entry.shape)
             return _texts(values) if entry.dtype.kind == "S" else values.astype(entry.dtype.newbyteorder("="))
         values = np.empty((self.rows, *entry.shape), entry.dtype.newbyteorder("="))
@@ -96,9 +96,24 @@ class File:
         block = np.empty(max(1, _BLOCK // max(1, self.row_bytes)), self._row)
         for start in range(0, self.rows, len(block)):
             part = block[: self.rows - start]
-            if os.preadv(self._descriptor, [part.view("u1")], self._first + start * self.row_bytes) != part.nbytes:
+            if os.preadv(self.descriptor, [part.view("u1")], self._first + start * self.row_bytes) != part.nbytes:
                 raise OSError(f"{self.path}: was cut short while it was read")
             yield start, part
+
+    def described(self, over_time: bool) -> dict[str, Variable]:
+        """The variables over time without their values, or the other ones."""
+        return {name: self.variable(name, np.empty((0, *entry.shape)) if over_time else self.read(name))
+                for name, entry in self.entries.items() if entry.in_rows == over_time}
+
+    def variable(self, name: str, values: np.ndarray) -> Variable:
+        """A variable with its labels."""
+        entry = self.entries[name]
+        return Variable(entry.dims[: values.ndim], values, entry.attributes["units"], entry.attributes["long_name"])
+
+    def rename(self, path: str | os.PathLike) -> None:
+        """Move the file, in the place of another one."""
+        os.replace(self.path, path)
+        self.path = os.fspath(path)
 
     def write(self, first: int, values: Mapping[str, np.ndarray]) -> None:
         """Put rows from row `first` on; those behind them go. values: all variables, first axis the rows."""
@@ -122,9 +137,9 @@ class File:
         self._set_rows(rows)
 
     def add_report(self, text: str) -> bool:
-        """Add a line to the attribute `report`; False where there is no room for it.
+        """Put a new text into the attribute `report`; False where there is no room for it.
 
-        A line counts when the end of line after it is written, which is the last byte.
+        The last line that has an end of line counts: the new one is whole before blanks go over the old one.
         """
         begin, size = self._report_at
         old = self.attributes["report"]
@@ -132,8 +147,9 @@ class File:
         line = f"{text}\n".encode()
         if used + len(line) > size:
             return False
-        self._put(line + b" " * (size - used - len(line)), begin + used)
-        self.attributes["report"] = os.pread(self._descriptor, size, begin).decode()
+        self._put(line, begin + used)
+        self._put(b" " * used, begin)
+        self.attributes["report"] = os.pread(self.descriptor, size, begin).decode()
         return True
 
     def _check_follows(self, first: int) -> None:
@@ -147,13 +163,42 @@ class File:
     def _put(self, data, at: int) -> None:
         left = memoryview(data)
         while len(left):
-            done = os.pwrite(self._descriptor, left, at)
+            done = os.pwrite(self.descriptor, left, at)
             left, at = left[done:], at + done
 
 
 def last_report(text: str) -> str:
-    """The last whole line of the attribute `report`."""
-    return text[: text.rfind("\n")].rsplit("\n", 1)[-1]
+    """The last whole line of the attribute `report`, or all of it where it is not in lines."""
+    lines = text.split("\n")
+    return (lines[:-1] or lines)[-1]
+
+
+class Stored(Mapping[str, Variable]):
+    """Variables of a file, read when they are asked for and kept then."""
+
+    def __init__(self, file: File, names: list[str]):
+        """names: of those variables."""
+        self.file, self._names, self._read = file, dict.fromkeys(names), {}
+
+    def __getitem__(self, name: str) -> Variable:
+        """A variable with its values."""
+        if name not in self._names:
+            raise KeyError(name)
+        if name not in self._read:
+            self._read[name] = self.file.variable(name, self.file.read(name))
+        return self._read[name]
+
+    def __contains__(self, name: object) -> bool:
+        """Whether there is such a variable."""
+        return name in self._names
+
+    def __iter__(self) -> Iterator[str]:
+        """Their names."""
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        """Their number."""
+        return len(self._names)
 
 
 def create(path: str | os.PathLike, coords: Mapping[str, Variable], variables: Mapping[str, Variable],
