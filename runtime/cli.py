@@ -64,7 +64,8 @@ def run(
 ) -> None:
     """Simulate a scene and write its results, as the run goes.
 
-    What was computed is in the file also when the run stops early, and --resume goes on from there. Exit code: 1 for an error, 130 after Ctrl-C.
+    What was computed is in the file also when the run stops early, and --resume goes on from there. Exit code: 1 for an
+    error, 130 after Ctrl-C.
     """
     from funicular.errors import ConvergenceError, EndOfCableError
     from funicular.results import check_writable

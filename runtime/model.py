@@ -274,8 +274,8 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
              stream: Stream | None = None) -> Recording:
     """Integrate a checked scene; calls on_progress(time reached in s) about twenty times a second.
 
-    initial: an `Equilibrium` of this scene to start from, at the scene's velocities; stream: takes the rows as they come,
-    so that only the last ones are in what is returned.
+    initial: an `Equilibrium` of this scene to start from, at the scene's velocities; stream: takes the rows as they
+    come, so that only the last ones are in what is returned.
     """
     from funicular.engine import Engine
 

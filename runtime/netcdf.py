@@ -147,7 +147,7 @@ class File:
         line = f"{text}\n".encode()
         if used + len(line) > size:
             return False
-        self._put(line, begin + used)
+        self._put(line + b" " * (size - used - len(line)), begin + used)
         self._put(b" " * used, begin)
         self.attributes["report"] = os.pread(self.descriptor, size, begin).decode()
         return True
@@ -218,7 +218,8 @@ def _header(variables: dict[str, Variable], attributes: dict) -> bytes:
     """The header, and behind it the variables that are not over time."""
     sizes, entries, fixed = {"time": 0}, {}, {}
     for name, variable in variables.items():
-        values, dims, labels = variable.values, variable.dims, {"units": variable.units, "long_name": variable.long_name}
+        values, dims = variable.values, variable.dims
+        labels = {"units": variable.units, "long_name": variable.long_name}
         if values.dtype.kind == "U":  # characters along one more dimension, as xarray writes them, too
             texts = np.char.encode(values, "utf-8")
             values = texts.view("S1").reshape(*texts.shape, texts.itemsize)
@@ -276,7 +277,7 @@ def _parse(header: bytes) -> tuple[int, dict, tuple[int, int], dict[str, Entry]]
     """Number of rows, attributes, place and size of the report, variables. Raises what struct and dicts raise."""
     at = len(MAGIC)
     if header[:at] != MAGIC:
-        raise ValueError("it does not begin like one")
+        raise ValueError("it does not begin as the classic format with 64-bit offsets does")
 
     def ints(count: int = 1) -> tuple[int, ...]:
         nonlocal at

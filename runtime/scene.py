@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Callable, Iterator
+from contextlib import nullcontext
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -289,12 +290,12 @@ class Scene:
         from funicular.model import simulate
         from funicular.streaming import Stream
 
-        stream = None if settings.save is None else Stream(settings.save, self, settings, resume)
-        if settings.initial == "equilibrium" and state is None:
-            state = self.equilibrium()
-        with progress_bar(settings.duration, progress) as on_progress:
-            recording = simulate(self, settings, on_progress, initial=state, stream=stream)
-        run = stream.finish(recording) if stream else Run.from_recording(recording, self, settings)
+        with nullcontext() if settings.save is None else Stream(settings.save, self, settings, resume) as stream:
+            if settings.initial == "equilibrium" and state is None:
+                state = self.equilibrium()
+            with progress_bar(settings.duration, progress) as on_progress:
+                recording = simulate(self, settings, on_progress, initial=state, stream=stream)
+            run = stream.finish(recording) if stream else Run.from_recording(recording, self, settings)
         match recording.status:
             case "end_of_cable":
                 raise EndOfCableError(recording.message, run)

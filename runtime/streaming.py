@@ -1,8 +1,9 @@
 """Results on disk while a run goes on, and checkpoints from which a run that was stopped goes on.
 
-A run that is saved as OUT.nc writes its rows there as it goes. At some of its pauses (see `pauses`) it adds the rows that
-it has, then replaces OUT.nc.state, the checkpoint; which of them depends on the clock, results do not: the engine is
-brought into a state that a checkpoint holds in full at all of them. Runs that end by themselves leave no checkpoint.
+A run that is saved as OUT.nc writes its rows there as it goes. At some of its pauses (see `pauses`) it adds the rows
+that it has, then replaces OUT.nc.state, the checkpoint. At which of them depends on the clock, but results do not: the
+engine is brought into a state that a checkpoint holds in full at all of them. Runs that end by themselves leave no
+checkpoint.
 """
 
 from __future__ import annotations
@@ -99,6 +100,15 @@ class Stream:
             if self._path.exists():
                 with open(self._path) as older:
                     self._claim(older.fileno())
+
+    def __enter__(self) -> Stream:
+        """The stream."""
+        return self
+
+    def __exit__(self, *exception) -> None:
+        """Let other runs have the file."""
+        if self._file is not None:
+            fcntl.flock(self._file.descriptor, fcntl.LOCK_UN)
 
     @property
     def elapsed(self) -> float:
