@@ -207,5 +207,6 @@ def _message(model: Model, engine, status: str, settings: RunSettings) -> str:
                 "(is a cable's director parallel to its tangent?)"
             )
         case "interrupted":
-            return f"interrupted at {when}; what was computed up to there is kept"
+            goes_on = "" if settings.save is None else ", and resume goes on with it"
+            return f"interrupted at {when}; what was computed up to there is kept{goes_on}"
     return f"completed {settings.duration:.6g} s"

@@ -190,7 +190,7 @@ def test_ctrl_c_leaves_what_there_is_and_goes_on(uninterrupted, tmp_path):
 
     path = tmp_path / "x.nc"
     many = SETTINGS | {"step": 2e-6}
-    with pytest.warns(FunicularWarning, match="interrupted at"):
+    with pytest.warns(FunicularWarning, match=r"interrupted at .*, and resume goes on with it$"):
         run = short().run(**many, save=path, progress=stop)
     assert (run.status, load_run(path).status) == ("interrupted", "interrupted")
     assert path.with_name("x.nc.state").exists()
@@ -335,7 +335,8 @@ def check_killed(path: Path, expected: dict[str, bytes]) -> None:
 
 
 def check_resumed(path: Path, expected: dict[str, bytes]) -> None:
-    assert start(path.parent, path.name, "--resume").wait() == 0
+    if load_run(path).status == "unfinished":  # and not killed on the way out
+        assert start(path.parent, path.name, "--resume").wait() == 0
     assert content(path) == expected
 
 
@@ -365,7 +366,7 @@ def test_kill_at_20_random_instants(whole, tmp_path):
         if running.wait() == -signal.SIGKILL:
             check_killed(path, expected)
             reached.append((times(path), path))
-    for _, path in sorted(reached)[-5:]:
+    for _, path in sorted(reached)[-4:]:
         check_resumed(path, expected)
 
 
