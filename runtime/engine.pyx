@@ -603,11 +603,11 @@ cdef class Engine:
             return STATUS[status], np.zeros(m.n_dof)
         return None, np.array([run.before[i] for i in range(m.n_dof)])
 
-    def advance(self, on_progress, int every=0, on_pause=None, double interval=0.05):
+    def advance(self, on_progress, int every=0, stream=None, double interval=0.05):
         """Run to the end; returns the status, "interrupted" after Ctrl-C.
 
         every: at each so many output rows the run pauses, which leaves it in a state that `checkpoint` holds in full, and
-        calls on_pause().
+        calls stream.pause(); otherwise stream.between() now and then, which may take rows.
         """
         cdef int status = FU_RUNNING
         run = &self.run
@@ -618,8 +618,10 @@ cdef class Engine:
                     status = fu_advance(run, interval)
                 if status == FU_RUNNING and run.record.n == run.record.pause:
                     fu_pause(run)
-                    if on_pause is not None:
-                        on_pause()
+                    if stream is not None:
+                        stream.pause()
+                if stream is not None:
+                    stream.between()
                 PyErr_CheckSignals()
                 on_progress(run.now.t)
         except KeyboardInterrupt:

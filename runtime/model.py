@@ -312,7 +312,7 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
     if status is None:
         if stream is not None:
             stream.start(model, engine, partial(named, model, scene, engine), pace)
-        status = engine.advance(on_progress, pace.every, stream and stream.pause)
+        status = engine.advance(on_progress, pace.every, stream)
     wall = time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
     return recorded(model, scene, engine, settings, status, messages, {"set_up": set_up, "total": wall})
 

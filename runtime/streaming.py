@@ -1,9 +1,8 @@
 """Results on disk while a run goes on, and checkpoints from which a run that was stopped goes on.
 
-A run that is saved as OUT.nc writes its rows there as it goes. At some of its pauses (see `pauses`) it adds the rows
-that it has, then replaces OUT.nc.state, the checkpoint. At which of them depends on the clock, but results do not: the
-engine is brought into a state that a checkpoint holds in full at all of them. Runs that end by themselves leave no
-checkpoint.
+A run that is saved as OUT.nc writes its rows there as it goes. At some of its pauses (see `pauses`) it replaces
+OUT.nc.state, the checkpoint. At which of them depends on the clock, but results do not: the engine is brought into a
+state that a checkpoint holds in full at all of them. Runs that end by themselves leave no checkpoint.
 """
 
 from __future__ import annotations
@@ -32,8 +31,10 @@ PAUSES = 100
 """The least number of pauses of a run with so many output times."""
 BUFFER = 8e6
 """Bytes of rows that are kept in memory."""
-FLUSH_INTERVAL = 0.5
-"""Seconds between two times that rows are written, where the buffer lasts so long."""
+ROWS_INTERVAL = 0.5
+"""Seconds between two times that rows are written, at most."""
+CHECKPOINT_INTERVAL = 0.5
+"""Seconds between two checkpoints, at least, where the buffer lasts so long."""
 REPORT_ROOM = 8192
 """Bytes for what the report will say at the end."""
 GOES_ON = ("unfinished", "interrupted")
@@ -92,7 +93,8 @@ class Stream:
         self._state = self._path.with_name(f"{self._path.name}.state")
         self._scene, self._settings = scene, settings
         self._file: File | None = None
-        self._taken, self._flushed, self._resumed = 0, time.monotonic(), []
+        self._taken, self._resumed = 0, []
+        self._added = self._checked = time.monotonic()
         self._facts = _facts(scene, settings)
         self._kept = self._to_resume() if resume else None
         if not resume:
@@ -117,9 +119,9 @@ class Stream:
 
     @property
     def free(self) -> int:
-        """Bytes that are free where the file is."""
+        """Bytes that the file can have: those that are free, and those of the one that is there."""
         disk = os.statvfs(self._path.parent)
-        return disk.f_bavail * disk.f_frsize
+        return disk.f_bavail * disk.f_frsize + (self._path.stat().st_size if self._path.exists() else 0)
 
     def start(self, model: Model, engine, rows: Callable[[], Rows], pace: Pauses) -> None:
         """Make the file, with the first row, or go on where the checkpoint was taken; rows: those of the engine."""
@@ -139,13 +141,21 @@ class Stream:
         self._report(self._unfinished())
 
     def pause(self) -> None:
-        """Write what is there if it is time to."""
+        """Write rows and a checkpoint if it is time to, or if the buffer does not last to the next pause."""
         room = self._pace.room - (self._engine.n_rows - self._taken)
-        if time.monotonic() - self._flushed > FLUSH_INTERVAL or room < self._pace.every + 1:
-            self._add(self._rows())
-            self._engine.take_rows()
+        if time.monotonic() - self._checked > CHECKPOINT_INTERVAL or room < self._pace.every + 1:
+            self._take()
             self._checkpoint()
-            self._flushed = time.monotonic()
+
+    def between(self) -> None:
+        """Write rows if it is time to."""
+        if time.monotonic() - self._added > ROWS_INTERVAL and self._engine.n_rows > self._taken:
+            self._take()
+
+    def _take(self) -> None:
+        self._add(self._rows())
+        self._engine.take_rows()
+        self._added = time.monotonic()
 
     def finish(self, recording: Recording) -> Run:
         """Write the last rows and the report; the run as read from the file. Raises ResultFileError."""
@@ -202,6 +212,7 @@ class Stream:
         elapsed = self.elapsed + time.monotonic() - self._begin
         facts = self._facts | {"rows": self._taken, "elapsed_s": elapsed, "resumed_at_s": self._resumed}
         self._written(lambda: Checkpoint(facts, self._engine.checkpoint()).write(self._state))
+        self._checked = time.monotonic()
 
     def _written(self, write: Callable[[], None]) -> None:
         try:
@@ -217,6 +228,8 @@ class Stream:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             raise self._refused("another run is writing it", "wait for its end, or give another name") from None
+        except OSError:
+            return  # a file system without locks
 
     def _refused(self, cause: str, remedy: str = "start the run anew, without resume") -> ResultFileError:
         return ResultFileError(f"{self._path}: {cause}; {remedy}")

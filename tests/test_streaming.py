@@ -94,7 +94,7 @@ def stopped(tmp_path, monkeypatch):
     """The file of a run that was killed half-way."""
     path = tmp_path / "x.nc"
     with monkeypatch.context() as patch:
-        patch.setattr(streaming, "FLUSH_INTERVAL", -1.0)
+        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
         failing(patch, WRITES // 2, Killed())
         with pytest.raises(Killed):
             short().run(**SETTINGS, save=path)
@@ -118,7 +118,7 @@ def test_the_file_holds_what_a_run_in_memory_has(uninterrupted):
 
 
 def test_results_do_not_depend_on_when_they_are_written(uninterrupted, tmp_path, monkeypatch):
-    monkeypatch.setattr(streaming, "FLUSH_INTERVAL", -1.0)
+    monkeypatch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
     left = failing(monkeypatch, WRITES, Killed())
     short().run(**SETTINGS, save=tmp_path / "x.nc")
     assert left == [0]  # so that the next test goes through all of them
@@ -130,7 +130,7 @@ def test_results_do_not_depend_on_when_they_are_written(uninterrupted, tmp_path,
 def test_dying_in_the_middle_of_a_write(uninterrupted, tmp_path, monkeypatch, writes):
     path, state = tmp_path / "x.nc", tmp_path / "x.nc.state"
     with monkeypatch.context() as patch:
-        patch.setattr(streaming, "FLUSH_INTERVAL", -1.0)
+        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
         failing(patch, writes, Killed())
         with pytest.raises(Killed):
             short().run(**SETTINGS, save=path)
@@ -148,12 +148,13 @@ def test_dying_in_the_middle_of_a_write(uninterrupted, tmp_path, monkeypatch, wr
         assert content(path) == uninterrupted
 
 
+@pytest.mark.filterwarnings("ignore:initial velocities broke a joint")
 @pytest.mark.parametrize("integrator", [name for name in INTEGRATORS if name != "auto"])
 def test_every_integrator_goes_on_exactly(tmp_path, monkeypatch, integrator):
     """With a motion, a spring, a follower, damping and a hinge as well; stopped twice."""
     settings = {"duration": 0.05, "output_step": 0.001, "tol": 1e-4, "integrator": integrator}
     everything().run(**settings, save=tmp_path / "whole.nc")
-    monkeypatch.setattr(streaming, "FLUSH_INTERVAL", -1.0)
+    monkeypatch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
     for writes, resume in ((40, False), (50, True)):
         with monkeypatch.context() as patch:
             failing(patch, writes, Killed())
@@ -184,16 +185,48 @@ def everything() -> Scene:
     return scene
 
 
-def test_ctrl_c_leaves_what_there_is_and_goes_on(uninterrupted, tmp_path):
-    def stop(time: float) -> None:
-        raise KeyboardInterrupt
+def test_rows_are_written_between_checkpoints(tmp_path, monkeypatch):
+    """Of a run that pauses once in ten rows, with a clock that is slower than its steps."""
+    monkeypatch.setattr(streaming, "CHECKPOINT_INTERVAL", 1e9)
+    monkeypatch.setattr(streaming, "ROWS_INTERVAL", 0.0)
+    path, seen = tmp_path / "x.nc", []
+    settings = {"duration": 0.15, "output_step": 5e-4, "step": 5e-6}
+    run = short().run(**settings, save=path, progress=lambda time: seen.append((time, load_run(path).time[-1])))
+    assert len(seen) > 3 and all(time - written < 5e-4 + 5e-6 for time, written in seen)
+    memory = short().run(**settings)
+    assert all(run[name].tobytes() == memory[name].tobytes() for name in run.keys())
 
+
+def test_an_equilibrium_to_start_from(tmp_path, monkeypatch):
+    scene = pendulum()
+    scene.pin("wire", s=1.0)
+    settings, path = {"duration": 0.1, "tol": 1e-3}, tmp_path / "x.nc"
+    scene.run(**settings, initial="equilibrium", save=tmp_path / "whole.nc")
+    with monkeypatch.context() as patch:
+        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
+        failing(patch, 100, Killed())
+        with pytest.raises(Killed):
+            scene.run(**settings, initial="equilibrium", save=path)
+    with refused(path, "its run cannot go on from another state" + ANEW):
+        scene.run(**settings, initial=scene.equilibrium(load_steps=3, tolerance=1e-5), save=path, resume=True)
+    scene.run(**settings, initial=scene.equilibrium(), save=path, resume=True)
+    assert content(path) == content(tmp_path / "whole.nc")
+
+
+def test_ctrl_c_leaves_what_there_is_and_goes_on(uninterrupted, tmp_path):
     path = tmp_path / "x.nc"
-    many = SETTINGS | {"step": 2e-6}
+
+    def stop(time: float) -> None:
+        if time > 0.095:
+            raise KeyboardInterrupt
+
     with pytest.warns(FunicularWarning, match=r"interrupted at .*, and resume goes on with it$"):
-        run = short().run(**many, save=path, progress=stop)
+        run = short().run(**SETTINGS, save=path, progress=stop)
     assert (run.status, load_run(path).status) == ("interrupted", "interrupted")
-    assert path.with_name("x.nc.state").exists()
+    assert len(run.time) == 11
+    resumed(path)
+    assert content(path) == uninterrupted
+    assert [p.name for p in tmp_path.iterdir()] == ["x.nc"]
 
 
 def test_a_run_that_ends_early_leaves_its_rows_and_no_checkpoint(tmp_path):
@@ -224,7 +257,7 @@ def test_a_run_that_cannot_start_leaves_the_older_file(uninterrupted, tmp_path):
 
 
 def test_full_disk(tmp_path, monkeypatch, uninterrupted):
-    monkeypatch.setattr(streaming, "FLUSH_INTERVAL", -1.0)
+    monkeypatch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
     path = tmp_path / "x.nc"
     with monkeypatch.context() as patch:
         failing(patch, 30, OSError(28, "No space left on device"))
@@ -295,7 +328,7 @@ CHILD = """
 import sys
 from funicular import streaming
 from funicular.cli import app
-streaming.FLUSH_INTERVAL = 0.0
+streaming.CHECKPOINT_INTERVAL = streaming.ROWS_INTERVAL = 0.0
 app(sys.argv[1:])
 """
 
