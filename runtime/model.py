@@ -24,6 +24,7 @@ from funicular.reduction import Node, half_width, supports
 from funicular.scene import Scene
 from funicular.settings import RunSettings
 from funicular.streaming import Stream, pauses
+from funicular.watching import Watcher
 from scipy.sparse import csr_array
 
 MOST_OUTPUT = 4e9  # bytes
@@ -285,7 +286,9 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
         initial.start(model)
     output_step = settings.output_step
     pace = pauses(int(np.ceil(settings.duration / output_step)) + 1, _check_size(model, settings, stream))
-    engine = Engine(model)
+    engine, watcher = Engine(model), Watcher(scene, model)
+    if watcher.watches:
+        engine.watch(watcher)
     messages = []
     if settings.step is not None:
         step = output_step / np.ceil(output_step / settings.step * (1 - 1e-9))
@@ -311,10 +314,10 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
         warnings.warn(messages[-1], FunicularWarning, stacklevel=3)
     if status is None:
         if stream is not None:
-            stream.start(model, engine, partial(named, model, scene, engine), pace)
+            stream.start(model, engine, partial(named, model, scene, engine), pace, watcher.happened)
         status = engine.advance(on_progress, pace.every, stream)
     wall = time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
-    return recorded(model, scene, engine, settings, status, messages, {"set_up": set_up, "total": wall})
+    return recorded(model, scene, engine, settings, status, messages, watcher, {"set_up": set_up, "total": wall})
 
 
 def _check_size(model: Model, settings: RunSettings, stream: Stream | None) -> float:

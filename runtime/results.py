@@ -106,11 +106,16 @@ class Run:
 
     @property
     def status(self) -> str:
-        """``completed``, ``interrupted``, ``end_of_cable``, ``no_convergence``; ``unfinished`` as long as it goes on.
+        """``completed``, ``event`` (stopped by one), ``interrupted``, ``end_of_cable`` or ``no_convergence``.
 
-        A run that was killed stays unfinished.
+        ``unfinished`` of a run that goes on, or was killed.
         """
         return self.report["status"]
+
+    @property
+    def events(self) -> list[dict]:
+        """What the scene's events found: each with name, time (s), and the state of bodies and slides there."""
+        return self.report["events"]
 
     @cached_property
     def scene(self) -> Scene:
@@ -320,5 +325,9 @@ def load_run(path: str | os.PathLike) -> Run:
         raise ResultFileError(f"{path}: was written by a newer funicular; update this one to read it")
     names = [name for name, entry in file.entries.items() if entry.dims[:1] != (name,)]
     coords = {name: file.variable(name, file.read(name)) for name in file.entries if name not in set(names)}
-    return Run(Stored(file, names), coords, json.loads(last_report(file.attributes["report"])),
-               file.attributes["scene"])
+    report = json.loads(last_report(file.attributes["report"]))
+    if report["status"] == "unfinished":
+        from funicular.streaming import events_kept
+
+        report["events"] = events_kept(path)
+    return Run(Stored(file, names), coords, report, file.attributes["scene"])

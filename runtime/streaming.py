@@ -90,7 +90,7 @@ class Stream:
         Raises ResultFileError.
         """
         self._path = Path(path).resolve()
-        self._state = self._path.with_name(f"{self._path.name}.state")
+        self._state = _state_of(self._path)
         self._scene, self._settings = scene, settings
         self._file: File | None = None
         self._taken, self._resumed = 0, []
@@ -123,9 +123,13 @@ class Stream:
         disk = os.statvfs(self._path.parent)
         return disk.f_bavail * disk.f_frsize + (self._path.stat().st_size if self._path.exists() else 0)
 
-    def start(self, model: Model, engine, rows: Callable[[], Rows], pace: Pauses) -> None:
-        """Make the file, with the first row, or go on where the checkpoint was taken; rows: those of the engine."""
-        self._engine, self._rows, self._pace, self._begin = engine, rows, pace, time.monotonic()
+    def start(self, model: Model, engine, rows: Callable[[], Rows], pace: Pauses, events: list[dict]) -> None:
+        """Make the file, with the first row, or go on where the checkpoint was taken.
+
+        rows: those of the engine, by name; events: those that have happened, a list to which more are added.
+        """
+        self._engine, self._rows, self._pace, self._events = engine, rows, pace, events
+        self._begin = time.monotonic()
         self._facts["start"] = _start_of(model)
         if self._kept is None:
             self._make(labelled(rows()))
@@ -136,6 +140,7 @@ class Stream:
         self._compare(facts, "start", "from another state")
         engine.restore(state)
         self._taken = facts["rows"]
+        events[:] = facts["events"]
         self._resumed = [*facts["resumed_at_s"], engine.time]
         self._written(lambda: self._file.truncate(self._taken))
         self._report(self._unfinished())
@@ -210,7 +215,8 @@ class Stream:
 
     def _checkpoint(self) -> None:
         elapsed = self.elapsed + time.monotonic() - self._begin
-        facts = self._facts | {"rows": self._taken, "elapsed_s": elapsed, "resumed_at_s": self._resumed}
+        facts = self._facts | {"rows": self._taken, "elapsed_s": elapsed, "resumed_at_s": self._resumed,
+                               "events": self._events}
         self._written(lambda: Checkpoint(facts, self._engine.checkpoint()).write(self._state))
         self._checked = time.monotonic()
 
@@ -264,6 +270,18 @@ class Stream:
         if rows > self._file.rows:
             raise self._refused(f"it has {self._file.rows} times, but its checkpoint is of the one after {rows}")
         return kept
+
+
+def events_kept(path: Path) -> list[dict]:
+    """What the events of a run that has not come to its end have found up to its checkpoint."""
+    try:
+        return Checkpoint.read(_state_of(path)).facts["events"]
+    except (OSError, ValueError, KeyError, TypeError):
+        return []
+
+
+def _state_of(path: Path) -> Path:
+    return path.with_name(f"{path.name}.state")
 
 
 def _facts(scene: Scene, settings: RunSettings) -> dict:

@@ -160,10 +160,12 @@ def test_every_integrator_goes_on_exactly(tmp_path, monkeypatch, integrator):
             failing(patch, writes, Killed())
             with pytest.raises(Killed):
                 everything().run(**settings, save=tmp_path / "x.nc", resume=resume)
+        seen = load_run(tmp_path / "x.nc").events
     run = everything().run(**settings, save=tmp_path / "x.nc", resume=True)
     assert 0 < run.report["resumed_at_s"][0] < run.report["resumed_at_s"][1] < 0.05
     assert content(tmp_path / "x.nc") == content(tmp_path / "whole.nc")
     again, whole = run.report, load_run(tmp_path / "whole.nc").report
+    assert len(whole["events"]) > len(seen) > 0 and whole["events"][: len(seen)] == seen
     assert {name: value for name, value in again.items() if name not in ("time_s", "resumed_at_s", "settings")} == {
         name: value for name, value in whole.items() if name not in ("time_s", "settings")}
 
@@ -182,6 +184,9 @@ def everything() -> Scene:
     scene.slide("A", along="wire", s=0.48, name="trolley")
     scene.spring("A", (0.5, 1, 0), stiffness=50.0, damping=1.0)
     scene.force("wire", s=1.0, value=(2, 0, 0), follower=True)
+    scene.event("passes", quantity="wire.position.y", s=1.0, value=-0.001)
+    scene.event("late", quantity="trolley.s", value=0.52)
+    scene.event("turned", function=lambda time, state: state["A.orientation"][1] - 0.01)
     return scene
 
 
@@ -352,9 +357,9 @@ def await_file(running: subprocess.Popen, path: Path, least: int = 1) -> float:
 
 @pytest.fixture
 def whole(tmp_path) -> tuple[dict[str, bytes], float]:
-    """What a run of about a second writes, and how long it writes, in s; its scene.toml is in the folder."""
+    """What a run of about half a second writes, and how long it writes, in s; its scene.toml is in the folder."""
     scene = short()
-    scene.run_settings = {"duration": 0.5, "output_step": 5e-4, "step": 1e-5}
+    scene.run_settings = {"duration": 0.3, "output_step": 5e-4, "step": 1e-5}
     (tmp_path / "scene.toml").write_text(scene.to_toml())
     running = start(tmp_path, "whole.nc")
     begin = await_file(running, tmp_path / "whole.nc")
@@ -377,12 +382,12 @@ def test_kill(whole, tmp_path):
     path, least = tmp_path / "x.nc", 1
     for options in ([], ["--resume"]):
         running = start(tmp_path, path.name, *options)
-        await_file(running, path, least + 300)
+        await_file(running, path, least + 150)
         running.kill()
         assert running.wait() == -signal.SIGKILL
         check_killed(path, whole[0])
         least = times(path)
-    assert 600 < least < 1001
+    assert 300 < least < 601
     check_resumed(path, whole[0])
 
 

@@ -45,6 +45,7 @@ static void copy_all(copier *c, fu_run *run)
     copy(c, run->first, sizeof(double) * (size_t)model->n_q);
     copy(c, run->s_slope, sizeof(double) * (size_t)model->n_joints);
     copy(c, run->watched, sizeof(double) * (size_t)run->n_watches);
+    copy(c, run->late, sizeof(int) * (size_t)run->n_watches);
     copy(c, &run->record.n, sizeof run->record.n);
     copy(c, &run->statistics, sizeof run->statistics);
     copy(c, (char *)run + numbers, sizeof *run - numbers);
