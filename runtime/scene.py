@@ -306,12 +306,13 @@ class Scene:
             self._check_motions_start_at_zero()
         if resume and settings.save is None:
             raise ResultFileError("run: there is nothing to resume without a file of results; name it with save")
-        from funicular.model import simulate
         from funicular.streaming import Stream
 
         with nullcontext() if settings.save is None else Stream(settings.save, self, settings, resume) as stream:
             if settings.initial == "equilibrium" and state is None:
                 state = self.equilibrium()
+            from funicular.model import simulate
+
             with progress_bar(settings.duration, progress) as on_progress:
                 recording = simulate(self, settings, on_progress, initial=state, stream=stream)
             run = stream.finish(recording) if stream else Run.from_recording(recording, self, settings)

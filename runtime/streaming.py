@@ -64,7 +64,7 @@ class Checkpoint(NamedTuple):
     def write(self, path: Path) -> None:
         """Replace the file. Raises OSError."""
         facts = self.facts | {"size": len(self.state), "sha256": hashlib.sha256(self.state).hexdigest()}
-        part = path.with_name(f".{path.name}.{os.getpid()}.part")
+        part = _part_of(path)
         try:
             part.write_bytes(json.dumps(facts).encode() + b"\n" + self.state)
             part.replace(path)
@@ -95,13 +95,13 @@ class Stream:
         self._file: File | None = None
         self._taken, self._resumed = 0, []
         self._added = self._checked = time.monotonic()
-        self._facts = _facts(scene, settings)
-        self._kept = self._to_resume() if resume else None
         if not resume:
             check_writable(path)
             if self._path.exists():
                 with open(self._path) as older:
                     self._claim(older.fileno())
+        self._facts = _facts(scene, settings)
+        self._kept = self._to_resume() if resume else None
 
     def __enter__(self) -> Stream:
         """The stream."""
@@ -109,6 +109,7 @@ class Stream:
 
     def __exit__(self, *exception) -> None:
         """Let other runs have the file."""
+        _part_of(self._path).unlink(missing_ok=True)
         if self._file is not None:
             fcntl.flock(self._file.descriptor, fcntl.LOCK_UN)
 
@@ -194,8 +195,7 @@ class Stream:
         self._taken = self._file.rows
 
     def _replace(self, coords: dict, variables: dict, report: dict) -> None:
-        part = self._path.with_name(f".{self._path.name}.{os.getpid()}.part")
-        self._file = create_file(part, coords, variables, self._scene.to_toml(), report, REPORT_ROOM)
+        self._file = create_file(_part_of(self._path), coords, variables, self._scene.to_toml(), report, REPORT_ROOM)
         self._claim(self._file.descriptor)
 
     def _add(self, rows: Rows) -> None:
@@ -263,7 +263,7 @@ class Stream:
                 raise self._refused(f"its run was started with {name} = {before}, and cannot go on with {now}",
                                     "resume it with the settings that it was started with, or start it anew")
         self._compare(kept.facts, "scene", "with another scene")
-        self._compare(kept.facts, "programs", "in another version of funicular or of SciPy")
+        self._compare(kept.facts, "programs", "with another version of funicular, NumPy or SciPy")
         check_writable(self._path)
         self._file = File(self._path, writable=True)
         self._claim(self._file.descriptor)
@@ -284,6 +284,11 @@ def _state_of(path: Path) -> Path:
     return path.with_name(f"{path.name}.state")
 
 
+def _part_of(path: Path) -> Path:
+    """What becomes the file when it is whole; the same for all runs, so that a killed one's is written over."""
+    return path.with_name(f".{path.name}.part")
+
+
 def _facts(scene: Scene, settings: RunSettings) -> dict:
     """What must be the same for a run to go on."""
     alone = copy(scene)
@@ -302,6 +307,7 @@ def _digest(*parts: bytes) -> str:
 
 def _programs(scene: Scene) -> str:
     """Digest of the machine code that computes the run."""
+    import numpy
     import scipy
     from funicular import engine
     from funicular.generated import kernels
@@ -309,7 +315,8 @@ def _programs(scene: Scene) -> str:
 
     files = [engine.__file__, kernels.__file__]
     own = sorted({cable.library for cable in scene.cables.values() if cable.library is not None})
-    return _digest(scipy.__version__.encode(), *(Path(file).read_bytes() for file in files),
+    versions = f"{numpy.__version__} {scipy.__version__}"
+    return _digest(versions.encode(), *(Path(file).read_bytes() for file in files),
                    *(load(library).digest.encode() for library in own))
 
 

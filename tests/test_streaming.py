@@ -270,6 +270,7 @@ def test_full_disk(tmp_path, monkeypatch, uninterrupted):
                            "make room, and go on with resume"):
             short().run(**SETTINGS, save=path)
     assert len(load_run(path).time) == 10
+    assert {p.name for p in tmp_path.iterdir()} == {"x.nc", "x.nc.state"}
     resumed(path)
     assert content(path) == uninterrupted
 
@@ -293,7 +294,7 @@ def test_what_cannot_be_resumed(stopped, tmp_path):
         with refused(stopped, r"its checkpoint x\.nc\.state is damaged" + ANEW):
             resumed(stopped)
     state.write_bytes(whole.replace(b'"programs": "', b'"programs": "0'))
-    with refused(stopped, "its run cannot go on in another version of funicular or of SciPy" + ANEW):
+    with refused(stopped, "its run cannot go on with another version of funicular, NumPy or SciPy" + ANEW):
         resumed(stopped)
     state.write_bytes(whole)
     File(stopped, writable=True).truncate(3)
