@@ -475,8 +475,7 @@ cdef class Engine:
         t = &self.run.tableau
         t.stages = len(method.b)
         t.A, t.b, t.c = self._doubles(method.A), self._doubles(method.b), self._doubles(method.c)
-        t.error = self._doubles(method.error)
-        t.coarse = NULL if method.coarse is None else self._doubles(method.coarse)
+        t.error, t.coarse = self._doubles(method.error), self._doubles(method.coarse)
         stage = self.model.n_q + self.model.n_dof
         self.run.scratch = self._doubles(np.zeros((t.stages + 2) * stage + 2 * (t.stages + 1)))
 

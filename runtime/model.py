@@ -16,7 +16,7 @@ from funicular.actions import Actions, DeadLoad, LoadModel, SignalModel, SpringM
 from funicular.constants import constants
 from funicular.elements import gauge
 from funicular.errors import FunicularWarning, SceneError
-from funicular.integrators import GeneralisedAlpha, explicit
+from funicular.integrators import choose
 from funicular.libraries import kernels_of, tables_of
 from funicular.parts import Cable, RigidBody, Slide
 from funicular.recording import Recording, named, recorded
@@ -294,7 +294,7 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
         step = output_step / np.ceil(output_step / settings.step * (1 - 1e-9))
         if step < settings.step * (1 - 1e-6):
             messages.append(f"step {settings.step:.6g} s was made {step:.6g} s, so that steps end on output times")
-    method = explicit(settings.tol) if settings.integrator == "explicit" else GeneralisedAlpha(settings.spectral_radius)
+    method, reason = choose(settings, scene, model, engine)
     set_up = time.perf_counter() - begin
     status, change = engine.start(
         duration=settings.duration,
@@ -317,7 +317,8 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
             stream.start(model, engine, partial(named, model, scene, engine), pace, watcher.happened)
         status = engine.advance(on_progress, pace.every, stream)
     wall = time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
-    return recorded(model, scene, engine, settings, status, messages, watcher, {"set_up": set_up, "total": wall})
+    return recorded(model, scene, engine, settings, status, messages, reason, watcher,
+                    {"set_up": set_up, "total": wall})
 
 
 def _check_size(model: Model, settings: RunSettings, stream: Stream | None) -> float:

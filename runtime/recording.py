@@ -136,13 +136,14 @@ def named(model: Model, scene: Scene, engine) -> Rows:
 
 
 def recorded(model: Model, scene: Scene, engine, settings: RunSettings, status: str, messages: list[str],
-             watcher: Watcher, seconds: dict[str, float]) -> Recording:
+             reason: str, watcher: Watcher, seconds: dict[str, float]) -> Recording:
     """The engine's rows by name, and its report."""
     statistics = engine.statistics
     statistics["time_s"] = seconds | statistics["time_s"]
     report = {
         "status": status,
         "integrator": engine.integrator,
+        "integrator_reason": reason,
         "spectral_radius": settings.spectral_radius,
         "tol": settings.tol if settings.step is None else None,
         "step": settings.step,

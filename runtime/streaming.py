@@ -131,7 +131,7 @@ class Stream:
         """
         self._engine, self._rows, self._pace, self._events = engine, rows, pace, events
         self._begin = time.monotonic()
-        self._facts["start"] = _start_of(model)
+        self._facts |= {"start": _start_of(model), "integrator": engine.integrator}
         if self._kept is None:
             self._make(labelled(rows()))
             engine.take_rows()
@@ -139,6 +139,7 @@ class Stream:
             return
         facts, state = self._kept
         self._compare(facts, "start", "from another state")
+        self._compare(facts, "integrator", f'with integrator "{engine.integrator}"')
         engine.restore(state)
         self._taken = facts["rows"]
         events[:] = facts["events"]

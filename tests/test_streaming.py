@@ -305,6 +305,12 @@ def test_what_cannot_be_resumed(stopped, tmp_path):
         resumed(stopped)
 
 
+def test_auto_goes_on_with_the_same_integrator(stopped):
+    """A spectral radius that is given decides for genalpha, also where it is the default."""
+    with refused(stopped, 'its run cannot go on with integrator "genalpha"' + ANEW):
+        resumed(stopped, spectral_radius=0.9)
+
+
 def test_two_runs_do_not_write_one_file(stopped):
     writing = File(stopped, writable=True)
     fcntl.flock(writing.descriptor, fcntl.LOCK_EX)

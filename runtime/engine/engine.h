@@ -227,11 +227,11 @@ typedef struct {
     double alpha_m, alpha_f, beta, gamma;
 } fu_genalpha;
 
-/* Explicit Runge-Kutta method with an embedded error estimate, or two. */
+/* Explicit Runge-Kutta method with two embedded error estimates. */
 typedef struct {
     int stages;
     const double *A, *b, *c;          /* stages x stages, row by row; stages; stages */
-    const double *error, *coarse;     /* stages + 1: the last is of the state at the end; `coarse` may be null */
+    const double *error, *coarse;     /* stages + 1: the last is of the state at the end */
 } fu_tableau;
 
 /* What the user watches: an entry of the state less a value, or a function of his. */

@@ -84,7 +84,9 @@ static int start_scheme(fu_run *run)
     fu_joint_output *joints = (fu_joint_output *)run->accelerator.joints;
     if (fu_project_velocities(model, now, &run->accelerator, run->before)) return FU_SINGULAR;
     for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->before[i];
-    if (fu_accelerations(model, now, &run->accelerator, now->acceleration, joints, 0)) return FU_SINGULAR;
+    if (fu_accelerations(model, now, &run->accelerator, now->acceleration, joints, run->force)) return FU_SINGULAR;
+    run->dissipated_power = fu_dissipation(model, now->q, now->v);
+    run->external_power = fu_external_power(run, now, run->force);
     for (int j = 0; j < model->n_joints; ++j) {
         run->s_slope[j] = joints[j].s_rate;
         memcpy(now->f + 3 * j, joints[j].force, sizeof joints[j].force);
@@ -110,8 +112,6 @@ int fu_start(fu_run *run)
         memset(now->acceleration, 0, sizeof(double) * (size_t)model->n_dof);
         memset(now->a, 0, sizeof(double) * (size_t)model->n_dof);
     }
-    run->dissipated_power = fu_dissipation(model, now->q, now->v);
-    run->external_power = fu_external_power(run, now, run->record.reaction);
     /* tolerances are relative to the largest motion: until there is one, that of a thousandth of the duration; and
      * never to less than what a scene at rest cannot help */
     run->least_motion = 1e-9 * run->extent;
