@@ -265,7 +265,9 @@ enum { FU_RUNNING = 0, FU_DONE = 1, FU_END_OF_CABLE = 2, FU_NO_CONVERGENCE = 3, 
 /* Rows of output, one an output time; joint: FU_JOINT_OUTPUTS numbers a joint in the order of fu_joint_output. */
 #define FU_JOINT_OUTPUTS 10
 typedef struct {
-    int n;
+    int n;     /* rows recorded since the start */
+    int first; /* the row that stands first in the arrays: those before it were taken away */
+    int pause; /* at so many rows fu_advance returns, for the caller to call fu_pause */
     double *time, *q, *v, *acceleration, *reaction, *s, *joint;
     double *kinetic, *elastic, *potential, *dissipated, *external, *spring;
 } fu_record;
@@ -303,7 +305,7 @@ struct fu_run {
     int order;           /* of the error in positions as controlled */
     fu_genalpha scheme;
     fu_tableau tableau;
-    double *scratch;     /* of the integrator */
+    double *scratch;     /* of the integrator, within a step: checkpoints do not hold it */
     int n_watches;
     const fu_watch *watches;
     double *watched;     /* per watch: its value at `now`, 0 where it has just passed */
@@ -321,8 +323,10 @@ struct fu_run {
     double *psi, *force, *work, *before;      /* n_dof; force is what supports and motions give, once Newton is done */
     double *first;                            /* n_q: the configuration at the start */
     double *s_slope;                          /* per joint: predicts ds/dt */
+    /* From here to the end numbers alone, which a checkpoint copies as they are. */
     double h, h_factored, contraction, last_error;
     double dissipated, dissipated_power, external, external_power; /* J, W */
+    double recorded; /* s: time of the last row */
     double motion, least_motion, extent; /* m: largest so far, assumed at least, largest coordinate of a position */
     double newton_tolerance, round_off; /* of increments, m: where Newton may stop, and where it cannot go on */
     int factored, stopped_joint, turned;
@@ -363,5 +367,10 @@ void fu_watch_now(fu_run *run, fu_event event);
 int fu_start(fu_run *run);
 int fu_advance(fu_run *run, double seconds);
 int fu_stop(fu_run *run);
+
+/* checkpoint.c: all that later steps depend on */
+void fu_pause(fu_run *run);
+long fu_save(const fu_run *run, char *bytes);
+void fu_restore(fu_run *run, const char *bytes);
 
 #endif

@@ -51,7 +51,7 @@ static int record_row(fu_run *run)
     const fu_model *model = run->model;
     const fu_state *now = &run->now;
     fu_record *r = &run->record;
-    const long row = r->n;
+    const long row = r->n - r->first;
     fu_joint_output *joints = (fu_joint_output *)(r->joint + row * model->n_joints * FU_JOINT_OUTPUTS);
     r->time[row] = now->t;
     memcpy(r->q + row * model->n_q, now->q, sizeof(double) * (size_t)model->n_q);
@@ -70,6 +70,7 @@ static int record_row(fu_run *run)
                         by_rate);
     }
     ++r->n;
+    run->recorded = now->t;
     run->statistics.time_output += fu_clock() - begin;
     return info;
 }
@@ -274,11 +275,11 @@ static int step_towards(fu_run *run, double target)
 /* Record where the run has stopped, if that is not done already. */
 int fu_stop(fu_run *run)
 {
-    if (run->now.t > run->record.time[run->record.n - 1] && record_row(run)) return FU_SINGULAR;
+    if (run->now.t > run->recorded && record_row(run)) return FU_SINGULAR;
     return FU_EVENT;
 }
 
-/* Go on for about so many seconds; the status tells whether there is more to do. */
+/* Go on for about so many seconds, or to the pause; the status tells whether there is more to do. */
 int fu_advance(fu_run *run, double seconds)
 {
     const double until = fu_clock() + seconds;
@@ -289,7 +290,7 @@ int fu_advance(fu_run *run, double seconds)
             run->now.t = target;
             if (record_row(run)) return FU_SINGULAR;
             if (target == run->duration) return FU_DONE;
-            if (fu_clock() > until) return FU_RUNNING;
+            if (run->record.n == run->record.pause || fu_clock() > until) return FU_RUNNING;
         } else {
             const int status = step_towards(run, target);
             if (status == FU_EVENT) return status;
