@@ -17,6 +17,12 @@ static int in_blocks(fu_block kernel, int n)
     return kernel ? n - n % FU_BLOCK_ELEMENTS : 0;
 }
 
+/* How many elements come next. */
+static int chunk(const fu_cable *cable, int k)
+{
+    return cable->n_elements - k < CHUNK ? cable->n_elements - k : CHUNK;
+}
+
 static void elastic_forces(const fu_cable *cable, int n, const fu_elements *of, double *f)
 {
     const fu_block block = cable->blocks ? cable->blocks->elastic_force : 0;
@@ -81,10 +87,38 @@ void fu_internal_forces(const fu_model *model, const double *q, const double *v,
     for (int c = 0; c < model->n_cables; ++c) {
         const fu_cable *cable = &model->cables[c];
         for (int k = 0, n; k < cable->n_elements; k += n) {
-            n = cable->n_elements - k < CHUNK ? cable->n_elements - k : CHUNK;
+            n = chunk(cable, k);
             const fu_elements of = elements_from(cable, q, v, k);
             elastic_forces(cable, n, &of, part);
             add_forces(cable, k, n, part, f);
+        }
+    }
+    fu_rate_forces(model, q, v, f);
+}
+
+/* f += discrete gradients of the elastic energies over a step */
+void fu_discrete_forces(const fu_model *model, const double *q, const double *q_next, double *f)
+{
+    double part[FU_MAX_COORDINATES];
+    for (int c = 0; c < model->n_cables; ++c) {
+        const fu_cable *cable = &model->cables[c];
+        for (int k = 0, at = cable->first; k < cable->n_elements; ++k, at += cable->per_node) {
+            cable->law->discrete_force(cable->length, q + at, q_next + at, cable->A + (long)k * cable->A_stride, part);
+            for (int i = 0; i < cable->coordinates; ++i) f[at + i] += part[i];
+        }
+    }
+}
+
+/* f += damping and gyroscopic forces */
+void fu_rate_forces(const fu_model *model, const double *q, const double *v, double *f)
+{
+    double part[CHUNK * FU_MAX_COORDINATES];
+    for (int c = 0; c < model->n_cables; ++c) {
+        const fu_cable *cable = &model->cables[c];
+        if (cable->tau <= 0.0 && cable->mass_damping <= 0.0) continue;
+        for (int k = 0, n; k < cable->n_elements; k += n) {
+            n = chunk(cable, k);
+            const fu_elements of = elements_from(cable, q, v, k);
             if (cable->tau > 0.0) {
                 damping_forces(cable, n, &of, part);
                 add_forces(cable, k, n, part, f);

@@ -116,7 +116,7 @@ def _numbers(values) -> str:
 
 
 def rows(repetitions: int) -> list[dict]:
-    """The table; empty where the machine has no blocks."""
+    """The table; empty where no machine of this kind has blocks."""
     if platform.machine() not in ("x86_64", "AMD64"):
         return []
     text, operations = loops()
@@ -147,11 +147,10 @@ def rows(repetitions: int) -> list[dict]:
 def main() -> None:
     """Measure and print."""
     options = arguments(__doc__, repetitions=(7, "of the round of kernels"))
-    found = rows(options.repetitions)
-    if found:
+    if found := rows(options.repetitions):
         show(found, options.out)
     else:
-        print("no kernels of several elements on this machine")
+        print(f"no kernels of several elements on {platform.machine()}")
 
 
 if __name__ == "__main__":

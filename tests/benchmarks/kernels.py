@@ -4,8 +4,9 @@
 
 Every kernel in a C loop on one thread, compiled as the package is, on the sample on which it is verified: microseconds
 a call (median, and least, of repetitions that take turns), operations as the manifest counts them, bytes of code; the
-aim, and what other programs need, where there is one. Then CPU seconds to derive each family, and seconds to build a
-clean clone without a compiler cache. --derivations 0 and --builds 0 leave these out.
+aim, and what other programs need, where there is one. Then those of several elements at once (blocks.py), CPU seconds
+to derive each family, and seconds to build a clean clone without a compiler cache. --derivations 0 and --builds 0
+leave the last two out.
 
 The aims: the table's; the whole family derived in 120 s of one core; the build in 60 s.
 """
@@ -17,6 +18,7 @@ import tempfile
 from pathlib import Path
 from statistics import median
 
+import blocks
 import making
 from funicular.derive import drift, timing
 from funicular.derive.families import families
@@ -71,6 +73,8 @@ def main() -> None:
     show(table, given.out)
     over = [f"{row['kernel']} {row['us'] / row['aim']:.2g}" for row in table if row["aim"] and row["us"] > row["aim"]]
     print("over its aim, times:", ", ".join(over) or "none")
+    if several := blocks.rows(given.repetitions):
+        show(several)
     if given.derivations:
         taken = [making.derivation() for _ in range(given.derivations)]
         least = {name: min(times[name] for times in taken) for name in taken[0]}
