@@ -197,12 +197,12 @@ static double allow(fu_run *run, double h)
 {
     run->round_off = 4e-16 * fmax(run->extent, run->motion);
     const double scale = fmax(run->motion, run->least_motion);
-    const double allowed = fmax(run->tol * scale * h / run->duration, run->round_off);
+    const double allowed = fmax(run->tol * scale * (run->per_step ? 1.0 : h / run->duration), run->round_off);
     /* what Newton leaves has the same sign step after step and acts like a force: it counts (T/h)^2 times in
      * positions, the local error T/h times */
     run->newton_tolerance = fmin(1e-2 * h / run->duration * (run->fixed_step > 0.0 ? run->last_error : allowed),
                                  1e-14 * fmax(run->extent, scale)); /* keeps joints' residuals small at any tol */
-    return allowed;
+    return run->allowed = allowed;
 }
 
 /* The next step by the last one's error over what is allowed: the error falls with the power order + 1 of the step,
