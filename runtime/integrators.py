@@ -18,10 +18,9 @@ STABLE = 4.5
 stability interval is 5.96)."""
 STABLE_DAMPING = 6.0
 """The same for the highest rate of decay (the real interval is 6.40)."""
-STEP_OVER_EVALUATION = 6.0
-"""Cost of a step of genalpha over that of an evaluation of eq 38, by tests/benchmarks/choice.py."""
-STEPS_OF_GENALPHA = 12.0
-"""genalpha needs this over sqrt(tol) steps for a radian of the motion as a whole, by the same."""
+COST_OF_RADAU = 6e3
+"""Evaluations of eq 38 that a radian of the motion as a whole costs radau at tol = 1e-4, by
+tests/benchmarks/choice.py; they grow with the third root of 1/tol."""
 ITERATIONS = 20
 
 
@@ -103,18 +102,18 @@ def choose(settings: RunSettings, scene: Scene, model: Model,
                 "energy": EnergyMomentum}[settings.integrator]()
         return made, "as asked for"
     if settings.step is not None:
-        return implicit, "the step is fixed: genalpha is stable at any"
+        return implicit, "the step is fixed: genalpha holds at any"
     if "spectral_radius" in settings.model_fields_set:
         return implicit, "spectral_radius is given, which is genalpha's"
     frequency, decay = fastest_rates(model, engine)
     slow = slowest_rate(scene, model, settings.duration)
     explicit_cost = 12 * max(frequency / STABLE, decay / STABLE_DAMPING)
-    implicit_cost = STEP_OVER_EVALUATION * STEPS_OF_GENALPHA * slow / np.sqrt(settings.tol)
+    implicit_cost = COST_OF_RADAU * slow * (1e-4 / settings.tol) ** (1 / 3)
     better = explicit_cost < implicit_cost
     reason = (f"stability asks the explicit method for {explicit_cost:.3g} evaluations a second (highest frequency "
               f"{frequency:.3g} rad/s" + (f", fastest decay {decay:.3g} 1/s" if decay else "")
-              + f"), tol asks genalpha for work like {implicit_cost:.3g}")
-    return (Explicit() if better else implicit), reason
+              + f"), tol asks radau for work like {implicit_cost:.3g}")
+    return (Explicit() if better else Radau()), reason
 
 
 def slowest_rate(scene: Scene, model: Model, duration: float) -> float:
