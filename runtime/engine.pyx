@@ -35,7 +35,8 @@ cdef extern from "kernels.h" nogil:
 
 cdef extern from "engine.h" nogil:
     int FU_JOINT_TERMS, FU_JOINT_OUTPUTS, FU_MAX_COORDINATES
-    int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR
+    int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT
+    int FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_CALL
     int FU_SIGNAL_TERMS
     ctypedef struct fu_cable:
         const fu_element *kernel
@@ -135,8 +136,20 @@ cdef extern from "engine.h" nogil:
         double *joints
     ctypedef struct fu_genalpha:
         double alpha_m, alpha_f, beta, gamma
+    ctypedef struct fu_tableau:
+        int stages
+        const double *A
+        const double *b
+        const double *c
+        const double *error
+        const double *coarse
+    ctypedef struct fu_watch:
+        int kind, index, direction
+        double value
+    ctypedef struct fu_event:
+        int kind, which, side
     ctypedef struct fu_statistics:
-        long steps, rejected, newton_iterations, factorisations, crossings, newton_failures
+        long steps, rejected, newton_iterations, factorisations, crossings, newton_failures, evaluations
         double h_min, h_max, error_sum, time_factor, time_solve, time_residual, time_output
     ctypedef struct fu_record:
         int n
@@ -155,9 +168,22 @@ cdef extern from "engine.h" nogil:
         double *spring
     ctypedef struct fu_weights:
         double inertia, rate, stiffness
+    ctypedef struct fu_integrator:
+        const char *name
+    const fu_integrator fu_genalpha_method, fu_explicit_method
     ctypedef struct fu_run:
         const fu_model *model
+        const fu_integrator *integrator
+        int order
         fu_genalpha scheme
+        fu_tableau tableau
+        double *scratch
+        int n_watches
+        const fu_watch *watches
+        double *watched
+        double (*call)(void *context, int watch, const fu_state *state) noexcept nogil
+        void *context
+        fu_event event
         double duration, output_step, fixed_step, tol
         fu_state now, next
         fu_system newton
@@ -426,6 +452,15 @@ cdef class Engine:
         run.work, run.before = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         run.first, run.s_slope = self._doubles(np.zeros(model.n_q)), self._doubles(np.zeros(n_joints))
 
+    def _tableau(self, method):
+        t = &self.run.tableau
+        t.stages = len(method.b)
+        t.A, t.b, t.c = self._doubles(method.A), self._doubles(method.b), self._doubles(method.c)
+        t.error = self._doubles(method.error)
+        t.coarse = NULL if method.coarse is None else self._doubles(method.coarse)
+        stage = self.model.n_q + self.model.n_dof
+        self.run.scratch = self._doubles(np.zeros((t.stages + 2) * stage + 2 * (t.stages + 1)))
+
     cdef _matrix(self):
         """The unfactored Newton matrix, (unknowns, unknowns) sparse."""
         from scipy.sparse import coo_array
@@ -535,15 +570,21 @@ cdef class Engine:
         fu_spread(&self.model, &x[0], &dofs[0])
         return np.asarray(dofs)[:self.model.n_dof]
 
-    def start(self, *, duration, output_step, tol, step, scheme, first_step, rest_start=False):
-        """Allocate the output rows and compute the consistent start.
+    def start(self, *, duration, output_step, tol, step, method, first_step, rest_start=False):
+        """Allocate the output rows and compute the consistent start; method: see integrators.py.
 
         Returns a status where that failed, else None, and the change of velocities that the joints asked for.
         """
         run = &self.run
         run.duration, run.output_step, run.tol = duration, output_step, tol
         run.fixed_step, run.h, run.rest_start = step, first_step, rest_start
-        run.scheme.alpha_m, run.scheme.alpha_f, run.scheme.beta, run.scheme.gamma = scheme
+        run.order = method.order
+        if method.name == "explicit":
+            run.integrator = &fu_explicit_method
+            self._tableau(method)
+        else:
+            run.integrator = &fu_genalpha_method
+            run.scheme.alpha_m, run.scheme.alpha_f, run.scheme.beta, run.scheme.gamma = method.parameters
         rows = int(np.ceil(duration / output_step * (1 - 1e-12))) + 2
         m = &self.model
         r = &run.record
@@ -588,11 +629,16 @@ cdef class Engine:
         """Counts, step sizes, error estimate and seconds by part."""
         s = self.run.statistics
         return {"steps": s.steps, "rejected_steps": s.rejected, "newton_iterations": s.newton_iterations,
-                "factorisations": s.factorisations, "newton_failures": s.newton_failures,
+                "factorisations": s.factorisations, "newton_failures": s.newton_failures, "evaluations": s.evaluations,
                 "element_crossings": s.crossings, "smallest_step_s": s.h_min, "largest_step_s": s.h_max,
                 "sum_of_local_error_estimates_m": s.error_sum, "largest_motion_m": self.run.motion,
                 "time_s": {"residual": s.time_residual, "factorisation": s.time_factor, "solve": s.time_solve,
                            "output": s.time_output}}
+
+    @property
+    def integrator(self):
+        """Name of the integrator."""
+        return self.run.integrator.name.decode()
 
     @property
     def unknowns(self):

@@ -15,6 +15,7 @@ from funicular.actions import Actions, DeadLoad, LoadModel, SignalModel, SpringM
 from funicular.constants import constants
 from funicular.elements import gauge
 from funicular.errors import FunicularWarning, SceneError
+from funicular.integrators import GeneralisedAlpha, explicit
 from funicular.libraries import kernels_of, tables_of
 from funicular.parts import Cable, RigidBody, Slide
 from funicular.recording import Recording, recorded
@@ -267,13 +268,6 @@ def _joint(slide: Slide, scene: Scene, cable: int, rider: int, number: int) -> J
     )
 
 
-def generalised_alpha(spectral_radius: float) -> tuple[float, float, float, float]:
-    """alpha_m, alpha_f, beta, gamma for a spectral radius at infinite frequency (Chung & Hulbert 1993)."""
-    alpha_m = (2 * spectral_radius - 1) / (spectral_radius + 1)
-    alpha_f = spectral_radius / (spectral_radius + 1)
-    return alpha_m, alpha_f, (1 - alpha_m + alpha_f) ** 2 / 4, 0.5 - alpha_m + alpha_f
-
-
 def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float], None], initial=None) -> Recording:
     """Integrate a checked scene; calls on_progress(time reached in s) about twenty times a second.
 
@@ -293,13 +287,14 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
         step = output_step / np.ceil(output_step / settings.step * (1 - 1e-9))
         if step < settings.step * (1 - 1e-6):
             messages.append(f"step {settings.step:.6g} s was made {step:.6g} s, so that steps end on output times")
+    method = explicit(settings.tol) if settings.integrator == "explicit" else GeneralisedAlpha(settings.spectral_radius)
     set_up, cpu = time.perf_counter() - begin, time.process_time()
     status, change = engine.start(
         duration=settings.duration,
         output_step=output_step,
         tol=settings.tol,
         step=settings.step or 0.0,
-        scheme=generalised_alpha(settings.spectral_radius),
+        method=method,
         first_step=min(output_step, 1e-3 * settings.duration),
     )
     if status == "singular":

@@ -118,7 +118,7 @@ def recorded(model: Model, scene: Scene, engine, settings: RunSettings, status: 
     statistics["time_s"] = seconds | statistics["time_s"]
     report = {
         "status": status,
-        "integrator": "genalpha",
+        "integrator": engine.integrator,
         "spectral_radius": settings.spectral_radius,
         "tol": settings.tol if settings.step is None else None,
         "step": settings.step,

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from funicular import Harmonic, Material, Ramp, Rectangle, Scene
 from funicular.engine import Engine
-from funicular.model import build, generalised_alpha
+from funicular.integrators import GeneralisedAlpha
+from funicular.model import build
 
 
 def rider() -> Scene:
@@ -79,7 +80,7 @@ SCENES = {f.__name__: f for f in (rider, loaded, planar, frame)}
 @pytest.fixture(params=list(SCENES))
 def engine(request) -> Engine:
     engine = Engine(build(SCENES[request.param]()))
-    status, _ = engine.start(duration=1.0, output_step=0.1, tol=1e-4, step=0.0, scheme=generalised_alpha(0.8),
+    status, _ = engine.start(duration=1.0, output_step=0.1, tol=1e-4, step=0.0, method=GeneralisedAlpha(0.8),
                              first_step=1e-3)
     assert status is None
     return engine

@@ -157,6 +157,21 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
     return 0;
 }
 
+/* change = the smallest (in the mass norm) increment of the dofs that makes C_m = 0, to first order */
+int fu_project_positions(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change)
+{
+    double *lambda = work->rhs + model->n_band + model->n_border_dof;
+    evaluate(model, state, work);
+    const int info = factor_border(model, state, work);
+    if (info) return info;
+    for (int i = 0; i < model->n_dof; ++i) work->work[i] = 0.0;
+    for (int j = 0; j < model->n_joints; ++j)
+        for (int c = 0; c < model->joints[j].kernel->dim - 1; ++c)
+            lambda[model->joints[j].multiplier + c] = -view(work, j).C[1 + c];
+    solve(model, work, work->work, change);
+    return 0;
+}
+
 /* change = the smallest (in the mass norm) change of v that makes H v = 0 */
 int fu_project_velocities(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change)
 {

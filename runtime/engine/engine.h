@@ -163,6 +163,7 @@ void fu_gather(const fu_model *model, const double *force, double *x);
 void fu_spread(const fu_model *model, const double *x, double *dofs);
 void fu_add(const fu_model *model, fu_system *system, int i, int j, double value);
 int fu_extra(const fu_model *model, int k);
+double fu_size(const fu_model *model, const double *dofs);
 
 /* assembly.c */
 void fu_mass_times(const fu_model *model, const double *a, double *f);
@@ -189,6 +190,7 @@ void fu_loads_matrix(const fu_model *model, double t, const double *q, const dou
 /* springs.c */
 void fu_spring_force(const fu_model *model, const fu_spring *spring, const double *q, const double *v, double force[3],
                      double by_gap[9], double by_rate[9]);
+void fu_spring_state(const fu_model *model, fu_state *state);
 void fu_spring_forces(const fu_model *model, const double *q, const double *v, double *f);
 void fu_spring_pull(const fu_model *model, const fu_spring *spring, const double *q, const double force[3], double *f);
 void fu_spring_matrix(const fu_model *model, const fu_spring *spring, const fu_state *state, const double *psi,
@@ -197,7 +199,9 @@ double fu_spring_energy(const fu_model *model, const double *q);
 double fu_spring_dissipation(const fu_model *model, const double *q, const double *v);
 
 /* rotation.c */
-void fu_move_body(const fu_body *kernel, const double *b, const double *increment, double *moved);
+void fu_move(const fu_model *model, double *q, const double *dofs);
+void fu_body_rate(const fu_body *kernel, const double *b, const double *w, double *rate);
+void fu_body_increment(const fu_body *kernel, const double *b, const double *change, double *increment);
 void fu_turn_columns(const fu_body *kernel, double *rows, int n_rows, int n_columns, int first, const double *psi);
 
 /* acceleration.c: eq 38 and what comes out of it */
@@ -214,21 +218,40 @@ typedef struct {
 int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work);
 int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerator *work, double *acceleration,
                      fu_joint_output *joints, double *reaction);
+int fu_project_positions(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change);
 int fu_project_velocities(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change);
 int fu_find_arc_length(const fu_model *model, const fu_state *state, int joint, double *s);
 void fu_carry_directors(const fu_model *model, fu_state *state);
 
-/* genalpha.c: one step of the generalised-alpha method */
 typedef struct {
     double alpha_m, alpha_f, beta, gamma;
 } fu_genalpha;
 
+/* Explicit Runge-Kutta method with an embedded error estimate, or two. */
 typedef struct {
-    long steps, rejected, newton_iterations, factorisations, crossings, newton_failures;
+    int stages;
+    const double *A, *b, *c;          /* stages x stages, row by row; stages; stages */
+    const double *error, *coarse;     /* stages + 1: the last is of the state at the end; `coarse` may be null */
+} fu_tableau;
+
+/* What the user watches: an entry of the state less a value, or a function of his. */
+enum { FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_CALL };
+typedef struct {
+    int kind, index, direction; /* direction: 1 rising, -1 falling, 0 both */
+    double value;
+} fu_watch;
+
+enum { FU_NO_EVENT = 0, FU_CROSSING, FU_WATCHED };
+typedef struct {
+    int kind, which, side;
+} fu_event;
+
+typedef struct {
+    long steps, rejected, newton_iterations, factorisations, crossings, newton_failures, evaluations;
     double h_min, h_max, error_sum, time_factor, time_solve, time_residual, time_output;
 } fu_statistics;
 
-enum { FU_RUNNING = 0, FU_DONE = 1, FU_END_OF_CABLE = 2, FU_NO_CONVERGENCE = 3, FU_SINGULAR = 4 };
+enum { FU_RUNNING = 0, FU_DONE = 1, FU_END_OF_CABLE = 2, FU_NO_CONVERGENCE = 3, FU_SINGULAR = 4, FU_EVENT = 5 };
 
 /* Rows of output, one an output time; joint: FU_JOINT_OUTPUTS numbers a joint in the order of fu_joint_output. */
 #define FU_JOINT_OUTPUTS 10
@@ -238,9 +261,32 @@ typedef struct {
     double *kinetic, *elastic, *potential, *dissipated, *external, *spring;
 } fu_record;
 
+/* A way through time. `now` has consistent v, accelerations and forces when `start` is called; `step` makes `next` from
+ * it and is not zero where that failed; `error` is the local error of positions of the step just made, m; `book` adds
+ * what that step, now accepted, has dissipated and got from outside. */
+typedef struct fu_run fu_run;
 typedef struct {
+    const char *name;
+    int (*start)(fu_run *run);
+    int (*step)(fu_run *run, double h);
+    double (*error)(fu_run *run, double h);
+    void (*book)(fu_run *run, double h);
+} fu_integrator;
+extern const fu_integrator fu_genalpha_method, fu_explicit_method;
+
+struct fu_run {
     const fu_model *model;
+    const fu_integrator *integrator;
+    int order;           /* of the error in positions as controlled */
     fu_genalpha scheme;
+    fu_tableau tableau;
+    double *scratch;     /* of the integrator */
+    int n_watches;
+    const fu_watch *watches;
+    double *watched;     /* per watch: its value at `now` */
+    double (*call)(void *context, int watch, const fu_state *state);
+    void *context;
+    fu_event event;      /* that the run has stopped at */
     double duration, output_step, fixed_step, tol;
     fu_state now, next;
     fu_system newton;
@@ -255,21 +301,29 @@ typedef struct {
     double dissipated, dissipated_power, external, external_power; /* J, W */
     double motion, least_motion, extent; /* m: largest so far, assumed at least, largest coordinate of a position */
     double newton_tolerance, round_off; /* of increments, m: where Newton may stop, and where it cannot go on */
-    int factored, stopped_joint;
+    int factored, stopped_joint, turned;
     int rest_start; /* for order.py only: start the scheme from zero accelerations */
-} fu_run;
+};
 
 /* Newton matrix = inertia M + stiffness (K + rate D); statics has no inertia */
 typedef struct {
     double inertia, rate, stiffness;
 } fu_weights;
-int fu_step(fu_run *run, double h);
 void fu_linearise(fu_run *run, double h, const double *change);
 void fu_static_move(fu_run *run, const double *change);
 void fu_static_residual(fu_run *run);
 void fu_matrix(fu_run *run, fu_weights weights);
-double fu_step_error(fu_run *run, double h);
 double fu_clock(void);
+
+/* books.c */
+double fu_external_power(fu_run *run, const fu_state *state, const double *reaction);
+void fu_book_trapezoid(fu_run *run, double h);
+
+/* events.c */
+fu_event fu_find_event(fu_run *run);
+int fu_stands_on_boundary(const fu_run *run, fu_event event);
+double fu_locate(fu_run *run, fu_event event, double h);
+void fu_watch_now(fu_run *run, fu_event event);
 
 /* run.c: the time loop */
 int fu_start(fu_run *run);

@@ -44,12 +44,8 @@ static void kinematics(fu_run *run, double h)
         next->acceleration[i] = ((1.0 - g->alpha_m) * next->a[i] + g->alpha_m * now->a[i] -
                                  g->alpha_f * now->acceleration[i]) / (1.0 - g->alpha_f);
     }
-    const int n_flexible = model->n_rigids ? model->rigids[0].dof : model->n_dof;
-    for (int i = 0; i < n_flexible; ++i) next->q[i] = now->q[i] + run->psi[i];
-    for (int b = 0; b < model->n_rigids; ++b) {
-        const fu_rigid *body = &model->rigids[b];
-        fu_move_body(body->kernel, now->q + body->configuration, run->psi + body->dof, next->q + body->configuration);
-    }
+    memcpy(next->q, now->q, sizeof(double) * (size_t)model->n_q);
+    fu_move(model, next->q, run->psi);
     if (model->n_motions) fu_prescribe(model, next);
 }
 
@@ -171,12 +167,8 @@ static double spread_size(fu_run *run)
 {
     const fu_model *model = run->model;
     const double *extra = run->rhs + model->n_band + model->n_border_dof;
-    double largest = 0.0;
     fu_spread(model, run->rhs, run->work);
-    for (int i = 0; i < model->n_dof; ++i) {
-        const double size = fabs(run->work[i]) * model->weight[i];
-        if (!(size <= largest)) largest = size; /* keeps a NaN */
-    }
+    double largest = fu_size(model, run->work);
     for (int i = 0; i < model->n_extra; ++i)
         if (!(fabs(extra[i]) <= largest)) largest = fabs(extra[i]);
     return largest;
@@ -270,7 +262,7 @@ void fu_linearise(fu_run *run, double h, const double *change)
 }
 
 /* One step of size h from `now` to `next`; 0 when the Newton iteration converged. */
-int fu_step(fu_run *run, double h)
+static int step(fu_run *run, double h)
 {
     if (fabs(h - run->h_factored) > 1e-6 * h) run->factored = 0;
     const int stale = run->factored;
@@ -289,7 +281,7 @@ int fu_step(fu_run *run, double h)
 /* Local error of positions, m: h^2 |beta + (alpha_m - alpha_f)/2 - 1/6| (q''_n+1 - q''_n), passed through
  * (M + sigma K)^-1 M on the constraints' tangent space so that vibrations that the step does not resolve count by
  * their amplitude and not by their acceleration. */
-double fu_step_error(fu_run *run, double h)
+static double error(fu_run *run, double h)
 {
     const fu_model *model = run->model;
     const fu_genalpha *g = &run->scheme;
@@ -306,21 +298,22 @@ double fu_step_error(fu_run *run, double h)
     return spread_size(run);
 }
 
+static int start(fu_run *run)
+{
+    memcpy(run->now.a, run->now.acceleration, sizeof(double) * (size_t)run->model->n_dof);
+    run->factored = 0;
+    return FU_RUNNING;
+}
+
+const fu_integrator fu_genalpha_method = {"genalpha", start, step, error, fu_book_trapezoid};
+
 /* Statics: unknowns move `next`, from where it is. */
 void fu_static_move(fu_run *run, const double *change)
 {
     const fu_model *model = run->model;
-    double moved[7];
     for (int i = 0; i < run->newton.n + run->newton.m; ++i) run->rhs[i] = change[i];
     fu_spread(model, run->rhs, run->work);
-    const int n_flexible = model->n_rigids ? model->rigids[0].dof : model->n_dof;
-    for (int i = 0; i < n_flexible; ++i) run->next.q[i] += run->work[i];
-    for (int b = 0; b < model->n_rigids; ++b) {
-        const fu_rigid *body = &model->rigids[b];
-        double *place = run->next.q + body->configuration;
-        fu_move_body(body->kernel, place, run->work + body->dof, moved);
-        memcpy(place, moved, sizeof(double) * (size_t)body->kernel->configuration);
-    }
+    fu_move(model, run->next.q, run->work);
     apply_extra(run, 0.0, 1.0);
 }
 

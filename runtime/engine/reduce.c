@@ -64,3 +64,14 @@ void fu_add(const fu_model *model, fu_system *system, int i, int j, double value
         for (int m = 0; m < b.n; ++m)
             fu_system_add(system, a.place[k], b.place[m], value * a.value[k] * b.value[m]);
 }
+
+/* largest of what the dofs move points by, as a length; a NaN where one is */
+double fu_size(const fu_model *model, const double *dofs)
+{
+    double largest = 0.0;
+    for (int i = 0; i < model->n_dof; ++i) {
+        const double size = fabs(dofs[i]) * model->weight[i];
+        if (!(size <= largest)) largest = size;
+    }
+    return largest;
+}

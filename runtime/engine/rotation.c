@@ -16,29 +16,74 @@ static void coefficients(double a2, double *s, double *c, double *d)
     *d = (1.0 - *s) / a2;
 }
 
-/* b = (R, quaternion) moved by (translation, rotation vector in body axes); in the plane (R, unit complex number). */
-void fu_move_body(const fu_body *kernel, const double *b, const double *increment, double *moved)
+/* quaternion product p (w, x, y, z) */
+static void times(const double *p, double w, double x, double y, double z, double q[4])
+{
+    q[0] = p[0] * w - p[1] * x - p[2] * y - p[3] * z;
+    q[1] = p[0] * x + p[1] * w + p[2] * z - p[3] * y;
+    q[2] = p[0] * y - p[1] * z + p[2] * w + p[3] * x;
+    q[3] = p[0] * z + p[1] * y - p[2] * x + p[3] * w;
+}
+
+/* b = (R, quaternion) moves by (translation, rotation vector in body axes); in the plane (R, unit complex number). */
+static void move_body(const fu_body *kernel, double *b, const double *increment)
 {
     const int dim = kernel->dim;
-    for (int i = 0; i < dim; ++i) moved[i] = b[i] + increment[i];
-    const double *p = b + dim, *turn = increment + dim;
-    double *m = moved + dim;
+    for (int i = 0; i < dim; ++i) b[i] += increment[i];
+    const double *turn = increment + dim;
+    double *p = b + dim;
     if (dim == 2) {
         const double c = cos(turn[0]), s = sin(turn[0]), x = p[0] * c - p[1] * s, y = p[1] * c + p[0] * s;
         const double scale = 1.0 / sqrt(x * x + y * y);
-        m[0] = scale * x;
-        m[1] = scale * y;
+        p[0] = scale * x;
+        p[1] = scale * y;
         return;
     }
     const double h[3] = {0.5 * turn[0], 0.5 * turn[1], 0.5 * turn[2]};
     const double h2 = h[0] * h[0] + h[1] * h[1] + h[2] * h[2];
     double sine, versine, unused;
     coefficients(h2, &sine, &versine, &unused);
-    const double w = 1.0 - versine * h2, x = sine * h[0], y = sine * h[1], z = sine * h[2];
-    const double q[4] = {p[0] * w - p[1] * x - p[2] * y - p[3] * z, p[0] * x + p[1] * w + p[2] * z - p[3] * y,
-                         p[0] * y - p[1] * z + p[2] * w + p[3] * x, p[0] * z + p[1] * y - p[2] * x + p[3] * w};
+    double q[4];
+    times(p, 1.0 - versine * h2, sine * h[0], sine * h[1], sine * h[2], q);
     const double scale = 1.0 / sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    for (int i = 0; i < 4; ++i) m[i] = scale * q[i];
+    for (int i = 0; i < 4; ++i) p[i] = scale * q[i];
+}
+
+/* Configuration moved by increments of the dofs. */
+void fu_move(const fu_model *model, double *q, const double *dofs)
+{
+    const int n_flexible = model->n_rigids ? model->rigids[0].dof : model->n_dof;
+    for (int i = 0; i < n_flexible; ++i) q[i] += dofs[i];
+    for (int b = 0; b < model->n_rigids; ++b) {
+        const fu_rigid *body = &model->rigids[b];
+        move_body(body->kernel, q + body->configuration, dofs + body->dof);
+    }
+}
+
+/* Rates of the entries of b by the velocity w: translation, and rotation about body axes. */
+void fu_body_rate(const fu_body *kernel, const double *b, const double *w, double *rate)
+{
+    const int dim = kernel->dim;
+    for (int i = 0; i < dim; ++i) rate[i] = w[i];
+    if (dim == 2) {
+        rate[2] = -w[2] * b[3];
+        rate[3] = w[2] * b[2];
+    } else times(b + 3, 0.0, 0.5 * w[3], 0.5 * w[4], 0.5 * w[5], rate + 3);
+}
+
+/* A small change of the entries of b as an increment of its dofs: undoes `fu_body_rate`. */
+void fu_body_increment(const fu_body *kernel, const double *b, const double *change, double *increment)
+{
+    const int dim = kernel->dim;
+    for (int i = 0; i < dim; ++i) increment[i] = change[i];
+    if (dim == 2) {
+        increment[2] = b[2] * change[3] - b[3] * change[2];
+        return;
+    }
+    const double back[4] = {b[3], -b[4], -b[5], -b[6]};
+    double turn[4];
+    times(back, change[3], change[4], change[5], change[6], turn);
+    for (int i = 0; i < 3; ++i) increment[3 + i] = 2.0 * turn[1 + i];
 }
 
 /* T with exp(psi + T^-1 dtheta) = exp(psi) exp(dtheta): a change of psi turns the body by T dpsi (body axes). */

@@ -5,6 +5,7 @@
 
 #define SMALLEST_STEP 1e-12 /* of the duration */
 #define SHORT_STEP 1e-3     /* of the usual step */
+#define MOST_TURNS 2        /* of a slide on one boundary before a step is taken all the same: it rests there */
 
 /* largest distance that a node or a body's centre has moved, m */
 static double motion(const fu_model *model, const double *from, const double *to)
@@ -83,37 +84,12 @@ static int start_scheme(fu_run *run)
     if (fu_project_velocities(model, now, &run->accelerator, run->before)) return FU_SINGULAR;
     for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->before[i];
     if (fu_accelerations(model, now, &run->accelerator, now->acceleration, joints, 0)) return FU_SINGULAR;
-    memcpy(now->a, now->acceleration, sizeof(double) * (size_t)model->n_dof);
     for (int j = 0; j < model->n_joints; ++j) {
         run->s_slope[j] = joints[j].s_rate;
         memcpy(now->f + 3 * j, joints[j].force, sizeof joints[j].force);
     }
-    for (int k = 0; k < model->n_springs; ++k) {
-        double by_gap[9], by_rate[9];
-        fu_spring_force(model, &model->springs[k], now->q, now->v, now->spring + 3 * k, by_gap, by_rate);
-    }
-    run->factored = 0;
-    return FU_RUNNING;
-}
-
-/* power of the loads and, with the forces of the supports, of the motions */
-static double external_power(fu_run *run, const double *reaction)
-{
-    const fu_model *model = run->model;
-    const fu_state *now = &run->now;
-    double power = 0.0;
-    if (model->n_dead_loads || model->n_loads) {
-        for (int i = 0; i < model->n_dof; ++i) run->work[i] = 0.0;
-        fu_loads(model, now->t, now->q, run->work);
-        for (int i = 0; i < model->n_dof; ++i) power -= run->work[i] * now->v[i];
-    }
-    for (int k = 0; k < model->n_motions; ++k) {
-        const int i = model->motions[k].dof;
-        int counted = 0;
-        for (int m = 0; m < k; ++m) counted |= model->motions[m].dof == i;
-        if (!counted) power += reaction[i] * now->v[i];
-    }
-    return power;
+    fu_spring_state(model, now);
+    return run->integrator->start(run);
 }
 
 int fu_start(fu_run *run)
@@ -134,7 +110,7 @@ int fu_start(fu_run *run)
         memset(now->a, 0, sizeof(double) * (size_t)model->n_dof);
     }
     run->dissipated_power = fu_dissipation(model, now->q, now->v);
-    run->external_power = external_power(run, run->record.reaction);
+    run->external_power = fu_external_power(run, now, run->record.reaction);
     /* tolerances are relative to the largest motion: until there is one, that of a thousandth of the duration; and
      * never to less than what a scene at rest cannot help */
     run->least_motion = 1e-9 * run->extent;
@@ -143,59 +119,26 @@ int fu_start(fu_run *run)
         const double d = model->weight[i] * (fabs(now->v[i]) * t + 0.5 * fabs(now->acceleration[i]) * t * t);
         if (d > run->least_motion) run->least_motion = d;
     }
+    fu_watch_now(run, (fu_event){FU_NO_EVENT, 0, 0});
     return FU_RUNNING;
 }
 
-static void accept(fu_run *run, double h)
+static void accept(fu_run *run, double h, fu_event event)
 {
     const fu_model *model = run->model;
     for (int j = 0; j < model->n_joints; ++j) run->s_slope[j] = (run->next.s[j] - run->now.s[j]) / h;
+    run->integrator->book(run, h);
     const fu_state state = run->now;
     run->now = run->next;
     run->next = state;
     fu_carry_directors(model, &run->now);
-    const double dissipated = fu_dissipation(model, run->now.q, run->now.v);
-    const double external = external_power(run, run->force);
-    run->dissipated += 0.5 * h * (run->dissipated_power + dissipated);
-    run->external += 0.5 * h * (run->external_power + external);
-    run->dissipated_power = dissipated;
-    run->external_power = external;
     const double moved = motion(model, run->first, run->now.q);
     if (moved > run->motion) run->motion = moved;
+    fu_watch_now(run, event);
     fu_statistics *s = &run->statistics;
     ++s->steps;
     if (s->steps == 1 || h < s->h_min) s->h_min = h;
     if (h > s->h_max) s->h_max = h;
-}
-
-/* how far s lies outside its element, negative inside */
-static double outside(const fu_run *run, const fu_state *state, int j, int *side)
-{
-    const double length = run->model->cables[run->model->joints[j].cable].length;
-    const double x = state->s[j] - fu_element_start(run->model, j, state->element[j]);
-    *side = x > 0.5 * length ? 1 : -1;
-    return *side > 0 ? x - length : -x;
-}
-
-static double boundary_tolerance(const fu_run *run, int j)
-{
-    return 1e-11 * run->model->cables[run->model->joints[j].cable].length;
-}
-
-/* the joint of `next` that is farthest outside its element, or -1 */
-static int crossed(const fu_run *run, int *side)
-{
-    int which = -1, at;
-    double worst = 0.0;
-    for (int j = 0; j < run->model->n_joints; ++j) {
-        const double d = outside(run, &run->next, j, &at) - boundary_tolerance(run, j);
-        if (d > worst) {
-            worst = d;
-            which = j;
-            *side = at;
-        }
-    }
-    return which;
 }
 
 /* Put a slide that stands on a boundary into the neighbour. Accelerations and force jump with r_xx there: the scheme
@@ -217,100 +160,93 @@ static int enter(fu_run *run, int j, int side)
     return start_scheme(run);
 }
 
-/* Shorten the step until the slide j ends it on the boundary (Illinois); returns the step, 0 on failure. */
-static double locate(fu_run *run, int j, int side, double h)
+/* What follows from an event that `now` stands on. */
+static int happened(fu_run *run, fu_event event)
 {
-    const double target = fu_element_start(run->model, j, run->now.element[j] + (side > 0));
-    double low = 0.0, high = h;
-    double g_low = side * (run->now.s[j] - target), g_high = side * (run->next.s[j] - target);
-    int last = 0;
-    for (int i = 0; i < 60; ++i) {
-        const double middle = low + (high - low) * g_low / (g_low - g_high);
-        if (fu_step(run, middle)) return 0.0;
-        const double g = side * (run->next.s[j] - target);
-        if (fabs(g) <= boundary_tolerance(run, j)) return middle;
-        if (g > 0.0) {
-            high = middle;
-            g_high = g;
-            if (last > 0) g_low *= 0.5;
-            last = 1;
-        } else {
-            low = middle;
-            g_low = g;
-            if (last < 0) g_high *= 0.5;
-            last = -1;
-        }
-    }
-    return 0.0;
+    if (event.kind == FU_CROSSING) return enter(run, event.which, event.side);
+    run->event = event;
+    return FU_EVENT;
 }
 
-/* One accepted step towards `target`. */
+/* The step that ends at the target, or one of equal steps to there, none larger than wanted. */
+static double fitted(double remaining, double want)
+{
+    const double pieces = ceil(remaining / want * (1.0 - 1e-9));
+    return pieces <= 1.0 ? remaining : remaining / pieces;
+}
+
+/* Tolerances of a step: of its error, of Newton, and where rounding begins. Returns the first, m. */
+static double allow(fu_run *run, double h)
+{
+    run->round_off = 4e-16 * fmax(run->extent, run->motion);
+    const double scale = fmax(run->motion, run->least_motion);
+    const double allowed = fmax(run->tol * scale * h / run->duration, run->round_off);
+    /* what Newton leaves has the same sign step after step and acts like a force: it counts (T/h)^2 times in
+     * positions, the local error T/h times */
+    run->newton_tolerance = fmin(1e-2 * h / run->duration * (run->fixed_step > 0.0 ? run->last_error : allowed),
+                                 1e-14 * fmax(run->extent, scale)); /* keeps joints' residuals small at any tol */
+    return allowed;
+}
+
+/* The next step by the last one's error over what is allowed: the error falls with the power order + 1 of the step,
+ * what is allowed with the first. Small changes are not worth a new factorisation. */
+static void adapt(fu_run *run, double h, double ratio)
+{
+    const double factor = fmin(2.0, 0.8 * pow(fmax(ratio, 1e-12), -1.0 / run->order));
+    if (factor > 1.4) run->h = fmax(run->h, h * factor);
+    else if (factor < 0.8) run->h = h * factor;
+}
+
+/* One accepted step towards `target`, or a change of a slide's element. */
 static int step_towards(fu_run *run, double target)
 {
     const double smallest = SMALLEST_STEP * run->duration;
-    double want = run->fixed_step > 0.0 ? run->fixed_step : run->h;
-    int turned = 0;
+    const int adaptive = run->fixed_step <= 0.0;
+    double want = adaptive ? run->h : run->fixed_step;
     for (;;) {
         const double remaining = target - run->now.t;
-        const double pieces = ceil(remaining / want * (1.0 - 1e-9));
-        double h = pieces <= 1.0 ? remaining : remaining / pieces;
-        run->round_off = 4e-16 * fmax(run->extent, run->motion);
-        const double scale = fmax(run->motion, run->least_motion);
-        const double allowed = fmax(run->tol * scale * h / run->duration, run->round_off);
-        /* what Newton leaves has the same sign step after step and acts like a force: it counts (T/h)^2 times in
-         * positions, the local error T/h times */
-        run->newton_tolerance = fmin(1e-2 * h / run->duration * (run->fixed_step > 0.0 ? run->last_error : allowed),
-                                     1e-14 * fmax(run->extent, scale)); /* keeps joints' residuals small at any tol */
+        double h = fitted(remaining, want);
         if (h < smallest && remaining > smallest) return FU_NO_CONVERGENCE;
-        if (fu_step(run, h)) {
+        const double allowed = allow(run, h);
+        if (run->integrator->step(run, h)) {
             want = 0.5 * h;
             ++run->statistics.rejected;
             continue;
         }
-        const double error = fu_step_error(run, h), ratio = error / allowed;
-        if (run->fixed_step <= 0.0 && ratio > 2.0) {
-            want = run->h = h * fmax(0.2, 0.8 / sqrt(ratio));
+        const double error = run->integrator->error(run, h), ratio = error / allowed;
+        if (adaptive && !(ratio <= 2.0)) {
+            want = run->h = h * fmax(0.2, 0.8 * pow(ratio, -1.0 / run->order));
+            if (!(want > 0.0)) want = run->h = 0.2 * h;
             ++run->statistics.rejected;
             continue;
         }
-        int side = 0;
-        const int j = crossed(run, &side);
-        if (j >= 0 && turned < 2) {
-            int at;
-            if (outside(run, &run->now, j, &at) >= -boundary_tolerance(run, j) && at == side) {
-                /* it stands on this boundary already: change the element, not the time */
-                const int status = enter(run, j, side);
-                if (status) return status;
-                ++turned;
-                continue;
+        const fu_event event = fu_find_event(run);
+        if (event.kind && !(event.kind == FU_CROSSING && run->turned >= MOST_TURNS)) {
+            if (fu_stands_on_boundary(run, event)) {
+                ++run->turned;
+                return happened(run, event);
             }
-            h = locate(run, j, side, h);
+            h = fu_locate(run, event, h);
             if (h == 0.0) {
                 want *= 0.5;
                 if (want < smallest) return FU_NO_CONVERGENCE;
                 continue;
             }
-            int other_side = 0;
-            const int other = crossed(run, &other_side);
-            if (other >= 0) { /* another slide crossed before this one: the shorter step finds it */
+            if (fu_find_event(run).kind == FU_CROSSING) { /* another slide crossed before: the shorter step finds it */
                 want = h;
                 continue;
             }
-            accept(run, h);
-            return enter(run, j, side);
+            accept(run, h, event);
+            return happened(run, event);
         }
-        accept(run, h);
+        accept(run, h, event);
+        run->turned = 0;
         run->statistics.error_sum += error;
         run->last_error = error;
-        if (run->fixed_step <= 0.0) {
-            const double factor = fmin(2.0, 0.8 / sqrt(fmax(ratio, 1e-6)));
-            /* small changes are not worth a new factorisation */
-            if (factor > 1.4) run->h = fmax(run->h, h * factor);
-            else if (factor < 0.8) run->h = h * factor;
-        }
+        if (adaptive) adapt(run, h, ratio);
         /* what is left between a boundary and an output time can be so short that the rounding of psi, over h^2, is
          * all there is in its accelerations: they must not go on */
-        return h < SHORT_STEP * (run->fixed_step > 0.0 ? run->fixed_step : run->h) ? start_scheme(run) : FU_RUNNING;
+        return h < SHORT_STEP * (adaptive ? run->h : run->fixed_step) ? start_scheme(run) : FU_RUNNING;
     }
 }
 
@@ -318,19 +254,22 @@ static int step_towards(fu_run *run, double target)
 int fu_advance(fu_run *run, double seconds)
 {
     const double until = fu_clock() + seconds;
-    while (run->now.t < run->duration) {
+    for (;;) {
         double target = run->record.n * run->output_step;
         if (target > run->duration * (1.0 - 1e-12)) target = run->duration;
-        const int status = step_towards(run, target);
-        if (status) {
-            if (run->now.t > run->record.time[run->record.n - 1] && record_row(run)) return FU_SINGULAR;
-            return status;
-        }
-        if (fabs(run->now.t - target) <= 1e-12 * run->duration) {
+        if (run->now.t >= target - 1e-12 * run->duration) {
             run->now.t = target;
             if (record_row(run)) return FU_SINGULAR;
+            if (target == run->duration) return FU_DONE;
+            if (fu_clock() > until) return FU_RUNNING;
+        } else {
+            const int status = step_towards(run, target);
+            if (status == FU_EVENT) return status;
+            if (status) {
+                if (run->now.t > run->record.time[run->record.n - 1] && record_row(run)) return FU_SINGULAR;
+                return status;
+            }
+            if (fu_clock() > until) return FU_RUNNING;
         }
-        if (fu_clock() > until) break;
     }
-    return run->now.t < run->duration ? FU_RUNNING : FU_DONE;
 }

@@ -161,6 +161,14 @@ void fu_spring_matrix(const fu_model *model, const fu_spring *spring, const fu_s
     }
 }
 
+/* the springs' forces of a state, as it stands */
+void fu_spring_state(const fu_model *model, fu_state *state)
+{
+    double by_gap[9], by_rate[9];
+    for (int k = 0; k < model->n_springs; ++k)
+        fu_spring_force(model, &model->springs[k], state->q, state->v, state->spring + 3 * k, by_gap, by_rate);
+}
+
 double fu_spring_energy(const fu_model *model, const double *q)
 {
     double total = 0.0, gap[3], rate[3];

@@ -57,7 +57,8 @@ def integrate(*, step=0.0, tol=1e-4, from_rest=False):
     from_rest: start the scheme from zero accelerations, which no user can ask for.
     """
     from funicular.engine import Engine
-    from funicular.model import build, generalised_alpha
+    from funicular.integrators import GeneralisedAlpha
+    from funicular.model import build
 
     engine = Engine(build(load_scene("paper51")))
     begin = time.process_time()
@@ -66,7 +67,7 @@ def integrate(*, step=0.0, tol=1e-4, from_rest=False):
         output_step=0.01,
         tol=tol,
         step=step,
-        scheme=generalised_alpha(0.9),
+        method=GeneralisedAlpha(0.9),
         first_step=1e-3,
         rest_start=from_rest,
     )

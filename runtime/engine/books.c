@@ -1,0 +1,32 @@
+/* What goes in and out of a scene's energy from outside and to heat. */
+#include "engine.h"
+
+/* power of the loads and, with the forces that the supports give, of the motions at a state */
+double fu_external_power(fu_run *run, const fu_state *state, const double *reaction)
+{
+    const fu_model *model = run->model;
+    double power = 0.0;
+    if (model->n_dead_loads || model->n_loads) {
+        for (int i = 0; i < model->n_dof; ++i) run->work[i] = 0.0;
+        fu_loads(model, state->t, state->q, run->work);
+        for (int i = 0; i < model->n_dof; ++i) power -= run->work[i] * state->v[i];
+    }
+    for (int k = 0; k < model->n_motions; ++k) {
+        const int i = model->motions[k].dof;
+        int counted = 0;
+        for (int m = 0; m < k; ++m) counted |= model->motions[m].dof == i;
+        if (!counted) power += reaction[i] * state->v[i];
+    }
+    return power;
+}
+
+/* The step just made, by the trapezoidal rule: as good as a method of order 2. */
+void fu_book_trapezoid(fu_run *run, double h)
+{
+    const double dissipated = fu_dissipation(run->model, run->next.q, run->next.v);
+    const double external = fu_external_power(run, &run->next, run->force);
+    run->dissipated += 0.5 * h * (run->dissipated_power + dissipated);
+    run->external += 0.5 * h * (run->external_power + external);
+    run->dissipated_power = dissipated;
+    run->external_power = external;
+}

@@ -1,0 +1,108 @@
+/* Events: a slide leaves its element, a quantity passes a threshold, a function of the user's changes sign. */
+#include "engine.h"
+
+#define MOST_TRIALS 80
+
+static double boundary_tolerance(const fu_run *run, int j)
+{
+    return 1e-11 * run->model->cables[run->model->joints[j].cable].length;
+}
+
+/* how far s lies outside its element, negative inside */
+static double outside(const fu_run *run, const fu_state *state, int j, int *side)
+{
+    const double length = run->model->cables[run->model->joints[j].cable].length;
+    const double x = state->s[j] - fu_element_start(run->model, j, state->element[j]);
+    *side = x > 0.5 * length ? 1 : -1;
+    return *side > 0 ? x - length : -x;
+}
+
+/* what an event of the user's watches, positive where it has happened when `side` is 1 */
+static double watched(const fu_run *run, const fu_state *state, int k)
+{
+    const fu_watch *watch = &run->watches[k];
+    switch (watch->kind) {
+    case FU_WATCH_Q: return state->q[watch->index] - watch->value;
+    case FU_WATCH_V: return state->v[watch->index] - watch->value;
+    case FU_WATCH_S: return state->s[watch->index] - watch->value;
+    default: return run->call(run->context, k, state);
+    }
+}
+
+/* an event's value at a state: it happens where this reaches zero from below */
+static double value(const fu_run *run, const fu_state *state, fu_event event)
+{
+    if (event.kind == FU_WATCHED) return event.side * watched(run, state, event.which);
+    const int boundary = run->now.element[event.which] + (event.side > 0);
+    return event.side * (state->s[event.which] - fu_element_start(run->model, event.which, boundary));
+}
+
+/* the slide of `next` that is farthest outside its element, else the first of the user's events between `now` and
+ * `next` */
+fu_event fu_find_event(fu_run *run)
+{
+    fu_event found = {FU_NO_EVENT, 0, 0};
+    double worst = 0.0;
+    for (int j = 0; j < run->model->n_joints; ++j) {
+        int side;
+        const double d = outside(run, &run->next, j, &side) - boundary_tolerance(run, j);
+        if (d > worst) {
+            worst = d;
+            found = (fu_event){FU_CROSSING, j, side};
+        }
+    }
+    if (found.kind) return found;
+    for (int k = 0; k < run->n_watches; ++k) {
+        const double before = run->watched[k], after = watched(run, &run->next, k);
+        const int side = before < 0.0 && after >= 0.0 ? 1 : before > 0.0 && after <= 0.0 ? -1 : 0;
+        if (side && run->watches[k].direction * side >= 0) return (fu_event){FU_WATCHED, k, side};
+    }
+    return found;
+}
+
+/* Whether a slide stands on the boundary already: then the element changes and not the time. */
+int fu_stands_on_boundary(const fu_run *run, fu_event event)
+{
+    int side;
+    return event.kind == FU_CROSSING && outside(run, &run->now, event.which, &side) >=
+        -boundary_tolerance(run, event.which) && side == event.side;
+}
+
+/* Shorten the step until it ends where the event happens (Illinois); returns the step, 0 on failure. `next` is there
+ * then. */
+double fu_locate(fu_run *run, fu_event event, double h)
+{
+    double low = 0.0, high = h, g_high = value(run, &run->next, event);
+    double g_low = event.kind == FU_WATCHED ? event.side * run->watched[event.which] : value(run, &run->now, event);
+    const double close = event.kind == FU_CROSSING ? boundary_tolerance(run, event.which) : 1e-13 * (g_high - g_low);
+    const double least = 1e-13 * run->duration;
+    int last = 0;
+    for (int i = 0; i < MOST_TRIALS; ++i) {
+        double middle = low + (high - low) * g_low / (g_low - g_high);
+        if (!(middle > low && middle < high)) middle = 0.5 * (low + high);
+        if (run->integrator->step(run, middle)) return 0.0;
+        const double g = value(run, &run->next, event);
+        if (fabs(g) <= close) return middle;
+        if (g >= 0.0) {
+            if (middle - low <= least) return middle;
+            high = middle;
+            g_high = g;
+            if (last > 0) g_low *= 0.5;
+            last = 1;
+        } else {
+            low = middle;
+            g_low = g;
+            if (last < 0) g_high *= 0.5;
+            last = -1;
+            if (high - low <= least) return run->integrator->step(run, high) ? 0.0 : high;
+        }
+    }
+    return 0.0;
+}
+
+/* Values of the user's events at `now`; the one that has just happened counts as past. */
+void fu_watch_now(fu_run *run, fu_event event)
+{
+    for (int k = 0; k < run->n_watches; ++k) run->watched[k] = watched(run, &run->now, k);
+    if (event.kind == FU_WATCHED) run->watched[event.which] = event.side * 1e-300;
+}

@@ -1,0 +1,183 @@
+/* Explicit Runge-Kutta with an embedded error estimate on the index-1 form of the equations (eq 38).
+ *
+ * Differentiated are the entries of the configuration (attitudes as they stand, normalised at the end of a step) and
+ * the velocities; the slides' s is where C_l = 0 (eq 21) at every stage. What the constraints lost in a step is
+ * projected away, in the norm of the mass: C_m = 0 by Newton, then H v = 0. The accelerations at the end are the first
+ * stage of the next step and the last of the error estimate (Hairer, Norsett & Wanner 1993, II.5 and II.10).
+ */
+#include "engine.h"
+
+#include <string.h>
+
+#define MOST_PROJECTIONS 10
+
+/* stage k of the scratch: rates of q, then of v */
+static double *stage(fu_run *run, int k)
+{
+    return run->scratch + (long)k * (run->model->n_q + run->model->n_dof);
+}
+
+/* rates of the configuration and of the velocities of a state whose accelerations are known */
+static void rates(const fu_model *model, const fu_state *state, double *rate)
+{
+    const int n_flexible = model->n_rigids ? model->rigids[0].dof : model->n_dof;
+    memcpy(rate, state->v, sizeof(double) * (size_t)n_flexible);
+    for (int b = 0; b < model->n_rigids; ++b) {
+        const fu_rigid *body = &model->rigids[b];
+        fu_body_rate(body->kernel, state->q + body->configuration, state->v + body->dof, rate + body->configuration);
+    }
+    memcpy(rate + model->n_q, state->acceleration, sizeof(double) * (size_t)model->n_dof);
+}
+
+/* y = the row's combination of the first n stages */
+static void combine(fu_run *run, const double *row, int n, double h, double *q, double *v)
+{
+    const fu_model *model = run->model;
+    for (int k = 0; k < n; ++k) {
+        const double weight = h * row[k], *rate = stage(run, k);
+        if (weight == 0.0) continue;
+        for (int i = 0; i < model->n_q; ++i) q[i] += weight * rate[i];
+        for (int i = 0; i < model->n_dof; ++i) v[i] += weight * rate[model->n_q + i];
+    }
+}
+
+/* powers of stage k: dissipated, external */
+static double *powers(fu_run *run, int k)
+{
+    return stage(run, run->tableau.stages + 2) + 2 * k;
+}
+
+/* what stage k says: rates, and powers of what reads them */
+static void keep(fu_run *run, int k, const fu_state *state)
+{
+    rates(run->model, state, stage(run, k));
+    powers(run, k)[0] = fu_dissipation(run->model, state->q, state->v);
+    powers(run, k)[1] = fu_external_power(run, state, run->force);
+}
+
+/* next = now + what the row says, at t; each slide where C_l = 0; 0 when that was found */
+static int move_to(fu_run *run, const double *row, int n, double t, double h)
+{
+    const fu_model *model = run->model;
+    fu_state *next = &run->next;
+    memcpy(next->q, run->now.q, sizeof(double) * (size_t)model->n_q);
+    memcpy(next->v, run->now.v, sizeof(double) * (size_t)model->n_dof);
+    combine(run, row, n, h, next->q, next->v);
+    next->t = t;
+    if (model->n_motions) fu_prescribe(model, next);
+    for (int j = 0; j < model->n_joints; ++j) {
+        next->s[j] = run->now.s[j] + (t - run->now.t) * run->s_slope[j];
+        if (fu_find_arc_length(model, next, j, &next->s[j])) return 1;
+    }
+    return 0;
+}
+
+static void normalise(const fu_model *model, double *q)
+{
+    for (int b = 0; b < model->n_rigids; ++b) {
+        const fu_body *kernel = model->rigids[b].kernel;
+        double *p = q + model->rigids[b].configuration + kernel->dim, square = 0.0;
+        const int n = kernel->configuration - kernel->dim;
+        for (int i = 0; i < n; ++i) square += p[i] * p[i];
+        for (int i = 0; i < n; ++i) p[i] /= sqrt(square);
+    }
+}
+
+/* `next` back onto its joints: positions, s, velocities; 0 when that converged */
+static int project(fu_run *run)
+{
+    const fu_model *model = run->model;
+    fu_state *next = &run->next;
+    if (!model->n_joints) return 0;
+    for (int i = 0;; ++i) {
+        if (fu_project_positions(model, next, &run->accelerator, run->work)) return 1;
+        const double size = fu_size(model, run->work);
+        if (!(size < 1e30) || i == MOST_PROJECTIONS) return 1;
+        fu_move(model, next->q, run->work);
+        for (int j = 0; j < model->n_joints; ++j)
+            if (fu_find_arc_length(model, next, j, &next->s[j])) return 1;
+        if (size <= fmax(run->round_off, run->newton_tolerance)) break;
+    }
+    if (fu_project_velocities(model, next, &run->accelerator, run->work)) return 1;
+    for (int i = 0; i < model->n_dof; ++i) next->v[i] += run->work[i];
+    return 0;
+}
+
+static int start(fu_run *run)
+{
+    (void)run;
+    return FU_RUNNING;
+}
+
+static int step(fu_run *run, double h)
+{
+    const fu_model *model = run->model;
+    const fu_tableau *tableau = &run->tableau;
+    const int n = tableau->stages;
+    fu_state *next = &run->next;
+    fu_joint_output *joints = (fu_joint_output *)run->accelerator.joints;
+    double *reaction = model->n_motions ? run->force : 0;
+    memcpy(next->element, run->now.element, sizeof(int) * (size_t)model->n_joints);
+    memcpy(next->director, run->now.director, 3 * sizeof(double) * (size_t)model->n_joints);
+    rates(model, &run->now, stage(run, 0));
+    powers(run, 0)[0] = run->dissipated_power;
+    powers(run, 0)[1] = run->external_power;
+    for (int k = 1; k < n; ++k) {
+        if (move_to(run, tableau->A + k * n, k, run->now.t + tableau->c[k] * h, h)) return 1;
+        if (fu_accelerations(model, next, &run->accelerator, next->acceleration, 0, reaction)) return 1;
+        keep(run, k, next);
+    }
+    if (move_to(run, tableau->b, n, run->now.t + h, h)) return 1;
+    normalise(model, next->q);
+    if (project(run)) return 1;
+    if (fu_accelerations(model, next, &run->accelerator, next->acceleration, joints, reaction)) return 1;
+    keep(run, n, next);
+    run->statistics.evaluations += n;
+    for (int j = 0; j < model->n_joints; ++j) memcpy(next->f + 3 * j, joints[j].force, sizeof joints[j].force);
+    fu_spring_state(model, next);
+    for (int i = 0; i < model->n_dof; ++i)
+        if (!(fabs(next->v[i]) < 1e30)) return 1;
+    return 0;
+}
+
+/* an estimate's size as a length: of positions, and of velocities times the step */
+static double estimate(fu_run *run, const double *row, double h)
+{
+    const fu_model *model = run->model;
+    const int n_flexible = model->n_rigids ? model->rigids[0].dof : model->n_dof;
+    double *q = stage(run, run->tableau.stages + 1), *v = q + model->n_q;
+    memset(q, 0, sizeof(double) * (size_t)(model->n_q + model->n_dof));
+    combine(run, row, run->tableau.stages + 1, h, q, v);
+    for (int i = 0; i < n_flexible; ++i) run->work[i] = q[i];
+    for (int b = 0; b < model->n_rigids; ++b) {
+        const fu_rigid *body = &model->rigids[b];
+        fu_body_increment(body->kernel, run->next.q + body->configuration, q + body->configuration,
+                          run->work + body->dof);
+    }
+    for (int k = 0; k < model->n_motions; ++k) run->work[model->motions[k].dof] = v[model->motions[k].dof] = 0.0;
+    for (int i = 0; i < model->n_dof; ++i) v[i] *= h;
+    return fmax(fu_size(model, run->work), fu_size(model, v));
+}
+
+/* The embedded estimate; with two, as Hairer joins them for DOP853. */
+static double error(fu_run *run, double h)
+{
+    const fu_tableau *tableau = &run->tableau;
+    const double fine = estimate(run, tableau->error, h);
+    if (!tableau->coarse || fine == 0.0) return fine;
+    const double coarse = estimate(run, tableau->coarse, h);
+    return fine * fine / sqrt(fine * fine + 0.01 * coarse * coarse);
+}
+
+static void book(fu_run *run, double h)
+{
+    const int n = run->tableau.stages;
+    for (int k = 0; k < n; ++k) {
+        run->dissipated += h * run->tableau.b[k] * powers(run, k)[0];
+        run->external += h * run->tableau.b[k] * powers(run, k)[1];
+    }
+    run->dissipated_power = powers(run, n)[0];
+    run->external_power = powers(run, n)[1];
+}
+
+const fu_integrator fu_explicit_method = {"explicit", start, step, error, book};
