@@ -451,6 +451,7 @@ cdef class Engine:
         run.psi, run.force = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         run.work, run.before = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         run.first, run.s_slope = self._doubles(np.zeros(model.n_q)), self._doubles(np.zeros(n_joints))
+        run.scratch = self._doubles(np.zeros(2 * (n_dof + 1)))  # of generalised-alpha; others ask for theirs
 
     def _tableau(self, method):
         t = &self.run.tableau

@@ -201,12 +201,34 @@ static double apply(fu_run *run, double h)
     return size;
 }
 
+/* rates of the auxiliary acceleration over a step that ended at its time; two: of the step to `now`, for predictions
+ * from there, and of the step being tried */
+static double *slope(fu_run *run, int k)
+{
+    return run->scratch + k * (run->model->n_dof + 1);
+}
+
+static double *slope_time(fu_run *run, int k)
+{
+    return slope(run, k) + run->model->n_dof;
+}
+
+static void keep_slope(fu_run *run, double h)
+{
+    const int k = *slope_time(run, 0) == run->now.t;
+    for (int i = 0; i < run->model->n_dof; ++i) slope(run, k)[i] = (run->next.a[i] - run->now.a[i]) / h;
+    *slope_time(run, k) = run->next.t;
+}
+
 static void predict(fu_run *run, double h)
 {
     const fu_model *model = run->model;
     const size_t real = sizeof(double);
     run->next.t = run->now.t + h;
     memcpy(run->next.a, run->now.a, real * (size_t)model->n_dof);
+    for (int k = 0; k < 2; ++k)
+        if (*slope_time(run, k) == run->now.t)
+            for (int i = 0; i < model->n_dof; ++i) run->next.a[i] += h * slope(run, k)[i];
     memcpy(run->next.f, run->now.f, 3 * real * (size_t)model->n_joints);
     memcpy(run->next.spring, run->now.spring, 3 * real * (size_t)model->n_springs);
     memcpy(run->next.director, run->now.director, 3 * real * (size_t)model->n_joints);
@@ -240,6 +262,7 @@ static int iterate(fu_run *run, double h)
         }
         if (size * run->contraction / (1.0 - run->contraction) <= run->newton_tolerance || size <= run->round_off) {
             kinematics(run, h);
+            keep_slope(run, h);
             if (i + 1 > TOO_MANY_ITERATIONS) run->factored = 0;
             return 0;
         }
@@ -301,6 +324,7 @@ static double error(fu_run *run, double h)
 static int start(fu_run *run)
 {
     memcpy(run->now.a, run->now.acceleration, sizeof(double) * (size_t)run->model->n_dof);
+    for (int k = 0; k < 2; ++k) *slope_time(run, k) = -1.0;
     run->factored = 0;
     return FU_RUNNING;
 }

@@ -188,9 +188,10 @@ static double allow(fu_run *run, double h)
     const double since = fmax(run->now.t + h, FIRST_PART * run->duration);
     const double allowed = fmax(SAFETY * run->tol * scale * h / since, run->round_off);
     /* what Newton leaves has the same sign step after step and acts like a force: it counts (T/h)^2 times in
-     * positions, the local error T/h times */
-    run->newton_tolerance = fmin(1e-2 * h / run->duration * (run->fixed_step > 0.0 ? run->last_error : allowed),
-                                 1e-14 * fmax(run->extent, scale)); /* keeps joints' residuals small at any tol */
+     * positions, the local error T/h times; a fixed step is solved as well as it can be, whatever its error */
+    const double extent = fmax(run->extent, scale);
+    run->newton_tolerance = run->fixed_step > 0.0 ? fmin(1e-2 * h / run->duration * run->last_error, 1e-14 * extent)
+                                                  : fmin(0.1 * h / run->duration * allowed, 1e-11 * extent);
     return allowed;
 }
 
