@@ -37,6 +37,10 @@ HELD = [1, 1, 1, 0, 0, 0]
 """Coordinates of a pinned node that are fixed: those of its position."""
 
 
+class StoppedError(Exception):
+    """It did not get to the end."""
+
+
 @dataclass
 class System:
     """A system ready to run, and the node whose path is compared."""
@@ -113,12 +117,19 @@ def _settings(duration: float, steps: int) -> exu.SimulationSettings:
     return settings
 
 
+def _solve(made: System, settings: exu.SimulationSettings) -> None:
+    try:
+        made.system.SolveDynamic(settings)
+    except exu.SolverError as error:
+        raise StoppedError(f"stopped at t = {made.system.systemData.GetTime():g} s") from error
+
+
 def cpu_seconds(make: Callable[[], System], duration: float, steps: int) -> float:
     """CPU seconds of the solver alone."""
     made = make()
     settings = _settings(duration, steps)
     begin = time.process_time()
-    made.system.SolveDynamic(settings)
+    _solve(made, settings)
     return time.process_time() - begin
 
 
@@ -131,9 +142,9 @@ def trajectory(make: Callable[[], System], duration: float, steps: int, outputs:
     settings = _settings(duration, steps)
     settings.solution.sensors.active = True
     settings.solution.sensors.writePeriod = duration / steps
-    made.system.SolveDynamic(settings)
+    _solve(made, settings)
     every = made.system.GetSensorStoredData(sensor)
     rows = every[:: steps // outputs]
     if rows.shape != (outputs + 1, 4) or abs(rows[:, 0] - np.linspace(0, duration, outputs + 1)).max() > 1e-9:
-        raise RuntimeError(f"Exudyn stopped at t = {every[-1, 0]:g} s of {duration:g} s")
+        raise StoppedError(f"stopped at t = {every[-1, 0]:g} s")
     return rows[:, 1:]
