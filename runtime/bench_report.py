@@ -12,6 +12,7 @@ from funicular.bench_outputs import unit
 from funicular.errors import ResultFileError
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from rich.console import Console
 
 LINES, MARKERS = ("-", "--", ":", "-."), "osD^v"
@@ -105,31 +106,35 @@ def save(result: Bench, directory: Path, name: str) -> list[Path]:
 
 
 def draw(result: Bench, path: Path) -> None:
-    """Time error over CPU seconds, a colour an integrator and a line style a mesh; mesh errors across."""
+    """The picture of a result."""
     from funicular.plot import STYLE
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 
-    meshes = list(result.references)
     with rc_context(STYLE):
         figure = Figure(figsize=(7, 4.6))
         axes = figure.add_subplot()
-        for colour, integrator in enumerate(result.grid.integrators):
-            for mesh, line, marker in zip(meshes, LINES, MARKERS, strict=False):
-                rows = [row for row in result.rows
-                        if (row.integrator, row.mesh, row.failed) == (integrator, mesh, None)]
-                if rows:
-                    axes.loglog([row.cpu_s for row in rows], [row.time_error for row in rows], linestyle=line,
-                                marker=marker, markersize=4.5, color=f"C{colour}",
-                                label=f"{integrator}, {rows[0].elements} elements")
-        for mesh, line in zip(meshes, LINES, strict=False):
-            error = result.references[mesh].mesh_error
-            if error > 0:
-                axes.axhline(error, color="0.55", linewidth=0.9, linestyle=line, zorder=0)
-                axes.annotate(f"mesh error, {mesh}", (1, error), xycoords=("axes fraction", "data"), ha="right",
-                              va="bottom", fontsize=8, color="0.4")
-        axes.margins(x=0.06)
-        axes.set_xlabel("CPU time of the integration / s")
-        axes.set_ylabel("time error / largest motion")
+        draw_on(axes, result)
         axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=2, fontsize=9)
         figure.savefig(path)
+
+
+def draw_on(axes: Axes, result: Bench) -> None:
+    """Time error over CPU seconds, a colour an integrator and a line style a mesh; mesh errors across."""
+    meshes = list(result.references)
+    for colour, integrator in enumerate(result.grid.integrators):
+        for mesh, line, marker in zip(meshes, LINES, MARKERS, strict=False):
+            rows = [row for row in result.rows if (row.integrator, row.mesh, row.failed) == (integrator, mesh, None)]
+            if rows:
+                axes.loglog([row.cpu_s for row in rows], [row.time_error for row in rows], linestyle=line,
+                            marker=marker, markersize=4.5, color=f"C{colour}",
+                            label=f"{integrator}, {rows[0].elements} elements")
+    for mesh, line in zip(meshes, LINES, strict=False):
+        error = result.references[mesh].mesh_error
+        if error > 0:
+            axes.axhline(error, color="0.55", linewidth=0.9, linestyle=line, zorder=0)
+            axes.annotate(f"mesh error, {mesh}", (1, error), xycoords=("axes fraction", "data"), ha="right",
+                          va="bottom", fontsize=8, color="0.4")
+    axes.margins(x=0.06)
+    axes.set_xlabel("CPU time of the integration / s")
+    axes.set_ylabel("time error / largest motion")
