@@ -30,6 +30,9 @@ TIGHTER = (1 / 20, 1 / 80)
 GRID_SETS = ("duration", "tol", "step", "output_step", "integrator", "save")
 """Settings of a scene file that the grid takes the place of."""
 
+LONG = 1.0
+"""CPU seconds from which on a run is not repeated: what disturbs a short one disappears in it."""
+
 COUNTS = ("steps", "rejected_steps", "newton_iterations", "factorisations")
 
 
@@ -196,7 +199,7 @@ def bench(scene: Scene, grid: Grid, tell: Callable[[str], None] = lambda text: N
             result.rows += [Row(integrator, mesh, tol, failed=failed) for tol in grid.tols]
     for turn in range(grid.repetitions):
         for row in result.rows:
-            if row.failed is None:
+            if row.failed is None and (turn == 0 or row.cpu[0] < LONG):
                 tell(f"turn {turn + 1} of {grid.repetitions}: {row.integrator}, {row.mesh} elements, tol {row.tol:g}")
                 _measure(result, row, scenes[row.mesh])
     return result

@@ -123,7 +123,8 @@ def bench(
                                                 "wire@0.5 (default: bodies, slides, a point of each cable)")] = None,
     duration: Annotated[float | None, typer.Option(help="s, instead of the scene's")] = None,
     output_step: Annotated[float | None, typer.Option(help="s (default: a fiftieth of the duration)")] = None,
-    repetitions: Annotated[int, typer.Option(help="of each run, taking turns; times are medians")] = 5,
+    repetitions: Annotated[int, typer.Option(help="of each run that takes less than 1 s, taking turns; times are "
+                                              "medians")] = 5,
     out: Annotated[Path, typer.Option(metavar="DIR", help="where SCENE-bench.csv and .png are written")] = Path(),
 ) -> None:
     """Measure error against time over integrators, tolerances and meshes.
