@@ -121,6 +121,8 @@ def draw(result: Bench, path: Path) -> None:
 
 def draw_on(axes: Axes, result: Bench) -> None:
     """Time error over CPU seconds, a colour an integrator and a line style a mesh; mesh errors across."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
     meshes = list(result.references)
     for colour, integrator in enumerate(result.grid.integrators):
         for mesh, line, marker in zip(meshes, LINES, MARKERS, strict=False):
@@ -136,5 +138,8 @@ def draw_on(axes: Axes, result: Bench) -> None:
             axes.annotate(f"mesh error, {mesh}", (1, error), xycoords=("axes fraction", "data"), ha="right",
                           va="bottom", fontsize=8, color="0.4")
     axes.margins(x=0.06)
+    axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda seconds, _: f"{seconds:g}"))
+    axes.xaxis.set_minor_formatter(NullFormatter())
     axes.set_xlabel("CPU time of the integration / s")
     axes.set_ylabel("time error / largest motion")

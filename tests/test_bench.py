@@ -49,11 +49,12 @@ def test_every_combination_has_a_row(told):
 
 def test_errors_are_distances_from_the_converged_motion(told):
     """Against one that steps of equal size give."""
-    exact = swing().run(DURATION, step=2e-5, output_step=DURATION / 50)["rope.nodal_vectors"][:, -1, 0]
+    given = {"output_step": DURATION / 50, "integrator": "genalpha"}
+    exact = swing().run(DURATION, step=2e-5, **given)["rope.nodal_vectors"][:, -1, 0]
     for row in told[1][:2]:
         run = swing()
         run.run_settings = {}
-        found = run.run(DURATION, tol=float(row["tol"]), output_step=DURATION / 50)["rope.nodal_vectors"][:, -1, 0]
+        found = run.run(DURATION, tol=float(row["tol"]), **given)["rope.nodal_vectors"][:, -1, 0]
         error = np.linalg.norm(found - exact, axis=1).max()
         assert float(row["time error rope.tip / m"]) == pytest.approx(error, rel=0.05)
         assert float(row["time_error"]) >= error / np.linalg.norm(exact - exact[0], axis=1).max() * 0.95
