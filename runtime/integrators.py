@@ -64,7 +64,34 @@ class Explicit:
         self.order = DOP853.error_estimator_order
 
 
-Integrator = GeneralisedAlpha | Explicit | EnergyMomentum
+class Radau:
+    """Radau IIA of three stages, of order 5 (Hairer & Wanner 1996, IV.5 and IV.8), from its nodes.
+
+    Steps are chosen by an embedded estimate of order 3; ``order`` is that of the error of a step.
+    """
+
+    name, order = "radau", 4
+
+    def __init__(self) -> None:
+        root = np.sqrt(6.0)
+        self.c = np.array([(4 - root) / 10, (4 + root) / 10, 1.0])
+        powers = np.arange(3)
+        values = self.c[:, None] ** powers  # of monomials at the nodes; their integrals from 0 to the nodes
+        self.A = (self.c[:, None] ** (powers + 1) / (powers + 1)) @ np.linalg.inv(values)
+        self.A_inverse = np.linalg.inv(self.A)
+        eigenvalues, vectors = np.linalg.eig(self.A_inverse)
+        real = int(np.argmin(np.abs(eigenvalues.imag)))
+        up = int(np.argmax(eigenvalues.imag))
+        self.gamma, self.alpha, self.beta = eigenvalues[real].real, eigenvalues[up].real, -eigenvalues[up].imag
+        self.T = np.column_stack([vectors[:, real].real, vectors[:, up].real, vectors[:, up].imag])
+        self.T_inverse = np.linalg.inv(self.T)
+        # weights with 1/gamma at the start, of order 3; less those of the method, over gamma's share and by A^-1
+        at_start = 1 / self.gamma
+        embedded = np.linalg.solve(values.T, 1 / (powers + 1) - at_start * (powers == 0))
+        self.error = (embedded - self.A[-1]) @ self.A_inverse / at_start
+
+
+Integrator = GeneralisedAlpha | Radau | Explicit | EnergyMomentum
 
 
 def choose(settings: RunSettings, scene: Scene, model: Model,
@@ -72,7 +99,8 @@ def choose(settings: RunSettings, scene: Scene, model: Model,
     """The integrator of a run, and why it is that one. "auto" takes the cheaper by stiffness and tolerance."""
     implicit = GeneralisedAlpha(settings.spectral_radius)
     if settings.integrator != "auto":
-        made = {"genalpha": lambda: implicit, "explicit": Explicit, "energy": EnergyMomentum}[settings.integrator]()
+        made = {"genalpha": lambda: implicit, "explicit": Explicit, "radau": Radau,
+                "energy": EnergyMomentum}[settings.integrator]()
         return made, "as asked for"
     if settings.step is not None:
         return implicit, "the step is fixed: genalpha is stable at any"

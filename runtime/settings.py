@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar
 from funicular.validation import Count, Part, one_of, positive, within
 from pydantic import Field, model_validator
 
-INTEGRATORS = ("auto", "genalpha", "explicit", "energy")
+INTEGRATORS = ("auto", "genalpha", "explicit", "radau", "energy")
 
 Duration = Annotated[float, positive("s")]
 

@@ -202,14 +202,14 @@ static double allow(fu_run *run, double h)
     /* Of what is allowed until t, relative to the motion until then, a step gets the part h/t: local errors then add up
      * to tol times the logarithm of the times at most. With h/duration the first instants, in which hardly anything has
      * moved yet, would take most of the steps. */
-    const double since = fmax(run->now.t + h, FIRST_PART * run->duration);
-    const double allowed = fmax(SAFETY * run->tol * scale * h / since, run->round_off);
+    const double share = SAFETY * h / fmax(run->now.t + h, FIRST_PART * run->duration);
+    const double allowed = fmax(run->tol * scale * (run->per_step ? 1.0 : share), run->round_off);
     /* what Newton leaves has the same sign step after step and acts like a force: it counts (T/h)^2 times in
      * positions, the local error T/h times; a fixed step is solved as well as it can be, whatever its error */
     const double extent = fmax(run->extent, scale);
     run->newton_tolerance = run->fixed_step > 0.0 ? fmin(1e-2 * h / run->duration * run->last_error, 1e-14 * extent)
                                                   : fmin(0.1 * h / run->duration * allowed, 1e-11 * extent);
-    return allowed;
+    return run->allowed = allowed;
 }
 
 /* The next step by the last one's error over what is allowed: the error falls with the power order + 1 of the step,
