@@ -324,7 +324,7 @@ struct fu_run {
     fu_tableau tableau;
     fu_collocation collocation;
     fu_complex_system complex_newton;
-    int per_step;        /* tol is of each step's error, and not of its rate */
+    double slack;        /* how much larger the estimate of the local error is than that error */
     double *scratch;     /* of the integrator: checkpoints do not hold it */
     int n_watches;
     const fu_watch *watches;

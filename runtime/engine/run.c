@@ -203,7 +203,7 @@ static double allow(fu_run *run, double h)
      * to tol times the logarithm of the times at most. With h/duration the first instants, in which hardly anything has
      * moved yet, would take most of the steps. */
     const double share = SAFETY * h / fmax(run->now.t + h, FIRST_PART * run->duration);
-    const double allowed = fmax(run->tol * scale * (run->per_step ? 1.0 : share), run->round_off);
+    const double allowed = fmax(run->tol * scale * fmin(1.0, run->slack * share), run->round_off);
     /* what Newton leaves has the same sign step after step and acts like a force: it counts (T/h)^2 times in
      * positions, the local error T/h times; a fixed step is solved as well as it can be, whatever its error */
     const double extent = fmax(run->extent, scale);
