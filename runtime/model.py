@@ -281,13 +281,15 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
         initial.start(model)
     output_step = settings.output_step
     _check_size(model, settings)
+    method = chosen(settings.integrator, settings.tol, settings.spectral_radius)
+    if method.name == "energy":
+        _check_conserves(model, scene)
     engine = Engine(model)
     messages = []
     if settings.step is not None:
         step = output_step / np.ceil(output_step / settings.step * (1 - 1e-9))
         if step < settings.step * (1 - 1e-6):
             messages.append(f"step {settings.step:.6g} s was made {step:.6g} s, so that steps end on output times")
-    method = chosen(settings.integrator, settings.tol, settings.spectral_radius)
     set_up = time.perf_counter() - begin
     status, change = engine.start(
         duration=settings.duration,
@@ -308,6 +310,15 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
         status = engine.advance(on_progress)
     wall = time.perf_counter() - begin
     return recorded(model, scene, engine, settings, status, messages, {"set_up": set_up, "total": wall})
+
+
+def _check_conserves(model: Model, scene: Scene) -> None:
+    """Raise SceneError for a cable whose law has no discrete gradient."""
+    for cable in model.cables:
+        if not hasattr(kernels_of(cable.library), f"{cable.element}_{cable.law}_discrete_force"):
+            raise SceneError(scene.cables[cable.name].where,
+                             f'integrator "energy" has no discrete gradient of the law "{cable.law}"',
+                             "take another law, or another integrator")
 
 
 def _check_size(model: Model, settings: RunSettings) -> None:

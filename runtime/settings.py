@@ -33,6 +33,13 @@ class RunSettings(Part):
     save: str | None = None
 
     @model_validator(mode="after")
+    def _radius_fits(self) -> RunSettings:
+        if self.integrator == "energy" and "spectral_radius" in self.model_fields_set and self.spectral_radius < 1:
+            raise ValueError("integrator \"energy\" keeps all vibrations, its spectral_radius is 1, got "
+                             f"{self.spectral_radius:g}: give the material a damping_time, or take \"genalpha\"")
+        return self
+
+    @model_validator(mode="after")
     def _steps_fit(self) -> RunSettings:
         for name in ("step", "output_step"):
             value = getattr(self, name)
