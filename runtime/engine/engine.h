@@ -292,7 +292,7 @@ typedef struct {
     int (*step)(fu_run *run, double h);
     double (*error)(fu_run *run, double h);
     void (*book)(fu_run *run, double h);
-    int conserves; /* energy, so that a slide that enters another element must not cost any: velocities stay */
+    int conserves; /* energy: velocities stay as they are where the scheme starts anew, projecting them would cost some */
     const fu_newton *newton; /* null where there is none */
 } fu_integrator;
 extern const fu_integrator fu_genalpha_method, fu_explicit_method, fu_energy_method;

@@ -74,11 +74,6 @@ static int record_row(fu_run *run)
     return info;
 }
 
-static int is_short(const fu_run *run, double h)
-{
-    return h < SHORT_STEP * (run->fixed_step > 0.0 ? run->fixed_step : run->h);
-}
-
 /* Start of the scheme, consistent: velocities projected on the joints where that is asked for, accelerations and forces
  * from eq 38. Starting it from zero accelerations instead makes every error fall with the first power of the step
  * (tests/benchmarks/order.py). */
@@ -153,7 +148,7 @@ static void accept(fu_run *run, double h, fu_event event)
  * starts anew. Were they carried over, the short steps around a boundary would raise what the constraints left in them
  * by the ratio of the steps, crossing by crossing, and a spectral radius of 1 never lets it decay. Returns
  * FU_END_OF_CABLE where there is no neighbour. */
-static int enter(fu_run *run, int j, int side, double h)
+static int enter(fu_run *run, int j, int side)
 {
     const fu_model *model = run->model;
     fu_state *now = &run->now;
@@ -165,13 +160,13 @@ static int enter(fu_run *run, int j, int side, double h)
     now->element[j] = element;
     now->s[j] = fu_element_start(model, j, side > 0 ? element : element + 1);
     ++run->statistics.crossings;
-    return start_scheme(run, !run->integrator->conserves || is_short(run, h));
+    return start_scheme(run, !run->integrator->conserves);
 }
 
-/* What follows from an event that `now` stands on after a step h. */
-static int happened(fu_run *run, fu_event event, double h)
+/* What follows from an event that `now` stands on. */
+static int happened(fu_run *run, fu_event event)
 {
-    if (event.kind == FU_CROSSING) return enter(run, event.which, event.side, h);
+    if (event.kind == FU_CROSSING) return enter(run, event.which, event.side);
     run->event = event;
     return FU_EVENT;
 }
@@ -232,7 +227,7 @@ static int step_towards(fu_run *run, double target)
         if (event.kind && !(event.kind == FU_CROSSING && run->turned >= MOST_TURNS)) {
             if (fu_stands_on_boundary(run, event)) {
                 ++run->turned;
-                return happened(run, event, h);
+                return happened(run, event);
             }
             h = fu_locate(run, event, h);
             if (h == 0.0) {
@@ -245,7 +240,7 @@ static int step_towards(fu_run *run, double target)
                 continue;
             }
             accept(run, h, event);
-            return happened(run, event, h);
+            return happened(run, event);
         }
         accept(run, h, event);
         run->turned = 0;
@@ -254,7 +249,8 @@ static int step_towards(fu_run *run, double target)
         if (adaptive) adapt(run, h, ratio);
         /* what is left between a boundary and an output time can be so short that the rounding of psi, over h^2, is
          * all there is in its accelerations: they must not go on */
-        return is_short(run, h) ? start_scheme(run, 1) : FU_RUNNING;
+        return h < SHORT_STEP * (adaptive ? run->h : run->fixed_step) ? start_scheme(run, !run->integrator->conserves)
+                                                                      : FU_RUNNING;
     }
 }
 
