@@ -152,7 +152,7 @@ cdef extern from "engine.h" nogil:
         long steps, rejected, newton_iterations, factorisations, crossings, newton_failures, evaluations
         double h_min, h_max, error_sum, time_factor, time_solve, time_residual, time_output
     ctypedef struct fu_record:
-        int n
+        int n, first, pause
         double *time
         double *q
         double *v
@@ -181,6 +181,7 @@ cdef extern from "engine.h" nogil:
         int n_watches
         const fu_watch *watches
         double *watched
+        int *late
         double (*call)(void *context, int watch, const fu_state *state) noexcept nogil
         void *context
         fu_event event
@@ -209,6 +210,10 @@ cdef extern from "engine.h" nogil:
     double fu_elastic_energy(const fu_model *model, const double *q)
     int fu_start(fu_run *run)
     int fu_advance(fu_run *run, double seconds)
+    void fu_pause(fu_run *run)
+    long fu_save(const fu_run *run, char *bytes)
+    void fu_restore(fu_run *run, const char *bytes)
+    int fu_stop(fu_run *run)
 
 cdef const fu_tables *TABLES = <const fu_tables *>PyCapsule_GetPointer(kernels.tables,
                                                                       "funicular.generated.kernels.tables")
@@ -221,7 +226,7 @@ LAPACK.dgemm = <void *>cython_blas.dgemm
 LAPACK.dgemv = <void *>cython_blas.dgemv
 
 STATUS = {FU_DONE: "completed", FU_END_OF_CABLE: "end_of_cable", FU_NO_CONVERGENCE: "no_convergence",
-          FU_SINGULAR: "singular"}
+          FU_SINGULAR: "singular", FU_EVENT: "event"}
 JOINT_OUTPUTS = ("s_rate", "s_acceleration", "force", "multiplier", "residual")
 
 
@@ -265,6 +270,18 @@ cdef const fu_slide *_slide(list tables, str name) except NULL:
     raise ValueError(f"no kernels for {name}")
 
 
+cdef double _call(void *context, int which, const fu_state *state) noexcept with gil:
+    """The function of an event of the user's; what it raises waits in the engine."""
+    engine = <Engine>context
+    if engine.error is not None:
+        return 0.0
+    try:
+        return engine.watcher.call(which, *engine._snapshot(state))
+    except BaseException as error:
+        engine.error = error
+        return 0.0
+
+
 cdef class Engine:
     """One run of a model (see model.py for the fields that it reads)."""
 
@@ -276,6 +293,8 @@ cdef class Engine:
     cdef fu_dead_load *dead_loads
     cdef fu_load *loads
     cdef fu_signal *signals
+    cdef fu_watch *watches
+    cdef object watcher, error
     cdef fu_model model
     cdef fu_run run
     cdef list kept
@@ -296,7 +315,7 @@ cdef class Engine:
 
     def __dealloc__(self):
         for pointer in (<size_t>self.cables, <size_t>self.rigids, <size_t>self.joints, <size_t>self.springs,
-                        <size_t>self.motions, <size_t>self.dead_loads, <size_t>self.loads, <size_t>self.signals):
+                        <size_t>self.motions, <size_t>self.dead_loads, <size_t>self.loads, <size_t>self.signals, <size_t>self.watches):
             PyMem_Free(<void *><size_t>pointer)
 
     def __init__(self, model):
@@ -456,8 +475,7 @@ cdef class Engine:
         t = &self.run.tableau
         t.stages = len(method.b)
         t.A, t.b, t.c = self._doubles(method.A), self._doubles(method.b), self._doubles(method.c)
-        t.error = self._doubles(method.error)
-        t.coarse = NULL if method.coarse is None else self._doubles(method.coarse)
+        t.error, t.coarse = self._doubles(method.error), self._doubles(method.coarse)
         stage = self.model.n_q + self.model.n_dof
         self.run.scratch = self._doubles(np.zeros((t.stages + 2) * stage + 2 * (t.stages + 1)))
 
@@ -570,8 +588,31 @@ cdef class Engine:
         fu_spread(&self.model, &x[0], &dofs[0])
         return np.asarray(dofs)[:self.model.n_dof]
 
-    def start(self, *, duration, output_step, tol, step, method, first_step, rest_start=False):
-        """Allocate the output rows and compute the consistent start; method: see integrators.py.
+    def watch(self, watcher):
+        """Watch for the events of a `Watcher`; call it before `start`."""
+        kinds = {"q": FU_WATCH_Q, "v": FU_WATCH_V, "s": FU_WATCH_S, "function": FU_WATCH_CALL}
+        cdef int i
+        PyMem_Free(self.watches)
+        self.watches = <fu_watch *>PyMem_Calloc(len(watcher.watches) + 1, sizeof(fu_watch))
+        if not self.watches:
+            raise MemoryError
+        for i, watch in enumerate(watcher.watches):
+            w = &self.watches[i]
+            w.kind, w.index, w.direction, w.value = kinds[watch.kind], watch.index, watch.direction, watch.value
+        self.watcher, self.error = watcher, None
+        run = &self.run
+        run.n_watches, run.watches = len(watcher.watches), self.watches
+        run.watched, run.late = self._doubles(np.zeros(run.n_watches)), self._ints(np.zeros(run.n_watches))
+        run.call, run.context = &_call, <void *>self
+
+    cdef _snapshot(self, const fu_state *state):
+        """t, q, v, s of a state."""
+        m = &self.model
+        return (state.t, np.array([state.q[i] for i in range(m.n_q)]), np.array([state.v[i] for i in range(m.n_dof)]),
+                np.array([state.s[i] for i in range(m.n_joints)]))
+
+    def start(self, *, duration, output_step, tol, step, method, first_step, room=None, rest_start=False):
+        """Allocate output rows, `room` of them or all, and compute the consistent start; method: see integrators.py.
 
         Returns a status where that failed, else None, and the change of velocities that the joints asked for.
         """
@@ -588,7 +629,7 @@ cdef class Engine:
         else:
             run.integrator = &fu_genalpha_method
             run.scheme.alpha_m, run.scheme.alpha_f, run.scheme.beta, run.scheme.gamma = method.parameters
-        rows = int(np.ceil(duration / output_step * (1 - 1e-12))) + 2
+        rows = int(np.ceil(duration / output_step * (1 - 1e-12))) + 2 if room is None else room
         m = &self.model
         r = &run.record
         r.time, r.kinetic, r.elastic = self._named("time", rows), self._named("kinetic", rows), self._named("elastic", rows)
@@ -603,22 +644,63 @@ cdef class Engine:
             return STATUS[status], np.zeros(m.n_dof)
         return None, np.array([run.before[i] for i in range(m.n_dof)])
 
-    def advance(self, on_progress, double interval=0.05):
-        """Run to the end; returns the status, "interrupted" after Ctrl-C."""
+    def advance(self, on_progress, int every=0, stream=None, double interval=0.05):
+        """Run to the end; returns the status, "interrupted" after Ctrl-C.
+
+        every: at each so many output rows the run pauses, which leaves it in a state that `checkpoint` holds in full, and
+        calls stream.pause(); otherwise stream.between() now and then, which may take rows.
+        """
         cdef int status = FU_RUNNING
+        run = &self.run
         try:
             while status == FU_RUNNING:
+                run.record.pause = (run.record.n // every + 1) * every if every else 0
                 with nogil:
-                    status = fu_advance(&self.run, interval)
+                    status = fu_advance(run, interval)
+                if self.error is not None:
+                    raise self.error
+                if status == FU_RUNNING and run.record.n == run.record.pause:
+                    fu_pause(run)
+                    if stream is not None:
+                        stream.pause()
+                if stream is not None:
+                    stream.between()
                 PyErr_CheckSignals()
-                on_progress(self.run.now.t)
+                if status == FU_EVENT:
+                    if not self.watcher.happens(run.event.which, *self._snapshot(&run.now)):
+                        with nogil:
+                            status = fu_stop(run)
+                        break
+                    status = FU_RUNNING
+                on_progress(run.now.t)
         except KeyboardInterrupt:
             return "interrupted"
         return STATUS[status]
 
     def rows(self):
-        """Recorded arrays by name, cut to the rows that were written."""
-        return {name: array[:self.run.record.n] for name, array in self.arrays.items()}
+        """Recorded arrays by name, cut to the rows that are in them."""
+        return {name: array[:self.run.record.n - self.run.record.first] for name, array in self.arrays.items()}
+
+    def take_rows(self):
+        """Make room: the rows that are in the arrays count as taken, and the next ones are written over them."""
+        self.run.record.first = self.run.record.n
+
+    def checkpoint(self):
+        """Bytes from which `restore` goes on exactly; at a pause only."""
+        cdef bytearray taken = bytearray(fu_save(&self.run, NULL))
+        fu_save(&self.run, taken)
+        return bytes(taken)
+
+    def restore(self, bytes checkpoint):
+        """Go on from a checkpoint; after `start` with the same arguments."""
+        if len(checkpoint) != fu_save(&self.run, NULL):
+            raise ValueError("the checkpoint is of another model")
+        fu_restore(&self.run, checkpoint)
+
+    @property
+    def n_rows(self):
+        """Number of output rows since the start."""
+        return self.run.record.n
 
     def joint_row(self, joints):
         """Split joint numbers (..., FU_JOINT_OUTPUTS) by name; see fu_joint_output."""
@@ -657,3 +739,8 @@ cdef class Engine:
     def stopped_joint(self):
         """Index of the slide that ran off its cable."""
         return self.run.stopped_joint
+
+    @property
+    def stopped_s(self):
+        """Arc-length of that slide, m."""
+        return self.run.now.s[self.run.stopped_joint]

@@ -5,16 +5,18 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Callable, Iterator
+from contextlib import nullcontext
 from typing import TYPE_CHECKING
 
 import numpy as np
-from funicular.errors import ConvergenceError, EndOfCableError, FunicularWarning, SceneError, near
+from funicular.errors import ConvergenceError, EndOfCableError, FunicularWarning, ResultFileError, SceneError, near
 from funicular.materials import Material
 from funicular.parts import (
     EXACT,
     Cable,
     Clamp,
     DistributedForce,
+    Event,
     Force,
     Join,
     Moment,
@@ -27,7 +29,7 @@ from funicular.parts import (
 from funicular.placing import cable_at, check_join, check_support, placed_load, placed_spring
 from funicular.plane import check_plane
 from funicular.progress import progress_bar
-from funicular.results import Run, check_writable
+from funicular.results import Run
 from funicular.sections import Section
 from funicular.settings import EquilibriumSettings, ModeSettings, RunSettings
 from funicular.supports import Support
@@ -46,8 +48,8 @@ RESERVED = ("energy", "time")
 class Scene:
     """Cables, bodies, and what joins, holds and loads them.
 
-    ``gravity`` in m/s²; ``cables``, ``bodies``, ``slides``, ``joins``, ``loads`` and ``springs`` are dicts by name;
-    ``pins``, ``clamps`` and ``motions`` are lists; ``messages`` tells what was adjusted; ``run_settings`` and
+    ``gravity`` in m/s²; ``cables``, ``bodies``, ``slides``, ``joins``, ``loads``, ``springs``, ``events`` are dicts by
+    name; ``pins``, ``clamps`` and ``motions`` are lists; ``messages`` tells what was adjusted; ``run_settings`` and
     ``equilibrium_settings`` hold the settings that a scene file gives.
     """
 
@@ -66,6 +68,7 @@ class Scene:
         self.slides: dict[str, Slide] = {}
         self.loads: dict[str, Force | DistributedForce | Moment] = {}
         self.springs: dict[str, Spring] = {}
+        self.events: dict[str, Event] = {}
         self.messages: list[str] = []
         self.run_settings: dict = {}
         self.equilibrium_settings: dict = {}
@@ -176,6 +179,17 @@ class Scene:
         free = {} if length is None else {"length": length}
         return self.add(Spring(a=a, b=b, stiffness=stiffness, damping=damping, **free, **_named(name)))
 
+    def event(self, name: str | None = None, *, quantity: str | None = None, s: float | None = None,
+              value: float = 0.0, function: Callable | None = None, direction: str = "both",
+              action: str = "record") -> Event:
+        """Find the instants at which a quantity passes ``value``, or ``function(time, state)`` zero; see `Event`.
+
+        They stand in ``run.events``; action "stop" ends the run at the first. Raises SceneError.
+        """
+        place = {} if s is None else {"s": s}
+        return self.add(Event(quantity=quantity, value=value, function=function, direction=direction, action=action,
+                              **place, **_named(name)))
+
     def slide(
         self, body: RigidBody | str, *, along: Cable | str, s: float, at=(0, 0, 0), name: str | None = None
     ) -> Slide:
@@ -190,7 +204,7 @@ class Scene:
 
         Returns the part as it stands in the scene. Raises SceneError.
         """
-        if isinstance(part, Join | Force | DistributedForce | Moment | Spring) and part.name is None:
+        if isinstance(part, Join | Force | DistributedForce | Moment | Spring | Event) and part.name is None:
             part = part.model_copy(update={"name": self._free_name(part.kind)})
         if hasattr(part, "name"):
             self._claim(part)
@@ -211,6 +225,11 @@ class Scene:
                 part = part.model_copy(update={"s": min(max(part.s, 0.0), cable.length)})
                 self._seat(part)
                 self.slides[part.name] = part
+            case Event():
+                from funicular.watching import check_event
+
+                check_event(self, part)
+                self.events[part.name] = part
             case Spring():
                 self.springs[part.name] = part = placed_spring(self, part)
             case _:
@@ -229,7 +248,8 @@ class Scene:
 
     def parts(self) -> Iterator[Part]:
         """All parts, in an order in which they can be added."""
-        for group in (self.cables, self.supports, self.joins, self.bodies, self.slides, self.loads, self.springs):
+        for group in (self.cables, self.supports, self.joins, self.bodies, self.slides, self.loads, self.springs,
+                      self.events):
             yield from group.values() if isinstance(group, dict) else group
 
     def check(self) -> None:
@@ -255,14 +275,16 @@ class Scene:
         spectral_radius: float | None = None,
         initial: str | Equilibrium | None = None,
         save: str | os.PathLike | None = None,
+        resume: bool = False,
         progress: bool | Callable[[float], None] | None = None,
     ) -> Run:
         """Simulate the scene for ``duration`` (s); see `RunSettings` for the settings and their defaults.
 
         Settings not given here are the scene file's, if it gave them. initial: "drawn", "equilibrium" (found first),
-        or a state that `equilibrium` returned. save: a netCDF file, tried before the
-        run and written also when that stops early. progress: a bar (True), none (False), a bar if a terminal
-        watches (None), or a function of the time reached.
+        or a state that `equilibrium` returned. save: a netCDF file, written while the run goes on, with a checkpoint
+        (the same name and ``.state``) that stays when the run is killed or interrupted; results are read from the file
+        when they are asked for. resume: go on from there, to the same numbers. progress: a bar (True), none (False), a
+        bar if a terminal watches (None), or a function of the time reached.
 
         Raises SceneError, ResultFileError, EquilibriumError; EndOfCableError and ConvergenceError, whose ``run`` holds
         everything up to then. Ctrl-C returns what was computed, with a `FunicularWarning`.
@@ -282,19 +304,18 @@ class Scene:
         self.check()
         if settings.initial == "drawn":
             self._check_motions_start_at_zero()
-        if settings.save is not None:
-            check_writable(settings.save)
-        if settings.initial == "equilibrium" and state is None:
-            state = self.equilibrium()
+        if resume and settings.save is None:
+            raise ResultFileError("run: there is nothing to resume without a file of results; name it with save")
+        from funicular.streaming import Stream
 
-        from funicular.model import simulate
+        with nullcontext() if settings.save is None else Stream(settings.save, self, settings, resume) as stream:
+            if settings.initial == "equilibrium" and state is None:
+                state = self.equilibrium()
+            from funicular.model import simulate
 
-        start = {} if state is None else {"initial": state}
-        with progress_bar(settings.duration, progress) as on_progress:
-            recording = simulate(self, settings, on_progress, **start)
-        run = Run.from_recording(recording, self, settings)
-        if settings.save is not None:
-            run.save(settings.save)
+            with progress_bar(settings.duration, progress) as on_progress:
+                recording = simulate(self, settings, on_progress, initial=state, stream=stream)
+            run = stream.finish(recording) if stream else Run.from_recording(recording, self, settings)
         match recording.status:
             case "end_of_cable":
                 raise EndOfCableError(recording.message, run)

@@ -236,11 +236,11 @@ typedef struct {
     double alpha_m, alpha_f, beta, gamma;
 } fu_genalpha;
 
-/* Explicit Runge-Kutta method with an embedded error estimate, or two. */
+/* Explicit Runge-Kutta method with two embedded error estimates. */
 typedef struct {
     int stages;
     const double *A, *b, *c;          /* stages x stages, row by row; stages; stages */
-    const double *error, *coarse;     /* stages + 1: the last is of the state at the end; `coarse` may be null */
+    const double *error, *coarse;     /* stages + 1: the last is of the state at the end */
 } fu_tableau;
 
 /* What the user watches: an entry of the state less a value, or a function of his. */
@@ -265,7 +265,9 @@ enum { FU_RUNNING = 0, FU_DONE = 1, FU_END_OF_CABLE = 2, FU_NO_CONVERGENCE = 3, 
 /* Rows of output, one an output time; joint: FU_JOINT_OUTPUTS numbers a joint in the order of fu_joint_output. */
 #define FU_JOINT_OUTPUTS 10
 typedef struct {
-    int n;
+    int n;     /* rows recorded since the start */
+    int first; /* the row that stands first in the arrays: those before it were taken away */
+    int pause; /* at so many rows fu_advance returns, for the caller to call fu_pause */
     double *time, *q, *v, *acceleration, *reaction, *s, *joint;
     double *kinetic, *elastic, *potential, *dissipated, *external, *spring;
 } fu_record;
@@ -303,10 +305,11 @@ struct fu_run {
     int order;           /* of the error in positions as controlled */
     fu_genalpha scheme;
     fu_tableau tableau;
-    double *scratch;     /* of the integrator */
+    double *scratch;     /* of the integrator, within a step: checkpoints do not hold it */
     int n_watches;
     const fu_watch *watches;
-    double *watched;     /* per watch: its value at `now` */
+    double *watched;     /* per watch: its value at `now`, 0 where it has just passed */
+    int *late;           /* per watch: the side to which it passed together with another event */
     double (*call)(void *context, int watch, const fu_state *state);
     void *context;
     fu_event event;      /* that the run has stopped at */
@@ -320,8 +323,10 @@ struct fu_run {
     double *psi, *force, *work, *before;      /* n_dof; force is what supports and motions give, once Newton is done */
     double *first;                            /* n_q: the configuration at the start */
     double *s_slope;                          /* per joint: predicts ds/dt */
+    /* From here to the end numbers alone, which a checkpoint copies as they are. */
     double h, h_factored, contraction, last_error;
     double dissipated, dissipated_power, external, external_power; /* J, W */
+    double recorded; /* s: time of the last row */
     double motion, least_motion, extent; /* m: largest so far, assumed at least, largest coordinate of a position */
     double newton_tolerance, round_off; /* of increments, m: where Newton may stop, and where it cannot go on */
     int factored, stopped_joint, turned;
@@ -352,7 +357,8 @@ double fu_external_power(fu_run *run, const fu_state *state, const double *react
 void fu_book_trapezoid(fu_run *run, double h);
 
 /* events.c */
-fu_event fu_find_event(fu_run *run);
+fu_event fu_find_event(const fu_run *run, fu_event known);
+fu_event fu_late_event(fu_run *run);
 int fu_stands_on_boundary(const fu_run *run, fu_event event);
 double fu_locate(fu_run *run, fu_event event, double h);
 void fu_watch_now(fu_run *run, fu_event event);
@@ -360,5 +366,11 @@ void fu_watch_now(fu_run *run, fu_event event);
 /* run.c: the time loop */
 int fu_start(fu_run *run);
 int fu_advance(fu_run *run, double seconds);
+int fu_stop(fu_run *run);
+
+/* checkpoint.c: all that later steps depend on */
+void fu_pause(fu_run *run);
+long fu_save(const fu_run *run, char *bytes);
+void fu_restore(fu_run *run, const char *bytes);
 
 #endif

@@ -51,7 +51,7 @@ static int record_row(fu_run *run)
     const fu_model *model = run->model;
     const fu_state *now = &run->now;
     fu_record *r = &run->record;
-    const long row = r->n;
+    const long row = r->n - r->first;
     fu_joint_output *joints = (fu_joint_output *)(r->joint + row * model->n_joints * FU_JOINT_OUTPUTS);
     r->time[row] = now->t;
     memcpy(r->q + row * model->n_q, now->q, sizeof(double) * (size_t)model->n_q);
@@ -70,6 +70,7 @@ static int record_row(fu_run *run)
                         by_rate);
     }
     ++r->n;
+    run->recorded = now->t;
     run->statistics.time_output += fu_clock() - begin;
     return info;
 }
@@ -86,7 +87,9 @@ static int start_scheme(fu_run *run, int project)
         if (fu_project_velocities(model, now, &run->accelerator, run->before)) return FU_SINGULAR;
         for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->before[i];
     }
-    if (fu_accelerations(model, now, &run->accelerator, now->acceleration, joints, 0)) return FU_SINGULAR;
+    if (fu_accelerations(model, now, &run->accelerator, now->acceleration, joints, run->force)) return FU_SINGULAR;
+    run->dissipated_power = fu_dissipation(model, now->q, now->v);
+    run->external_power = fu_external_power(run, now, run->force);
     for (int j = 0; j < model->n_joints; ++j) {
         run->s_slope[j] = joints[j].s_rate;
         memcpy(now->f + 3 * j, joints[j].force, sizeof joints[j].force);
@@ -112,8 +115,6 @@ int fu_start(fu_run *run)
         memset(now->acceleration, 0, sizeof(double) * (size_t)model->n_dof);
         memset(now->a, 0, sizeof(double) * (size_t)model->n_dof);
     }
-    run->dissipated_power = fu_dissipation(model, now->q, now->v);
-    run->external_power = fu_external_power(run, now, run->record.reaction);
     /* tolerances are relative to the largest motion: until there is one, that of a thousandth of the duration; and
      * never to less than what a scene at rest cannot help */
     run->least_motion = 1e-9 * run->extent;
@@ -160,6 +161,7 @@ static int enter(fu_run *run, int j, int side)
     now->element[j] = element;
     now->s[j] = fu_element_start(model, j, side > 0 ? element : element + 1);
     ++run->statistics.crossings;
+    fu_watch_now(run, (fu_event){FU_NO_EVENT, 0, 0});
     return start_scheme(run, !run->integrator->conserves);
 }
 
@@ -169,6 +171,14 @@ static int happened(fu_run *run, fu_event event)
     if (event.kind == FU_CROSSING) return enter(run, event.which, event.side);
     run->event = event;
     return FU_EVENT;
+}
+
+/* What is left between an event and an output time can be so short that the rounding of psi, over h^2, is all there is
+ * in its accelerations: they must not go on. */
+static int refresh(fu_run *run, double h)
+{
+    return h < SHORT_STEP * (run->fixed_step > 0.0 ? run->fixed_step : run->h)
+               ? start_scheme(run, !run->integrator->conserves) : FU_RUNNING;
 }
 
 /* The step that ends at the target, or one of equal steps to there, none larger than wanted. */
@@ -203,9 +213,12 @@ static void adapt(fu_run *run, double h, double ratio)
 /* One accepted step towards `target`, or a change of a slide's element. */
 static int step_towards(fu_run *run, double target)
 {
+    const fu_model *model = run->model;
     const double smallest = SMALLEST_STEP * run->duration;
     const int adaptive = run->fixed_step <= 0.0;
+    const fu_event none = {FU_NO_EVENT, 0, 0}, late = fu_late_event(run);
     double want = adaptive ? run->h : run->fixed_step;
+    if (late.kind) return happened(run, late);
     for (;;) {
         const double remaining = target - run->now.t;
         double h = fitted(remaining, want);
@@ -223,38 +236,46 @@ static int step_towards(fu_run *run, double target)
             ++run->statistics.rejected;
             continue;
         }
-        const fu_event event = fu_find_event(run);
-        if (event.kind && !(event.kind == FU_CROSSING && run->turned >= MOST_TURNS)) {
-            if (fu_stands_on_boundary(run, event)) {
-                ++run->turned;
-                return happened(run, event);
+        fu_event event = fu_find_event(run, none);
+        if (event.kind == FU_CROSSING && run->turned >= MOST_TURNS) event = none;
+        if (fu_stands_on_boundary(run, event)) {
+            ++run->turned;
+            return happened(run, event);
+        }
+        if (event.kind) {
+            for (int i = 0; i <= model->n_joints + run->n_watches; ++i) { /* the first of several */
+                const fu_event earlier = i ? fu_find_event(run, event) : event;
+                if (!earlier.kind) break;
+                event = earlier;
+                h = fu_locate(run, event, h);
+                if (h == 0.0) break;
             }
-            h = fu_locate(run, event, h);
             if (h == 0.0) {
                 want *= 0.5;
                 if (want < smallest) return FU_NO_CONVERGENCE;
                 continue;
             }
-            if (fu_find_event(run).kind == FU_CROSSING) { /* another slide crossed before: the shorter step finds it */
-                want = h;
-                continue;
-            }
             accept(run, h, event);
-            return happened(run, event);
+            const int status = event.kind == FU_CROSSING ? FU_RUNNING : refresh(run, h);
+            return status ? status : happened(run, event);
         }
         accept(run, h, event);
         run->turned = 0;
         run->statistics.error_sum += error;
         run->last_error = error;
         if (adaptive) adapt(run, h, ratio);
-        /* what is left between a boundary and an output time can be so short that the rounding of psi, over h^2, is
-         * all there is in its accelerations: they must not go on */
-        return h < SHORT_STEP * (adaptive ? run->h : run->fixed_step) ? start_scheme(run, !run->integrator->conserves)
-                                                                      : FU_RUNNING;
+        return refresh(run, h);
     }
 }
 
-/* Go on for about so many seconds; the status tells whether there is more to do. */
+/* Record where the run has stopped, if that is not done already. */
+int fu_stop(fu_run *run)
+{
+    if (run->now.t > run->recorded && record_row(run)) return FU_SINGULAR;
+    return FU_EVENT;
+}
+
+/* Go on for about so many seconds, or to the pause; the status tells whether there is more to do. */
 int fu_advance(fu_run *run, double seconds)
 {
     const double until = fu_clock() + seconds;
@@ -265,13 +286,13 @@ int fu_advance(fu_run *run, double seconds)
             run->now.t = target;
             if (record_row(run)) return FU_SINGULAR;
             if (target == run->duration) return FU_DONE;
-            if (fu_clock() > until) return FU_RUNNING;
+            if (run->record.n == run->record.pause || fu_clock() > until) return FU_RUNNING;
         } else {
             const int status = step_towards(run, target);
             if (status == FU_EVENT) return status;
             if (status) {
-                if (run->now.t > run->record.time[run->record.n - 1] && record_row(run)) return FU_SINGULAR;
-                return status;
+                const int stopped = fu_stop(run);
+                return stopped == FU_SINGULAR ? stopped : status;
             }
             if (fu_clock() > until) return FU_RUNNING;
         }
