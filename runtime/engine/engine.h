@@ -325,6 +325,7 @@ struct fu_run {
     double *s_slope;                          /* per joint: predicts ds/dt */
     /* From here to the end numbers alone, which a checkpoint copies as they are. */
     double h, h_factored, contraction, last_error;
+    double since; /* energy.c: how long before `now` the acceleration there belongs, s */
     double dissipated, dissipated_power, external, external_power; /* J, W */
     double recorded; /* s: time of the last row */
     double motion, least_motion, extent; /* m: largest so far, assumed at least, largest coordinate of a position */
