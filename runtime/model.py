@@ -321,7 +321,7 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
     cpu, wall = time.process_time() - cpu, time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
     recording = recorded(model, scene, engine, settings, status, messages, reason, watcher,
                          {"set_up": set_up, "total": wall})
-    recording.report["time_s"]["solve_cpu"] = cpu  # of the integration alone, which other work on the machine leaves alone
+    recording.report["time_s"]["solve_cpu"] = cpu  # of the integration alone, whatever else the machine does
     return recording
 
 
