@@ -3,7 +3,8 @@
     python tests/benchmarks/choice.py [--out FILE.csv] [--repetitions N]
 
 ``evaluations`` is what the choice reckons for each, in evaluations of eq 38 per second of motion: the explicit method
-by stability, the implicit one by tol. Errors are of positions, over the largest motion, against the explicit method at tol = 1e-9.
+by stability, the implicit one by tol. Errors are of positions, over the largest motion, against the explicit method at
+tol = 1e-9.
 """
 
 from __future__ import annotations
