@@ -204,7 +204,7 @@ static double allow(fu_run *run, double h)
      * positions, the local error T/h times; a fixed step is solved as well as it can be, whatever its error */
     const double extent = fmax(run->extent, scale);
     run->newton_tolerance = run->fixed_step > 0.0 ? fmin(1e-2 * h / run->duration * run->last_error, 1e-14 * extent)
-                                                  : fmin(0.1 * h / run->duration * allowed, 1e-11 * extent);
+                                                  : fmin(0.1 * h / run->duration * allowed, 1e-12 * extent);
     return run->allowed = allowed;
 }
 
