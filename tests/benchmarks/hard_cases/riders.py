@@ -1,0 +1,82 @@
+"""Riders: nearly massless and very heavy, faster than waves of the cable, far from the origin; the paper's."""
+
+from functools import cache
+
+import numpy as np
+from funicular import load_scene
+
+from .case import CONVERGED, Subject, error, figures, positions, simulate
+from .crossings import ROPE, pinned_rope, ride, rider
+
+HERE = Subject()
+DENSITY = 4200 * np.pi * 0.0282**2
+"""Mass of the paper's cable, kg/m."""
+
+
+def compared(scene, duration: float, integrator: str, **settings):
+    """Figures of a run beside the converged one."""
+    return figures(simulate(scene(), duration, integrator=integrator, **settings),
+                   simulate(scene(), duration, **CONVERGED))
+
+
+def of_mass(ratio: float):
+    """A rider of so many times the cable's mass."""
+    def measure(integrator):
+        return compared(lambda: rider(0.25, 1.0, mass=ratio * 1.5 * DENSITY, elements=3), 0.6, integrator)
+
+    return measure
+
+
+for ratio in (1e-9, 1e-6, 1e2, 1e4):
+    HERE.case(f"a rider of {ratio:g} times the cable's mass", error=3e-4, balance=1e-3, residual=1e-9,
+              gap=1e-9)(of_mass(ratio))
+
+
+@HERE.case("a rider at twice the wave speed of the cable", error=1e-4, balance=1e-3, residual=1e-9, gap=1e-9,
+           mach=(2, 2.1), ahead=1e-6)
+def faster_than_waves(integrator):
+    """A taut rope, c = sqrt(T / ρA); `mach`: least speed of the rider over c; `ahead`: what waves have brought to
+    points that the rider has not reached, over its own deflection. No weight: the rider alone, pushed down, bends it.
+    """
+    tension = 0.05 * 0.4e9 * np.pi * 0.0282**2
+    c = np.sqrt(tension / (DENSITY / 1.05))
+
+    def scene():
+        made = pinned_rope(gravity=(0, 0, 0), elements=24, rest_length=1.5 / 1.05)
+        ride(made, 0.03, 2.02 * c)
+        made.force("A", value=(0, -100, 0))
+        return made
+
+    run, exact = (simulate(scene(), 1.2 / (2 * c), **settings) for settings in ({"integrator": integrator}, CONVERGED))
+    return figures(run, exact) | {"mach": float(run["A.velocity"][:, 0].min() / c)}
+
+
+@cache
+def at_the_origin(integrator: str):
+    return simulate(rider(0.25, 1.0, elements=3), 0.6, integrator=integrator)
+
+
+def far(distance: float):
+    def measure(integrator):
+        """`apart`: from the motion at the origin, m."""
+        scene = rider(0.25, 1.0, elements=3, start=(distance, -distance, distance),
+                      end=(distance + 1.5, -distance, distance))
+        run = simulate(scene, 0.6, integrator=integrator)
+        near = at_the_origin(integrator)
+        moved = positions(run) - positions(run)[0] - positions(near) + positions(near)[0]
+        return figures(run) | {"apart": float(np.abs(moved).max())}
+
+    return measure
+
+
+for distance in (1e2, 1e4):
+    HERE.case(f"{distance:g} m from the origin", apart=1e-5, balance=1e-3, residual=1e-9, gap=1e-9)(far(distance))
+
+
+def paper(elements: int):
+    def measure(integrator):
+        scene = load_scene("paper51")
+        parts = scene.to_toml()
+        return parts
+
+    return measure
