@@ -181,6 +181,7 @@ cdef extern from "engine.h" nogil:
         int n_watches
         const fu_watch *watches
         double *watched
+        int *late
         double (*call)(void *context, int watch, const fu_state *state) noexcept nogil
         void *context
         fu_event event
@@ -209,6 +210,7 @@ cdef extern from "engine.h" nogil:
     double fu_elastic_energy(const fu_model *model, const double *q)
     int fu_start(fu_run *run)
     int fu_advance(fu_run *run, double seconds)
+    int fu_stop(fu_run *run)
 
 cdef const fu_tables *TABLES = <const fu_tables *>PyCapsule_GetPointer(kernels.tables,
                                                                       "funicular.generated.kernels.tables")
@@ -221,7 +223,7 @@ LAPACK.dgemm = <void *>cython_blas.dgemm
 LAPACK.dgemv = <void *>cython_blas.dgemv
 
 STATUS = {FU_DONE: "completed", FU_END_OF_CABLE: "end_of_cable", FU_NO_CONVERGENCE: "no_convergence",
-          FU_SINGULAR: "singular"}
+          FU_SINGULAR: "singular", FU_EVENT: "event"}
 JOINT_OUTPUTS = ("s_rate", "s_acceleration", "force", "multiplier", "residual")
 
 
@@ -265,6 +267,18 @@ cdef const fu_slide *_slide(list tables, str name) except NULL:
     raise ValueError(f"no kernels for {name}")
 
 
+cdef double _call(void *context, int which, const fu_state *state) noexcept with gil:
+    """The function of an event of the user's; what it raises waits in the engine."""
+    engine = <Engine>context
+    if engine.error is not None:
+        return 0.0
+    try:
+        return engine.watcher.call(which, *engine._snapshot(state))
+    except BaseException as error:
+        engine.error = error
+        return 0.0
+
+
 cdef class Engine:
     """One run of a model (see model.py for the fields that it reads)."""
 
@@ -276,6 +290,8 @@ cdef class Engine:
     cdef fu_dead_load *dead_loads
     cdef fu_load *loads
     cdef fu_signal *signals
+    cdef fu_watch *watches
+    cdef object watcher, error
     cdef fu_model model
     cdef fu_run run
     cdef list kept
@@ -296,7 +312,7 @@ cdef class Engine:
 
     def __dealloc__(self):
         for pointer in (<size_t>self.cables, <size_t>self.rigids, <size_t>self.joints, <size_t>self.springs,
-                        <size_t>self.motions, <size_t>self.dead_loads, <size_t>self.loads, <size_t>self.signals):
+                        <size_t>self.motions, <size_t>self.dead_loads, <size_t>self.loads, <size_t>self.signals, <size_t>self.watches):
             PyMem_Free(<void *><size_t>pointer)
 
     def __init__(self, model):
@@ -570,6 +586,29 @@ cdef class Engine:
         fu_spread(&self.model, &x[0], &dofs[0])
         return np.asarray(dofs)[:self.model.n_dof]
 
+    def watch(self, watcher):
+        """Watch for the events of a `Watcher`; call it before `start`."""
+        kinds = {"q": FU_WATCH_Q, "v": FU_WATCH_V, "s": FU_WATCH_S, "function": FU_WATCH_CALL}
+        cdef int i
+        PyMem_Free(self.watches)
+        self.watches = <fu_watch *>PyMem_Calloc(len(watcher.watches) + 1, sizeof(fu_watch))
+        if not self.watches:
+            raise MemoryError
+        for i, watch in enumerate(watcher.watches):
+            w = &self.watches[i]
+            w.kind, w.index, w.direction, w.value = kinds[watch.kind], watch.index, watch.direction, watch.value
+        self.watcher, self.error = watcher, None
+        run = &self.run
+        run.n_watches, run.watches = len(watcher.watches), self.watches
+        run.watched, run.late = self._doubles(np.zeros(run.n_watches)), self._ints(np.zeros(run.n_watches))
+        run.call, run.context = &_call, <void *>self
+
+    cdef _snapshot(self, const fu_state *state):
+        """t, q, v, s of a state."""
+        m = &self.model
+        return (state.t, np.array([state.q[i] for i in range(m.n_q)]), np.array([state.v[i] for i in range(m.n_dof)]),
+                np.array([state.s[i] for i in range(m.n_joints)]))
+
     def start(self, *, duration, output_step, tol, step, method, first_step, rest_start=False):
         """Allocate the output rows and compute the consistent start; method: see integrators.py.
 
@@ -608,6 +647,14 @@ cdef class Engine:
                 with nogil:
                     status = fu_advance(&self.run, interval)
                 PyErr_CheckSignals()
+                if self.error is not None:
+                    raise self.error
+                if status == FU_EVENT:
+                    if not self.watcher.happens(self.run.event.which, *self._snapshot(&self.run.now)):
+                        with nogil:
+                            status = fu_stop(&self.run)
+                        break
+                    status = FU_RUNNING
                 on_progress(self.run.now.t)
         except KeyboardInterrupt:
             return "interrupted"

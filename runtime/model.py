@@ -22,6 +22,7 @@ from funicular.recording import Recording, recorded
 from funicular.reduction import Node, half_width, supports
 from funicular.scene import Scene
 from funicular.settings import RunSettings
+from funicular.watching import Watcher
 from scipy.sparse import csr_array
 
 MOST_OUTPUT = 4e9  # bytes
@@ -281,7 +282,9 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
         initial.start(model)
     output_step = settings.output_step
     _check_size(model, settings)
-    engine = Engine(model)
+    engine, watcher = Engine(model), Watcher(scene, model)
+    if watcher.watches:
+        engine.watch(watcher)
     messages = []
     if settings.step is not None:
         step = output_step / np.ceil(output_step / settings.step * (1 - 1e-9))
@@ -307,7 +310,7 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
     if status is None:
         status = engine.advance(on_progress)
     wall = time.perf_counter() - begin
-    return recorded(model, scene, engine, settings, status, messages, {"set_up": set_up, "total": wall})
+    return recorded(model, scene, engine, settings, status, messages, watcher, {"set_up": set_up, "total": wall})
 
 
 def _check_size(model: Model, settings: RunSettings) -> None:

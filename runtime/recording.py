@@ -13,6 +13,7 @@ from funicular.settings import RunSettings
 
 if TYPE_CHECKING:
     from funicular.model import Model
+    from funicular.watching import Watcher
 
 
 @dataclass
@@ -86,7 +87,7 @@ def body_state(model: Model, body, q: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def recorded(model: Model, scene: Scene, engine, settings: RunSettings, status: str, messages: list[str],
-             seconds: dict[str, float]) -> Recording:
+             watcher: Watcher, seconds: dict[str, float]) -> Recording:
     """The engine's rows by name."""
     rows = engine.rows()
     q, v, a = rows["q"], rows["v"], rows["acceleration"]
@@ -125,11 +126,12 @@ def recorded(model: Model, scene: Scene, engine, settings: RunSettings, status: 
         "unknowns": model.n_band + model.n_border_dof + model.n_extra,
         "kernels": model.kernels,
         "messages": messages,
+        "events": watcher.happened,
         **statistics,
     }
     return Recording(
         status="no_convergence" if status == "singular" else status,
-        message=_message(model, engine, status, settings),
+        message=_message(model, engine, status, settings, watcher),
         time=rows["time"],
         cables=cables,
         bodies=bodies,
@@ -171,7 +173,7 @@ def end_points(model: Model, end, q: np.ndarray) -> np.ndarray:
     return np.broadcast_to(np.array(end.u), (len(q), 3))
 
 
-def _message(model: Model, engine, status: str, settings: RunSettings) -> str:
+def _message(model: Model, engine, status: str, settings: RunSettings, watcher: Watcher) -> str:
     when = f"t = {engine.time:.6g} s of {settings.duration:.6g} s"
     match status:
         case "end_of_cable":
@@ -193,6 +195,8 @@ def _message(model: Model, engine, status: str, settings: RunSettings) -> str:
                 f"the equations are singular at {when}: a joint or the mass matrix is degenerate "
                 "(is a cable's director parallel to its tangent?)"
             )
+        case "event":
+            return f'stopped by event "{watcher.stopped_by}" at {when}'
         case "interrupted":
             return f"interrupted at {when}; what was computed up to there is kept"
     return f"completed {settings.duration:.6g} s"

@@ -134,8 +134,13 @@ class Run:
 
     @property
     def status(self) -> str:
-        """``completed``, ``interrupted``, ``end_of_cable`` or ``no_convergence``."""
+        """``completed``, ``event`` (stopped by one), ``interrupted``, ``end_of_cable`` or ``no_convergence``."""
         return self.report["status"]
+
+    @property
+    def events(self) -> list[dict]:
+        """What the scene's events found: each with name, time (s), and the state of bodies and slides there."""
+        return self.report["events"]
 
     @cached_property
     def scene(self) -> Scene:

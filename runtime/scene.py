@@ -15,6 +15,7 @@ from funicular.parts import (
     Cable,
     Clamp,
     DistributedForce,
+    Event,
     Force,
     Join,
     Moment,
@@ -46,8 +47,8 @@ RESERVED = ("energy", "time")
 class Scene:
     """Cables, bodies, and what joins, holds and loads them.
 
-    ``gravity`` in m/s²; ``cables``, ``bodies``, ``slides``, ``joins``, ``loads`` and ``springs`` are dicts by name;
-    ``pins``, ``clamps`` and ``motions`` are lists; ``messages`` tells what was adjusted; ``run_settings`` and
+    ``gravity`` in m/s²; ``cables``, ``bodies``, ``slides``, ``joins``, ``loads``, ``springs``, ``events`` are dicts by
+    name; ``pins``, ``clamps`` and ``motions`` are lists; ``messages`` tells what was adjusted; ``run_settings`` and
     ``equilibrium_settings`` hold the settings that a scene file gives.
     """
 
@@ -66,6 +67,7 @@ class Scene:
         self.slides: dict[str, Slide] = {}
         self.loads: dict[str, Force | DistributedForce | Moment] = {}
         self.springs: dict[str, Spring] = {}
+        self.events: dict[str, Event] = {}
         self.messages: list[str] = []
         self.run_settings: dict = {}
         self.equilibrium_settings: dict = {}
@@ -176,6 +178,17 @@ class Scene:
         free = {} if length is None else {"length": length}
         return self.add(Spring(a=a, b=b, stiffness=stiffness, damping=damping, **free, **_named(name)))
 
+    def event(self, name: str | None = None, *, quantity: str | None = None, s: float | None = None,
+              value: float = 0.0, function: Callable | None = None, direction: str = "both",
+              action: str = "record") -> Event:
+        """Find the instants at which a quantity passes ``value``, or ``function(time, state)`` zero; see `Event`.
+
+        They stand in ``run.events``; action "stop" ends the run at the first. Raises SceneError.
+        """
+        place = {} if s is None else {"s": s}
+        return self.add(Event(quantity=quantity, value=value, function=function, direction=direction, action=action,
+                              **place, **_named(name)))
+
     def slide(
         self, body: RigidBody | str, *, along: Cable | str, s: float, at=(0, 0, 0), name: str | None = None
     ) -> Slide:
@@ -190,7 +203,7 @@ class Scene:
 
         Returns the part as it stands in the scene. Raises SceneError.
         """
-        if isinstance(part, Join | Force | DistributedForce | Moment | Spring) and part.name is None:
+        if isinstance(part, Join | Force | DistributedForce | Moment | Spring | Event) and part.name is None:
             part = part.model_copy(update={"name": self._free_name(part.kind)})
         if hasattr(part, "name"):
             self._claim(part)
@@ -211,6 +224,11 @@ class Scene:
                 part = part.model_copy(update={"s": min(max(part.s, 0.0), cable.length)})
                 self._seat(part)
                 self.slides[part.name] = part
+            case Event():
+                from funicular.watching import check_event
+
+                check_event(self, part)
+                self.events[part.name] = part
             case Spring():
                 self.springs[part.name] = part = placed_spring(self, part)
             case _:
@@ -229,7 +247,8 @@ class Scene:
 
     def parts(self) -> Iterator[Part]:
         """All parts, in an order in which they can be added."""
-        for group in (self.cables, self.supports, self.joins, self.bodies, self.slides, self.loads, self.springs):
+        for group in (self.cables, self.supports, self.joins, self.bodies, self.slides, self.loads, self.springs,
+                      self.events):
             yield from group.values() if isinstance(group, dict) else group
 
     def check(self) -> None:

@@ -115,7 +115,9 @@ def dumps(scene: Scene) -> str:
     lines, parts = [f"gravity = {_toml(scene.gravity)}"], list(scene.parts())
     for kind in PARTS:
         for part in parts:
-            if part.kind == kind:
+            if part.kind == kind == "event" and part.function is not None:
+                lines += ["", f"# {part.where} watches a function, which only Python can hold"]
+            elif part.kind == kind:
                 lines += ["", f"[[{kind}]]", *_lines(_data(part))]
     for name in SETTINGS:
         if settings := getattr(scene, f"{name}_settings"):

@@ -283,7 +283,8 @@ struct fu_run {
     double *scratch;     /* of the integrator */
     int n_watches;
     const fu_watch *watches;
-    double *watched;     /* per watch: its value at `now` */
+    double *watched;     /* per watch: its value at `now`, 0 where it has just passed */
+    int *late;           /* per watch: the side to which it passed together with another event */
     double (*call)(void *context, int watch, const fu_state *state);
     void *context;
     fu_event event;      /* that the run has stopped at */
@@ -320,7 +321,8 @@ double fu_external_power(fu_run *run, const fu_state *state, const double *react
 void fu_book_trapezoid(fu_run *run, double h);
 
 /* events.c */
-fu_event fu_find_event(fu_run *run);
+fu_event fu_find_event(const fu_run *run, fu_event known);
+fu_event fu_late_event(fu_run *run);
 int fu_stands_on_boundary(const fu_run *run, fu_event event);
 double fu_locate(fu_run *run, fu_event event, double h);
 void fu_watch_now(fu_run *run, fu_event event);
@@ -328,5 +330,6 @@ void fu_watch_now(fu_run *run, fu_event event);
 /* run.c: the time loop */
 int fu_start(fu_run *run);
 int fu_advance(fu_run *run, double seconds);
+int fu_stop(fu_run *run);
 
 #endif

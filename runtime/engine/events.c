@@ -37,9 +37,18 @@ static double value(const fu_run *run, const fu_state *state, fu_event event)
     return event.side * (state->s[event.which] - fu_element_start(run->model, event.which, boundary));
 }
 
-/* the slide of `next` that is farthest outside its element, else the first of the user's events between `now` and
- * `next` */
-fu_event fu_find_event(fu_run *run)
+/* whether a watch passes between the value kept and that of a state */
+static fu_event passes(const fu_run *run, const fu_state *state, int k)
+{
+    const double before = run->watched[k], after = watched(run, state, k);
+    const int side = before < 0.0 && after >= 0.0 ? 1 : before > 0.0 && after < 0.0 ? -1 : 0;
+    return side && run->watches[k].direction * side >= 0 ? (fu_event){FU_WATCHED, k, side}
+                                                         : (fu_event){FU_NO_EVENT, 0, 0};
+}
+
+/* The slide of `next` that is farthest outside its element, else the first of the user's events between `now` and
+ * `next`, but for one that is known. */
+fu_event fu_find_event(const fu_run *run, fu_event known)
 {
     fu_event found = {FU_NO_EVENT, 0, 0};
     double worst = 0.0;
@@ -51,12 +60,8 @@ fu_event fu_find_event(fu_run *run)
             found = (fu_event){FU_CROSSING, j, side};
         }
     }
-    if (found.kind) return found;
-    for (int k = 0; k < run->n_watches; ++k) {
-        const double before = run->watched[k], after = watched(run, &run->next, k);
-        const int side = before < 0.0 && after >= 0.0 ? 1 : before > 0.0 && after <= 0.0 ? -1 : 0;
-        if (side && run->watches[k].direction * side >= 0) return (fu_event){FU_WATCHED, k, side};
-    }
+    for (int k = 0; k < run->n_watches && !found.kind; ++k)
+        if (known.kind != FU_WATCHED || known.which != k) found = passes(run, &run->next, k);
     return found;
 }
 
@@ -77,9 +82,10 @@ double fu_locate(fu_run *run, fu_event event, double h)
     const double close = event.kind == FU_CROSSING ? boundary_tolerance(run, event.which) : 1e-13 * (g_high - g_low);
     const double least = 1e-13 * run->duration;
     int last = 0;
+    if (g_high <= close) return h;
     for (int i = 0; i < MOST_TRIALS; ++i) {
         double middle = low + (high - low) * g_low / (g_low - g_high);
-        if (!(middle > low && middle < high)) middle = 0.5 * (low + high);
+        if (!(middle > low && middle < high) || (i > 10 && i % 2)) middle = 0.5 * (low + high); /* rounding may rule g */
         if (run->integrator->step(run, middle)) return 0.0;
         const double g = value(run, &run->next, event);
         if (fabs(g) <= close) return middle;
@@ -100,9 +106,27 @@ double fu_locate(fu_run *run, fu_event event, double h)
     return 0.0;
 }
 
-/* Values of the user's events at `now`; the one that has just happened counts as past. */
+/* Values of the user's events at `now`; none of those that have just passed, or rounding would let them pass again.
+ * `late` tells which did together with the one that the step was for. */
 void fu_watch_now(fu_run *run, fu_event event)
 {
-    for (int k = 0; k < run->n_watches; ++k) run->watched[k] = watched(run, &run->now, k);
-    if (event.kind == FU_WATCHED) run->watched[event.which] = event.side * 1e-300;
+    for (int k = 0; k < run->n_watches; ++k) {
+        const fu_event it = event.kind == FU_WATCHED && event.which == k ? event : passes(run, &run->now, k);
+        const double value = watched(run, &run->now, k);
+        if (it.kind) run->watched[k] = 0.0;
+        else if (value != 0.0) run->watched[k] = value;
+        if (it.kind && !(event.kind == FU_WATCHED && event.which == k)) run->late[k] = it.side;
+    }
+}
+
+/* An event of the user's that passed together with another one. */
+fu_event fu_late_event(fu_run *run)
+{
+    for (int k = 0; k < run->n_watches; ++k)
+        if (run->late[k]) {
+            const fu_event event = {FU_WATCHED, k, run->late[k]};
+            run->late[k] = 0;
+            return event;
+        }
+    return (fu_event){FU_NO_EVENT, 0, 0};
 }

@@ -157,6 +157,7 @@ static int enter(fu_run *run, int j, int side)
     now->element[j] = element;
     now->s[j] = fu_element_start(model, j, side > 0 ? element : element + 1);
     ++run->statistics.crossings;
+    fu_watch_now(run, (fu_event){FU_NO_EVENT, 0, 0});
     return start_scheme(run);
 }
 
@@ -166,6 +167,13 @@ static int happened(fu_run *run, fu_event event)
     if (event.kind == FU_CROSSING) return enter(run, event.which, event.side);
     run->event = event;
     return FU_EVENT;
+}
+
+/* What is left between an event and an output time can be so short that the rounding of psi, over h^2, is all there is
+ * in its accelerations: they must not go on. */
+static int refresh(fu_run *run, double h)
+{
+    return h < SHORT_STEP * (run->fixed_step > 0.0 ? run->fixed_step : run->h) ? start_scheme(run) : FU_RUNNING;
 }
 
 /* The step that ends at the target, or one of equal steps to there, none larger than wanted. */
@@ -200,9 +208,12 @@ static void adapt(fu_run *run, double h, double ratio)
 /* One accepted step towards `target`, or a change of a slide's element. */
 static int step_towards(fu_run *run, double target)
 {
+    const fu_model *model = run->model;
     const double smallest = SMALLEST_STEP * run->duration;
     const int adaptive = run->fixed_step <= 0.0;
+    const fu_event none = {FU_NO_EVENT, 0, 0}, late = fu_late_event(run);
     double want = adaptive ? run->h : run->fixed_step;
+    if (late.kind) return happened(run, late);
     for (;;) {
         const double remaining = target - run->now.t;
         double h = fitted(remaining, want);
@@ -220,34 +231,43 @@ static int step_towards(fu_run *run, double target)
             ++run->statistics.rejected;
             continue;
         }
-        const fu_event event = fu_find_event(run);
-        if (event.kind && !(event.kind == FU_CROSSING && run->turned >= MOST_TURNS)) {
-            if (fu_stands_on_boundary(run, event)) {
-                ++run->turned;
-                return happened(run, event);
+        fu_event event = fu_find_event(run, none);
+        if (event.kind == FU_CROSSING && run->turned >= MOST_TURNS) event = none;
+        if (fu_stands_on_boundary(run, event)) {
+            ++run->turned;
+            return happened(run, event);
+        }
+        if (event.kind) {
+            for (int i = 0; i <= model->n_joints + run->n_watches; ++i) { /* the first of several */
+                const fu_event earlier = i ? fu_find_event(run, event) : event;
+                if (!earlier.kind) break;
+                event = earlier;
+                h = fu_locate(run, event, h);
+                if (h == 0.0) break;
             }
-            h = fu_locate(run, event, h);
             if (h == 0.0) {
                 want *= 0.5;
                 if (want < smallest) return FU_NO_CONVERGENCE;
                 continue;
             }
-            if (fu_find_event(run).kind == FU_CROSSING) { /* another slide crossed before: the shorter step finds it */
-                want = h;
-                continue;
-            }
             accept(run, h, event);
-            return happened(run, event);
+            const int status = event.kind == FU_CROSSING ? FU_RUNNING : refresh(run, h);
+            return status ? status : happened(run, event);
         }
         accept(run, h, event);
         run->turned = 0;
         run->statistics.error_sum += error;
         run->last_error = error;
         if (adaptive) adapt(run, h, ratio);
-        /* what is left between a boundary and an output time can be so short that the rounding of psi, over h^2, is
-         * all there is in its accelerations: they must not go on */
-        return h < SHORT_STEP * (adaptive ? run->h : run->fixed_step) ? start_scheme(run) : FU_RUNNING;
+        return refresh(run, h);
     }
+}
+
+/* Record where the run has stopped, if that is not done already. */
+int fu_stop(fu_run *run)
+{
+    if (run->now.t > run->record.time[run->record.n - 1] && record_row(run)) return FU_SINGULAR;
+    return FU_EVENT;
 }
 
 /* Go on for about so many seconds; the status tells whether there is more to do. */
@@ -266,8 +286,8 @@ int fu_advance(fu_run *run, double seconds)
             const int status = step_towards(run, target);
             if (status == FU_EVENT) return status;
             if (status) {
-                if (run->now.t > run->record.time[run->record.n - 1] && record_row(run)) return FU_SINGULAR;
-                return status;
+                const int stopped = fu_stop(run);
+                return stopped == FU_SINGULAR ? stopped : status;
             }
             if (fu_clock() > until) return FU_RUNNING;
         }

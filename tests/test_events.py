@@ -1,0 +1,122 @@
+"""Events: instants found and stepped to, noted or ending the run."""
+
+import funicular as fu
+import numpy as np
+import pytest
+from funicular.scene_file import loads
+
+G = 9.81
+INTEGRATORS = ("genalpha", "explicit")
+
+
+def falling() -> fu.Scene:
+    """A body thrown up: y = 3 t - g t^2 / 2, x = 2 t."""
+    scene = fu.Scene()
+    scene.rigid_body("A", mass=2.0, inertia=(0.1, 0.2, 0.3), position=(0, 0, 0), velocity=(2, 3, 0),
+                     angular_velocity=(0.0, 0.0, 5.0))
+    return scene
+
+
+def riding() -> fu.Scene:
+    """A body that slides over nodes of a soft cable."""
+    scene = fu.Scene()
+    scene.cable("wire", start=(0, 0, 0), end=(10, 0, 0), elements=6, element="cable12",
+                section=fu.Rectangle(height=0.05, width=0.05), material=fu.Material(youngs_modulus=2e6, density=1000,
+                                                                                   poisson_ratio=0.0))
+    scene.pin("wire", s=0.0)
+    scene.pin("wire", s=10.0)
+    scene.rigid_body("A", mass=5.0, inertia=(0.1, 0.2, 0.3), position=(2, 0, 0), velocity=(4, 0, 0))
+    scene.slide("A", along="wire", s=2.0, name="trolley")
+    return scene
+
+
+def roots(height: float) -> list[float]:
+    """When the thrown body passes a height."""
+    return sorted(np.roots([-G / 2, 3.0, -height]).real)
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_times_are_those_of_the_parabola(integrator):
+    scene = falling()
+    scene.event("there", quantity="A.position.y", value=0.4)
+    scene.event("up", quantity="A.position.y", value=0.3, direction="rising")
+    scene.event("down", quantity="A.position.y", value=0.3, direction="falling")
+    scene.event("top", quantity="A.velocity.y")
+    scene.event("far", function=lambda time, state: state["A.position"][0] - 1.0)
+    scene.event("never", quantity="A.position.y", value=0.5)
+    run = scene.run(1.0, integrator=integrator, output_step=0.5)
+    expected = sorted([(t, "there") for t in roots(0.4)] + [(roots(0.3)[0], "up"), (roots(0.3)[1], "down"),
+                                                            (3.0 / G, "top"), (0.5, "far")])
+    assert [event["name"] for event in run.events] == [name for _, name in expected]
+    np.testing.assert_allclose([event["time"] for event in run.events], [time for time, _ in expected], rtol=1e-9)
+    top = run.events[[e["name"] for e in run.events].index("top")]["state"]
+    assert top["A.position"][1] == pytest.approx(4.5 / G, rel=1e-9)
+    assert len(run.time) == 3, "events that are noted add no rows"
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_one_that_stops_ends_the_run_there(integrator):
+    scene = falling()
+    scene.event("floor", quantity="A.position.y", value=-0.2, action="stop")
+    run = scene.run(1.0, integrator=integrator)
+    assert (run.status, run.events[-1]["name"]) == ("event", "floor")
+    assert run.time[-1] == pytest.approx(roots(-0.2)[1], rel=1e-9)
+    assert run["A.position"][-1, 1] == pytest.approx(-0.2, abs=1e-9)
+    assert 'stopped by event "floor" at t = 0.672' in run.report["message"]
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_on_a_node_and_at_one_instant(integrator):
+    """A boundary of elements, and two events together with it: none gets lost, none comes twice."""
+    scene = riding()
+    scene.event("a", quantity="trolley.s", value=5.0)
+    scene.event("b", quantity="trolley.s", value=5.0, direction="rising")
+    scene.event("not", quantity="trolley.s", value=5.0, direction="falling")
+    scene.event("node", quantity="wire.position.y", s=5.0, value=-0.5)
+    run = scene.run(1.0, integrator=integrator)
+    assert sorted(event["name"] for event in run.events) == ["a", "b", "node"]
+    times = {event["name"]: event["time"] for event in run.events}
+    assert times["a"] == pytest.approx(times["b"], abs=1e-11)
+    assert run.report["element_crossings"] == 2
+    assert next(e for e in run.events if e["name"] == "a")["state"]["trolley.s"] == pytest.approx(5.0, abs=1e-10)
+
+
+def test_of_a_scene_file_and_back():
+    scene = riding()
+    scene.event("mid", quantity="trolley.s", value=5.0, direction="rising", action="stop")
+    again = loads(scene.to_toml(), "again")
+    assert again.events == scene.events
+    scene.event("function", function=lambda time, state: 1.0)
+    assert "only Python can hold" in scene.to_toml()
+    assert list(loads(scene.to_toml(), "again").events) == ["mid"]
+
+
+@pytest.mark.parametrize(("wrong", "message"), [
+    ({"quantity": "B.position.y"}, 'event "e": there is no body, cable or slide "B"'),
+    ({"quantity": "A.position"}, 'event "e": "A.position" cannot be watched; A.position.x, A.velocity.x'),
+    ({"quantity": "trolley.force"}, 'event "e": "trolley.force" cannot be watched; trolley.s can'),
+    ({"quantity": "wire.position.y"}, "s is missing"),
+    ({"quantity": "wire.position.y", "s": 4.9}, "node"),
+    ({"quantity": "A.position.y", "s": 1.0}, "has no place s"),
+    ({}, "must watch either a quantity or a function"),
+    ({"quantity": "A.position.y", "action": "halt"}, '"halt" is not known'),
+    ({"function": 3}, "must be a function of"),
+    ({"function": abs, "value": 1.0}, "value and s are not for it"),
+])
+def test_what_cannot_be_watched(wrong, message):
+    with pytest.raises(fu.SceneError) as error:
+        riding().event("e", **wrong)
+    assert message in str(error.value)
+
+
+@pytest.mark.parametrize(("function", "message"), [
+    (lambda time, state: state["A.speed"], "KeyError"),
+    (lambda time, state: float("nan"), "gave nan at t = 0"),
+    (lambda time, state: "text", "ValueError"),
+])
+def test_a_function_that_fails_is_named(function, message):
+    scene = falling()
+    scene.event("e", function=function)
+    with pytest.raises(fu.SceneError, match='event "e"') as error:
+        scene.run(0.1)
+    assert message in str(error.value)
