@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from funicular.actions import Actions, DeadLoad, LoadModel, SignalModel, SpringModel
 from funicular.constants import constants
+from funicular.diagnosis import notes, redundant
 from funicular.elements import gauge
 from funicular.errors import FunicularWarning, SceneError
 from funicular.integrators import GeneralisedAlpha, explicit
@@ -300,15 +301,22 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
         method=method,
         first_step=min(output_step, 1e-3 * settings.duration),
     )
+    if doubled := redundant(model, engine):
+        raise SceneError("scene", f"is over-constrained: {doubled} hold the same",
+                         "leave one of them out, or hold the body at other points")
     if status == "singular":
-        raise SceneError("scene", "the equations are singular at the start: a joint holds what another one holds "
-                         "already, or a cable's director lies along its tangent", "look at the slides, and at up")
+        raise SceneError("scene", "the equations are singular at the start: a mass is zero, or a cable's director lies "
+                         "along its tangent", "look at masses and inertias, and at up")
     largest = float(np.max(np.abs(change) * model.weight, initial=0.0))  # rates of slopes and turns as those of points
     if largest > 1e-9 * (1.0 + np.max(np.abs(model.v) * model.weight, initial=0.0)):
         messages.append(f"initial velocities broke a joint: changed by up to {largest:.3g} m/s to keep it")
         warnings.warn(messages[-1], FunicularWarning, stacklevel=3)
     if status is None:
         status = engine.advance(on_progress)
+    if status == "completed":
+        for note in notes(engine, settings):
+            messages.append(note)
+            warnings.warn(note, FunicularWarning, stacklevel=3)
     wall = time.perf_counter() - begin
     return recorded(model, scene, engine, settings, status, messages, watcher, {"set_up": set_up, "total": wall})
 

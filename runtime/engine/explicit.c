@@ -67,7 +67,7 @@ static int move_to(fu_run *run, const double *row, int n, double t, double h)
     if (model->n_motions) fu_prescribe(model, next);
     for (int j = 0; j < model->n_joints; ++j) {
         next->s[j] = run->now.s[j] + (t - run->now.t) * run->s_slope[j];
-        if (fu_find_arc_length(model, next, j, &next->s[j])) return 1;
+        if (fu_find_arc_length(model, next, j, &next->s[j])) return fu_fail(run, FU_LOST_RIDER, next->v, j);
     }
     return 0;
 }
@@ -90,15 +90,17 @@ static int project(fu_run *run)
     fu_state *next = &run->next;
     if (!model->n_joints) return 0;
     for (int i = 0;; ++i) {
-        if (fu_project_positions(model, next, &run->accelerator, run->work)) return 1;
+        if (fu_project_positions(model, next, &run->accelerator, run->work))
+            return fu_fail(run, FU_MATRIX, next->v, -1);
         const double size = fu_size(model, run->work);
-        if (!(size < 1e30) || i == MOST_PROJECTIONS) return 1;
+        if (!(size < 1e30) || i == MOST_PROJECTIONS) return fu_fail(run, FU_ITERATION, run->work, -1);
         fu_move(model, next->q, run->work);
         for (int j = 0; j < model->n_joints; ++j)
-            if (fu_find_arc_length(model, next, j, &next->s[j])) return 1;
+            if (fu_find_arc_length(model, next, j, &next->s[j])) return fu_fail(run, FU_LOST_RIDER, next->v, j);
         if (size <= fmax(run->round_off, run->newton_tolerance)) break;
     }
-    if (fu_project_velocities(model, next, &run->accelerator, run->work)) return 1;
+    if (fu_project_velocities(model, next, &run->accelerator, run->work))
+        return fu_fail(run, FU_MATRIX, next->v, -1);
     for (int i = 0; i < model->n_dof; ++i) next->v[i] += run->work[i];
     return 0;
 }
@@ -124,19 +126,21 @@ static int step(fu_run *run, double h)
     powers(run, 0)[1] = run->external_power;
     for (int k = 1; k < n; ++k) {
         if (move_to(run, tableau->A + k * n, k, run->now.t + tableau->c[k] * h, h)) return 1;
-        if (fu_accelerations(model, next, &run->accelerator, next->acceleration, 0, reaction)) return 1;
+        if (fu_accelerations(model, next, &run->accelerator, next->acceleration, 0, reaction))
+            return fu_fail(run, FU_MATRIX, next->v, -1);
         keep(run, k, next);
     }
     if (move_to(run, tableau->b, n, run->now.t + h, h)) return 1;
     normalise(model, next->q);
     if (project(run)) return 1;
-    if (fu_accelerations(model, next, &run->accelerator, next->acceleration, joints, reaction)) return 1;
+    if (fu_accelerations(model, next, &run->accelerator, next->acceleration, joints, reaction))
+        return fu_fail(run, FU_MATRIX, next->v, -1);
     keep(run, n, next);
     run->statistics.evaluations += n;
     for (int j = 0; j < model->n_joints; ++j) memcpy(next->f + 3 * j, joints[j].force, sizeof joints[j].force);
     fu_spring_state(model, next);
     for (int i = 0; i < model->n_dof; ++i)
-        if (!(fabs(next->v[i]) < 1e30)) return 1;
+        if (!(fabs(next->v[i]) < 1e30)) return fu_fail(run, FU_NOT_FINITE, next->v, -1);
     return 0;
 }
 

@@ -154,7 +154,11 @@ static int factor(fu_run *run, double h)
     const double begin = fu_clock();
     newton_matrix(run, h);
     int info = fu_system_factor_band(&run->newton, run->model->lapack);
-    if (!info) info = fu_system_factor_border(&run->newton, run->model->lapack);
+    if (info) fu_fail_at(run, FU_MATRIX, info - 1);
+    else {
+        info = fu_system_factor_border(&run->newton, run->model->lapack);
+        if (info) fu_fail_at(run, FU_MATRIX, run->newton.n + info - 1);
+    }
     run->factored = !info;
     run->h_factored = h;
     ++run->statistics.factorisations;
@@ -216,6 +220,23 @@ static void predict(fu_run *run, double h)
     }
 }
 
+/* The iteration has failed where its last correction, in run->rhs and run->work, is largest; returns 1. */
+static int blame(fu_run *run)
+{
+    const fu_model *model = run->model;
+    const double *extra = run->rhs + model->n_band + model->n_border_dof;
+    double largest = fu_size(model, run->work);
+    int joint = -1;
+    for (int j = 0; j < model->n_joints; ++j)
+        for (int d = 0; d <= model->joints[j].kernel->dim; ++d) {
+            const double size = fabs(extra[model->joints[j].unknown + d]);
+            if (!(size > largest)) continue;
+            largest = size;
+            joint = j;
+        }
+    return fu_fail(run, FU_ITERATION, run->work, joint);
+}
+
 /* Newton from the prediction with the matrix at hand; 0 when it converged */
 static int iterate(fu_run *run, double h)
 {
@@ -232,10 +253,10 @@ static int iterate(fu_run *run, double h)
         run->statistics.time_solve += fu_clock() - begin;
         const double size = apply(run, h);
         ++run->statistics.newton_iterations;
-        if (!(size < 1e30)) return 1;
+        if (!(size < 1e30)) return blame(run);
         if (i > 0) {
             const double ratio = size / last;
-            if (ratio >= 1.0 && size > 100.0 * run->round_off) return 1;
+            if (ratio >= 1.0 && size > 100.0 * run->round_off) return blame(run);
             run->contraction = ratio < 1e-3 ? 1e-3 : ratio > 0.9 ? 0.9 : ratio;
         }
         if (size * run->contraction / (1.0 - run->contraction) <= run->newton_tolerance || size <= run->round_off) {
@@ -245,7 +266,7 @@ static int iterate(fu_run *run, double h)
         }
         last = size;
     }
-    return 1;
+    return blame(run);
 }
 
 /* For tests of the matrix: the residual after moving the predicted step by `change` (unknowns), in run->rhs with

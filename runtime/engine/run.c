@@ -45,6 +45,7 @@ static double extent(const fu_model *model, const double *origin, const double *
     return largest;
 }
 
+/* FU_SINGULAR, FU_UNSTABLE, or FU_RUNNING where all is well */
 static int record_row(fu_run *run)
 {
     const double begin = fu_clock();
@@ -69,9 +70,11 @@ static int record_row(fu_run *run)
         fu_spring_force(model, &model->springs[k], now->q, now->v, r->spring + 3 * (row * model->n_springs + k), by_gap,
                         by_rate);
     }
+    const double energies[FU_ENERGIES] = {r->kinetic[row], r->elastic[row], r->potential[row], run->dissipated,
+                                          -run->external};
     ++r->n;
     run->statistics.time_output += fu_clock() - begin;
-    return info;
+    return info ? FU_SINGULAR : fu_check_books(run, energies, row == 0) ? FU_UNSTABLE : FU_RUNNING;
 }
 
 /* Start of the scheme, consistent: velocities on the joints, accelerations and forces from eq 38. Starting it from zero
@@ -226,6 +229,7 @@ static int step_towards(fu_run *run, double target)
         }
         const double error = run->integrator->error(run, h), ratio = error / allowed;
         if (adaptive && !(ratio <= 2.0)) {
+            fu_fail(run, FU_ERROR, run->work, -1);
             want = run->h = h * fmax(0.2, 0.8 * pow(ratio, -1.0 / run->order));
             if (!(want > 0.0)) want = run->h = 0.2 * h;
             ++run->statistics.rejected;
@@ -266,8 +270,8 @@ static int step_towards(fu_run *run, double target)
 /* Record where the run has stopped, if that is not done already. */
 int fu_stop(fu_run *run)
 {
-    if (run->now.t > run->record.time[run->record.n - 1] && record_row(run)) return FU_SINGULAR;
-    return FU_EVENT;
+    const int recorded = run->now.t > run->record.time[run->record.n - 1] ? record_row(run) : FU_RUNNING;
+    return recorded ? recorded : FU_EVENT;
 }
 
 /* Go on for about so many seconds; the status tells whether there is more to do. */
@@ -279,7 +283,8 @@ int fu_advance(fu_run *run, double seconds)
         if (target > run->duration * (1.0 - 1e-12)) target = run->duration;
         if (run->now.t >= target - 1e-12 * run->duration) {
             run->now.t = target;
-            if (record_row(run)) return FU_SINGULAR;
+            const int recorded = record_row(run);
+            if (recorded) return recorded;
             if (target == run->duration) return FU_DONE;
             if (fu_clock() > until) return FU_RUNNING;
         } else {
@@ -287,7 +292,7 @@ int fu_advance(fu_run *run, double seconds)
             if (status == FU_EVENT) return status;
             if (status) {
                 const int stopped = fu_stop(run);
-                return stopped == FU_SINGULAR ? stopped : status;
+                return stopped == FU_EVENT ? status : stopped;
             }
             if (fu_clock() > until) return FU_RUNNING;
         }
