@@ -30,10 +30,10 @@ def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
     where, (state, folded) = place(model, dof, joint), condition(model, dof, q, v)
     if status == "unstable":
         grown, _, exchanged = engine.books
-        return (f"energy came from nowhere at {when}: {grown:.3g} J, where {exchanged:.3g} J were exchanged; fastest is "
-                f"{where} ({state}); {KEPT}. {_too_large(engine, settings)}")
+        return (f"energy came from nowhere at {when}: {grown:.3g} J, where {exchanged:.3g} J were exchanged; fastest "
+                f"is {where} ({state}); {KEPT}. {_too_large(engine, settings)}")
     if doubled := redundant(model, engine, NEARLY):
-        return (f"no step converged at {when}, down to the smallest step: {doubled} hold nearly the same; {KEPT}. "
+        return (f"no step converged at {when}: {doubled} hold nearly the same; {KEPT}. "
                 "Leave one of them out, or hold the body at points farther apart")
     if status == "singular" or cause == "matrix":
         return (f"the equations are singular at {when}, first at {where} ({state}): a joint or the mass matrix is "
@@ -43,6 +43,8 @@ def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
             "error": f"the error stays above what tol allows, most of all at {where}",
             "lost_rider": f"{where} does not find its place on the cable any more",
             "not_finite": f"{where} runs away"}[cause]
+    counts = engine.statistics
+    gone = f" after {counts['steps']} steps down to {counts['smallest_step_s']:.2g} s" if counts["steps"] else ""
     if settings.step is not None and engine.integrator == "explicit":
         remedy = _too_large(engine, settings)
     elif folded:
@@ -50,7 +52,7 @@ def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
     else:
         remedy = ("Look at loads, masses and stiffnesses there; else try a smaller "
                   f"{'tol' if settings.step is None else 'step'}, or damping_time in the material")
-    return f"no step converged at {when}, down to the smallest step: {what} ({state}); {KEPT}. {remedy}"
+    return f"no step converged at {when}{gone}: {what} ({state}); {KEPT}. {remedy}"
 
 
 def _too_large(engine, settings: RunSettings) -> str:
@@ -100,7 +102,8 @@ def condition(model: Model, dof: int, q: np.ndarray, v: np.ndarray) -> tuple[str
             r = q[cable.coordinates].reshape(cable.shape)[:, 0]
             stretch = np.linalg.norm(np.diff(r, axis=0), axis=1)[max(node - 1, 0) : node + 1] / cable.length
             worst = stretch[np.argmax(np.abs(np.log(np.maximum(stretch, 1e-300))))]
-            told = "" if FOLDED < worst < STRETCHED else f"its elements there are {worst:.3g} times as long as at rest, "
+            fair = FOLDED < worst < STRETCHED
+            told = "" if fair else f"its elements there are {worst:.3g} times their length at rest, "
             return told + speed, bool(worst <= FOLDED)
     return speed, False
 
@@ -109,14 +112,14 @@ def notes(engine, settings: RunSettings) -> list[str]:
     """What a user should know of a completed run whose results are coarse; empty where they are good."""
     counts, told = engine.statistics, []
     if settings.step is not None and counts["rejected_steps"]:
-        told.append(f"{counts['rejected_steps']} times no step of {settings.step:g} s was possible: it was divided, down "
-                    f"to {counts['smallest_step_s']:.3g} s")
+        told.append(f"{counts['rejected_steps']} times no step of {settings.step:g} s was possible: it was divided, "
+                    f"down to {counts['smallest_step_s']:.3g} s")
     if not engine.moves:
         return told
     error = counts["sum_of_local_error_estimates_m"] / counts["largest_motion_m"]
     if settings.step is not None and error > QUIET_ERROR:
-        told.append(f"the estimated errors of the steps sum up to {error:.2g} of the largest motion: take a smaller step, "
-                    "or none, so that tol chooses it")
+        told.append(f"the estimated errors of the steps sum up to {error:.2g} of the largest motion: take a smaller "
+                    "step, or none, so that tol chooses it")
     grown, lost, exchanged = engine.books
     if max(grown, lost) > QUIET_LOSS * exchanged:
         told.append(f"the integration {'took away' if lost > grown else 'added'} energy, up to "

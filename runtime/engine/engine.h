@@ -318,6 +318,7 @@ struct fu_run {
     double motion, least_motion, extent; /* m: largest so far, assumed at least, largest coordinate of a position */
     double newton_tolerance, round_off; /* of increments, m: where Newton may stop, and where it cannot go on */
     int factored, stopped_joint, turned;
+    int struggle; /* steps rejected of late, less those taken */
     fu_failure failure; /* of the last step that failed */
     fu_books books;
     int rest_start; /* for order.py only: start the scheme from zero accelerations */

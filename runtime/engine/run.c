@@ -5,6 +5,8 @@
 
 #define SMALLEST_STEP 1e-12 /* of the duration */
 #define SHORT_STEP 1e-3     /* of the usual step */
+#define MOST_STRUGGLE 10000 /* steps rejected beyond those taken */
+#define DIVISIONS 8         /* of a fixed step that do not count */
 #define MOST_TURNS 2        /* of a slide on one boundary before a step is taken all the same: it rests there */
 
 /* largest distance that a node or a body's centre has moved, m */
@@ -138,6 +140,7 @@ static void accept(fu_run *run, double h, fu_event event)
     const double moved = motion(model, run->first, run->now.q);
     if (moved > run->motion) run->motion = moved;
     fu_watch_now(run, event);
+    run->struggle -= run->struggle > 0 ? run->fixed_step > 0.0 ? DIVISIONS : 1 : 0;
     fu_statistics *s = &run->statistics;
     ++s->steps;
     if (s->steps == 1 || h < s->h_min) s->h_min = h;
@@ -220,11 +223,12 @@ static int step_towards(fu_run *run, double target)
     for (;;) {
         const double remaining = target - run->now.t;
         double h = fitted(remaining, want);
-        if (h < smallest && remaining > smallest) return FU_NO_CONVERGENCE;
+        if ((h < smallest && remaining > smallest) || run->struggle > MOST_STRUGGLE) return FU_NO_CONVERGENCE;
         const double allowed = allow(run, h);
         if (run->integrator->step(run, h)) {
             want = 0.5 * h;
             ++run->statistics.rejected;
+            ++run->struggle;
             continue;
         }
         const double error = run->integrator->error(run, h), ratio = error / allowed;
@@ -233,6 +237,7 @@ static int step_towards(fu_run *run, double target)
             want = run->h = h * fmax(0.2, 0.8 * pow(ratio, -1.0 / run->order));
             if (!(want > 0.0)) want = run->h = 0.2 * h;
             ++run->statistics.rejected;
+            ++run->struggle;
             continue;
         }
         fu_event event = fu_find_event(run, none);

@@ -1,4 +1,4 @@
-"""Figures of the hard cases: every case with every integrator, its figures, (!) where a bound is broken, and CPU seconds.
+"""Figures of the hard cases, every one with every integrator: (!) where a bound is broken, and CPU seconds.
 
     python tests/benchmarks/hard.py [--out FILE.csv] [--only WORDS]
 

@@ -11,7 +11,7 @@ from functools import cache
 import numpy as np
 from funicular import Circle, Material, Ramp, Scene
 
-from .case import Subject, positions, simulate
+from .case import Subject, simulate
 from .crossings import rider
 
 HERE = Subject()
