@@ -8,12 +8,14 @@ from __future__ import annotations
 from types import ModuleType
 
 import numpy as np
+from funicular.derive.frames import cross
 from funicular.derive.stages import Derivation, Program
 
 
 def build(body: ModuleType) -> list[Program]:
     """Every kernel of a body."""
-    return [point(body), point_force(body), inertia_force(body), inertia_tangent(body), kinetic_energy(body)]
+    return [point(body), point_force(body), inertia_force(body), inertia_tangent(body), kinetic_energy(body),
+            discrete_point(body)]
 
 
 def _position(p: Program, body: ModuleType, b: np.ndarray, u: np.ndarray):
@@ -57,6 +59,35 @@ def point_force(body: ModuleType) -> Program:
     force = np.array([p.define(f"g{k}", f.dot(column)) for k, column in enumerate(p_q.T)])
     p.output("K", np.stack([d.array(force) for d in by], axis=1), "N/m, N, N m",
              "derivatives of p_q' f by translation and rotation")
+    return p
+
+
+class Step:
+    """Input b_next and stages: the turn theta of a body over a step, and axes half-way."""
+
+    def __init__(self, p: Program, body: ModuleType, b: np.ndarray):
+        self.b_next = p.input("b_next", body.N_CONFIGURATION, "m, 1", "b at the end of the step")
+        p.stage("attitudes at both ends of the step")
+        self.ends = [body.axes(p, b), body.axes(p, self.b_next)]
+        p.stage("turn, and axes half-way")
+        self.theta, self.axes = body.step_turn(p, b, self.ends[0], self.b_next)
+
+    def jacobian(self, arm: np.ndarray) -> np.ndarray:
+        """By translation and Cayley vector, of a point on this arm."""
+        return np.concatenate([np.eye(len(arm), dtype=int), np.stack([cross(axis, arm) for axis in self.axes.T], axis=1)],
+                              axis=1)
+
+
+def discrete_point(body: ModuleType) -> Program:
+    """P."""
+    p = Program(f"{body.NAME}_discrete_point", "Jacobian of a point over a step psi: p_next - p = P psi",
+                f"{body.SOURCE}; Simo & Wong, Int. J. Numer. Meth. Eng. 31 (1991) 19-52")
+    b, u = body.configuration(p), body.attachment(p)
+    step = Step(p, body, b)
+    p.stage("mean arm")
+    arm = p.vector("mean_arm", sum(body.arm(p, A, u) for A in step.ends) / 2)
+    p.output("P", step.jacobian(arm), "1, m",
+             "by translation and Cayley vector; P' f is the force f on the point along axes half-way")
     return p
 
 

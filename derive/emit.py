@@ -103,7 +103,7 @@ def tables(every: list[Derived], layout: dict | None = None) -> dict[str, Table]
         for derived in members:
             has = _signatures(derived)
             for kernel, parameters in layout[role]["kernels"].items():
-                if kernel not in derived.family.shared and has.get(kernel) != parameters:
+                if kernel not in derived.family.elsewhere and has.get(kernel) != parameters:
                     raise FamilyError(f"kernel {derived.family.name}_{kernel} must take ({parameters}), but "
                                       + (f"takes ({has[kernel]})" if kernel in has else "there is none"))
     return {role: Table(of, **layout[role]) for role, of in roles.items()}
@@ -195,11 +195,11 @@ def _shared(members: list[Derived]) -> dict[str, str]:
 
     Raises FamilyError where two families do not agree on them.
     """
-    first = next(member for member in members if not member.family.shared)
+    first = next(member for member in members if not member.family.elsewhere)
     kernels = _signatures(first)
     for other in members:
         theirs = _signatures(other)
-        for suffix in {**kernels, **theirs}.keys() - other.family.shared.keys():
+        for suffix in {**kernels, **theirs}.keys() - other.family.elsewhere:
             here, there = kernels.get(suffix, "none"), theirs.get(suffix, "none")
             if here != there:
                 raise FamilyError(f'role "{first.family.role}": the engine\'s table needs the kernel {suffix} of every '

@@ -33,7 +33,8 @@ def _law(element: Element, law: str | type) -> Family:
         builder, build = law_kernels, partial(law_kernels.build, element, law, damping=not shared)
     return Family(f"{element.name}_{name}", f"elastic law {name} on {element.name}", build,
                   (f"elements.{element.name}", builder.__name__.split(".")[-1]), role="law",
-                  own=("stiffness", "stiffness_at", "section_forces"), shared=shared, element=element, law=name,
+                  own=("stiffness", "stiffness_at", "section_forces"), shared=shared,
+                  lacks=() if law_kernels.has_discrete(law) else law_kernels.DISCRETE, element=element, law=name,
                   like=law_like(law))
 
 

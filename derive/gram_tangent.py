@@ -58,8 +58,11 @@ def blocks(gram: Gram, program: Program, c: np.ndarray, b: np.ndarray, moduli: M
 
 
 def nodal_tangent(gram: Gram, program: Program, block: np.ndarray, w: sp.Expr, symmetric: bool) -> np.ndarray:
-    """Stages: T' K T over nodal coordinates -> (n, n); the first position is minus the sum of the others."""
-    n, dim, count = len(gram.names), gram.element.dim, gram.element.n_vectors
+    """Stages: T' K T over nodal coordinates -> (n, n); the first position is minus the sum of the others.
+
+    Blocks are over the directions of space, or (1, 1) where all directions have the same.
+    """
+    n, dim, count = len(gram.names), block.shape[-1], gram.element.n_vectors
     position = gram.element.is_position
     scale = [w if p else sp.S.One for p in position]
     program.stage("over nodal vectors: K T")
@@ -85,7 +88,7 @@ def nodal_tangent(gram: Gram, program: Program, block: np.ndarray, w: sp.Expr, s
 
 def from_others(element: Element, program: Program, K: np.ndarray, symmetric: bool) -> np.ndarray:
     """Stage: rows and columns of the first position from the others: blocks (k, k, dim, dim) -> (n, n)."""
-    position, count, dim = element.is_position, element.n_vectors, element.dim
+    position, count, dim = element.is_position, element.n_vectors, K.shape[-1]
     others = [k for k in range(1, count) if position[k]]
     program.stage("the first position: rigid translation makes no force")
     for k in range(1, count):

@@ -11,17 +11,26 @@ from funicular.derive.frames import spatial, tangent_frame, unit
 from funicular.derive.gram import DIRECTIONS, Gram
 from funicular.derive.gram_point import axis, expansion
 from funicular.derive.gram_tangent import nodal_tangent
-from funicular.derive.laws import law_class, law_name, stress_free
+from funicular.derive.laws import LAWS, law_class, law_name, stress_free
+from funicular.derive.secant import STATES
 from funicular.derive.spec import Element
 from funicular.derive.stages import Program
 
 DAMPING = ("damping_force", "damping_tangent", "dissipation")
+DISCRETE = ("discrete_force", "step_stiffness")
+
+
+def has_discrete(law: str | type) -> bool:
+    """Whether a law gives a discrete gradient of its energy."""
+    found = LAWS.get(law) if isinstance(law, str) else law
+    return hasattr(getattr(found, "func", found), "discrete_forces")
 
 
 def build(element: Element, law: str | type, damping: bool = True) -> list[Program]:
     """Every kernel of a law on an element; those of damping where it does not take another law's."""
     kernels = Kernels(element, law)
     return [kernels.set_up(), kernels.energy(), kernels.elastic_force(), kernels.elastic_tangent(),
+            *(getattr(kernels, kernel)() for kernel in DISCRETE if has_discrete(law)),
             *(getattr(kernels, kernel)() for kernel in DAMPING if damping), kernels.section_forces()]
 
 
@@ -45,6 +54,18 @@ class Kernels:
         program.stage("strain vectors")
         w = program.define("w", 1 / length)
         return w, A, self.gram.differences(program, e, w)
+
+    def _ends(self, program: Program) -> tuple:
+        """Inputs l, e, e_next, A and the stage of the strain vectors at both ends of a step."""
+        length = program.input("l", (), "m", "length of the element")
+        e = self._coordinates(program)
+        e_next = self._coordinates(program, "e_next", doc="nodal vectors at the end of the step")
+        A = self.law.constants(program)
+        program.stage("strain vectors at both ends of the step")
+        w = program.define("w", 1 / length)
+        c = [self.gram.differences(program, vectors, w, f"{state}_")
+             for vectors, state in zip((e, e_next), STATES, strict=True)]
+        return w, A, *c
 
     def _rates(self, program: Program) -> tuple:
         """Inputs l, e, v, A, tau and the stages up to the rates of the strain vectors."""
@@ -75,6 +96,23 @@ class Kernels:
         p = self._program("elastic_force", "dU/de, minus the elastic force Q_k", "eq 8")
         w, A, c = self._strain(p)
         p.output("f", self._nodal(p, self.law.forces(p, A, c, w), w), "N, N m", "dU/de")
+        return p
+
+    def discrete_force(self) -> Program:
+        """Between two configurations: conserves energy and momenta in a step from one to the other."""
+        p = self._program("discrete_force", "discrete gradient of the energy: f . (e_next - e) is its difference", "eq 8")
+        w, A, *c = self._ends(p)
+        f = self.law.discrete_forces(p, A, *c, w)
+        p.output("f", self._nodal(p, f, w), "N, N m", "dU/de where e_next is e")
+        return p
+
+    def step_stiffness(self) -> Program:
+        """For the Newton matrix of a step with discrete_force."""
+        p = self._program("step_stiffness", "k, elastic_tangent half-way + k (x) I: tangent with the mean stress", "eq 8")
+        w, A, *c = self._ends(p)
+        change = [p.vector(f"change_{name}", b - a) for name, a, b in zip(self.gram.names, *c, strict=True)]
+        block = self.law.stress_of_turning(p, A, np.array(change), w)
+        p.output("k", nodal_tangent(self.gram, p, block, w, symmetric=True), "N/m, N, N m", "over nodal vectors")
         return p
 
     def elastic_tangent(self) -> Program:

@@ -98,6 +98,7 @@ class Family:
     kernels of the same signatures, but for those in `own`; the engine reaches them through a table, each with its
     `facts` (integers).
     `element`, `law` and `rider` (the name of a body) are what the kernels are about: verification samples their states.
+    `lacks` names kernels of the role that this one cannot have: the table holds a null pointer there.
     `shared` names, by kernel, the family of the role whose kernel this one takes instead of one of its own.
     `like` is the law in laws/ whose section stiffness and scale the law shares: itself, but for a law of the user's.
     `spec` is the user's file that the element stands in, None for those of this package.
@@ -111,12 +112,20 @@ class Family:
     facts: dict[str, int] = field(default_factory=dict)
     own: tuple[str, ...] = ()
     shared: dict[str, str] = field(default_factory=dict)
+    lacks: tuple[str, ...] = ()
     element: Element | None = None
     law: str | None = None
     like: str | None = None
     rider: str | None = None
     spec: Path | None = None
 
+    @property
+    def elsewhere(self) -> set[str]:
+        """Kernels of the role that are not among this family's own."""
+        return {*self.shared, *self.lacks}
+
     def kernel(self, suffix: str) -> str:
-        """Name of a kernel that the engine's table has."""
+        """Name of a kernel that the engine's table has, 0 where the family lacks it."""
+        if suffix in self.lacks:
+            return "0"
         return f"{self.shared.get(suffix, self.name)}_{suffix}"

@@ -18,7 +18,7 @@ import numpy as np
 from funicular.derive.spec import Element, Family
 from funicular.derive.verify_motion import RIDERS
 from funicular.derive.verify_numbers import State
-from funicular.derive.verify_states import SEEDS, director, on_axis, reference, rotation
+from funicular.derive.verify_states import SEEDS, director, following, on_axis, reference, rotation
 
 KINDS = ("ordinary", "tiny strain", "large rotation", "far origin")
 TINY, FAR = 1e-9, 1e4
@@ -58,11 +58,13 @@ def _tiny(family: Family, s: State, random: np.random.Generator) -> dict[str, np
         e = s["e0"] if "e0" in s else reference(element, float(s["l"]))
         e = e @ rotation(random, element.dim).T
         changes["e"] = e + TINY * random.normal(size=e.shape)
+        changes["e_next"] = e @ rotation(random, element.dim).T + TINY * random.normal(size=e.shape)
         near = on_axis(element, s | changes)
     if family.rider:
         rider = RIDERS[family.rider]
         changes |= rider.at_rest(near)
         changes["b"] = rider.moved(np, changes["b"], TINY * random.normal(size=rider.n_velocity))
+        changes["b_next"] = rider.moved(np, changes["b"], TINY * random.normal(size=rider.n_velocity))
     return changes
 
 
@@ -79,7 +81,7 @@ def _turned(family: Family, s: State, random: np.random.Generator) -> dict[str, 
         turn = np.zeros(rider.n_velocity)
         turn[rider.rotations.start] = TURN
         changes["b"] = rider.moved(np, changes["b"], turn)
-    return changes
+    return changes | following(family, s | changes, random)
 
 
 def _arc(element: Element, l: float) -> np.ndarray:
@@ -101,12 +103,12 @@ def _far(family: Family, s: State, random: np.random.Generator) -> dict[str, np.
     changes = {}
     if family.element:
         shift = np.outer(np.array(family.element.is_position, dtype=float), offset)
-        changes = {name: s[name] + shift for name in ("e", "e0") if name in s}
+        changes = {name: s[name] + shift for name in ("e", "e0", "e_next") if name in s}
     if family.rider:
         rider = RIDERS[family.rider]
         motion = np.zeros(rider.n_velocity)
         motion[: len(offset)] = offset
-        changes["b"] = rider.moved(np, s["b"], motion)
+        changes |= {name: rider.moved(np, s[name], motion) for name in ("b", "b_next")}
     return changes
 
 

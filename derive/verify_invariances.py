@@ -49,6 +49,8 @@ def law(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
     """Rigid motion in every kernel."""
     yield from _rigid_motion(family, k, s)
     yield from _deformed(family, k, s)
+    if "discrete_force" not in family.lacks:
+        yield from _step(family, k, s)
     if not family.shared:
         yield from _damping(family, k, s)
 
@@ -129,6 +131,22 @@ def _deformed(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
     for i in range(spec.dim):
         shift = np.outer(positions, np.eye(spec.dim)[i]).ravel()
         yield "tangent null on translation", relative(K @ shift, K), 8 * EPS
+
+
+def _step(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
+    """Momenta over a step."""
+    spec = family.element
+    positions = np.array(spec.is_position, dtype=float)
+    e, e_next = quantised(s["e"]), quantised(s["e_next"])
+    away = np.outer(positions, np.full(spec.dim, FAR))
+    f, back = k("discrete_force", s, e=e, e_next=e_next)["f"], k("discrete_force", s, e=e_next, e_next=e)["f"]
+    scale = max(np.max(np.abs(f)), _stiffness(family, s) / s["l"])
+    yield "step: no net force", relative(positions @ f, scale), 8 * EPS
+    yield "step: no net moment about its middle", relative(
+        _moment((e + e_next) / 2, f, positions), scale * s["l"]), 64 * EPS
+    yield "step: the same force backwards", relative(back - f, scale), 16 * EPS
+    far = k("discrete_force", s, e=e + away, e_next=e_next + away)["f"]
+    yield "step: same digits at 10⁴ lengths", relative(far - f, scale), 0.0
 
 
 def spins(dim: int) -> list[np.ndarray]:

@@ -101,6 +101,17 @@ def cable_dissipation(element: Element, law: str, s):
     return s["tau"].item() * total
 
 
+def cable_turning(element: Element, s):
+    """EA |dr'|^2/8 over N' N'."""
+    shape, half = Shape(element, s["l"].item()), s["l"].item() / 2
+    total = mp.mpf(0)
+    for t, weight in gauss(max(p[0] for p in shape.powers)):
+        N_x = shape((half * (1 + t), 0, 0), (1, 0, 0))
+        change = N_x.dot(s["e_next"] - s["e"])
+        total = total + weight * half * s["A"][0] / 8 * change.dot(change) * np.outer(N_x, N_x)
+    return total
+
+
 def _along(element: Element, s, n: int) -> Iterator[tuple]:
     """At n Gauss points of the axis: weight, r', r'' and their rates, all in three dimensions."""
     shape, half = Shape(element, s["l"].item()), s["l"].item() / 2

@@ -71,6 +71,17 @@ class Rigid:
         return np.concatenate([b[:3] + motion[:3], quaternion_product(b[3:], exponential(numbers, motion[3:]))])
 
     @staticmethod
+    def step(b: np.ndarray, b_next: np.ndarray) -> np.ndarray:
+        """Translation, and Cayley vector of the rotation in body axes, from one configuration to another."""
+        turn = quaternion_product(np.concatenate([b[3:4], -b[4:]]), b_next[3:])
+        return np.concatenate([b_next[:3] - b[:3], 2 * turn[1:] / turn[0]])
+
+    @staticmethod
+    def turn(b: np.ndarray, motion: np.ndarray) -> np.ndarray:
+        """Rotation vector of a motion in global axes."""
+        return turned(b[3:], motion[3:])
+
+    @staticmethod
     def frame(random: np.random.Generator) -> tuple:
         """A turn of the global frame: its matrix, and what it makes of a configuration."""
         p = exponential(np, random.normal(size=3))
@@ -116,6 +127,17 @@ class PlanarRigid:
         return np.concatenate([b[:2] + motion[:2], complex_product(b[2:], turn)])
 
     @staticmethod
+    def step(b: np.ndarray, b_next: np.ndarray) -> np.ndarray:
+        """Translation, and twice the tangent of half the angle, from one configuration to another."""
+        turn = complex_product(np.array([b[2], -b[3]]), b_next[2:])
+        return np.concatenate([b_next[:2] - b[:2], 2 * turn[1:] / (1 + turn[0])])
+
+    @staticmethod
+    def turn(b: np.ndarray, motion: np.ndarray) -> np.ndarray:
+        """Rotation vector of a motion in global axes."""
+        return spin(motion, 2)
+
+    @staticmethod
     def frame(random: np.random.Generator) -> tuple:
         """A turn of the global frame: its matrix, and what it makes of a configuration."""
         angle = random.uniform(-np.pi, np.pi)
@@ -135,6 +157,11 @@ RIDERS = {rigid.NAME: Rigid, planar_rigid.NAME: PlanarRigid}
 def spin(w: np.ndarray, dim: int) -> np.ndarray:
     """Angular velocity, with zeros for the axes about which nothing turns in the plane."""
     return np.concatenate([w[:1] * 0] * (3 - len(w[dim:])) + [w[dim:]])
+
+
+def swung(theta: np.ndarray, vector: np.ndarray) -> np.ndarray:
+    """theta x vector, the vector in the plane or in space."""
+    return cross(theta, np.concatenate([vector, vector[:1] * 0])[:3])[: len(vector)]
 
 
 def frame(numbers, tangent: np.ndarray, director: np.ndarray | None) -> np.ndarray:

@@ -91,13 +91,45 @@ def law(family: Family) -> list[Relation]:
         *(_stiffness_at(spec) if family.law == "continuum_curved" else stiffness),
         Relation("energy", "U", "the law's integral by quadrature", 0, energy),
         Relation("elastic_force", "f", "dU/de", 1, from_kernel("energy", "U", e=entry("e")), n),
+        Relation("discrete_force", "f", "f . (e_next - e) is the difference of U", 0, _difference(energy),
+                 of=lambda k, s: k("discrete_force", s)["f"].ravel().dot((s["e_next"] - s["e"]).ravel())),
+        Relation("discrete_force", "f", "dU/de where e_next is e", 1, from_kernel("energy", "U", e=entry("e")), n,
+                 of=lambda k, s: k("discrete_force", s, e_next=s["e"])["f"]),
+        _step_stiffness(family),
         Relation("elastic_tangent", "K", "df/de", 1, from_kernel("elastic_force", "f", e=entry("e")), n),
         Relation("damping_force", "f", "d(P/2)/dv", 1, _half(from_kernel("dissipation", "P", v=entry("v"))), n),
         Relation("damping_tangent", "K", "df/de + rate df/dv", 1, force_by_both, n),
         Relation("dissipation", "P", "the law's integral by quadrature", 0, power),
         *(Relation("section_forces", output, text, 0, path) for output, text, path in section),
     ]
-    return [relation for relation in every if relation.kernel not in family.shared]
+    return [relation for relation in every if relation.kernel not in family.elsewhere]
+
+
+def _difference(energy: Callable) -> Callable:
+    """Path of order 0: the energy at the end of the step less that at its start."""
+    return lambda k, s, t, j: energy(k, s | {"e": s["e_next"]}, t, j) - energy(k, s, t, j)
+
+
+def _step_stiffness(family: Family) -> Relation:
+    """Of a quadratic form the derivative of the discrete force with both ends moved alike is the tangent half-way with
+    the mean stress; cables take its axial part alone, at unit stretch.
+    """
+    spec = family.element
+    eye = np.eye(spec.dim, dtype=int)
+
+    def tangent(k, s):
+        half_way = k("elastic_tangent", s, e=(s["e"] + s["e_next"]) / 2)["K"]
+        return half_way + np.kron(k("step_stiffness", s)["k"], eye)
+
+    def force(k, s, t, j):
+        motion = t * unit(s["e"], j)
+        return k("discrete_force", s, e=s["e"] + motion, e_next=s["e_next"] + motion)["f"]
+
+    if family.law.startswith("continuum"):
+        return Relation("step_stiffness", "k", "df/d(both ends), less the tangent half-way", 1, force,
+                        spec.n_coordinates, of=tangent)
+    return Relation("step_stiffness", "k", "EA/8 of the change's square, by quadrature", 0,
+                    root(verify_laws.cable_turning, spec))
 
 
 def _stiffness_at(spec: Element) -> list[Relation]:
@@ -166,6 +198,11 @@ def body(family: Family) -> list[Relation]:
         replace(at, kernel="point_force"),
         replace(p_q, kernel="point_force"),
         Relation("point_force", "K", "d(p_q' f) by translation and rotation", 1, force_of_point, n),
+        Relation("discrete_point", "P", "P step is p_next - p", 0,
+                 lambda k, s, t, j: rider.point(s["b_next"], s["u"]) - rider.point(s["b"], s["u"]),
+                 of=lambda k, s: k("discrete_point", s)["P"].dot(rider.step(s["b"], s["b_next"]))),
+        Relation("discrete_point", "P", "dp by translation and rotation where b_next is b", 1, by_coordinate, n,
+                 of=lambda k, s: k("discrete_point", s, b_next=s["b"])["P"]),
         Relation("inertia_force", "f", "rate of momentum", 1, momentum),
         Relation("inertia_tangent", "M", "df/da", 1, from_kernel("inertia_force", "f", a=entry("a")), n),
         Relation("inertia_tangent", "D", "df/dw", 1, from_kernel("inertia_force", "f", w=entry("w")), n),

@@ -10,7 +10,7 @@ import numpy as np
 from funicular.derive import verify_reference as reference
 from funicular.derive.spec import Family
 from funicular.derive.verify_methods import Relation
-from funicular.derive.verify_motion import RIDERS, frame
+from funicular.derive.verify_motion import RIDERS, frame, swung
 from funicular.derive.verify_relations import unit
 
 
@@ -70,6 +70,23 @@ def slide(family: Family) -> list[Relation]:
     def reference_gap(k, s, t, j):
         return Curve(element, s).point - rider.point(s["b"], s["u"])
 
+    def step(s):
+        """From one end of a step to the other, over (e, rider, s)."""
+        return np.concatenate([(s["e_next"] - s["e"]).ravel(), rider.step(s["b"], s["b_next"]),
+                               [s["x_next"].item() - s["x"].item()]])
+
+    def swept(k, s, t, j):
+        """Change of the gap over a step as seen from a frame that turns with the rider."""
+        here, there = (reference_gap(k, end, t, j) for end in (s, s | {name: s[f"{name}_next"] for name in "xeb"}))
+        return there - here - swung(rider.turn(s["b"], step(s)[n_e:n]), (here + there) / 2)
+
+    def seen(k, s, t, j):
+        """The gap along (e, rider, s) as seen from a frame that turns with the rider."""
+        path = lagrangian(gap)(k, s, t, j)
+        if j < n_e or j == n:
+            return path
+        return path - swung(rider.turn(s["b"], t * unit(s["w"], j - n_e)), gap(k, s))
+
     def reference_frame(k, s, t, j):
         curve = Curve(element, s)
         return frame(k, curve.tangent, curve.director)
@@ -116,6 +133,10 @@ def slide(family: Family) -> list[Relation]:
         Relation("residual", "phi", "r - p at 50 digits", 0, reference_gap),
         Relation("residual", "g", "d(f . phi) by (e, rider, s)", 1,
                  lagrangian(lambda k, s, **q: gap(k, s, **q).dot(s["f"])), n + 1),
+        Relation("discrete_gradient", "G", "G step is the change of phi seen from the rider", 0, swept,
+                 of=lambda k, s: k("discrete_gradient", s)["G"].dot(step(s))),
+        Relation("discrete_gradient", "G", "derivatives of phi seen from the rider, over no step", 1, seen, n + 1,
+                 of=lambda k, s: k("discrete_gradient", s, **{f"{name}_next": s[name] for name in "xeb"})["G"]),
         Relation("tangent", "J", "dphi by (e, rider, s)", 1, lagrangian(gap), n + 1),
         Relation("tangent", "K", "dg by (e, rider, s)", 1,
                  lagrangian(lambda k, s, **q: k("residual", s, **q)["g"]), n + 1),

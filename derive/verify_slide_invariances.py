@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from funicular.derive.spec import Family
 from funicular.derive.verify_invariances import FAR, Invariance, quantised, relative
-from funicular.derive.verify_motion import RIDERS
+from funicular.derive.verify_motion import RIDERS, swung
 from funicular.derive.verify_numbers import EPS, Numbers, State
 
 _OUTPUTS = ("C", "C_s", "s_rate", "Q_d", "W", "s_bias")
@@ -24,6 +24,7 @@ def slide(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
     yield from _kept(family, k, s, n_e)
     yield from _frame(family, k, s, out, n_e)
     yield from _forces(family, k, s, n_e)
+    yield from _step(family, k, s, n_e)
 
 
 def _kept(family: Family, k: Numbers, s: State, n_e: int) -> Iterator[Invariance]:
@@ -68,13 +69,34 @@ def _frame(family: Family, k: Numbers, s: State, out: dict, n_e: int) -> Iterato
         back[:, :n_e] = (back[:, :n_e].reshape(rows, -1, element.dim) @ Q).reshape(rows, -1)
         back[:, n_e : n_e + element.dim] = back[:, n_e : n_e + element.dim] @ Q
         yield "turned scene: H, C_q, G turn", relative(back - out[name], out[name]), 256 * EPS
-    e, b = quantised(s["e"]), s["b"].copy()
-    b[: element.dim] = quantised(b[: element.dim])
-    near, away = {**s, "e": e, "b": b}, {**s, "e": e + np.outer(positions, np.full(element.dim, FAR)), "b": b.copy()}
-    away["b"][: element.dim] += FAR
-    for kernel in ("constraint", "terms", "residual", "tangent"):
+    ends = {"e": quantised(s["e"]), "e_next": quantised(s["e_next"]), "b": s["b"].copy(), "b_next": s["b_next"].copy()}
+    near, away = {**s, **ends}, {**s}
+    for name, value in ends.items():
+        if name.startswith("b"):
+            value[: element.dim] = quantised(value[: element.dim])
+            shift = FAR * (np.arange(len(value)) < element.dim)
+        else:
+            shift = np.outer(positions, np.full(element.dim, FAR))
+        away[name] = value + shift
+    for kernel in ("constraint", "terms", "residual", "tangent", "discrete_gradient"):
         here, there = k(kernel, near), k(kernel, away)
         yield "same digits at 10⁴ lengths", max(float(np.max(np.abs(here[n] - there[n]))) for n in here), 0.0
+
+
+def _step(family: Family, k: Numbers, s: State, n_e: int) -> Iterator[Invariance]:
+    """Momenta over a step: what the joint's force does to cable and rider, about the rider's mean place."""
+    element, rider = family.element, RIDERS[family.rider]
+    dim, positions = element.dim, np.array(element.is_position, dtype=float)
+    forces = k("discrete_gradient", s)["G"].T @ s["f"]
+    on_cable, on_rider = forces[:n_e].reshape(-1, dim), forces[n_e:-1]
+    yield "step: no net force of the joint", relative(positions @ on_cable + on_rider[:dim], forces), 8 * EPS
+    arms = (s["e"] + s["e_next"] - np.outer(positions, s["b"][:dim] + s["b_next"][:dim])) / 2
+    half = rider.step(s["b"], s["b_next"]) / 2
+    for k_axis, row in zip(np.eye(rider.n_velocity)[dim:], on_rider[dim:], strict=True):
+        about = rider.turn(s["b"], k_axis)  # the axes half-way are those of the rider turned by half of the step
+        about = about + np.cross(rider.turn(s["b"], half), about)
+        turning = np.array([swung(about, arm) for arm in arms])
+        yield "step: no net moment of the joint", relative(np.sum(turning * on_cable) + row, forces), 32 * EPS
 
 
 def _forces(family: Family, k: Numbers, s: State, n_e: int) -> Iterator[Invariance]:

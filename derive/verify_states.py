@@ -37,6 +37,7 @@ def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
             near = on_axis(family.element, state) if family.element else random.normal(size=dim)
             state |= RIDERS[family.rider].sample(random, near)
             state |= {"mass": np.float64(1.7), "J": _inertia(random), "a": random.normal(size=len(state["w"]))}
+        state |= following(family, state, random.spawn(1)[0])
         if family.element and family.rider:
             state["director"] = director(family.element, state, random)
         state["f"] = random.normal(size=dim)
@@ -50,6 +51,19 @@ def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
         rest["e0"] = rest["e"]
         rest |= _from_kernels(family, exact, rest)
     return [*found, rest]
+
+
+def following(family: Family, state: dict[str, np.ndarray], random: np.random.Generator) -> dict[str, np.ndarray]:
+    """The end of a step, far enough from its start to tell differences from derivatives."""
+    found = {}
+    if family.element:
+        e = state["e"] @ rotation(random, family.element.dim, angle=0.3).T
+        found["e_next"] = e + 0.05 * random.normal(size=e.shape)
+        found["x_next"] = np.float64(state["x"] + 0.1 * LENGTH)
+    if family.rider:
+        rider = RIDERS[family.rider]
+        found["b_next"] = rider.moved(np, state["b"], 0.2 * random.normal(size=rider.n_velocity))
+    return found
 
 
 def _takes_shape(exact: Numbers) -> bool:

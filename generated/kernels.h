@@ -66,6 +66,8 @@ void beam24_continuum_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void beam24_continuum_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void beam24_continuum_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void beam24_continuum_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void beam24_continuum_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void beam24_continuum_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void beam24_continuum_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void beam24_continuum_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void beam24_continuum_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
@@ -76,6 +78,8 @@ void beam24_continuum_curved_stiffness_at(fu_real l, const fu_real *e0, const fu
 void beam24_continuum_curved_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void beam24_continuum_curved_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void beam24_continuum_curved_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void beam24_continuum_curved_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void beam24_continuum_curved_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void beam24_continuum_curved_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* beam24_structural: elastic law structural on beam24 */
@@ -93,6 +97,8 @@ void cable12_green_exact_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void cable12_green_exact_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable12_green_exact_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable12_green_exact_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable12_green_exact_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable12_green_exact_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void cable12_green_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable12_green_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable12_green_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
@@ -103,6 +109,8 @@ void cable12_green_linear_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void cable12_green_linear_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable12_green_linear_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable12_green_linear_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable12_green_linear_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable12_green_linear_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void cable12_green_linear_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable12_engineering_exact: elastic law engineering_exact on cable12 */
@@ -110,6 +118,8 @@ void cable12_engineering_exact_stiffness(fu_real l, const fu_real *S, fu_real *A
 void cable12_engineering_exact_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable12_engineering_exact_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable12_engineering_exact_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable12_engineering_exact_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable12_engineering_exact_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void cable12_engineering_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable12_engineering_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable12_engineering_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
@@ -120,6 +130,8 @@ void cable12_engineering_linear_stiffness(fu_real l, const fu_real *S, fu_real *
 void cable12_engineering_linear_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable12_engineering_linear_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable12_engineering_linear_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable12_engineering_linear_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable12_engineering_linear_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void cable12_engineering_linear_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable12_green_exact_curved: elastic law green_exact_curved on cable12 */
@@ -127,6 +139,8 @@ void cable12_green_exact_curved_stiffness(fu_real l, const fu_real *e0, const fu
 void cable12_green_exact_curved_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable12_green_exact_curved_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable12_green_exact_curved_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable12_green_exact_curved_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable12_green_exact_curved_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void cable12_green_exact_curved_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable12_engineering_exact_curved: elastic law engineering_exact_curved on cable12 */
@@ -134,6 +148,8 @@ void cable12_engineering_exact_curved_stiffness(fu_real l, const fu_real *e0, co
 void cable12_engineering_exact_curved_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable12_engineering_exact_curved_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable12_engineering_exact_curved_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable12_engineering_exact_curved_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable12_engineering_exact_curved_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void cable12_engineering_exact_curved_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable18_green_exact: elastic law green_exact on cable18 */
@@ -141,6 +157,8 @@ void cable18_green_exact_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void cable18_green_exact_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable18_green_exact_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable18_green_exact_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable18_green_exact_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable18_green_exact_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void cable18_green_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable18_green_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable18_green_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
@@ -151,6 +169,8 @@ void cable18_engineering_exact_stiffness(fu_real l, const fu_real *S, fu_real *A
 void cable18_engineering_exact_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable18_engineering_exact_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable18_engineering_exact_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable18_engineering_exact_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable18_engineering_exact_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void cable18_engineering_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable18_engineering_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable18_engineering_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
@@ -161,6 +181,8 @@ void beam12p_continuum_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void beam12p_continuum_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void beam12p_continuum_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void beam12p_continuum_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void beam12p_continuum_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void beam12p_continuum_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void beam12p_continuum_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void beam12p_continuum_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void beam12p_continuum_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
@@ -171,6 +193,8 @@ void beam12p_continuum_curved_stiffness_at(fu_real l, const fu_real *e0, const f
 void beam12p_continuum_curved_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void beam12p_continuum_curved_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void beam12p_continuum_curved_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void beam12p_continuum_curved_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void beam12p_continuum_curved_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void beam12p_continuum_curved_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* beam12p_structural: elastic law structural on beam12p */
@@ -188,6 +212,8 @@ void cable8p_green_exact_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void cable8p_green_exact_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable8p_green_exact_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable8p_green_exact_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable8p_green_exact_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable8p_green_exact_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void cable8p_green_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable8p_green_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable8p_green_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
@@ -198,6 +224,8 @@ void cable8p_green_linear_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void cable8p_green_linear_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable8p_green_linear_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable8p_green_linear_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable8p_green_linear_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable8p_green_linear_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void cable8p_green_linear_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable8p_engineering_exact: elastic law engineering_exact on cable8p */
@@ -205,6 +233,8 @@ void cable8p_engineering_exact_stiffness(fu_real l, const fu_real *S, fu_real *A
 void cable8p_engineering_exact_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable8p_engineering_exact_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable8p_engineering_exact_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable8p_engineering_exact_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable8p_engineering_exact_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void cable8p_engineering_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable8p_engineering_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable8p_engineering_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
@@ -215,6 +245,8 @@ void cable8p_engineering_linear_stiffness(fu_real l, const fu_real *S, fu_real *
 void cable8p_engineering_linear_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
 void cable8p_engineering_linear_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
 void cable8p_engineering_linear_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable8p_engineering_linear_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable8p_engineering_linear_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void cable8p_engineering_linear_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* rigid: rigid body */
@@ -223,6 +255,7 @@ void rigid_point_force(const fu_real *b, const fu_real *u, const fu_real *f, fu_
 void rigid_inertia_force(fu_real mass, const fu_real *J, const fu_real *w, const fu_real *a, fu_real *f);
 void rigid_inertia_tangent(fu_real mass, const fu_real *J, const fu_real *w, fu_real *M, fu_real *D);
 void rigid_kinetic_energy(fu_real mass, const fu_real *J, const fu_real *w, fu_real *T);
+void rigid_discrete_point(const fu_real *b, const fu_real *u, const fu_real *b_next, fu_real *P);
 
 /* planar_rigid: planar rigid body */
 void planar_rigid_point(const fu_real *b, const fu_real *u, const fu_real *w, fu_real *p, fu_real *p_q, fu_real *v, fu_real *bias);
@@ -230,36 +263,42 @@ void planar_rigid_point_force(const fu_real *b, const fu_real *u, const fu_real 
 void planar_rigid_inertia_force(fu_real mass, const fu_real *J, const fu_real *w, const fu_real *a, fu_real *f);
 void planar_rigid_inertia_tangent(fu_real mass, const fu_real *J, const fu_real *w, fu_real *M, fu_real *D);
 void planar_rigid_kinetic_energy(fu_real mass, const fu_real *J, const fu_real *w, fu_real *T);
+void planar_rigid_discrete_point(const fu_real *b, const fu_real *u, const fu_real *b_next, fu_real *P);
 
 /* slide_beam24_rigid: sliding joint of a rigid rider on a beam24 cable */
 void slide_beam24_rigid_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
 void slide_beam24_rigid_terms(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *v, const fu_real *w, const fu_real *director, fu_real *C, fu_real *C_q, fu_real *C_s, fu_real *G, fu_real *s_rate, fu_real *Q_d, fu_real *H, fu_real *W, fu_real *s_bias);
 void slide_beam24_rigid_residual(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *phi, fu_real *g);
 void slide_beam24_rigid_tangent(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *J, fu_real *K);
+void slide_beam24_rigid_discrete_gradient(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
 
 /* slide_cable12_rigid: sliding joint of a rigid rider on a cable12 cable */
 void slide_cable12_rigid_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
 void slide_cable12_rigid_terms(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *v, const fu_real *w, const fu_real *director, fu_real *C, fu_real *C_q, fu_real *C_s, fu_real *G, fu_real *s_rate, fu_real *Q_d, fu_real *H, fu_real *W, fu_real *s_bias);
 void slide_cable12_rigid_residual(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *phi, fu_real *g);
 void slide_cable12_rigid_tangent(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *J, fu_real *K);
+void slide_cable12_rigid_discrete_gradient(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
 
 /* slide_cable18_rigid: sliding joint of a rigid rider on a cable18 cable */
 void slide_cable18_rigid_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
 void slide_cable18_rigid_terms(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *v, const fu_real *w, const fu_real *director, fu_real *C, fu_real *C_q, fu_real *C_s, fu_real *G, fu_real *s_rate, fu_real *Q_d, fu_real *H, fu_real *W, fu_real *s_bias);
 void slide_cable18_rigid_residual(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *phi, fu_real *g);
 void slide_cable18_rigid_tangent(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *J, fu_real *K);
+void slide_cable18_rigid_discrete_gradient(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
 
 /* slide_beam12p_planar_rigid: sliding joint of a planar_rigid rider on a beam12p cable */
 void slide_beam12p_planar_rigid_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
 void slide_beam12p_planar_rigid_terms(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *v, const fu_real *w, const fu_real *director, fu_real *C, fu_real *C_q, fu_real *C_s, fu_real *G, fu_real *s_rate, fu_real *Q_d, fu_real *H, fu_real *W, fu_real *s_bias);
 void slide_beam12p_planar_rigid_residual(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *phi, fu_real *g);
 void slide_beam12p_planar_rigid_tangent(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *J, fu_real *K);
+void slide_beam12p_planar_rigid_discrete_gradient(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
 
 /* slide_cable8p_planar_rigid: sliding joint of a planar_rigid rider on a cable8p cable */
 void slide_cable8p_planar_rigid_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
 void slide_cable8p_planar_rigid_terms(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *v, const fu_real *w, const fu_real *director, fu_real *C, fu_real *C_q, fu_real *C_s, fu_real *G, fu_real *s_rate, fu_real *Q_d, fu_real *H, fu_real *W, fu_real *s_bias);
 void slide_cable8p_planar_rigid_residual(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *phi, fu_real *g);
 void slide_cable8p_planar_rigid_tangent(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *J, fu_real *K);
+void slide_cable8p_planar_rigid_discrete_gradient(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
 
 /* What the engine needs of a element. */
 typedef struct {
@@ -282,6 +321,8 @@ typedef struct {
     void (*energy)(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
     void (*elastic_force)(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
     void (*elastic_tangent)(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+    void (*discrete_force)(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+    void (*step_stiffness)(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
     void (*damping_force)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
     void (*damping_tangent)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
     void (*dissipation)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
@@ -298,6 +339,7 @@ typedef struct {
     void (*inertia_force)(fu_real mass, const fu_real *J, const fu_real *w, const fu_real *a, fu_real *f);
     void (*inertia_tangent)(fu_real mass, const fu_real *J, const fu_real *w, fu_real *M, fu_real *D);
     void (*kinetic_energy)(fu_real mass, const fu_real *J, const fu_real *w, fu_real *T);
+    void (*discrete_point)(const fu_real *b, const fu_real *u, const fu_real *b_next, fu_real *P);
 } fu_body;
 
 /* What the engine needs of a slide. */
@@ -309,6 +351,7 @@ typedef struct {
     void (*terms)(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *v, const fu_real *w, const fu_real *director, fu_real *C, fu_real *C_q, fu_real *C_s, fu_real *G, fu_real *s_rate, fu_real *Q_d, fu_real *H, fu_real *W, fu_real *s_bias);
     void (*residual)(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *phi, fu_real *g);
     void (*tangent)(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *J, fu_real *K);
+    void (*discrete_gradient)(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
 } fu_slide;
 
 /* Every table, one entry a family. */

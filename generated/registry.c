@@ -69,6 +69,8 @@ static const fu_law laws[] = {
      beam24_continuum_energy,
      beam24_continuum_elastic_force,
      beam24_continuum_elastic_tangent,
+     beam24_continuum_discrete_force,
+     beam24_continuum_step_stiffness,
      beam24_continuum_damping_force,
      beam24_continuum_damping_tangent,
      beam24_continuum_dissipation
@@ -77,6 +79,8 @@ static const fu_law laws[] = {
      beam24_continuum_curved_energy,
      beam24_continuum_curved_elastic_force,
      beam24_continuum_curved_elastic_tangent,
+     beam24_continuum_curved_discrete_force,
+     beam24_continuum_curved_step_stiffness,
      beam24_continuum_damping_force,
      beam24_continuum_damping_tangent,
      beam24_continuum_dissipation
@@ -85,6 +89,8 @@ static const fu_law laws[] = {
      beam24_structural_energy,
      beam24_structural_elastic_force,
      beam24_structural_elastic_tangent,
+     0,
+     0,
      beam24_structural_damping_force,
      beam24_structural_damping_tangent,
      beam24_structural_dissipation
@@ -93,6 +99,8 @@ static const fu_law laws[] = {
      cable12_green_exact_energy,
      cable12_green_exact_elastic_force,
      cable12_green_exact_elastic_tangent,
+     cable12_green_exact_discrete_force,
+     cable12_green_exact_step_stiffness,
      cable12_green_exact_damping_force,
      cable12_green_exact_damping_tangent,
      cable12_green_exact_dissipation
@@ -101,6 +109,8 @@ static const fu_law laws[] = {
      cable12_green_linear_energy,
      cable12_green_linear_elastic_force,
      cable12_green_linear_elastic_tangent,
+     cable12_green_linear_discrete_force,
+     cable12_green_linear_step_stiffness,
      cable12_green_exact_damping_force,
      cable12_green_exact_damping_tangent,
      cable12_green_exact_dissipation
@@ -109,6 +119,8 @@ static const fu_law laws[] = {
      cable12_engineering_exact_energy,
      cable12_engineering_exact_elastic_force,
      cable12_engineering_exact_elastic_tangent,
+     cable12_engineering_exact_discrete_force,
+     cable12_engineering_exact_step_stiffness,
      cable12_engineering_exact_damping_force,
      cable12_engineering_exact_damping_tangent,
      cable12_engineering_exact_dissipation
@@ -117,6 +129,8 @@ static const fu_law laws[] = {
      cable12_engineering_linear_energy,
      cable12_engineering_linear_elastic_force,
      cable12_engineering_linear_elastic_tangent,
+     cable12_engineering_linear_discrete_force,
+     cable12_engineering_linear_step_stiffness,
      cable12_engineering_exact_damping_force,
      cable12_engineering_exact_damping_tangent,
      cable12_engineering_exact_dissipation
@@ -125,6 +139,8 @@ static const fu_law laws[] = {
      cable12_green_exact_curved_energy,
      cable12_green_exact_curved_elastic_force,
      cable12_green_exact_curved_elastic_tangent,
+     cable12_green_exact_curved_discrete_force,
+     cable12_green_exact_curved_step_stiffness,
      cable12_green_exact_damping_force,
      cable12_green_exact_damping_tangent,
      cable12_green_exact_dissipation
@@ -133,6 +149,8 @@ static const fu_law laws[] = {
      cable12_engineering_exact_curved_energy,
      cable12_engineering_exact_curved_elastic_force,
      cable12_engineering_exact_curved_elastic_tangent,
+     cable12_engineering_exact_curved_discrete_force,
+     cable12_engineering_exact_curved_step_stiffness,
      cable12_engineering_exact_damping_force,
      cable12_engineering_exact_damping_tangent,
      cable12_engineering_exact_dissipation
@@ -141,6 +159,8 @@ static const fu_law laws[] = {
      cable18_green_exact_energy,
      cable18_green_exact_elastic_force,
      cable18_green_exact_elastic_tangent,
+     cable18_green_exact_discrete_force,
+     cable18_green_exact_step_stiffness,
      cable18_green_exact_damping_force,
      cable18_green_exact_damping_tangent,
      cable18_green_exact_dissipation
@@ -149,6 +169,8 @@ static const fu_law laws[] = {
      cable18_engineering_exact_energy,
      cable18_engineering_exact_elastic_force,
      cable18_engineering_exact_elastic_tangent,
+     cable18_engineering_exact_discrete_force,
+     cable18_engineering_exact_step_stiffness,
      cable18_engineering_exact_damping_force,
      cable18_engineering_exact_damping_tangent,
      cable18_engineering_exact_dissipation
@@ -157,6 +179,8 @@ static const fu_law laws[] = {
      beam12p_continuum_energy,
      beam12p_continuum_elastic_force,
      beam12p_continuum_elastic_tangent,
+     beam12p_continuum_discrete_force,
+     beam12p_continuum_step_stiffness,
      beam12p_continuum_damping_force,
      beam12p_continuum_damping_tangent,
      beam12p_continuum_dissipation
@@ -165,6 +189,8 @@ static const fu_law laws[] = {
      beam12p_continuum_curved_energy,
      beam12p_continuum_curved_elastic_force,
      beam12p_continuum_curved_elastic_tangent,
+     beam12p_continuum_curved_discrete_force,
+     beam12p_continuum_curved_step_stiffness,
      beam12p_continuum_damping_force,
      beam12p_continuum_damping_tangent,
      beam12p_continuum_dissipation
@@ -173,6 +199,8 @@ static const fu_law laws[] = {
      beam12p_structural_energy,
      beam12p_structural_elastic_force,
      beam12p_structural_elastic_tangent,
+     0,
+     0,
      beam12p_structural_damping_force,
      beam12p_structural_damping_tangent,
      beam12p_structural_dissipation
@@ -181,6 +209,8 @@ static const fu_law laws[] = {
      cable8p_green_exact_energy,
      cable8p_green_exact_elastic_force,
      cable8p_green_exact_elastic_tangent,
+     cable8p_green_exact_discrete_force,
+     cable8p_green_exact_step_stiffness,
      cable8p_green_exact_damping_force,
      cable8p_green_exact_damping_tangent,
      cable8p_green_exact_dissipation
@@ -189,6 +219,8 @@ static const fu_law laws[] = {
      cable8p_green_linear_energy,
      cable8p_green_linear_elastic_force,
      cable8p_green_linear_elastic_tangent,
+     cable8p_green_linear_discrete_force,
+     cable8p_green_linear_step_stiffness,
      cable8p_green_exact_damping_force,
      cable8p_green_exact_damping_tangent,
      cable8p_green_exact_dissipation
@@ -197,6 +229,8 @@ static const fu_law laws[] = {
      cable8p_engineering_exact_energy,
      cable8p_engineering_exact_elastic_force,
      cable8p_engineering_exact_elastic_tangent,
+     cable8p_engineering_exact_discrete_force,
+     cable8p_engineering_exact_step_stiffness,
      cable8p_engineering_exact_damping_force,
      cable8p_engineering_exact_damping_tangent,
      cable8p_engineering_exact_dissipation
@@ -205,6 +239,8 @@ static const fu_law laws[] = {
      cable8p_engineering_linear_energy,
      cable8p_engineering_linear_elastic_force,
      cable8p_engineering_linear_elastic_tangent,
+     cable8p_engineering_linear_discrete_force,
+     cable8p_engineering_linear_step_stiffness,
      cable8p_engineering_exact_damping_force,
      cable8p_engineering_exact_damping_tangent,
      cable8p_engineering_exact_dissipation
@@ -220,7 +256,8 @@ static const fu_body bodys[] = {
      rigid_point_force,
      rigid_inertia_force,
      rigid_inertia_tangent,
-     rigid_kinetic_energy
+     rigid_kinetic_energy,
+     rigid_discrete_point
     },
     {"planar_rigid",
      2,
@@ -230,7 +267,8 @@ static const fu_body bodys[] = {
      planar_rigid_point_force,
      planar_rigid_inertia_force,
      planar_rigid_inertia_tangent,
-     planar_rigid_kinetic_energy
+     planar_rigid_kinetic_energy,
+     planar_rigid_discrete_point
     }
 };
 
@@ -241,7 +279,8 @@ static const fu_slide slides[] = {
      slide_beam24_rigid_constraint,
      slide_beam24_rigid_terms,
      slide_beam24_rigid_residual,
-     slide_beam24_rigid_tangent
+     slide_beam24_rigid_tangent,
+     slide_beam24_rigid_discrete_gradient
     },
     {"slide_cable12_rigid",
      18,
@@ -249,7 +288,8 @@ static const fu_slide slides[] = {
      slide_cable12_rigid_constraint,
      slide_cable12_rigid_terms,
      slide_cable12_rigid_residual,
-     slide_cable12_rigid_tangent
+     slide_cable12_rigid_tangent,
+     slide_cable12_rigid_discrete_gradient
     },
     {"slide_cable18_rigid",
      24,
@@ -257,7 +297,8 @@ static const fu_slide slides[] = {
      slide_cable18_rigid_constraint,
      slide_cable18_rigid_terms,
      slide_cable18_rigid_residual,
-     slide_cable18_rigid_tangent
+     slide_cable18_rigid_tangent,
+     slide_cable18_rigid_discrete_gradient
     },
     {"slide_beam12p_planar_rigid",
      15,
@@ -265,7 +306,8 @@ static const fu_slide slides[] = {
      slide_beam12p_planar_rigid_constraint,
      slide_beam12p_planar_rigid_terms,
      slide_beam12p_planar_rigid_residual,
-     slide_beam12p_planar_rigid_tangent
+     slide_beam12p_planar_rigid_tangent,
+     slide_beam12p_planar_rigid_discrete_gradient
     },
     {"slide_cable8p_planar_rigid",
      11,
@@ -273,7 +315,8 @@ static const fu_slide slides[] = {
      slide_cable8p_planar_rigid_constraint,
      slide_cable8p_planar_rigid_terms,
      slide_cable8p_planar_rigid_residual,
-     slide_cable8p_planar_rigid_tangent
+     slide_cable8p_planar_rigid_tangent,
+     slide_cable8p_planar_rigid_discrete_gradient
     }
 };
 
@@ -433,6 +476,14 @@ static void call_beam24_continuum_elastic_tangent(const fu_real *const *a, fu_re
 {
     beam24_continuum_elastic_tangent(*a[0], a[1], a[2], out[0]);
 }
+static void call_beam24_continuum_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_beam24_continuum_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
 static void call_beam24_continuum_damping_force(const fu_real *const *a, fu_real *const *out)
 {
     beam24_continuum_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
@@ -464,6 +515,14 @@ static void call_beam24_continuum_curved_elastic_force(const fu_real *const *a, 
 static void call_beam24_continuum_curved_elastic_tangent(const fu_real *const *a, fu_real *const *out)
 {
     beam24_continuum_curved_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam24_continuum_curved_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_curved_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_beam24_continuum_curved_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_curved_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
 }
 static void call_beam24_continuum_curved_section_forces(const fu_real *const *a, fu_real *const *out)
 {
@@ -517,6 +576,14 @@ static void call_cable12_green_exact_elastic_tangent(const fu_real *const *a, fu
 {
     cable12_green_exact_elastic_tangent(*a[0], a[1], a[2], out[0]);
 }
+static void call_cable12_green_exact_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable12_green_exact_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
 static void call_cable12_green_exact_damping_force(const fu_real *const *a, fu_real *const *out)
 {
     cable12_green_exact_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
@@ -549,6 +616,14 @@ static void call_cable12_green_linear_elastic_tangent(const fu_real *const *a, f
 {
     cable12_green_linear_elastic_tangent(*a[0], a[1], a[2], out[0]);
 }
+static void call_cable12_green_linear_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_linear_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable12_green_linear_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_linear_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
 static void call_cable12_green_linear_section_forces(const fu_real *const *a, fu_real *const *out)
 {
     cable12_green_linear_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
@@ -568,6 +643,14 @@ static void call_cable12_engineering_exact_elastic_force(const fu_real *const *a
 static void call_cable12_engineering_exact_elastic_tangent(const fu_real *const *a, fu_real *const *out)
 {
     cable12_engineering_exact_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_engineering_exact_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable12_engineering_exact_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
 }
 static void call_cable12_engineering_exact_damping_force(const fu_real *const *a, fu_real *const *out)
 {
@@ -601,6 +684,14 @@ static void call_cable12_engineering_linear_elastic_tangent(const fu_real *const
 {
     cable12_engineering_linear_elastic_tangent(*a[0], a[1], a[2], out[0]);
 }
+static void call_cable12_engineering_linear_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_linear_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable12_engineering_linear_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_linear_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
 static void call_cable12_engineering_linear_section_forces(const fu_real *const *a, fu_real *const *out)
 {
     cable12_engineering_linear_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
@@ -620,6 +711,14 @@ static void call_cable12_green_exact_curved_elastic_force(const fu_real *const *
 static void call_cable12_green_exact_curved_elastic_tangent(const fu_real *const *a, fu_real *const *out)
 {
     cable12_green_exact_curved_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_green_exact_curved_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_curved_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable12_green_exact_curved_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_curved_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
 }
 static void call_cable12_green_exact_curved_section_forces(const fu_real *const *a, fu_real *const *out)
 {
@@ -641,6 +740,14 @@ static void call_cable12_engineering_exact_curved_elastic_tangent(const fu_real 
 {
     cable12_engineering_exact_curved_elastic_tangent(*a[0], a[1], a[2], out[0]);
 }
+static void call_cable12_engineering_exact_curved_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_curved_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable12_engineering_exact_curved_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_curved_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
 static void call_cable12_engineering_exact_curved_section_forces(const fu_real *const *a, fu_real *const *out)
 {
     cable12_engineering_exact_curved_section_forces(*a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]);
@@ -660,6 +767,14 @@ static void call_cable18_green_exact_elastic_force(const fu_real *const *a, fu_r
 static void call_cable18_green_exact_elastic_tangent(const fu_real *const *a, fu_real *const *out)
 {
     cable18_green_exact_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable18_green_exact_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_green_exact_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable18_green_exact_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_green_exact_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
 }
 static void call_cable18_green_exact_damping_force(const fu_real *const *a, fu_real *const *out)
 {
@@ -693,6 +808,14 @@ static void call_cable18_engineering_exact_elastic_tangent(const fu_real *const 
 {
     cable18_engineering_exact_elastic_tangent(*a[0], a[1], a[2], out[0]);
 }
+static void call_cable18_engineering_exact_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_engineering_exact_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable18_engineering_exact_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_engineering_exact_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
 static void call_cable18_engineering_exact_damping_force(const fu_real *const *a, fu_real *const *out)
 {
     cable18_engineering_exact_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
@@ -725,6 +848,14 @@ static void call_beam12p_continuum_elastic_tangent(const fu_real *const *a, fu_r
 {
     beam12p_continuum_elastic_tangent(*a[0], a[1], a[2], out[0]);
 }
+static void call_beam12p_continuum_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_beam12p_continuum_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
 static void call_beam12p_continuum_damping_force(const fu_real *const *a, fu_real *const *out)
 {
     beam12p_continuum_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
@@ -756,6 +887,14 @@ static void call_beam12p_continuum_curved_elastic_force(const fu_real *const *a,
 static void call_beam12p_continuum_curved_elastic_tangent(const fu_real *const *a, fu_real *const *out)
 {
     beam12p_continuum_curved_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_beam12p_continuum_curved_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_curved_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_beam12p_continuum_curved_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_curved_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
 }
 static void call_beam12p_continuum_curved_section_forces(const fu_real *const *a, fu_real *const *out)
 {
@@ -809,6 +948,14 @@ static void call_cable8p_green_exact_elastic_tangent(const fu_real *const *a, fu
 {
     cable8p_green_exact_elastic_tangent(*a[0], a[1], a[2], out[0]);
 }
+static void call_cable8p_green_exact_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_exact_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable8p_green_exact_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_exact_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
 static void call_cable8p_green_exact_damping_force(const fu_real *const *a, fu_real *const *out)
 {
     cable8p_green_exact_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
@@ -841,6 +988,14 @@ static void call_cable8p_green_linear_elastic_tangent(const fu_real *const *a, f
 {
     cable8p_green_linear_elastic_tangent(*a[0], a[1], a[2], out[0]);
 }
+static void call_cable8p_green_linear_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_linear_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable8p_green_linear_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_linear_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
 static void call_cable8p_green_linear_section_forces(const fu_real *const *a, fu_real *const *out)
 {
     cable8p_green_linear_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
@@ -860,6 +1015,14 @@ static void call_cable8p_engineering_exact_elastic_force(const fu_real *const *a
 static void call_cable8p_engineering_exact_elastic_tangent(const fu_real *const *a, fu_real *const *out)
 {
     cable8p_engineering_exact_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable8p_engineering_exact_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_exact_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable8p_engineering_exact_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_exact_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
 }
 static void call_cable8p_engineering_exact_damping_force(const fu_real *const *a, fu_real *const *out)
 {
@@ -893,6 +1056,14 @@ static void call_cable8p_engineering_linear_elastic_tangent(const fu_real *const
 {
     cable8p_engineering_linear_elastic_tangent(*a[0], a[1], a[2], out[0]);
 }
+static void call_cable8p_engineering_linear_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_linear_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable8p_engineering_linear_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_linear_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
 static void call_cable8p_engineering_linear_section_forces(const fu_real *const *a, fu_real *const *out)
 {
     cable8p_engineering_linear_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
@@ -917,6 +1088,10 @@ static void call_rigid_kinetic_energy(const fu_real *const *a, fu_real *const *o
 {
     rigid_kinetic_energy(*a[0], a[1], a[2], out[0]);
 }
+static void call_rigid_discrete_point(const fu_real *const *a, fu_real *const *out)
+{
+    rigid_discrete_point(a[0], a[1], a[2], out[0]);
+}
 static void call_planar_rigid_point(const fu_real *const *a, fu_real *const *out)
 {
     planar_rigid_point(a[0], a[1], a[2], out[0], out[1], out[2], out[3]);
@@ -937,6 +1112,10 @@ static void call_planar_rigid_kinetic_energy(const fu_real *const *a, fu_real *c
 {
     planar_rigid_kinetic_energy(*a[0], a[1], a[2], out[0]);
 }
+static void call_planar_rigid_discrete_point(const fu_real *const *a, fu_real *const *out)
+{
+    planar_rigid_discrete_point(a[0], a[1], a[2], out[0]);
+}
 static void call_slide_beam24_rigid_constraint(const fu_real *const *a, fu_real *const *out)
 {
     slide_beam24_rigid_constraint(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]);
@@ -952,6 +1131,10 @@ static void call_slide_beam24_rigid_residual(const fu_real *const *a, fu_real *c
 static void call_slide_beam24_rigid_tangent(const fu_real *const *a, fu_real *const *out)
 {
     slide_beam24_rigid_tangent(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_slide_beam24_rigid_discrete_gradient(const fu_real *const *a, fu_real *const *out)
+{
+    slide_beam24_rigid_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
 }
 static void call_slide_cable12_rigid_constraint(const fu_real *const *a, fu_real *const *out)
 {
@@ -969,6 +1152,10 @@ static void call_slide_cable12_rigid_tangent(const fu_real *const *a, fu_real *c
 {
     slide_cable12_rigid_tangent(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
 }
+static void call_slide_cable12_rigid_discrete_gradient(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable12_rigid_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
+}
 static void call_slide_cable18_rigid_constraint(const fu_real *const *a, fu_real *const *out)
 {
     slide_cable18_rigid_constraint(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]);
@@ -984,6 +1171,10 @@ static void call_slide_cable18_rigid_residual(const fu_real *const *a, fu_real *
 static void call_slide_cable18_rigid_tangent(const fu_real *const *a, fu_real *const *out)
 {
     slide_cable18_rigid_tangent(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_slide_cable18_rigid_discrete_gradient(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable18_rigid_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
 }
 static void call_slide_beam12p_planar_rigid_constraint(const fu_real *const *a, fu_real *const *out)
 {
@@ -1001,6 +1192,10 @@ static void call_slide_beam12p_planar_rigid_tangent(const fu_real *const *a, fu_
 {
     slide_beam12p_planar_rigid_tangent(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
 }
+static void call_slide_beam12p_planar_rigid_discrete_gradient(const fu_real *const *a, fu_real *const *out)
+{
+    slide_beam12p_planar_rigid_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
+}
 static void call_slide_cable8p_planar_rigid_constraint(const fu_real *const *a, fu_real *const *out)
 {
     slide_cable8p_planar_rigid_constraint(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]);
@@ -1016,6 +1211,10 @@ static void call_slide_cable8p_planar_rigid_residual(const fu_real *const *a, fu
 static void call_slide_cable8p_planar_rigid_tangent(const fu_real *const *a, fu_real *const *out)
 {
     slide_cable8p_planar_rigid_tangent(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_slide_cable8p_planar_rigid_discrete_gradient(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable8p_planar_rigid_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
 }
 
 const fu_kernel fu_kernels[] = {
@@ -1058,6 +1257,8 @@ const fu_kernel fu_kernels[] = {
     {"beam24_continuum_energy", call_beam24_continuum_energy},
     {"beam24_continuum_elastic_force", call_beam24_continuum_elastic_force},
     {"beam24_continuum_elastic_tangent", call_beam24_continuum_elastic_tangent},
+    {"beam24_continuum_discrete_force", call_beam24_continuum_discrete_force},
+    {"beam24_continuum_step_stiffness", call_beam24_continuum_step_stiffness},
     {"beam24_continuum_damping_force", call_beam24_continuum_damping_force},
     {"beam24_continuum_damping_tangent", call_beam24_continuum_damping_tangent},
     {"beam24_continuum_dissipation", call_beam24_continuum_dissipation},
@@ -1066,6 +1267,8 @@ const fu_kernel fu_kernels[] = {
     {"beam24_continuum_curved_energy", call_beam24_continuum_curved_energy},
     {"beam24_continuum_curved_elastic_force", call_beam24_continuum_curved_elastic_force},
     {"beam24_continuum_curved_elastic_tangent", call_beam24_continuum_curved_elastic_tangent},
+    {"beam24_continuum_curved_discrete_force", call_beam24_continuum_curved_discrete_force},
+    {"beam24_continuum_curved_step_stiffness", call_beam24_continuum_curved_step_stiffness},
     {"beam24_continuum_curved_section_forces", call_beam24_continuum_curved_section_forces},
     {"beam24_structural_stiffness", call_beam24_structural_stiffness},
     {"beam24_structural_energy", call_beam24_structural_energy},
@@ -1079,6 +1282,8 @@ const fu_kernel fu_kernels[] = {
     {"cable12_green_exact_energy", call_cable12_green_exact_energy},
     {"cable12_green_exact_elastic_force", call_cable12_green_exact_elastic_force},
     {"cable12_green_exact_elastic_tangent", call_cable12_green_exact_elastic_tangent},
+    {"cable12_green_exact_discrete_force", call_cable12_green_exact_discrete_force},
+    {"cable12_green_exact_step_stiffness", call_cable12_green_exact_step_stiffness},
     {"cable12_green_exact_damping_force", call_cable12_green_exact_damping_force},
     {"cable12_green_exact_damping_tangent", call_cable12_green_exact_damping_tangent},
     {"cable12_green_exact_dissipation", call_cable12_green_exact_dissipation},
@@ -1087,11 +1292,15 @@ const fu_kernel fu_kernels[] = {
     {"cable12_green_linear_energy", call_cable12_green_linear_energy},
     {"cable12_green_linear_elastic_force", call_cable12_green_linear_elastic_force},
     {"cable12_green_linear_elastic_tangent", call_cable12_green_linear_elastic_tangent},
+    {"cable12_green_linear_discrete_force", call_cable12_green_linear_discrete_force},
+    {"cable12_green_linear_step_stiffness", call_cable12_green_linear_step_stiffness},
     {"cable12_green_linear_section_forces", call_cable12_green_linear_section_forces},
     {"cable12_engineering_exact_stiffness", call_cable12_engineering_exact_stiffness},
     {"cable12_engineering_exact_energy", call_cable12_engineering_exact_energy},
     {"cable12_engineering_exact_elastic_force", call_cable12_engineering_exact_elastic_force},
     {"cable12_engineering_exact_elastic_tangent", call_cable12_engineering_exact_elastic_tangent},
+    {"cable12_engineering_exact_discrete_force", call_cable12_engineering_exact_discrete_force},
+    {"cable12_engineering_exact_step_stiffness", call_cable12_engineering_exact_step_stiffness},
     {"cable12_engineering_exact_damping_force", call_cable12_engineering_exact_damping_force},
     {"cable12_engineering_exact_damping_tangent", call_cable12_engineering_exact_damping_tangent},
     {"cable12_engineering_exact_dissipation", call_cable12_engineering_exact_dissipation},
@@ -1100,21 +1309,29 @@ const fu_kernel fu_kernels[] = {
     {"cable12_engineering_linear_energy", call_cable12_engineering_linear_energy},
     {"cable12_engineering_linear_elastic_force", call_cable12_engineering_linear_elastic_force},
     {"cable12_engineering_linear_elastic_tangent", call_cable12_engineering_linear_elastic_tangent},
+    {"cable12_engineering_linear_discrete_force", call_cable12_engineering_linear_discrete_force},
+    {"cable12_engineering_linear_step_stiffness", call_cable12_engineering_linear_step_stiffness},
     {"cable12_engineering_linear_section_forces", call_cable12_engineering_linear_section_forces},
     {"cable12_green_exact_curved_stiffness", call_cable12_green_exact_curved_stiffness},
     {"cable12_green_exact_curved_energy", call_cable12_green_exact_curved_energy},
     {"cable12_green_exact_curved_elastic_force", call_cable12_green_exact_curved_elastic_force},
     {"cable12_green_exact_curved_elastic_tangent", call_cable12_green_exact_curved_elastic_tangent},
+    {"cable12_green_exact_curved_discrete_force", call_cable12_green_exact_curved_discrete_force},
+    {"cable12_green_exact_curved_step_stiffness", call_cable12_green_exact_curved_step_stiffness},
     {"cable12_green_exact_curved_section_forces", call_cable12_green_exact_curved_section_forces},
     {"cable12_engineering_exact_curved_stiffness", call_cable12_engineering_exact_curved_stiffness},
     {"cable12_engineering_exact_curved_energy", call_cable12_engineering_exact_curved_energy},
     {"cable12_engineering_exact_curved_elastic_force", call_cable12_engineering_exact_curved_elastic_force},
     {"cable12_engineering_exact_curved_elastic_tangent", call_cable12_engineering_exact_curved_elastic_tangent},
+    {"cable12_engineering_exact_curved_discrete_force", call_cable12_engineering_exact_curved_discrete_force},
+    {"cable12_engineering_exact_curved_step_stiffness", call_cable12_engineering_exact_curved_step_stiffness},
     {"cable12_engineering_exact_curved_section_forces", call_cable12_engineering_exact_curved_section_forces},
     {"cable18_green_exact_stiffness", call_cable18_green_exact_stiffness},
     {"cable18_green_exact_energy", call_cable18_green_exact_energy},
     {"cable18_green_exact_elastic_force", call_cable18_green_exact_elastic_force},
     {"cable18_green_exact_elastic_tangent", call_cable18_green_exact_elastic_tangent},
+    {"cable18_green_exact_discrete_force", call_cable18_green_exact_discrete_force},
+    {"cable18_green_exact_step_stiffness", call_cable18_green_exact_step_stiffness},
     {"cable18_green_exact_damping_force", call_cable18_green_exact_damping_force},
     {"cable18_green_exact_damping_tangent", call_cable18_green_exact_damping_tangent},
     {"cable18_green_exact_dissipation", call_cable18_green_exact_dissipation},
@@ -1123,6 +1340,8 @@ const fu_kernel fu_kernels[] = {
     {"cable18_engineering_exact_energy", call_cable18_engineering_exact_energy},
     {"cable18_engineering_exact_elastic_force", call_cable18_engineering_exact_elastic_force},
     {"cable18_engineering_exact_elastic_tangent", call_cable18_engineering_exact_elastic_tangent},
+    {"cable18_engineering_exact_discrete_force", call_cable18_engineering_exact_discrete_force},
+    {"cable18_engineering_exact_step_stiffness", call_cable18_engineering_exact_step_stiffness},
     {"cable18_engineering_exact_damping_force", call_cable18_engineering_exact_damping_force},
     {"cable18_engineering_exact_damping_tangent", call_cable18_engineering_exact_damping_tangent},
     {"cable18_engineering_exact_dissipation", call_cable18_engineering_exact_dissipation},
@@ -1131,6 +1350,8 @@ const fu_kernel fu_kernels[] = {
     {"beam12p_continuum_energy", call_beam12p_continuum_energy},
     {"beam12p_continuum_elastic_force", call_beam12p_continuum_elastic_force},
     {"beam12p_continuum_elastic_tangent", call_beam12p_continuum_elastic_tangent},
+    {"beam12p_continuum_discrete_force", call_beam12p_continuum_discrete_force},
+    {"beam12p_continuum_step_stiffness", call_beam12p_continuum_step_stiffness},
     {"beam12p_continuum_damping_force", call_beam12p_continuum_damping_force},
     {"beam12p_continuum_damping_tangent", call_beam12p_continuum_damping_tangent},
     {"beam12p_continuum_dissipation", call_beam12p_continuum_dissipation},
@@ -1139,6 +1360,8 @@ const fu_kernel fu_kernels[] = {
     {"beam12p_continuum_curved_energy", call_beam12p_continuum_curved_energy},
     {"beam12p_continuum_curved_elastic_force", call_beam12p_continuum_curved_elastic_force},
     {"beam12p_continuum_curved_elastic_tangent", call_beam12p_continuum_curved_elastic_tangent},
+    {"beam12p_continuum_curved_discrete_force", call_beam12p_continuum_curved_discrete_force},
+    {"beam12p_continuum_curved_step_stiffness", call_beam12p_continuum_curved_step_stiffness},
     {"beam12p_continuum_curved_section_forces", call_beam12p_continuum_curved_section_forces},
     {"beam12p_structural_stiffness", call_beam12p_structural_stiffness},
     {"beam12p_structural_energy", call_beam12p_structural_energy},
@@ -1152,6 +1375,8 @@ const fu_kernel fu_kernels[] = {
     {"cable8p_green_exact_energy", call_cable8p_green_exact_energy},
     {"cable8p_green_exact_elastic_force", call_cable8p_green_exact_elastic_force},
     {"cable8p_green_exact_elastic_tangent", call_cable8p_green_exact_elastic_tangent},
+    {"cable8p_green_exact_discrete_force", call_cable8p_green_exact_discrete_force},
+    {"cable8p_green_exact_step_stiffness", call_cable8p_green_exact_step_stiffness},
     {"cable8p_green_exact_damping_force", call_cable8p_green_exact_damping_force},
     {"cable8p_green_exact_damping_tangent", call_cable8p_green_exact_damping_tangent},
     {"cable8p_green_exact_dissipation", call_cable8p_green_exact_dissipation},
@@ -1160,11 +1385,15 @@ const fu_kernel fu_kernels[] = {
     {"cable8p_green_linear_energy", call_cable8p_green_linear_energy},
     {"cable8p_green_linear_elastic_force", call_cable8p_green_linear_elastic_force},
     {"cable8p_green_linear_elastic_tangent", call_cable8p_green_linear_elastic_tangent},
+    {"cable8p_green_linear_discrete_force", call_cable8p_green_linear_discrete_force},
+    {"cable8p_green_linear_step_stiffness", call_cable8p_green_linear_step_stiffness},
     {"cable8p_green_linear_section_forces", call_cable8p_green_linear_section_forces},
     {"cable8p_engineering_exact_stiffness", call_cable8p_engineering_exact_stiffness},
     {"cable8p_engineering_exact_energy", call_cable8p_engineering_exact_energy},
     {"cable8p_engineering_exact_elastic_force", call_cable8p_engineering_exact_elastic_force},
     {"cable8p_engineering_exact_elastic_tangent", call_cable8p_engineering_exact_elastic_tangent},
+    {"cable8p_engineering_exact_discrete_force", call_cable8p_engineering_exact_discrete_force},
+    {"cable8p_engineering_exact_step_stiffness", call_cable8p_engineering_exact_step_stiffness},
     {"cable8p_engineering_exact_damping_force", call_cable8p_engineering_exact_damping_force},
     {"cable8p_engineering_exact_damping_tangent", call_cable8p_engineering_exact_damping_tangent},
     {"cable8p_engineering_exact_dissipation", call_cable8p_engineering_exact_dissipation},
@@ -1173,37 +1402,46 @@ const fu_kernel fu_kernels[] = {
     {"cable8p_engineering_linear_energy", call_cable8p_engineering_linear_energy},
     {"cable8p_engineering_linear_elastic_force", call_cable8p_engineering_linear_elastic_force},
     {"cable8p_engineering_linear_elastic_tangent", call_cable8p_engineering_linear_elastic_tangent},
+    {"cable8p_engineering_linear_discrete_force", call_cable8p_engineering_linear_discrete_force},
+    {"cable8p_engineering_linear_step_stiffness", call_cable8p_engineering_linear_step_stiffness},
     {"cable8p_engineering_linear_section_forces", call_cable8p_engineering_linear_section_forces},
     {"rigid_point", call_rigid_point},
     {"rigid_point_force", call_rigid_point_force},
     {"rigid_inertia_force", call_rigid_inertia_force},
     {"rigid_inertia_tangent", call_rigid_inertia_tangent},
     {"rigid_kinetic_energy", call_rigid_kinetic_energy},
+    {"rigid_discrete_point", call_rigid_discrete_point},
     {"planar_rigid_point", call_planar_rigid_point},
     {"planar_rigid_point_force", call_planar_rigid_point_force},
     {"planar_rigid_inertia_force", call_planar_rigid_inertia_force},
     {"planar_rigid_inertia_tangent", call_planar_rigid_inertia_tangent},
     {"planar_rigid_kinetic_energy", call_planar_rigid_kinetic_energy},
+    {"planar_rigid_discrete_point", call_planar_rigid_discrete_point},
     {"slide_beam24_rigid_constraint", call_slide_beam24_rigid_constraint},
     {"slide_beam24_rigid_terms", call_slide_beam24_rigid_terms},
     {"slide_beam24_rigid_residual", call_slide_beam24_rigid_residual},
     {"slide_beam24_rigid_tangent", call_slide_beam24_rigid_tangent},
+    {"slide_beam24_rigid_discrete_gradient", call_slide_beam24_rigid_discrete_gradient},
     {"slide_cable12_rigid_constraint", call_slide_cable12_rigid_constraint},
     {"slide_cable12_rigid_terms", call_slide_cable12_rigid_terms},
     {"slide_cable12_rigid_residual", call_slide_cable12_rigid_residual},
     {"slide_cable12_rigid_tangent", call_slide_cable12_rigid_tangent},
+    {"slide_cable12_rigid_discrete_gradient", call_slide_cable12_rigid_discrete_gradient},
     {"slide_cable18_rigid_constraint", call_slide_cable18_rigid_constraint},
     {"slide_cable18_rigid_terms", call_slide_cable18_rigid_terms},
     {"slide_cable18_rigid_residual", call_slide_cable18_rigid_residual},
     {"slide_cable18_rigid_tangent", call_slide_cable18_rigid_tangent},
+    {"slide_cable18_rigid_discrete_gradient", call_slide_cable18_rigid_discrete_gradient},
     {"slide_beam12p_planar_rigid_constraint", call_slide_beam12p_planar_rigid_constraint},
     {"slide_beam12p_planar_rigid_terms", call_slide_beam12p_planar_rigid_terms},
     {"slide_beam12p_planar_rigid_residual", call_slide_beam12p_planar_rigid_residual},
     {"slide_beam12p_planar_rigid_tangent", call_slide_beam12p_planar_rigid_tangent},
+    {"slide_beam12p_planar_rigid_discrete_gradient", call_slide_beam12p_planar_rigid_discrete_gradient},
     {"slide_cable8p_planar_rigid_constraint", call_slide_cable8p_planar_rigid_constraint},
     {"slide_cable8p_planar_rigid_terms", call_slide_cable8p_planar_rigid_terms},
     {"slide_cable8p_planar_rigid_residual", call_slide_cable8p_planar_rigid_residual},
     {"slide_cable8p_planar_rigid_tangent", call_slide_cable8p_planar_rigid_tangent},
+    {"slide_cable8p_planar_rigid_discrete_gradient", call_slide_cable8p_planar_rigid_discrete_gradient},
 };
 const int fu_n_kernels = sizeof fu_kernels / sizeof fu_kernels[0];
 

@@ -60,10 +60,12 @@ def run(
     duration: Annotated[float | None, typer.Option(help="s, instead of the scene's")] = None,
     tol: Annotated[float | None, typer.Option(help="error aimed at, instead of the scene's")] = None,
     step: Annotated[float | None, typer.Option(help="fixed step in s, instead of the scene's")] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="go on with a run that was killed or interrupted")] = False,
 ) -> None:
-    """Simulate a scene and write its results.
+    """Simulate a scene and write its results, as the run goes.
 
-    What was computed is written also when the run stops early. Exit code: 1 for an error, 130 after Ctrl-C.
+    What was computed is in the file also when the run stops early, and --resume goes on from there. Exit code: 1 for an
+    error, 130 after Ctrl-C.
     """
     from funicular.errors import ConvergenceError, EndOfCableError
     from funicular.results import check_writable
@@ -77,7 +79,7 @@ def run(
             check_writable(_existing(pictures) / "picture.png")
         stopped = None
         try:
-            result = described.run(duration, tol=tol, step=step, save=path)
+            result = described.run(duration, tol=tol, step=step, save=path, resume=resume)
         except (EndOfCableError, ConvergenceError) as error:
             result, stopped = error.run, error
         _report(result, path, pictures, forces)

@@ -157,7 +157,7 @@ cdef extern from "engine.h" nogil:
         long steps, rejected, newton_iterations, factorisations, crossings, newton_failures, evaluations
         double h_min, h_max, error_sum, time_factor, time_solve, time_residual, time_output
     ctypedef struct fu_record:
-        int n
+        int n, first, pause
         double *time
         double *q
         double *v
@@ -175,7 +175,7 @@ cdef extern from "engine.h" nogil:
         double inertia, rate, stiffness
     ctypedef struct fu_integrator:
         const char *name
-    const fu_integrator fu_genalpha_method, fu_explicit_method
+    const fu_integrator fu_genalpha_method, fu_explicit_method, fu_energy_method
     ctypedef struct fu_run:
         const fu_model *model
         const fu_integrator *integrator
@@ -219,6 +219,9 @@ cdef extern from "engine.h" nogil:
     int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S)
     int fu_start(fu_run *run)
     int fu_advance(fu_run *run, double seconds)
+    void fu_pause(fu_run *run)
+    long fu_save(const fu_run *run, char *bytes)
+    void fu_restore(fu_run *run, const char *bytes)
     int fu_stop(fu_run *run)
 
 cdef const fu_tables *TABLES = <const fu_tables *>PyCapsule_GetPointer(kernels.tables,
@@ -484,8 +487,7 @@ cdef class Engine:
         t = &self.run.tableau
         t.stages = len(method.b)
         t.A, t.b, t.c = self._doubles(method.A), self._doubles(method.b), self._doubles(method.c)
-        t.error = self._doubles(method.error)
-        t.coarse = NULL if method.coarse is None else self._doubles(method.coarse)
+        t.error, t.coarse = self._doubles(method.error), self._doubles(method.coarse)
         stage = self.model.n_q + self.model.n_dof
         self.run.scratch = self._doubles(np.zeros((t.stages + 2) * stage + 2 * (t.stages + 1)))
 
@@ -621,8 +623,8 @@ cdef class Engine:
         return (state.t, np.array([state.q[i] for i in range(m.n_q)]), np.array([state.v[i] for i in range(m.n_dof)]),
                 np.array([state.s[i] for i in range(m.n_joints)]))
 
-    def start(self, *, duration, output_step, tol, step, method, first_step, rest_start=False):
-        """Allocate the output rows and compute the consistent start; method: see integrators.py.
+    def start(self, *, duration, output_step, tol, step, method, first_step, room=None, rest_start=False):
+        """Allocate output rows, `room` of them or all, and compute the consistent start; method: see integrators.py.
 
         Returns a status where that failed, else None, and the change of velocities that the joints asked for.
         """
@@ -633,10 +635,13 @@ cdef class Engine:
         if method.name == "explicit":
             run.integrator = &fu_explicit_method
             self._tableau(method)
+        elif method.name == "energy":
+            run.integrator = &fu_energy_method
+            run.scratch = self._doubles(np.zeros(self.model.n_q + 2 * self.model.n_dof + 1))
         else:
             run.integrator = &fu_genalpha_method
             run.scheme.alpha_m, run.scheme.alpha_f, run.scheme.beta, run.scheme.gamma = method.parameters
-        rows = int(np.ceil(duration / output_step * (1 - 1e-12))) + 2
+        rows = int(np.ceil(duration / output_step * (1 - 1e-12))) + 2 if room is None else room
         m = &self.model
         r = &run.record
         r.time, r.kinetic, r.elastic = self._named("time", rows), self._named("kinetic", rows), self._named("elastic", rows)
@@ -651,30 +656,63 @@ cdef class Engine:
             return STATUS[status], np.zeros(m.n_dof)
         return None, np.array([run.before[i] for i in range(m.n_dof)])
 
-    def advance(self, on_progress, double interval=0.05):
-        """Run to the end; returns the status, "interrupted" after Ctrl-C."""
+    def advance(self, on_progress, int every=0, stream=None, double interval=0.05):
+        """Run to the end; returns the status, "interrupted" after Ctrl-C.
+
+        every: at each so many output rows the run pauses, which leaves it in a state that `checkpoint` holds in full, and
+        calls stream.pause(); otherwise stream.between() now and then, which may take rows.
+        """
         cdef int status = FU_RUNNING
+        run = &self.run
         try:
             while status == FU_RUNNING:
+                run.record.pause = (run.record.n // every + 1) * every if every else 0
                 with nogil:
-                    status = fu_advance(&self.run, interval)
-                PyErr_CheckSignals()
+                    status = fu_advance(run, interval)
                 if self.error is not None:
                     raise self.error
+                if status == FU_RUNNING and run.record.n == run.record.pause:
+                    fu_pause(run)
+                    if stream is not None:
+                        stream.pause()
+                if stream is not None:
+                    stream.between()
+                PyErr_CheckSignals()
                 if status == FU_EVENT:
-                    if not self.watcher.happens(self.run.event.which, *self._snapshot(&self.run.now)):
+                    if not self.watcher.happens(run.event.which, *self._snapshot(&run.now)):
                         with nogil:
-                            status = fu_stop(&self.run)
+                            status = fu_stop(run)
                         break
                     status = FU_RUNNING
-                on_progress(self.run.now.t)
+                on_progress(run.now.t)
         except KeyboardInterrupt:
             return "interrupted"
         return STATUS[status]
 
     def rows(self):
-        """Recorded arrays by name, cut to the rows that were written."""
-        return {name: array[:self.run.record.n] for name, array in self.arrays.items()}
+        """Recorded arrays by name, cut to the rows that are in them."""
+        return {name: array[:self.run.record.n - self.run.record.first] for name, array in self.arrays.items()}
+
+    def take_rows(self):
+        """Make room: the rows that are in the arrays count as taken, and the next ones are written over them."""
+        self.run.record.first = self.run.record.n
+
+    def checkpoint(self):
+        """Bytes from which `restore` goes on exactly; at a pause only."""
+        cdef bytearray taken = bytearray(fu_save(&self.run, NULL))
+        fu_save(&self.run, taken)
+        return bytes(taken)
+
+    def restore(self, bytes checkpoint):
+        """Go on from a checkpoint; after `start` with the same arguments."""
+        if len(checkpoint) != fu_save(&self.run, NULL):
+            raise ValueError("the checkpoint is of another model")
+        fu_restore(&self.run, checkpoint)
+
+    @property
+    def n_rows(self):
+        """Number of output rows since the start."""
+        return self.run.record.n
 
     def joint_row(self, joints):
         """Split joint numbers (..., FU_JOINT_OUTPUTS) by name; see fu_joint_output."""
@@ -742,3 +780,8 @@ cdef class Engine:
     def stopped_joint(self):
         """Index of the slide that ran off its cable."""
         return self.run.stopped_joint
+
+    @property
+    def stopped_s(self):
+        """Arc-length of that slide, m."""
+        return self.run.now.s[self.run.stopped_joint]

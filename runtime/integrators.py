@@ -1,13 +1,28 @@
-"""The ways through time, as the engine takes them."""
+"""The ways through time as the engine takes them, and the choice between them."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-HIGH_ORDER_BELOW = 1e-6
-"""Tolerances below this are worth a method of order 8."""
+if TYPE_CHECKING:
+    from funicular.engine import Engine
+    from funicular.model import Model
+    from funicular.scene import Scene
+    from funicular.settings import RunSettings
+
+STABLE = 4.5
+"""Of the explicit method: its step times the highest angular frequency, where step control holds it (its imaginary
+stability interval is 5.96)."""
+STABLE_DAMPING = 6.0
+"""The same for the highest rate of decay (the real interval is 6.40)."""
+STEP_OVER_EVALUATION = 6.0
+"""Cost of a step of genalpha over that of an evaluation of eq 38, by tests/benchmarks/choice.py."""
+STEPS_OF_GENALPHA = 12.0
+"""genalpha needs this over sqrt(tol) steps for a radian of the motion as a whole, by the same."""
+ITERATIONS = 20
 
 
 @dataclass(frozen=True)
@@ -25,24 +40,94 @@ class GeneralisedAlpha:
         return alpha_m, alpha_f, (1 - alpha_m + alpha_f) ** 2 / 4, 0.5 - alpha_m + alpha_f
 
 
-class Explicit:
-    """A Runge-Kutta method of order 5 (Dormand & Prince 1980) or 8 (Hairer, Norsett & Wanner 1993), as scipy has it.
+@dataclass(frozen=True)
+class EnergyMomentum:
+    """Keeps energy and momenta to rounding (Simo & Tarnow 1992; Gonzalez 1996)."""
 
-    ``order`` is that of the embedded error estimate, by which steps are chosen.
+    name, order = "energy", 2
+
+
+class Explicit:
+    """The Runge-Kutta method of order 8 of Dormand & Prince (Hairer, Norsett & Wanner 1993, DOP853), as scipy has it.
+
+    Steps are chosen by its error estimate of order 7. Methods of order 5 have a third of its imaginary stability
+    interval for each evaluation, so that it is the cheaper one at any tolerance.
     """
 
     name = "explicit"
 
-    def __init__(self, order: int):
-        from scipy.integrate import DOP853, RK45
+    def __init__(self) -> None:
+        from scipy.integrate import DOP853
 
-        of = {5: RK45, 8: DOP853}[order]
-        self.A, self.b, self.c = np.array(of.A), np.array(of.B), np.array(of.C)
-        self.A = np.pad(self.A, [(0, 0), (0, len(self.b) - self.A.shape[1])])
-        self.error, self.coarse = (np.array(of.E), None) if order == 5 else (np.array(of.E5), np.array(of.E3))
-        self.order = of.error_estimator_order
+        self.A, self.b, self.c = np.array(DOP853.A), np.array(DOP853.B), np.array(DOP853.C)
+        self.error, self.coarse = np.array(DOP853.E5), np.array(DOP853.E3)
+        self.order = DOP853.error_estimator_order
 
 
-def explicit(tol: float) -> Explicit:
-    """The method that suits a tolerance."""
-    return Explicit(8 if tol < HIGH_ORDER_BELOW else 5)
+Integrator = GeneralisedAlpha | Explicit | EnergyMomentum
+
+
+def choose(settings: RunSettings, scene: Scene, model: Model,
+           engine: Engine) -> tuple[Integrator, str]:
+    """The integrator of a run, and why it is that one. "auto" takes the cheaper by stiffness and tolerance."""
+    implicit = GeneralisedAlpha(settings.spectral_radius)
+    if settings.integrator != "auto":
+        made = {"genalpha": lambda: implicit, "explicit": Explicit, "energy": EnergyMomentum}[settings.integrator]()
+        return made, "as asked for"
+    if settings.step is not None:
+        return implicit, "the step is fixed: genalpha is stable at any"
+    if "spectral_radius" in settings.model_fields_set:
+        return implicit, "spectral_radius is given, which is genalpha's"
+    frequency, decay = fastest_rates(model, engine)
+    slow = slowest_rate(scene, model, settings.duration)
+    explicit_cost = 12 * max(frequency / STABLE, decay / STABLE_DAMPING)
+    implicit_cost = STEP_OVER_EVALUATION * STEPS_OF_GENALPHA * slow / np.sqrt(settings.tol)
+    better = explicit_cost < implicit_cost
+    reason = (f"stability asks the explicit method for {explicit_cost:.3g} evaluations a second (highest frequency "
+              f"{frequency:.3g} rad/s" + (f", fastest decay {decay:.3g} 1/s" if decay else "")
+              + f"), tol asks genalpha for work like {implicit_cost:.3g}")
+    return (Explicit() if better else implicit), reason
+
+
+def slowest_rate(scene: Scene, model: Model, duration: float) -> float:
+    """rad/s of the motion as a whole: a pendulum as long as the scene, or what crosses it, or the run."""
+    points = [node.vector("r") for nodes in model.nodes.values() for node in nodes]
+    points += [model.q[b.configuration : b.configuration + model.dim] for b in model.rigids]
+    size = float(np.max(np.ptp(points, axis=0)))
+    if size == 0.0:
+        return 1.0 / duration
+    speed = max((float(np.linalg.norm(body.velocity)) for body in scene.bodies.values()), default=0.0)
+    return max(np.sqrt(np.linalg.norm(scene.gravity) / size), speed / size, 1.0 / duration)
+
+
+def fastest_rates(model: Model, engine: Engine) -> tuple[float, float]:
+    """rad/s and 1/s: the highest frequency and rate of decay of the state at the start, its slides left out.
+
+    Holding riders on their cables only lowers them.
+    """
+    from funicular.modal import condensed
+
+    engine.place(0.0)
+    n = model.n_band + model.n_border_dof
+    if n == 0:
+        return 0.0, 0.0
+    mass = engine.matrix(1.0, 0.0, 0.0)[:n, :n]
+    stiffness = condensed(engine.matrix(0.0, 0.0, 1.0), model)[0][:n, :n]
+    damping = condensed(engine.matrix(0.0, 1.0, 1.0), model)[0][:n, :n] - stiffness
+    return np.sqrt(_largest(stiffness, mass)), _largest(damping, mass)
+
+
+def _largest(matrix, mass) -> float:
+    """About the largest eigenvalue of the symmetric part by the mass, in size: power iteration, some per cent low."""
+    from scipy.sparse.linalg import splu
+
+    symmetric, factors = (matrix + matrix.T) / 2, splu(mass.tocsc())
+    x = np.random.default_rng(0).normal(size=mass.shape[0])
+    value = 0.0
+    for _ in range(ITERATIONS):
+        moved = factors.solve(symmetric @ x)
+        size = np.sqrt(moved @ (mass @ moved))
+        if size == 0.0:
+            return 0.0
+        value, x = size / np.sqrt(x @ (mass @ x)), moved / size
+    return float(value)

@@ -65,12 +65,16 @@ class Kernel:
 
 @dataclass(frozen=True)
 class Library:
-    """A library in memory: its elements by name, its kernels as functions, and where its fu_all is (kernels.h)."""
+    """A library in memory: its elements by name, its kernels as functions, and where its fu_all is (kernels.h).
+
+    digest: sha256 of its machine code.
+    """
 
     directory: Path
     elements: dict[str, ElementKind]
     kernels: SimpleNamespace
     tables: int
+    digest: str
 
 
 def load(directory: str | os.PathLike) -> Library:
@@ -119,4 +123,4 @@ def _open(path: Path, text: bytes) -> Library:
         raise LibraryError(f'"{path}" cannot be loaded here: {error}', again) from None
     kernels = SimpleNamespace(**{name: Kernel(shared, name, entry) for name, entry in content["kernels"].items()})
     return Library(path, elements.of_manifest(content), kernels,
-                   ctypes.addressof(ctypes.c_char.in_dll(shared, "fu_all")))
+                   ctypes.addressof(ctypes.c_char.in_dll(shared, "fu_all")), digest)

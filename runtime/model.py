@@ -9,6 +9,7 @@ import time
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 from funicular.actions import Actions, DeadLoad, LoadModel, SignalModel, SpringModel
@@ -16,13 +17,14 @@ from funicular.constants import constants
 from funicular.diagnosis import notes, redundant
 from funicular.elements import gauge
 from funicular.errors import FunicularWarning, SceneError
-from funicular.integrators import GeneralisedAlpha, explicit
+from funicular.integrators import choose
 from funicular.libraries import kernels_of, tables_of
 from funicular.parts import Cable, RigidBody, Slide
-from funicular.recording import Recording, recorded
+from funicular.recording import Recording, named, recorded
 from funicular.reduction import Node, half_width, supports
 from funicular.scene import Scene
 from funicular.settings import RunSettings
+from funicular.streaming import Stream, pauses
 from funicular.watching import Watcher
 from scipy.sparse import csr_array
 
@@ -270,10 +272,12 @@ def _joint(slide: Slide, scene: Scene, cable: int, rider: int, number: int) -> J
     )
 
 
-def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float], None], initial=None) -> Recording:
+def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float], None], initial=None,
+             stream: Stream | None = None) -> Recording:
     """Integrate a checked scene; calls on_progress(time reached in s) about twenty times a second.
 
-    initial: an `Equilibrium` of this scene to start from, at the scene's velocities.
+    initial: an `Equilibrium` of this scene to start from, at the scene's velocities; stream: takes the rows as they
+    come, so that only the last ones are in what is returned.
     """
     from funicular.engine import Engine
 
@@ -282,7 +286,7 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
     if initial is not None:
         initial.start(model)
     output_step = settings.output_step
-    _check_size(model, settings)
+    pace = pauses(int(np.ceil(settings.duration / output_step)) + 1, _check_size(model, settings, stream))
     engine, watcher = Engine(model), Watcher(scene, model)
     if watcher.watches:
         engine.watch(watcher)
@@ -291,7 +295,7 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
         step = output_step / np.ceil(output_step / settings.step * (1 - 1e-9))
         if step < settings.step * (1 - 1e-6):
             messages.append(f"step {settings.step:.6g} s was made {step:.6g} s, so that steps end on output times")
-    method = explicit(settings.tol) if settings.integrator == "explicit" else GeneralisedAlpha(settings.spectral_radius)
+    method, reason = choose(settings, scene, model, engine)
     set_up = time.perf_counter() - begin
     status, change = engine.start(
         duration=settings.duration,
@@ -300,6 +304,7 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
         step=settings.step or 0.0,
         method=method,
         first_step=min(output_step, 1e-3 * settings.duration),
+        room=None if stream is None else pace.room,
     )
     if doubled := redundant(model, engine):
         raise SceneError("scene", f"is over-constrained: {doubled} hold the same",
@@ -312,19 +317,24 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
         messages.append(f"initial velocities broke a joint: changed by up to {largest:.3g} m/s to keep it")
         warnings.warn(messages[-1], FunicularWarning, stacklevel=3)
     if status is None:
-        status = engine.advance(on_progress)
+        if stream is not None:
+            stream.start(model, engine, partial(named, model, scene, engine), pace, watcher.happened)
+        status = engine.advance(on_progress, pace.every, stream)
     if status == "completed":
         for note in notes(engine, settings):
             messages.append(note)
             warnings.warn(note, FunicularWarning, stacklevel=3)
-    wall = time.perf_counter() - begin
-    return recorded(model, scene, engine, settings, status, messages, watcher, {"set_up": set_up, "total": wall})
+    wall = time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
+    return recorded(model, scene, engine, settings, status, messages, reason, watcher,
+                    {"set_up": set_up, "total": wall})
 
 
-def _check_size(model: Model, settings: RunSettings) -> None:
-    """Refuse what no memory holds, before it is asked for."""
+def _check_size(model: Model, settings: RunSettings, stream: Stream | None) -> float:
+    """Bytes of a row; refuses what no memory holds or, for a stream, what does not fit on its disk."""
     per_row = 8 * (model.n_q + 3 * model.n_dof + 11 * len(model.joints) + 3 * len(model.springs) + 6)
     need = per_row * settings.duration / settings.output_step
-    if not need < MOST_OUTPUT:
+    most, where = (MOST_OUTPUT, "") if stream is None else (stream.free, " that are free on the disk")
+    if not need < most:
         raise SceneError("run", f"output_step {settings.output_step:.6g} s makes {need:.3g} bytes of results, more "
-                         f"than {MOST_OUTPUT:.3g}", "take a larger output_step")
+                         f"than the {most:.3g}{where}", "take a larger output_step")
+    return per_row

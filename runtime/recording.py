@@ -18,11 +18,9 @@ if TYPE_CHECKING:
 
 
 @dataclass
-class Recording:
-    """What a run left, as plain arrays; nt output times. Units SI, vectors with three components."""
+class Rows:
+    """Output rows as plain arrays by name, time first. Units SI, vectors with three components."""
 
-    status: str
-    message: str
     time: np.ndarray
     cables: dict[str, dict]
     bodies: dict[str, dict]
@@ -33,6 +31,14 @@ class Recording:
     joins: dict[str, dict]
     springs: dict[str, dict]
     energy: dict[str, np.ndarray]
+
+
+@dataclass
+class Recording(Rows):
+    """What a run left: the rows that are still in memory, and how it went."""
+
+    status: str
+    message: str
     report: dict
 
 
@@ -87,8 +93,7 @@ def body_state(model: Model, body, q: np.ndarray) -> dict[str, np.ndarray]:
             "orientation": np.stack([np.cos(half), zero, zero, np.sin(half)], axis=1)}
 
 
-def recorded(model: Model, scene: Scene, engine, settings: RunSettings, status: str, messages: list[str],
-             watcher: Watcher, seconds: dict[str, float]) -> Recording:
+def named(model: Model, scene: Scene, engine) -> Rows:
     """The engine's rows by name."""
     rows = engine.rows()
     q, v, a = rows["q"], rows["v"], rows["acceleration"]
@@ -116,23 +121,7 @@ def recorded(model: Model, scene: Scene, engine, settings: RunSettings, status: 
     def held(part) -> dict[str, np.ndarray]:
         return support_reaction(model, scene, part, rows["reaction"], q)
 
-    statistics = engine.statistics
-    statistics["time_s"] = seconds | statistics["time_s"]
-    report = {
-        "status": status,
-        "integrator": engine.integrator,
-        "spectral_radius": settings.spectral_radius,
-        "tol": settings.tol if settings.step is None else None,
-        "step": settings.step,
-        "unknowns": model.n_band + model.n_border_dof + model.n_extra,
-        "kernels": model.kernels,
-        "messages": messages,
-        "events": watcher.happened,
-        **statistics,
-    }
-    return Recording(
-        status="no_convergence" if status in ("singular", "unstable") else status,
-        message=_message(model, engine, status, settings, watcher),
+    return Rows(
         time=rows["time"],
         cables=cables,
         bodies=bodies,
@@ -144,6 +133,31 @@ def recorded(model: Model, scene: Scene, engine, settings: RunSettings, status: 
         springs={spring.name: spring_state(model, spring, rows["spring"][:, k], q)
                  for k, spring in enumerate(model.springs)},
         energy={name: rows[name] for name in ("kinetic", "elastic", "potential", "dissipated", "external")},
+    )
+
+
+def recorded(model: Model, scene: Scene, engine, settings: RunSettings, status: str, messages: list[str],
+             reason: str, watcher: Watcher, seconds: dict[str, float]) -> Recording:
+    """The engine's rows by name, and its report."""
+    statistics = engine.statistics
+    statistics["time_s"] = seconds | statistics["time_s"]
+    report = {
+        "status": status,
+        "integrator": engine.integrator,
+        "integrator_reason": reason,
+        "spectral_radius": settings.spectral_radius,
+        "tol": settings.tol if settings.step is None else None,
+        "step": settings.step,
+        "unknowns": model.n_band + model.n_border_dof + model.n_extra,
+        "kernels": model.kernels,
+        "messages": messages,
+        "events": watcher.happened,
+        **statistics,
+    }
+    return Recording(
+        **vars(named(model, scene, engine)),
+        status="no_convergence" if status in ("singular", "unstable") else status,
+        message=_message(model, engine, status, settings, watcher),
         report=report,
     )
 
@@ -170,7 +184,7 @@ def end_points(model: Model, end, q: np.ndarray) -> np.ndarray:
         return spatial(np.einsum("k,tkd->td", end.N, vectors))
     if end.body >= 0:
         state = body_state(model, model.rigids[end.body], q)
-        return state["position"] + np.array([rotate(o, end.u) for o in state["orientation"]])
+        return state["position"] + np.array([rotate(o, end.u) for o in state["orientation"]]).reshape(-1, 3)
     return np.broadcast_to(np.array(end.u), (len(q), 3))
 
 
@@ -181,7 +195,7 @@ def _message(model: Model, engine, status: str, settings: RunSettings, watcher: 
             joint = model.joints[engine.stopped_joint]
             cable = model.cables[joint.cable]
             middle = 0.5 * cable.n_elements * cable.length
-            end = "end" if engine.rows()["s"][-1, engine.stopped_joint] > middle else "start"
+            end = "end" if engine.stopped_s > middle else "start"
             return (
                 f'slide "{joint.name}": ran off the {end} of cable "{cable.name}" at {when}; '
                 "what was computed up to there is kept"
@@ -191,5 +205,6 @@ def _message(model: Model, engine, status: str, settings: RunSettings, watcher: 
         case "event":
             return f'stopped by event "{watcher.stopped_by}" at {when}'
         case "interrupted":
-            return f"interrupted at {when}; what was computed up to there is kept"
+            goes_on = "" if settings.save is None else ", and resume goes on with it"
+            return f"interrupted at {when}; what was computed up to there is kept{goes_on}"
     return f"completed {settings.duration:.6g} s"

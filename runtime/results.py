@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Mapping
 from functools import cached_property
 from operator import methodcaller
 from pathlib import Path
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from funicular.errors import ResultFileError, UnknownResultError, near
+from funicular.netcdf import File, Stored, Variable, create, last_report
 
 if TYPE_CHECKING:
     import xarray
@@ -18,17 +20,10 @@ if TYPE_CHECKING:
     from funicular.scene import Scene
     from funicular.settings import RunSettings
 
-FILE_FORMAT = 1
+FILE_FORMAT = 2
 """Raised when a reader of older files could misread new ones."""
-
-
-class Variable(NamedTuple):
-    """An array with the names of its dimensions, its unit and what it is."""
-
-    dims: tuple[str, ...]
-    values: np.ndarray
-    units: str
-    long_name: str
+_BLOCK = 1 << 22
+"""Bytes that are written at once."""
 
 
 _XYZ, _TIME = ("time", "xyz"), ("time",)
@@ -86,7 +81,7 @@ class EnergyBalance(NamedTuple):
 class Run:
     """Results by name: ``run["A.position"]`` is a NumPy array (time, 3); `keys` lists the names."""
 
-    def __init__(self, variables: dict[str, Variable], coords: dict[str, Variable], report: dict, scene_toml: str):
+    def __init__(self, variables: Mapping[str, Variable], coords: dict[str, Variable], report: dict, scene_toml: str):
         """report: how the run went, status, message and messages among it; scene_toml: the scene as text."""
         self.variables, self.coords = variables, coords
         self.report, self.scene_toml = report, scene_toml
@@ -94,30 +89,7 @@ class Run:
     @classmethod
     def from_recording(cls, recording, scene: Scene, settings: RunSettings) -> Run:
         """Label what `funicular.model.simulate` recorded."""
-        variables = {}
-        coords = {
-            "time": Variable(_TIME, recording.time, "s", "time"),
-            "xyz": Variable(("xyz",), np.array(["x", "y", "z"]), "1", "axis"),
-        }
-        for name, cable in recording.cables.items():
-            node, vector = f"{name}.node", f"{name}.vector"
-            dims = ("time", node, vector, "xyz")
-            coords[node] = Variable((node,), cable["node_s"], "m", "undeformed arc-length of the node")
-            coords[vector] = Variable((vector,), np.array(cable["vector_names"]), "1", "nodal vector")
-            variables[f"{name}.nodal_vectors"] = Variable(
-                dims, cable["nodal_vectors"], "m (r), 1 (its gradients)", "nodal vectors"
-            )
-            variables[f"{name}.nodal_velocity"] = Variable(
-                dims, cable["nodal_velocity"], "m/s (r), 1/s (its gradients)", "rates of the nodal vectors"
-            )
-        for group, quantities in QUANTITIES.items():
-            for name, arrays in getattr(recording, group, {}).items():
-                for quantity, values in arrays.items():
-                    dims, units, long_name = quantities[quantity]
-                    variables[f"{name}.{quantity}"] = Variable(dims, values, units, long_name)
-        for name in recording.energy:
-            long_name = ENERGIES[name]
-            variables[f"energy.{name}"] = Variable(_TIME, recording.energy[name], "J", long_name)
+        variables, coords = labelled(recording)
         report = {
             **recording.report,
             "status": recording.status,
@@ -134,7 +106,10 @@ class Run:
 
     @property
     def status(self) -> str:
-        """``completed``, ``event`` (stopped by one), ``interrupted``, ``end_of_cable`` or ``no_convergence``."""
+        """``completed``, ``event`` (stopped by one), ``interrupted``, ``end_of_cable`` or ``no_convergence``.
+
+        ``unfinished`` of a run that goes on, or was killed.
+        """
         return self.report["status"]
 
     @property
@@ -177,20 +152,13 @@ class Run:
         """All of it as an xarray.Dataset, with units, long names, the report and the scene as attributes."""
         import xarray
 
-        def labelled(variables: dict[str, Variable]) -> dict:
+        def arrays(variables: Mapping[str, Variable]) -> dict:
             return {
                 name: (v.dims, v.values, {"units": v.units, "long_name": v.long_name}) for name, v in variables.items()
             }
 
-        return xarray.Dataset(
-            labelled(self.variables),
-            labelled(self.coords),
-            {
-                "funicular_format": FILE_FORMAT,
-                "scene": self.scene_toml,
-                "report": json.dumps(self.report, default=methodcaller("tolist")),
-            },
-        )
+        attributes = {"funicular_format": FILE_FORMAT, "scene": self.scene_toml, "report": file_text(self.report)}
+        return xarray.Dataset(arrays(self.variables), arrays(self.coords), attributes)
 
     def save(self, path: str | os.PathLike) -> None:
         """Write a netCDF file that xarray opens; an older file stays until the new one is whole.
@@ -201,7 +169,16 @@ class Run:
         path = Path(path).resolve()  # a link keeps pointing to what it did
         part = path.with_name(f".{path.name}.{os.getpid()}.part")
         try:
-            self.dataset.to_netcdf(part, engine="h5netcdf")
+            if isinstance(self.variables, Stored):
+                described = self.variables.file.described(over_time=True)
+                fixed = {name: v for name, v in self.coords.items() if name != "time"}
+                create_file(part, fixed, described, self.scene_toml, self.report).copy_rows(self.variables.file)
+            else:
+                file = create_file(part, self.coords, self.variables, self.scene_toml, self.report)
+                rows = over_time(self.coords, self.variables)
+                block = max(1, _BLOCK // file.row_bytes)
+                for first in range(0, len(self.time), block):
+                    file.write(first, {name: values[first : first + block] for name, values in rows.items()})
             part.replace(path)
         except OSError as error:
             raise ResultFileError(f"{path}: the results could not be written: {error}") from error
@@ -266,6 +243,34 @@ _COUNTS = {
 }
 
 
+def labelled(rows) -> tuple[dict[str, Variable], dict[str, Variable]]:
+    """Results of the rows that `funicular.recording` names, with their labels; coordinates."""
+    variables = {}
+    coords = {
+        "time": Variable(_TIME, rows.time, "s", "time"),
+        "xyz": Variable(("xyz",), np.array(["x", "y", "z"]), "1", "axis"),
+    }
+    for name, cable in rows.cables.items():
+        node, vector = f"{name}.node", f"{name}.vector"
+        dims = ("time", node, vector, "xyz")
+        coords[node] = Variable((node,), cable["node_s"], "m", "undeformed arc-length of the node")
+        coords[vector] = Variable((vector,), np.array(cable["vector_names"]), "1", "nodal vector")
+        variables[f"{name}.nodal_vectors"] = Variable(
+            dims, cable["nodal_vectors"], "m (r), 1 (its gradients)", "nodal vectors"
+        )
+        variables[f"{name}.nodal_velocity"] = Variable(
+            dims, cable["nodal_velocity"], "m/s (r), 1/s (its gradients)", "rates of the nodal vectors"
+        )
+    for group, quantities in QUANTITIES.items():
+        for name, arrays in getattr(rows, group, {}).items():
+            for quantity, values in arrays.items():
+                dims, units, long_name = quantities[quantity]
+                variables[f"{name}.{quantity}"] = Variable(dims, values, units, long_name)
+    for name, values in rows.energy.items():
+        variables[f"energy.{name}"] = Variable(_TIME, values, "J", ENERGIES[name])
+    return variables, coords
+
+
 def check_writable(path: str | os.PathLike) -> None:
     """Raises ResultFileError if a file cannot be written at ``path``; leaves nothing behind."""
     path = Path(path).resolve()
@@ -286,28 +291,43 @@ def check_writable(path: str | os.PathLike) -> None:
         ) from None
 
 
-def load_run(path: str | os.PathLike) -> Run:
-    """Read the results that `Run.save` wrote. Raises ResultFileError, also for a damaged or foreign file."""
-    import xarray
+def over_time(coords: Mapping[str, Variable], variables: Mapping[str, Variable]) -> dict[str, np.ndarray]:
+    """The values that make rows of a file."""
+    return {"time": coords["time"].values} | {name: variable.values for name, variable in variables.items()}
 
+
+def file_text(report: dict) -> str:
+    """A report as it stands in a file, in one line."""
+    return json.dumps(report, default=methodcaller("tolist"))
+
+
+def create_file(path: str | os.PathLike, coords: Mapping[str, Variable], variables: Mapping[str, Variable], scene: str,
+                report: dict, room: int = 0) -> File:
+    """A new file of results, without rows; see `funicular.netcdf.create`. Raises OSError."""
+    return create(path, coords, variables, {"funicular_format": FILE_FORMAT, "scene": scene}, file_text(report), room)
+
+
+def load_run(path: str | os.PathLike) -> Run:
+    """Open the results of a run, also of one that goes on or was killed; arrays are read when they are asked for.
+
+    Raises ResultFileError, also for a damaged or foreign file.
+    """
     path = Path(path)
     if not path.is_file():
         raise ResultFileError(f"{path}: there is no such file")
     try:
-        dataset = xarray.load_dataset(path, engine="h5netcdf")
-    except (OSError, ValueError, KeyError, RuntimeError) as error:  # what h5py raises on damaged files
+        file = File(path)
+    except (OSError, ValueError) as error:
         raise ResultFileError(f"{path}: is no netCDF file, or was cut short or damaged: {error}") from error
-    if "funicular_format" not in dataset.attrs:
+    if "funicular_format" not in file.attributes:
         raise ResultFileError(f"{path}: is a netCDF file, but not one that funicular wrote")
-    if dataset.attrs["funicular_format"] > FILE_FORMAT:
+    if file.attributes["funicular_format"] > FILE_FORMAT:
         raise ResultFileError(f"{path}: was written by a newer funicular; update this one to read it")
+    names = [name for name, entry in file.entries.items() if entry.dims[:1] != (name,)]
+    coords = {name: file.variable(name, file.read(name)) for name in file.entries if name not in set(names)}
+    report = json.loads(last_report(file.attributes["report"]))
+    if report["status"] == "unfinished":
+        from funicular.streaming import events_kept
 
-    def unlabelled(arrays) -> dict[str, Variable]:
-        return {name: Variable(a.dims, a.values, a.attrs["units"], a.attrs["long_name"]) for name, a in arrays.items()}
-
-    return Run(
-        unlabelled(dataset.data_vars),
-        unlabelled(dataset.coords),
-        json.loads(dataset.attrs["report"]),
-        dataset.attrs["scene"],
-    )
+        report["events"] = events_kept(path)
+    return Run(Stored(file, names), coords, report, file.attributes["scene"])

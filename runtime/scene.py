@@ -5,10 +5,11 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Callable, Iterator
+from contextlib import nullcontext
 from typing import TYPE_CHECKING
 
 import numpy as np
-from funicular.errors import ConvergenceError, EndOfCableError, FunicularWarning, SceneError, near
+from funicular.errors import ConvergenceError, EndOfCableError, FunicularWarning, ResultFileError, SceneError, near
 from funicular.materials import Material
 from funicular.parts import (
     EXACT,
@@ -28,7 +29,7 @@ from funicular.parts import (
 from funicular.placing import cable_at, check_join, check_support, placed_load, placed_spring
 from funicular.plane import check_plane
 from funicular.progress import progress_bar
-from funicular.results import Run, check_writable
+from funicular.results import Run
 from funicular.sections import Section
 from funicular.settings import EquilibriumSettings, ModeSettings, RunSettings
 from funicular.supports import Support
@@ -274,14 +275,16 @@ class Scene:
         spectral_radius: float | None = None,
         initial: str | Equilibrium | None = None,
         save: str | os.PathLike | None = None,
+        resume: bool = False,
         progress: bool | Callable[[float], None] | None = None,
     ) -> Run:
         """Simulate the scene for ``duration`` (s); see `RunSettings` for the settings and their defaults.
 
         Settings not given here are the scene file's, if it gave them. initial: "drawn", "equilibrium" (found first),
-        or a state that `equilibrium` returned. save: a netCDF file, tried before the
-        run and written also when that stops early. progress: a bar (True), none (False), a bar if a terminal
-        watches (None), or a function of the time reached.
+        or a state that `equilibrium` returned. save: a netCDF file, written while the run goes on, with a checkpoint
+        (the same name and ``.state``) that stays when the run is killed or interrupted; results are read from the file
+        when they are asked for. resume: go on from there, to the same numbers. progress: a bar (True), none (False), a
+        bar if a terminal watches (None), or a function of the time reached.
 
         Raises SceneError, ResultFileError, EquilibriumError; EndOfCableError and ConvergenceError, whose ``run`` holds
         everything up to then. Ctrl-C returns what was computed, with a `FunicularWarning`.
@@ -301,19 +304,18 @@ class Scene:
         self.check()
         if settings.initial == "drawn":
             self._check_motions_start_at_zero()
-        if settings.save is not None:
-            check_writable(settings.save)
-        if settings.initial == "equilibrium" and state is None:
-            state = self.equilibrium()
+        if resume and settings.save is None:
+            raise ResultFileError("run: there is nothing to resume without a file of results; name it with save")
+        from funicular.streaming import Stream
 
-        from funicular.model import simulate
+        with nullcontext() if settings.save is None else Stream(settings.save, self, settings, resume) as stream:
+            if settings.initial == "equilibrium" and state is None:
+                state = self.equilibrium()
+            from funicular.model import simulate
 
-        start = {} if state is None else {"initial": state}
-        with progress_bar(settings.duration, progress) as on_progress:
-            recording = simulate(self, settings, on_progress, **start)
-        run = Run.from_recording(recording, self, settings)
-        if settings.save is not None:
-            run.save(settings.save)
+            with progress_bar(settings.duration, progress) as on_progress:
+                recording = simulate(self, settings, on_progress, initial=state, stream=stream)
+            run = stream.finish(recording) if stream else Run.from_recording(recording, self, settings)
         match recording.status:
             case "end_of_cable":
                 raise EndOfCableError(recording.message, run)

@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar
 from funicular.validation import Count, Part, one_of, positive, within
 from pydantic import Field, model_validator
 
-INTEGRATORS = ("auto", "genalpha", "explicit")
+INTEGRATORS = ("auto", "genalpha", "explicit", "energy")
 
 Duration = Annotated[float, positive("s")]
 
@@ -17,9 +17,10 @@ class RunSettings(Part):
 
     duration in s; tol: the error aimed at in positions, relative to the largest motion in the scene, by which
     the step is chosen; step: a fixed step in s instead, divided where need be so that steps end on output times;
-    output_step in s, a hundredth of the duration if not given; integrator: "auto" takes the best there is, today
-    genalpha; spectral_radius of the integrator at infinity: 1 keeps and 0 removes the fastest vibrations; initial:
-    the start, "drawn" or "equilibrium" (static, under the loads at t = 0); save: the file to write, or None.
+    output_step in s, a hundredth of the duration if not given; integrator: "genalpha" (implicit, order 2),
+    "explicit" (Runge-Kutta of order 8) or "auto", the cheaper of them for this scene and tol; spectral_radius of
+    genalpha at infinity: 1 keeps and 0 removes the fastest vibrations; initial: the start, "drawn" or "equilibrium"
+    (static, under the loads at t = 0); save: the file to write, or None.
     """
 
     kind: ClassVar[str] = "run"

@@ -21,7 +21,7 @@ def engine(monkeypatch, tmp_path):
     module.outcome = {}
     module.calls = []
 
-    def simulate(scene, settings, on_progress):
+    def simulate(scene, settings, on_progress, **_):
         module.calls.append(settings)
         on_progress(settings.duration / 2)
         return fake_recording(scene, **module.outcome)
@@ -94,7 +94,7 @@ def test_interrupted(engine):
 
 
 def test_interrupted_outside_of_the_engine(engine, monkeypatch):
-    def simulate(*_):
+    def simulate(*_, **__):
         raise KeyboardInterrupt
 
     monkeypatch.setattr(engine, "simulate", simulate)

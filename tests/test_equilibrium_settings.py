@@ -61,7 +61,7 @@ def test_a_run_starts_as_drawn_or_from_an_equilibrium(solvers):
     scene.run(initial="drawn")
     initial = [name for name, _ in solvers.model]
     assert initial == ["drawn", "equilibrium", "equilibrium", "drawn"]
-    assert [list(start) for _, start in solvers.model] == [[], ["initial"], ["initial"], []]
+    assert [start["initial"] is None for _, start in solvers.model] == [True, False, False, True]
     assert solvers.model[1][1]["initial"] is state
     assert len(solvers.static) == 2
 

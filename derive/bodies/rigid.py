@@ -66,6 +66,19 @@ def arm(program: Program, A: np.ndarray, u: np.ndarray) -> np.ndarray:
     return program.vector("arm", A.dot(u))
 
 
+def step_turn(program: Program, b: np.ndarray, A: np.ndarray, b_next: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Stage: theta with A_next u - A u = theta x (A + A_next) u/2, and axes half-way by columns.
+
+    A_next = A cay(Theta), Theta/2 the vector of the relative quaternion over its scalar, theta = A Theta. Along the
+    columns of A (I + Theta~/2) the balance of A J omega is inertia_force as it stands, at the mean velocity Theta/h.
+    """
+    q, q_next = b[3:], b_next[3:]
+    inverse = program.define("inv_p", 1 / program.define("p_scalar", q.dot(q_next)))
+    half = program.vector("half", inverse * (q[0] * q_next[1:] - q_next[0] * q[1:] - cross(q[1:], q_next[1:])))
+    between = np.array([program.vector(f"B{i + 1}", row + cross(row, half)) for i, row in enumerate(A)])
+    return program.vector("theta", 2 * A.dot(half)), between
+
+
 def turning_inertia(J: np.ndarray) -> np.ndarray:
     """The part of the inertia that the rotations of this body meet."""
     return J

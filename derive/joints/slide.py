@@ -7,12 +7,15 @@ Cable and rider are both planar, with C = (C_l, C_m), or both spatial.
 
 from __future__ import annotations
 
+from functools import partial
 from types import ModuleType
 
 import numpy as np
+from funicular.derive import body_kernels
 from funicular.derive.axis import Axis
-from funicular.derive.frames import tangent_frame
+from funicular.derive.frames import cross, tangent_frame
 from funicular.derive.spec import Element
+from funicular.derive.secant import STATES, Secant
 from funicular.derive.stages import Derivation, Program, jacobian
 
 ENTRIES = {2: ("l", "m"), 3: ("l", "m1", "m2")}  # of C, by dim
@@ -88,7 +91,7 @@ class Slide:
 def build(element: Element, rider: ModuleType) -> list[Program]:
     """The kernels of the slide of a rider on a cable of this element."""
     name = f"slide_{element.name}_{rider.NAME}"
-    return [kernel(name, element, rider) for kernel in (_constraint, _terms, _residual, _tangent)]
+    return [kernel(name, element, rider) for kernel in (_constraint, _terms, _residual, _tangent, _discrete_gradient)]
 
 
 def _constraint(name: str, element: Element, rider: ModuleType) -> Program:
@@ -173,3 +176,49 @@ def _tangent(name: str, element: Element, rider: ModuleType) -> Program:
     p.output("J", J, "1, m", "derivatives of phi by (e, rider, s)")
     p.output("K", K, "N/m, N, N m", "derivatives of g by (e, rider, s)")
     return p
+
+
+def _discrete_gradient(name: str, element: Element, rider: ModuleType) -> Program:
+    """G (de, psi, ds) = phi_next - phi - theta x (phi_next + phi)/2, theta the rider's turn: zero on the joint.
+
+    With N~ = (N(s) + N(s_next))/2 and the divided difference D = N[s, s_next] of the shape functions
+
+        r_next - r = N~ de + D e~ ds,   (r_next + r)/2 = N~ e~ + D de ds/4.
+
+    A force f acts on cable and rider at one place, N~ e~, so that it makes no moment; the part of r along which it does
+    no work for that is D (e~ - theta x de/4) in place of r_x. After Gonzalez, Comput. Methods Appl. Mech. Eng. 174 (1999)
+    165-174, for a constraint that turns with the scene.
+    """
+    p = Program(f"{name}_discrete_gradient", "discrete Jacobian of phi over a step", "eq 19")
+    law = Program("axis", "shape functions at one place", "")
+    axis = Axis(law, element)
+    N = axis.shape()
+    length = p.input("l", (), "m", "length of the element")
+    x = p.input("x", (), "m", "arc-length from the element's first node")
+    x_next = p.input("x_next", (), "m", "x at the end of the step")
+    e = p.input("e", (element.n_vectors, element.dim), "m, 1", "nodal vectors (eq 1)")
+    e_next = p.input("e_next", e.shape, "m, 1", "nodal vectors at the end of the step")
+    secant = Secant(p, law, {axis.length: (length, length), axis.x: (x, x_next)})
+    p.stage("mean shape functions, and their divided differences")
+    mean = np.array([p.define(f"mean_N_{node}", secant.mean(n)) for node, n in zip(element.names, N, strict=True)])
+    slope = np.array([p.define(f"D_N_{node}", *secant.gradient(n, [axis.x]))
+                      for node, n in zip(element.names, N, strict=True)])
+    b = rider.configuration(p)
+    step = body_kernels.Step(p, rider, b)
+    p.stage("mean point and slope of the cable, from its first node")
+    first = np.array(element.is_position, dtype=int)
+    named = partial(_named_rows, p, element)
+    now, then = (named(state, vectors - np.outer(first, vectors[0])) for state, vectors in zip(STATES, (e, e_next),
+                                                                                               strict=True))
+    middle, change = named("mean", (now + then) / 2), named("change", then - now)
+    gaps = [p.vector(f"{state}_gap", vectors[0] - rider.origin(at))
+            for state, vectors, at in zip(STATES, (e, e_next), (b, step.b_next), strict=True)]
+    arm = p.vector("arm", sum(gaps) / 2 + mean.dot(middle))
+    along = p.vector("along", slope.dot(middle) - cross(step.theta, p.vector("swing", slope.dot(change) / 4)))
+    p.output("G", np.concatenate([np.kron(mean, np.eye(element.dim, dtype=int)), -step.jacobian(arm), along[:, None]],
+                                 axis=1), "1, m", "by (e, rider, s); the rider's turn by its Cayley vector")
+    return p
+
+
+def _named_rows(p: Program, element: Element, name: str, vectors: np.ndarray) -> np.ndarray:
+    return np.array([p.vector(f"{name}_{node}", v) for node, v in zip(element.names, vectors, strict=True)])

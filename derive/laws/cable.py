@@ -21,6 +21,7 @@ from funicular.derive.laws.cable_blocks import by_vectors, named_blocks, spread
 from funicular.derive.laws.cable_damping import Damping
 from funicular.derive.laws.cable_points import gathered, on_vectors, values
 from funicular.derive.laws.cable_section import resultants
+from funicular.derive.secant import Secant, staged
 from funicular.derive.stages import Program, jacobian
 
 SOURCE = "DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)"
@@ -190,11 +191,53 @@ class Cable(Damping):
             program.stage("forces at the quadrature points")
             forces = [on_vectors(program, f"{names}{g}", term.vectors, _first(program, term))
                       for g, term in enumerate(terms)]
-            for k in range(len(terms[0].vectors)):
-                f[self.axis_indices] += gathered(program, f"{names}{k + 1}", [term.series[k] for term in terms],
-                                                 [force[k] for force in forces])
+            f[self.axis_indices] += self._gathered(program, names, terms, forces)
+        return self._named(program, f)
+
+    def _gathered(self, program: Program, names: str, terms: list[Term], forces: list) -> np.ndarray:
+        """Forces on the strain vectors along the axis from those on the vectors of each point."""
+        return sum(gathered(program, f"{names}{k + 1}", [term.series[k] for term in terms], [f[k] for f in forces])
+                   for k in range(len(terms[0].vectors)))
+
+    def _named(self, program: Program, f: np.ndarray) -> np.ndarray:
         program.stage("forces on strain vectors")
         return np.array([program.vector(f"f_{name}", v) for name, v in zip(self.gram.names, f, strict=True)])
+
+    def discrete_forces(self, program: Program, A, now, then, w) -> np.ndarray:
+        """Stages: forces f on strain vectors with f . (then - now) = the difference of U, by the mean vectors."""
+        law, c = staged(now)
+        terms = list(self._terms(law, A, c, w))
+        inputs = zip(c.ravel(), zip(now.ravel(), then.ravel(), strict=True), strict=True)
+        secant = Secant(program, law, dict(inputs))
+        f = np.zeros((len(self.gram.names), self.gram.element.dim), dtype=object)
+        for names, group in groupby(terms, key=lambda term: term.names):
+            group = list(group)
+            program.stage("forces at the quadrature points")
+            forces = []
+            for g, term in enumerate(group):
+                D = [program.define(f"D_{s.name}", d) for s, d in
+                     zip(term.invariants, secant.gradient(term.twice, term.invariants), strict=True)]
+                means = [secant.means(f"mean{k + 1}_{names}{g}", v) for k, v in enumerate(term.vectors)]
+                forces.append(on_vectors(program, f"{names}{g}", means, D))
+            f[self.axis_indices] += self._gathered(program, names, group, forces)
+        return self._named(program, f)
+
+    def stress_of_turning(self, program: Program, A, change, w) -> np.ndarray:
+        """Stages: blocks (n, n, 1, 1) over strain vectors that the mean stress of a step has more than the stress of
+        the mean vectors: EA (dr'.dr')/8, for that is what a turn takes off the strain. Of what bends it is none.
+        """
+        program.stage("strain of the change at the quadrature points")
+        stiffness = program.define("EA_l", A[0] / (2 * w))
+        points = self.points(self.degree)
+        along = [change[m] for m in self.axis_indices]
+        vectors = values(program, "d", [point.value for point in points], along)
+        blocks = np.zeros((len(self.gram.names), len(self.gram.names), 1, 1), dtype=object)
+        for g, (point, d) in enumerate(zip(points, vectors, strict=True)):
+            u = program.define(f"u_{g}", point.weight * stiffness * d.dot(d) / 8)
+            for i, m in enumerate(self.axis_indices):
+                for k, n in enumerate(self.axis_indices):
+                    blocks[m, n] += u * point.value[i] * point.value[k]
+        return blocks
 
     def tangent(self, program: Program, A, c, w) -> np.ndarray:
         """Stages: d2U/dc2 over strain vectors."""

@@ -131,6 +131,33 @@ class Continuum:
         program.stage("forces on strain vectors")
         return self.gram.vector_forces(program, c, u)
 
+    def discrete_forces(self, program: Program, A: np.ndarray, now: np.ndarray, then: np.ndarray, w) -> np.ndarray:
+        """Stages: forces f on strain vectors with f . (then - now) = the difference of U: the stress of the mean
+        strain on the mean vectors (Simo & Tarnow, ZAMP 43 (1992) 757-792).
+        """
+        G = [self._strain(program, A, c) for c in (now, then)]
+        program.stage("mean strain and vectors")
+        mean = [program.define(f"mean_{self.gram.pair(p)}", (a + b) / 2) for p, (a, b) in
+                enumerate(zip(*G, strict=True))]
+        c = np.array([program.vector(f"mean_{name}", (a + b) / 2) for name, a, b in
+                      zip(self.gram.names, now, then, strict=True)])
+        u = self._stress(program, A, mean)
+        program.stage("forces on strain vectors")
+        return self.gram.vector_forces(program, c, u)
+
+    def stress_of_turning(self, program: Program, A: np.ndarray, change: np.ndarray, w: sp.Expr) -> np.ndarray:
+        """Stages: blocks (n, n, 1, 1) over strain vectors that the mean stress of a step has more than the stress of
+        the mean vectors: of A times the Gram products of half the change.
+        """
+        program.stage("Gram products of half the change")
+        G = [program.define(f"G_{self.gram.pair(p)}", change[a].dot(change[b]) / 4)
+             for p, (a, b) in enumerate(self.gram.pairs)]
+        u = self._stress(program, A, G)
+        blocks = np.zeros((len(self.gram.names), len(self.gram.names), 1, 1), dtype=object)
+        for (a, b), value in zip(self.gram.pairs, u, strict=True):
+            blocks[a, b] = blocks[b, a] = 2 * value if a == b else value
+        return blocks
+
     def tangent(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr) -> np.ndarray:
         """Stages: d2U/dc2 over strain vectors."""
         return blocks(self.gram, program, c, c, self._moduli(A), self._stress(program, A, self._strain(program, A, c)))

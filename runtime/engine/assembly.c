@@ -27,9 +27,35 @@ void fu_internal_forces(const fu_model *model, const double *q, const double *v,
     for (int c = 0; c < model->n_cables; ++c) {
         const fu_cable *cable = &model->cables[c];
         for (int k = 0, at = cable->first; k < cable->n_elements; ++k, at += cable->per_node) {
-            const double *A = cable->A + (long)k * cable->A_stride;
-            cable->law->elastic_force(cable->length, q + at, A, part);
+            cable->law->elastic_force(cable->length, q + at, cable->A + (long)k * cable->A_stride, part);
             for (int i = 0; i < cable->coordinates; ++i) f[at + i] += part[i];
+        }
+    }
+    fu_rate_forces(model, q, v, f);
+}
+
+/* f += discrete gradients of the elastic energies over a step */
+void fu_discrete_forces(const fu_model *model, const double *q, const double *q_next, double *f)
+{
+    double part[FU_MAX_COORDINATES];
+    for (int c = 0; c < model->n_cables; ++c) {
+        const fu_cable *cable = &model->cables[c];
+        for (int k = 0, at = cable->first; k < cable->n_elements; ++k, at += cable->per_node) {
+            cable->law->discrete_force(cable->length, q + at, q_next + at, cable->A + (long)k * cable->A_stride, part);
+            for (int i = 0; i < cable->coordinates; ++i) f[at + i] += part[i];
+        }
+    }
+}
+
+/* f += damping and gyroscopic forces */
+void fu_rate_forces(const fu_model *model, const double *q, const double *v, double *f)
+{
+    double part[FU_MAX_COORDINATES];
+    for (int c = 0; c < model->n_cables; ++c) {
+        const fu_cable *cable = &model->cables[c];
+        if (cable->tau <= 0.0 && cable->mass_damping <= 0.0) continue;
+        for (int k = 0, at = cable->first; k < cable->n_elements; ++k, at += cable->per_node) {
+            const double *A = cable->A + (long)k * cable->A_stride;
             if (cable->tau > 0.0) {
                 cable->law->damping_force(cable->length, q + at, v + at, A, cable->tau, part);
                 for (int i = 0; i < cable->coordinates; ++i) f[at + i] += part[i];

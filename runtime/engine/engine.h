@@ -168,6 +168,8 @@ double fu_size(const fu_model *model, const double *dofs);
 /* assembly.c */
 void fu_mass_times(const fu_model *model, const double *a, double *f);
 void fu_internal_forces(const fu_model *model, const double *q, const double *v, double *f);
+void fu_rate_forces(const fu_model *model, const double *q, const double *v, double *f);
+void fu_discrete_forces(const fu_model *model, const double *q, const double *q_next, double *f);
 void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, double inertia, double rate,
                        double stiffness, fu_system *system);
 double fu_kinetic_energy(const fu_model *model, const double *v);
@@ -195,6 +197,10 @@ void fu_spring_forces(const fu_model *model, const double *q, const double *v, d
 void fu_spring_pull(const fu_model *model, const fu_spring *spring, const double *q, const double force[3], double *f);
 void fu_spring_matrix(const fu_model *model, const fu_spring *spring, const fu_state *state, const double *psi,
                       double rate, double stiffness, double unit, fu_system *system);
+double fu_discrete_spring(const fu_model *model, const fu_spring *spring, const double *q, const double *q_next, double h,
+                          double force[3]);
+void fu_discrete_pull(const fu_model *model, const fu_spring *spring, const double *q, const double *q_next,
+                      const double force[3], double *f);
 double fu_spring_energy(const fu_model *model, const double *q);
 double fu_spring_dissipation(const fu_model *model, const double *q, const double *v);
 
@@ -202,6 +208,9 @@ double fu_spring_dissipation(const fu_model *model, const double *q, const doubl
 void fu_move(const fu_model *model, double *q, const double *dofs);
 void fu_body_rate(const fu_body *kernel, const double *b, const double *w, double *rate);
 void fu_body_increment(const fu_body *kernel, const double *b, const double *change, double *increment);
+void fu_cayley_move(const fu_model *model, double *q, const double *psi);
+void fu_cayley_columns(const fu_body *kernel, double *rows, int n_rows, int n_columns, int first, const double *psi);
+void fu_between(const fu_model *model, const double *q, const double *q_next, double *between);
 void fu_turn_columns(const fu_body *kernel, double *rows, int n_rows, int n_columns, int first, const double *psi);
 
 /* acceleration.c: eq 38 and what comes out of it */
@@ -228,11 +237,11 @@ typedef struct {
     double alpha_m, alpha_f, beta, gamma;
 } fu_genalpha;
 
-/* Explicit Runge-Kutta method with an embedded error estimate, or two. */
+/* Explicit Runge-Kutta method with two embedded error estimates. */
 typedef struct {
     int stages;
     const double *A, *b, *c;          /* stages x stages, row by row; stages; stages */
-    const double *error, *coarse;     /* stages + 1: the last is of the state at the end; `coarse` may be null */
+    const double *error, *coarse;     /* stages + 1: the last is of the state at the end */
 } fu_tableau;
 
 /* What the user watches: an entry of the state less a value, or a function of his. */
@@ -271,23 +280,39 @@ typedef struct {
 /* Rows of output, one an output time; joint: FU_JOINT_OUTPUTS numbers a joint in the order of fu_joint_output. */
 #define FU_JOINT_OUTPUTS 10
 typedef struct {
-    int n;
+    int n;     /* rows recorded since the start */
+    int first; /* the row that stands first in the arrays: those before it were taken away */
+    int pause; /* at so many rows fu_advance returns, for the caller to call fu_pause */
     double *time, *q, *v, *acceleration, *reaction, *s, *joint;
     double *kinetic, *elastic, *potential, *dissipated, *external, *spring;
 } fu_record;
 
+/* newton.c: what implicit integrators have in common. `predict` makes a first `next`; `kinematics` completes it from the
+ * unknowns; `residual` leaves minus the scaled residual in run->rhs, `matrix` its derivative in run->newton; `apply` adds
+ * the solution in run->rhs and returns its size as a length. */
+typedef struct fu_run fu_run;
+typedef struct {
+    void (*predict)(fu_run *run, double h);
+    void (*kinematics)(fu_run *run, double h);
+    void (*residual)(fu_run *run, double h);
+    void (*matrix)(fu_run *run, double h);
+    double (*apply)(fu_run *run, double h);
+    int most_iterations, to_rounding; /* the latter: go on below the rounding of positions, until increments shrink no more */
+} fu_newton;
+
 /* A way through time. `now` has consistent v, accelerations and forces when `start` is called; `step` makes `next` from
  * it and is not zero where that failed; `error` is the local error of positions of the step just made, m; `book` adds
  * what that step, now accepted, has dissipated and got from outside. */
-typedef struct fu_run fu_run;
 typedef struct {
     const char *name;
     int (*start)(fu_run *run);
     int (*step)(fu_run *run, double h);
     double (*error)(fu_run *run, double h);
     void (*book)(fu_run *run, double h);
+    int conserves; /* energy, so that a slide that enters another element must not cost any: velocities stay */
+    const fu_newton *newton; /* null where there is none */
 } fu_integrator;
-extern const fu_integrator fu_genalpha_method, fu_explicit_method;
+extern const fu_integrator fu_genalpha_method, fu_explicit_method, fu_energy_method;
 
 struct fu_run {
     const fu_model *model;
@@ -295,7 +320,7 @@ struct fu_run {
     int order;           /* of the error in positions as controlled */
     fu_genalpha scheme;
     fu_tableau tableau;
-    double *scratch;     /* of the integrator */
+    double *scratch;     /* of the integrator, within a step: checkpoints do not hold it */
     int n_watches;
     const fu_watch *watches;
     double *watched;     /* per watch: its value at `now`, 0 where it has just passed */
@@ -313,8 +338,10 @@ struct fu_run {
     double *psi, *force, *work, *before;      /* n_dof; force is what supports and motions give, once Newton is done */
     double *first;                            /* n_q: the configuration at the start */
     double *s_slope;                          /* per joint: predicts ds/dt */
+    /* From here to the end numbers alone, which a checkpoint copies as they are. */
     double h, h_factored, contraction, last_error;
     double dissipated, dissipated_power, external, external_power; /* J, W */
+    double recorded; /* s: time of the last row */
     double motion, least_motion, extent; /* m: largest so far, assumed at least, largest coordinate of a position */
     double newton_tolerance, round_off; /* of increments, m: where Newton may stop, and where it cannot go on */
     int factored, stopped_joint, turned;
@@ -333,6 +360,15 @@ void fu_static_move(fu_run *run, const double *change);
 void fu_static_residual(fu_run *run);
 void fu_matrix(fu_run *run, fu_weights weights);
 double fu_clock(void);
+
+/* newton.c */
+int fu_newton_step(fu_run *run, const fu_newton *method, double h);
+void fu_predict_extra(fu_run *run, double h);
+void fu_apply_extra(fu_run *run, double inertia, double scale);
+double fu_spread_size(fu_run *run);
+double fu_filtered_size(fu_run *run);
+double fu_row_unit(double inertia, double mass);
+void fu_joint_coordinates(const fu_model *model, const fu_state *state, int j, int *at);
 
 /* books.c */
 double fu_external_power(fu_run *run, const fu_state *state, const double *reaction);
@@ -355,5 +391,10 @@ void fu_watch_now(fu_run *run, fu_event event);
 int fu_start(fu_run *run);
 int fu_advance(fu_run *run, double seconds);
 int fu_stop(fu_run *run);
+
+/* checkpoint.c: all that later steps depend on */
+void fu_pause(fu_run *run);
+long fu_save(const fu_run *run, char *bytes);
+void fu_restore(fu_run *run, const char *bytes);
 
 #endif

@@ -10,21 +10,9 @@
  * by sigma, constraint rows by the mass: the matrix is M + sigma K bordered by mass C_q, of one scale for any h
  * (Bottasso, Dopico & Trainelli 2008).
  */
-#define _POSIX_C_SOURCE 199309L
 #include "engine.h"
 
 #include <string.h>
-#include <time.h>
-
-#define MOST_ITERATIONS 12
-#define TOO_MANY_ITERATIONS 3 /* a step that took more than these has the matrix made anew for the next */
-
-double fu_clock(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 static double sigma(const fu_genalpha *g, double h)
 {
@@ -49,23 +37,6 @@ static void kinematics(fu_run *run, double h)
     if (model->n_motions) fu_prescribe(model, next);
 }
 
-/* a joint's coordinates for fu_add: element, rider, s; the force follows s */
-static void joint_coordinates(const fu_model *model, const fu_state *state, int j, int *at)
-{
-    const fu_joint *joint = &model->joints[j];
-    const fu_cable *cable = &model->cables[joint->cable];
-    const int n = cable->coordinates, all = joint->kernel->coordinates;
-    for (int i = 0; i < n; ++i) at[i] = cable->first + state->element[j] * cable->per_node + i;
-    for (int i = n; i < all; ++i) at[i] = model->rigids[joint->rider].dof + i - n;
-    at[all] = fu_extra(model, joint->unknown);
-}
-
-/* Statics has no mass to scale a joint's rows and force by. */
-static double unit(double inertia, double mass)
-{
-    return inertia != 0.0 ? mass : 1.0;
-}
-
 /* minus the scaled residual, over the unknowns; run->force keeps the unscaled sum over the dofs */
 static void residual(fu_run *run, double inertia, double scale)
 {
@@ -82,7 +53,7 @@ static void residual(fu_run *run, double inertia, double scale)
         const fu_joint *joint = &model->joints[j];
         const fu_cable *cable = &model->cables[joint->cable];
         int at[FU_MAX_COORDINATES];
-        joint_coordinates(model, next, j, at);
+        fu_joint_coordinates(model, next, j, at);
         joint->kernel->residual(cable->length, next->s[j] - fu_element_start(model, j, next->element[j]),
                                 next->q + at[0], next->q + model->rigids[joint->rider].configuration, joint->u,
                                 next->f + 3 * j, phi, g);
@@ -90,7 +61,7 @@ static void residual(fu_run *run, double inertia, double scale)
         for (int i = 0; i < s; ++i) run->force[at[i]] += g[i];
         extra[joint->unknown] = -scale * g[s];
         for (int d = 0; d < joint->kernel->dim; ++d)
-            extra[joint->unknown + 1 + d] = -unit(inertia, joint->mass) * phi[d];
+            extra[joint->unknown + 1 + d] = -fu_row_unit(inertia, joint->mass) * phi[d];
     }
     for (int k = 0; k < model->n_springs; ++k) {
         const fu_spring *spring = &model->springs[k];
@@ -121,10 +92,10 @@ static void matrix(fu_run *run, fu_weights w, const double *psi)
         const fu_joint *joint = &model->joints[j];
         const fu_cable *cable = &model->cables[joint->cable];
         const fu_rigid *rider = &model->rigids[joint->rider];
-        const double mass = unit(w.inertia, joint->mass);
+        const double mass = fu_row_unit(w.inertia, joint->mass);
         const int s = joint->kernel->coordinates, n = s + 1, dim = joint->kernel->dim, turns = cable->coordinates;
         int at[FU_MAX_COORDINATES];
-        joint_coordinates(model, next, j, at);
+        fu_joint_coordinates(model, next, j, at);
         joint->kernel->tangent(cable->length, next->s[j] - fu_element_start(model, j, next->element[j]),
                                next->q + at[0], next->q + rider->configuration, joint->u, next->f + 3 * j, J, K);
         for (int i = 0; i < n; ++i)
@@ -141,7 +112,7 @@ static void matrix(fu_run *run, fu_weights w, const double *psi)
     }
     for (int k = 0; k < model->n_springs; ++k)
         fu_spring_matrix(model, &model->springs[k], next, psi, w.rate, w.stiffness,
-                         unit(w.inertia, model->springs[k].mass), system);
+                         fu_row_unit(w.inertia, model->springs[k].mass), system);
 }
 
 static void newton_matrix(fu_run *run, double h)
@@ -149,174 +120,41 @@ static void newton_matrix(fu_run *run, double h)
     matrix(run, (fu_weights){1.0, run->scheme.gamma / (run->scheme.beta * h), sigma(&run->scheme, h)}, run->psi);
 }
 
-static int factor(fu_run *run, double h)
-{
-    const double begin = fu_clock();
-    newton_matrix(run, h);
-    int info = fu_system_factor_band(&run->newton, run->model->lapack);
-    if (info) fu_fail_at(run, FU_MATRIX, info - 1);
-    else {
-        info = fu_system_factor_border(&run->newton, run->model->lapack);
-        if (info) fu_fail_at(run, FU_MATRIX, run->newton.n + info - 1);
-    }
-    run->factored = !info;
-    run->h_factored = h;
-    ++run->statistics.factorisations;
-    run->statistics.time_factor += fu_clock() - begin;
-    return info;
-}
-
-/* largest of the unknowns in run->rhs, as a length; the dofs' part of them is left in run->work */
-static double spread_size(fu_run *run)
-{
-    const fu_model *model = run->model;
-    const double *extra = run->rhs + model->n_band + model->n_border_dof;
-    fu_spread(model, run->rhs, run->work);
-    double largest = fu_size(model, run->work);
-    for (int i = 0; i < model->n_extra; ++i)
-        if (!(fabs(extra[i]) <= largest)) largest = fabs(extra[i]);
-    return largest;
-}
-
-/* the solution in run->rhs, added to s and to the forces of joints and springs */
-static void apply_extra(fu_run *run, double inertia, double scale)
-{
-    const fu_model *model = run->model;
-    const double *extra = run->rhs + model->n_band + model->n_border_dof;
-    for (int j = 0; j < model->n_joints; ++j) {
-        const fu_joint *joint = &model->joints[j];
-        run->next.s[j] += extra[joint->unknown];
-        for (int d = 0; d < joint->kernel->dim; ++d)
-            run->next.f[3 * j + d] += extra[joint->unknown + 1 + d] * unit(inertia, joint->mass) / scale;
-    }
-    for (int k = 0; k < model->n_springs; ++k) {
-        const fu_spring *spring = &model->springs[k];
-        for (int d = 0; d < spring->dim; ++d)
-            run->next.spring[3 * k + d] += extra[spring->unknown + d] * unit(inertia, spring->mass) / scale;
-    }
-}
-
 /* the solution in run->rhs, applied to `next`; returns its size as a length */
 static double apply(fu_run *run, double h)
 {
-    const double per_psi = 1.0 / (run->scheme.beta * h * h), size = spread_size(run);
+    const double per_psi = 1.0 / (run->scheme.beta * h * h), size = fu_spread_size(run);
     for (int i = 0; i < run->model->n_dof; ++i) run->next.a[i] += per_psi * run->work[i];
-    apply_extra(run, 1.0, sigma(&run->scheme, h));
+    fu_apply_extra(run, 1.0, sigma(&run->scheme, h));
     return size;
 }
 
 static void predict(fu_run *run, double h)
 {
-    const fu_model *model = run->model;
-    const size_t real = sizeof(double);
-    run->next.t = run->now.t + h;
-    memcpy(run->next.a, run->now.a, real * (size_t)model->n_dof);
-    memcpy(run->next.f, run->now.f, 3 * real * (size_t)model->n_joints);
-    memcpy(run->next.spring, run->now.spring, 3 * real * (size_t)model->n_springs);
-    memcpy(run->next.director, run->now.director, 3 * real * (size_t)model->n_joints);
-    for (int j = 0; j < model->n_joints; ++j) {
-        run->next.s[j] = run->now.s[j] + h * run->s_slope[j];
-        run->next.element[j] = run->now.element[j];
-    }
+    memcpy(run->next.a, run->now.a, sizeof(double) * (size_t)run->model->n_dof);
+    fu_predict_extra(run, h);
 }
 
-/* The iteration has failed where its last correction, in run->rhs and run->work, is largest; returns 1. */
-static int blame(fu_run *run)
+static void step_residual(fu_run *run, double h)
 {
-    const fu_model *model = run->model;
-    const double *extra = run->rhs + model->n_band + model->n_border_dof;
-    double largest = fu_size(model, run->work);
-    int joint = -1;
-    for (int j = 0; j < model->n_joints; ++j)
-        for (int d = 0; d <= model->joints[j].kernel->dim; ++d) {
-            const double size = fabs(extra[model->joints[j].unknown + d]);
-            if (!(size > largest)) continue;
-            largest = size;
-            joint = j;
-        }
-    return fu_fail(run, FU_ITERATION, run->work, joint);
-}
-
-/* Newton from the prediction with the matrix at hand; 0 when it converged */
-static int iterate(fu_run *run, double h)
-{
-    double last = 0.0;
-    for (int i = 0; i < MOST_ITERATIONS; ++i) {
-        kinematics(run, h);
-        residual(run, 1.0, sigma(&run->scheme, h));
-        if (!run->factored) {
-            if (factor(run, h)) return 1;
-            run->contraction = 0.5; /* nothing is known yet: do not stop after one iteration */
-        }
-        const double begin = fu_clock();
-        fu_system_solve(&run->newton, run->model->lapack, run->rhs);
-        run->statistics.time_solve += fu_clock() - begin;
-        const double size = apply(run, h);
-        ++run->statistics.newton_iterations;
-        if (!(size < 1e30)) return blame(run);
-        if (i > 0) {
-            const double ratio = size / last;
-            if (ratio >= 1.0 && size > 100.0 * run->round_off) return blame(run);
-            run->contraction = ratio < 1e-3 ? 1e-3 : ratio > 0.9 ? 0.9 : ratio;
-        }
-        if (size * run->contraction / (1.0 - run->contraction) <= run->newton_tolerance || size <= run->round_off) {
-            kinematics(run, h);
-            if (i + 1 > TOO_MANY_ITERATIONS) run->factored = 0;
-            return 0;
-        }
-        last = size;
-    }
-    return blame(run);
-}
-
-/* For tests of the matrix: the residual after moving the predicted step by `change` (unknowns), in run->rhs with
- * its sign turned, and the unfactored matrix there in run->newton. */
-void fu_linearise(fu_run *run, double h, const double *change)
-{
-    predict(run, h);
-    for (int i = 0; i < run->newton.n + run->newton.m; ++i) run->rhs[i] = change[i];
-    apply(run, h);
-    kinematics(run, h);
-    newton_matrix(run, h);
     residual(run, 1.0, sigma(&run->scheme, h));
-    run->factored = 0;
 }
 
-/* One step of size h from `now` to `next`; 0 when the Newton iteration converged. */
+static const fu_newton newton = {predict, kinematics, step_residual, newton_matrix, apply, 12, 0};
+
 static int step(fu_run *run, double h)
 {
-    if (fabs(h - run->h_factored) > 1e-6 * h) run->factored = 0;
-    const int stale = run->factored;
-    predict(run, h);
-    if (!iterate(run, h)) return 0;
-    if (stale) { /* the matrix was of an earlier step: make it here before giving up */
-        run->factored = 0;
-        predict(run, h);
-        if (!iterate(run, h)) return 0;
-    }
-    run->factored = 0;
-    ++run->statistics.newton_failures;
-    return 1;
+    return fu_newton_step(run, &newton, h);
 }
 
-/* Local error of positions, m: h^2 |beta + (alpha_m - alpha_f)/2 - 1/6| (q''_n+1 - q''_n), passed through
- * (M + sigma K)^-1 M on the constraints' tangent space so that vibrations that the step does not resolve count by
- * their amplitude and not by their acceleration. */
+/* Local error of positions, m: h^2 |beta + (alpha_m - alpha_f)/2 - 1/6| (q''_n+1 - q''_n). */
 static double error(fu_run *run, double h)
 {
-    const fu_model *model = run->model;
     const fu_genalpha *g = &run->scheme;
     const double factor = h * h * fabs(g->beta + 0.5 * (g->alpha_m - g->alpha_f) - 1.0 / 6.0);
-    for (int i = 0; i < model->n_dof; ++i)
+    for (int i = 0; i < run->model->n_dof; ++i)
         run->work[i] = factor * (run->next.acceleration[i] - run->now.acceleration[i]);
-    fu_mass_times(model, run->work, run->psi);
-    fu_gather(model, run->psi, run->rhs);
-    for (int i = 0; i < model->n_extra; ++i) run->rhs[model->n_band + model->n_border_dof + i] = 0.0;
-    const double begin = fu_clock();
-    fu_system_solve(&run->newton, model->lapack, run->rhs);
-    run->statistics.time_solve += fu_clock() - begin;
-    for (int i = 0; i < model->n_extra; ++i) run->rhs[model->n_band + model->n_border_dof + i] = 0.0;
-    return spread_size(run);
+    return fu_filtered_size(run);
 }
 
 static int start(fu_run *run)
@@ -326,7 +164,7 @@ static int start(fu_run *run)
     return FU_RUNNING;
 }
 
-const fu_integrator fu_genalpha_method = {"genalpha", start, step, error, fu_book_trapezoid};
+const fu_integrator fu_genalpha_method = {"genalpha", start, step, error, fu_book_trapezoid, 0, &newton};
 
 /* Statics: unknowns move `next`, from where it is. */
 void fu_static_move(fu_run *run, const double *change)
@@ -335,7 +173,7 @@ void fu_static_move(fu_run *run, const double *change)
     for (int i = 0; i < run->newton.n + run->newton.m; ++i) run->rhs[i] = change[i];
     fu_spread(model, run->rhs, run->work);
     fu_move(model, run->next.q, run->work);
-    apply_extra(run, 0.0, 1.0);
+    fu_apply_extra(run, 0.0, 1.0);
 }
 
 /* minus the sum of forces and the joints' residuals, in run->rhs */

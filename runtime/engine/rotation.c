@@ -16,6 +16,14 @@ static void coefficients(double a2, double *s, double *c, double *d)
     *d = (1.0 - *s) / a2;
 }
 
+static void normalised(const double *p, int n, double *unit)
+{
+    double square = 0.0;
+    for (int i = 0; i < n; ++i) square += p[i] * p[i];
+    const double scale = 1.0 / sqrt(square);
+    for (int i = 0; i < n; ++i) unit[i] = scale * p[i];
+}
+
 /* quaternion product p (w, x, y, z) */
 static void times(const double *p, double w, double x, double y, double z, double q[4])
 {
@@ -57,6 +65,38 @@ void fu_move(const fu_model *model, double *q, const double *dofs)
     for (int b = 0; b < model->n_rigids; ++b) {
         const fu_rigid *body = &model->rigids[b];
         move_body(body->kernel, q + body->configuration, dofs + body->dof);
+    }
+}
+
+/* Configuration moved by a step psi: translation, and Theta in body axes with A_next = A cay(Theta). In the plane Theta is
+ * twice the tangent of half the angle. */
+void fu_cayley_move(const fu_model *model, double *q, const double *psi)
+{
+    const int n_flexible = model->n_rigids ? model->rigids[0].dof : model->n_dof;
+    for (int i = 0; i < n_flexible; ++i) q[i] += psi[i];
+    for (int b = 0; b < model->n_rigids; ++b) {
+        const fu_rigid *body = &model->rigids[b];
+        const int dim = body->kernel->dim;
+        double *at = q + body->configuration, *p = at + dim, moved[4];
+        const double *step = psi + body->dof, *turn = step + dim;
+        for (int i = 0; i < dim; ++i) at[i] += step[i];
+        if (dim == 2) {
+            const double t = 0.5 * turn[0], c = 1.0 - t * t, s = 2.0 * t;
+            moved[0] = p[0] * c - p[1] * s;
+            moved[1] = p[1] * c + p[0] * s;
+        } else times(p, 1.0, 0.5 * turn[0], 0.5 * turn[1], 0.5 * turn[2], moved);
+        normalised(moved, dim == 2 ? 2 : 4, p);
+    }
+}
+
+/* Half-way between two configurations; bodies have turned half of the way. */
+void fu_between(const fu_model *model, const double *q, const double *q_next, double *between)
+{
+    for (int i = 0; i < model->n_q; ++i) between[i] = 0.5 * (q[i] + q_next[i]);
+    for (int b = 0; b < model->n_rigids; ++b) {
+        const fu_rigid *body = &model->rigids[b];
+        double *p = between + body->configuration + body->kernel->dim;
+        normalised(p, body->kernel->dim == 2 ? 2 : 4, p);
     }
 }
 
@@ -113,5 +153,24 @@ void fu_turn_columns(const fu_body *kernel, double *rows, int n_rows, int n_colu
         double *p = rows + r * n_columns + first + 3;
         const double x = p[0], y = p[1], z = p[2];
         for (int d = 0; d < 3; ++d) p[d] = x * T[d] + y * T[3 + d] + z * T[6 + d];
+    }
+}
+
+/* The same for psi of `fu_cayley_move`: a change of Theta turns the body by (1 - Theta~/2)/(1 + Theta^2/4) of it. */
+void fu_cayley_columns(const fu_body *kernel, double *rows, int n_rows, int n_columns, int first, const double *psi)
+{
+    const int dim = kernel->dim;
+    const double x = 0.5 * psi[dim], y = dim == 3 ? 0.5 * psi[4] : 0.0, z = dim == 3 ? 0.5 * psi[5] : 0.0;
+    const double scale = 1.0 / (1.0 + x * x + y * y + z * z);
+    for (int r = 0; r < n_rows; ++r) {
+        double *p = rows + r * n_columns + first + dim;
+        if (dim == 2) {
+            p[0] *= scale;
+            continue;
+        }
+        const double a = p[0], b = p[1], c = p[2];
+        p[0] = scale * (a - b * z + c * y);
+        p[1] = scale * (b - c * x + a * z);
+        p[2] = scale * (c - a * y + b * x);
     }
 }

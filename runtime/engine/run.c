@@ -54,7 +54,7 @@ static int record_row(fu_run *run)
     const fu_model *model = run->model;
     const fu_state *now = &run->now;
     fu_record *r = &run->record;
-    const long row = r->n;
+    const long row = r->n - r->first;
     fu_joint_output *joints = (fu_joint_output *)(r->joint + row * model->n_joints * FU_JOINT_OUTPUTS);
     r->time[row] = now->t;
     memcpy(r->q + row * model->n_q, now->q, sizeof(double) * (size_t)model->n_q);
@@ -75,20 +75,31 @@ static int record_row(fu_run *run)
     const double energies[FU_ENERGIES] = {r->kinetic[row], r->elastic[row], r->potential[row], run->dissipated,
                                           -run->external};
     ++r->n;
+    run->recorded = now->t;
     run->statistics.time_output += fu_clock() - begin;
     return info ? FU_SINGULAR : fu_check_books(run, energies, row == 0) ? FU_UNSTABLE : FU_RUNNING;
 }
 
-/* Start of the scheme, consistent: velocities on the joints, accelerations and forces from eq 38. Starting it from zero
- * accelerations instead makes every error fall with the first power of the step (tests/benchmarks/order.py). */
-static int start_scheme(fu_run *run)
+static int is_short(const fu_run *run, double h)
+{
+    return h < SHORT_STEP * (run->fixed_step > 0.0 ? run->fixed_step : run->h);
+}
+
+/* Start of the scheme, consistent: velocities projected on the joints where that is asked for, accelerations and forces
+ * from eq 38. Starting it from zero accelerations instead makes every error fall with the first power of the step
+ * (tests/benchmarks/order.py). */
+static int start_scheme(fu_run *run, int project)
 {
     const fu_model *model = run->model;
     fu_state *now = &run->now;
     fu_joint_output *joints = (fu_joint_output *)run->accelerator.joints;
-    if (fu_project_velocities(model, now, &run->accelerator, run->before)) return FU_SINGULAR;
-    for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->before[i];
-    if (fu_accelerations(model, now, &run->accelerator, now->acceleration, joints, 0)) return FU_SINGULAR;
+    if (project) {
+        if (fu_project_velocities(model, now, &run->accelerator, run->before)) return FU_SINGULAR;
+        for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->before[i];
+    }
+    if (fu_accelerations(model, now, &run->accelerator, now->acceleration, joints, run->force)) return FU_SINGULAR;
+    run->dissipated_power = fu_dissipation(model, now->q, now->v);
+    run->external_power = fu_external_power(run, now, run->force);
     for (int j = 0; j < model->n_joints; ++j) {
         run->s_slope[j] = joints[j].s_rate;
         memcpy(now->f + 3 * j, joints[j].force, sizeof joints[j].force);
@@ -109,13 +120,11 @@ int fu_start(fu_run *run)
     memset(run->first, 0, sizeof(double) * (size_t)model->n_q);
     run->extent = extent(model, run->first, now->q);
     memcpy(run->first, now->q, sizeof(double) * (size_t)model->n_q);
-    if (start_scheme(run) || record_row(run)) return FU_SINGULAR;
+    if (start_scheme(run, 1) || record_row(run)) return FU_SINGULAR;
     if (run->rest_start) {
         memset(now->acceleration, 0, sizeof(double) * (size_t)model->n_dof);
         memset(now->a, 0, sizeof(double) * (size_t)model->n_dof);
     }
-    run->dissipated_power = fu_dissipation(model, now->q, now->v);
-    run->external_power = fu_external_power(run, now, run->record.reaction);
     /* tolerances are relative to the largest motion: until there is one, that of a thousandth of the duration; and
      * never to less than what a scene at rest cannot help */
     run->least_motion = 1e-9 * run->extent;
@@ -151,7 +160,7 @@ static void accept(fu_run *run, double h, fu_event event)
  * starts anew. Were they carried over, the short steps around a boundary would raise what the constraints left in them
  * by the ratio of the steps, crossing by crossing, and a spectral radius of 1 never lets it decay. Returns
  * FU_END_OF_CABLE where there is no neighbour. */
-static int enter(fu_run *run, int j, int side)
+static int enter(fu_run *run, int j, int side, double h)
 {
     const fu_model *model = run->model;
     fu_state *now = &run->now;
@@ -164,13 +173,13 @@ static int enter(fu_run *run, int j, int side)
     now->s[j] = fu_element_start(model, j, side > 0 ? element : element + 1);
     ++run->statistics.crossings;
     fu_watch_now(run, (fu_event){FU_NO_EVENT, 0, 0});
-    return start_scheme(run);
+    return start_scheme(run, !run->integrator->conserves || is_short(run, h));
 }
 
-/* What follows from an event that `now` stands on. */
-static int happened(fu_run *run, fu_event event)
+/* What follows from an event that `now` stands on after a step h. */
+static int happened(fu_run *run, fu_event event, double h)
 {
-    if (event.kind == FU_CROSSING) return enter(run, event.which, event.side);
+    if (event.kind == FU_CROSSING) return enter(run, event.which, event.side, h);
     run->event = event;
     return FU_EVENT;
 }
@@ -179,7 +188,7 @@ static int happened(fu_run *run, fu_event event)
  * in its accelerations: they must not go on. */
 static int refresh(fu_run *run, double h)
 {
-    return h < SHORT_STEP * (run->fixed_step > 0.0 ? run->fixed_step : run->h) ? start_scheme(run) : FU_RUNNING;
+    return is_short(run, h) ? start_scheme(run, 1) : FU_RUNNING;
 }
 
 /* The step that ends at the target, or one of equal steps to there, none larger than wanted. */
@@ -219,7 +228,7 @@ static int step_towards(fu_run *run, double target)
     const int adaptive = run->fixed_step <= 0.0;
     const fu_event none = {FU_NO_EVENT, 0, 0}, late = fu_late_event(run);
     double want = adaptive ? run->h : run->fixed_step;
-    if (late.kind) return happened(run, late);
+    if (late.kind) return happened(run, late, want);
     for (;;) {
         const double remaining = target - run->now.t;
         double h = fitted(remaining, want);
@@ -244,7 +253,7 @@ static int step_towards(fu_run *run, double target)
         if (event.kind == FU_CROSSING && run->turned >= MOST_TURNS) event = none;
         if (fu_stands_on_boundary(run, event)) {
             ++run->turned;
-            return happened(run, event);
+            return happened(run, event, h);
         }
         if (event.kind) {
             for (int i = 0; i <= model->n_joints + run->n_watches; ++i) { /* the first of several */
@@ -261,7 +270,7 @@ static int step_towards(fu_run *run, double target)
             }
             accept(run, h, event);
             const int status = event.kind == FU_CROSSING ? FU_RUNNING : refresh(run, h);
-            return status ? status : happened(run, event);
+            return status ? status : happened(run, event, h);
         }
         accept(run, h, event);
         run->turned = 0;
@@ -275,11 +284,11 @@ static int step_towards(fu_run *run, double target)
 /* Record where the run has stopped, if that is not done already. */
 int fu_stop(fu_run *run)
 {
-    const int recorded = run->now.t > run->record.time[run->record.n - 1] ? record_row(run) : FU_RUNNING;
+    const int recorded = run->now.t > run->recorded ? record_row(run) : FU_RUNNING;
     return recorded ? recorded : FU_EVENT;
 }
 
-/* Go on for about so many seconds; the status tells whether there is more to do. */
+/* Go on for about so many seconds, or to the pause; the status tells whether there is more to do. */
 int fu_advance(fu_run *run, double seconds)
 {
     const double until = fu_clock() + seconds;
@@ -291,7 +300,7 @@ int fu_advance(fu_run *run, double seconds)
             const int recorded = record_row(run);
             if (recorded) return recorded;
             if (target == run->duration) return FU_DONE;
-            if (fu_clock() > until) return FU_RUNNING;
+            if (run->record.n == run->record.pause || fu_clock() > until) return FU_RUNNING;
         } else {
             const int status = step_towards(run, target);
             if (status == FU_EVENT) return status;

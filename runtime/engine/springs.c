@@ -169,6 +169,53 @@ void fu_spring_state(const fu_model *model, fu_state *state)
         fu_spring_force(model, &model->springs[k], state->q, state->v, state->spring + 3 * k, by_gap, by_rate);
 }
 
+/* Force on the first end over a step from q to q_next that takes as much work as the spring stores, and as much more as
+ * the damper dissipates; returns the latter's power. L_next - L is n . (gap_next - gap), n = (gap + gap_next)/(L + L_next).
+ */
+double fu_discrete_spring(const fu_model *model, const fu_spring *spring, const double *q, const double *q_next, double h,
+                          double force[3])
+{
+    double gap[3], gap_next[3], unused[3], square = 0.0, square_next = 0.0, closing = 0.0, power = 0.0;
+    gap_of(model, spring, q, model->zero, gap, unused);
+    gap_of(model, spring, q_next, model->zero, gap_next, unused);
+    const int dim = spring->dim;
+    if (spring->length == 0.0) {
+        for (int d = 0; d < dim; ++d) {
+            const double rate = (gap_next[d] - gap[d]) / h;
+            force[d] = 0.5 * spring->stiffness * (gap[d] + gap_next[d]) + spring->damping * rate;
+            power += spring->damping * rate * rate;
+        }
+        return power;
+    }
+    for (int d = 0; d < dim; ++d) {
+        square += gap[d] * gap[d];
+        square_next += gap_next[d] * gap_next[d];
+    }
+    const double both = sqrt(square) + sqrt(square_next);
+    for (int d = 0; d < dim; ++d) closing += (gap[d] + gap_next[d]) / both * (gap_next[d] - gap[d]) / h;
+    const double tension = spring->stiffness * (0.5 * both - spring->length) + spring->damping * closing;
+    for (int d = 0; d < dim; ++d) force[d] = tension * (gap[d] + gap_next[d]) / both;
+    return spring->damping * closing * closing;
+}
+
+/* The same as fu_spring_pull over a step: what the force does is its work on the gap's change. */
+void fu_discrete_pull(const fu_model *model, const fu_spring *spring, const double *q, const double *q_next,
+                      const double force[3], double *f)
+{
+    for (int e = 0; e < 2; ++e) {
+        const fu_end *end = &spring->ends[e];
+        double p[3], w[3], P[3 * FU_MAX_COORDINATES];
+        int first;
+        const int n = end_point(model, end, spring->dim, q, model->zero, p, w, P, &first);
+        if (end->body >= 0) {
+            const fu_rigid *body = &model->rigids[end->body];
+            body->kernel->discrete_point(q + body->configuration, end->u, q_next + body->configuration, P);
+        }
+        for (int d = 0; d < spring->dim; ++d)
+            for (int i = 0; i < n; ++i) f[first + i] += (e ? 1.0 : -1.0) * P[d * n + i] * force[d];
+    }
+}
+
 double fu_spring_energy(const fu_model *model, const double *q)
 {
     double total = 0.0, gap[3], rate[3];

@@ -10,7 +10,7 @@ import numpy as np
 from funicular import FunicularWarning, Run, Scene
 from funicular.rotations import rotate
 
-INTEGRATORS = "genalpha", "explicit"
+INTEGRATORS = "genalpha", "energy", "explicit"
 
 CONVERGED = {"integrator": "explicit", "tol": 1e-10}
 """Settings of references: another method than the one that is measured, of order 8."""

@@ -1,0 +1,241 @@
+/* Energy-momentum method with constraints on positions (Simo & Tarnow 1992; Gonzalez 1996, 1999; Simo & Wong 1991).
+ *
+ *   psi = q_n+1 - q_n = h (v_n + v_n+1)/2
+ *   M (v_n+1 - v_n)/h + f(q_n, q_n+1) + G' lambda = Q at the middle,   phi(q_n+1) = 0
+ *
+ * f is a discrete gradient of the elastic energy, f . psi = U_n+1 - U_n, and G one of the constraints, G psi =
+ * phi_n+1 - phi_n: energy is kept to rounding, and so are linear and angular momentum where nothing outside takes them.
+ * Bodies turn by a Cayley vector Theta, A_n+1 = A_n cay(Theta), (Omega_n + Omega_n+1)/2 = Theta/h; the balance of their
+ * spatial angular momentum A J Omega, along the columns of A_n (1 + Theta~/2), is that of J (Omega_n+1 - Omega_n)/h +
+ * Theta/h x J Theta/h with the moments along them: the inertia force as it stands, at the mean velocity.
+ *
+ * Unknowns as in genalpha.c with sigma = h^2/2. The Newton matrix takes elasticity at the middle, which leaves the
+ * change of curvature of the energy over a step out: Newton converges linearly, by a factor that falls as h^2 or faster.
+ */
+#include "engine.h"
+
+#include <string.h>
+
+/* Scratch: the middle of the step, and how long before `now` the acceleration there belongs. */
+typedef struct {
+    double *q, *v, *force, *since;
+} middle_view;
+
+static middle_view middle(const fu_run *run)
+{
+    double *q = run->scratch, *v = q + run->model->n_q, *force = v + run->model->n_dof;
+    return (middle_view){q, v, force, force + run->model->n_dof};
+}
+
+static double sigma(double h)
+{
+    return 0.5 * h * h;
+}
+
+static void predict(fu_run *run, double h)
+{
+    const fu_state *now = &run->now;
+    for (int i = 0; i < run->model->n_dof; ++i) run->psi[i] = h * (now->v[i] + 0.5 * h * now->acceleration[i]);
+    fu_predict_extra(run, h);
+}
+
+/* next.q, v, and the mean acceleration of the step, from psi; the middle */
+static void kinematics(fu_run *run, double h)
+{
+    const fu_model *model = run->model;
+    const fu_state *now = &run->now;
+    fu_state *next = &run->next;
+    const middle_view m = middle(run);
+    memcpy(next->q, now->q, sizeof(double) * (size_t)model->n_q);
+    fu_cayley_move(model, next->q, run->psi);
+    for (int i = 0; i < model->n_dof; ++i) next->v[i] = 2.0 * run->psi[i] / h - now->v[i];
+    if (model->n_motions) fu_prescribe(model, next);
+    for (int k = 0; k < model->n_motions; ++k) {
+        const int i = model->motions[k].dof;
+        run->psi[i] = next->q[i] - now->q[i];
+    }
+    for (int i = 0; i < model->n_dof; ++i) {
+        next->acceleration[i] = (next->v[i] - now->v[i]) / h;
+        m.v[i] = run->psi[i] / h;
+    }
+    fu_between(model, now->q, next->q, m.q);
+}
+
+static const double *configuration(const fu_model *model, const fu_state *state, const fu_joint *joint)
+{
+    return state->q + model->rigids[joint->rider].configuration;
+}
+
+static void residual(fu_run *run, double h)
+{
+    const double begin = fu_clock(), scale = sigma(h);
+    const fu_model *model = run->model;
+    const fu_state *now = &run->now, *next = &run->next;
+    const middle_view m = middle(run);
+    double *extra = run->rhs + model->n_band + model->n_border_dof;
+    fu_mass_times(model, next->acceleration, run->force);
+    fu_discrete_forces(model, now->q, next->q, run->force);
+    fu_rate_forces(model, m.q, m.v, run->force);
+    fu_external_forces(model, now->t + 0.5 * h, m.q, run->force);
+    for (int j = 0; j < model->n_joints; ++j) {
+        const fu_joint *joint = &model->joints[j];
+        const double length = model->cables[joint->cable].length, start = fu_element_start(model, j, now->element[j]);
+        const double *f = next->f + 3 * j;
+        double G[3 * FU_MAX_COORDINATES], phi[3], unused[FU_MAX_COORDINATES];
+        int at[FU_MAX_COORDINATES];
+        fu_joint_coordinates(model, next, j, at);
+        joint->kernel->discrete_gradient(length, now->s[j] - start, next->s[j] - start, now->q + at[0], next->q + at[0],
+                                         configuration(model, now, joint), configuration(model, next, joint), G);
+        joint->kernel->residual(length, next->s[j] - start, next->q + at[0], configuration(model, next, joint), joint->u,
+                                f, phi, unused);
+        const int s = joint->kernel->coordinates, dim = joint->kernel->dim, n = s + 1;
+        double along = 0.0;
+        for (int d = 0; d < dim; ++d) {
+            for (int i = 0; i < s; ++i) run->force[at[i]] += f[d] * G[d * n + i];
+            along += f[d] * G[d * n + s];
+            extra[joint->unknown + 1 + d] = -joint->mass * phi[d];
+        }
+        extra[joint->unknown] = -scale * along;
+    }
+    for (int k = 0; k < model->n_springs; ++k) {
+        const fu_spring *spring = &model->springs[k];
+        double force[3];
+        fu_discrete_pull(model, spring, now->q, next->q, next->spring + 3 * k, run->force);
+        fu_discrete_spring(model, spring, now->q, next->q, h, force);
+        for (int d = 0; d < spring->dim; ++d)
+            extra[spring->unknown + d] = -scale * (next->spring[3 * k + d] - force[d]);
+    }
+    fu_gather(model, run->force, run->rhs);
+    for (int i = 0; i < model->n_band + model->n_border_dof; ++i) run->rhs[i] *= -scale;
+    run->statistics.time_residual += fu_clock() - begin;
+}
+
+/* Rows and columns of a joint: the constraint at the end of the step, its discrete gradient, half the derivative of the
+ * force there. */
+static void joint_matrix(fu_run *run, int j, double stiffness)
+{
+    const fu_model *model = run->model;
+    const fu_state *now = &run->now, *next = &run->next;
+    fu_system *system = &run->newton;
+    const fu_joint *joint = &model->joints[j];
+    const fu_rigid *rider = &model->rigids[joint->rider];
+    const double length = model->cables[joint->cable].length, start = fu_element_start(model, j, now->element[j]);
+    const int s = joint->kernel->coordinates, n = s + 1, dim = joint->kernel->dim;
+    const int turns = model->cables[joint->cable].coordinates;
+    double G[3 * FU_MAX_COORDINATES], J[3 * FU_MAX_COORDINATES], K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
+    int at[FU_MAX_COORDINATES];
+    fu_joint_coordinates(model, next, j, at);
+    joint->kernel->discrete_gradient(length, now->s[j] - start, next->s[j] - start, now->q + at[0], next->q + at[0],
+                                     configuration(model, now, joint), configuration(model, next, joint), G);
+    joint->kernel->tangent(length, next->s[j] - start, next->q + at[0], configuration(model, next, joint), joint->u,
+                           next->f + 3 * j, J, K);
+    fu_cayley_columns(rider->kernel, J, dim, n, turns, run->psi + rider->dof);
+    fu_cayley_columns(rider->kernel, K, n, n, turns, run->psi + rider->dof);
+    for (int i = 0; i < n; ++i) {
+        for (int d = 0; d < dim; ++d) {
+            fu_add(model, system, at[i], at[s] + 1 + d, joint->mass * G[d * n + i]);
+            fu_add(model, system, at[s] + 1 + d, at[i], joint->mass * J[d * n + i]);
+        }
+        for (int k = 0; k < n; ++k)
+            if (K[i * n + k] != 0.0) fu_add(model, system, at[i], at[k], stiffness * K[i * n + k]);
+    }
+}
+
+/* Elasticity half-way knows the stress of the mean vectors: a turn over the step shortens these, the mean stress not. */
+static void mean_stress(fu_run *run, double stiffness)
+{
+    const fu_model *model = run->model;
+    double k[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
+    for (int c = 0; c < model->n_cables; ++c) {
+        const fu_cable *cable = &model->cables[c];
+        const int dim = cable->kernel->dim, n = cable->coordinates / dim;
+        for (int e = 0, at = cable->first; e < cable->n_elements; ++e, at += cable->per_node) {
+            cable->law->step_stiffness(cable->length, run->now.q + at, run->next.q + at,
+                                       cable->A + (long)e * cable->A_stride, k);
+            for (int i = 0; i < n; ++i)
+                for (int j = 0; j < n; ++j)
+                    for (int d = 0; d < dim; ++d)
+                        fu_add(model, &run->newton, at + i * dim + d, at + j * dim + d, stiffness * k[i * n + j]);
+        }
+    }
+}
+
+static void matrix(fu_run *run, double h)
+{
+    const fu_model *model = run->model;
+    const middle_view m = middle(run);
+    const double rate = 2.0 / h, stiffness = 0.5 * sigma(h); /* the middle moves by half of psi */
+    const fu_state state = {.q = m.q, .v = m.v, .spring = run->next.spring};
+    fu_system_clear(&run->newton);
+    fu_dynamic_matrix(model, m.q, m.v, 1.0, rate, stiffness, &run->newton);
+    mean_stress(run, stiffness);
+    fu_loads_matrix(model, run->now.t + 0.5 * h, m.q, 0, stiffness, &run->newton);
+    for (int j = 0; j < model->n_joints; ++j) joint_matrix(run, j, stiffness);
+    for (int k = 0; k < model->n_springs; ++k)
+        fu_spring_matrix(model, &model->springs[k], &state, 0, rate, stiffness, model->springs[k].mass, &run->newton);
+}
+
+static double apply(fu_run *run, double h)
+{
+    const double size = fu_spread_size(run);
+    for (int i = 0; i < run->model->n_dof; ++i) run->psi[i] += run->work[i];
+    fu_apply_extra(run, 1.0, sigma(h));
+    return size;
+}
+
+static const fu_newton newton = {predict, kinematics, residual, matrix, apply, 24, 1};
+
+static int start(fu_run *run)
+{
+    *middle(run).since = 0.0;
+    run->factored = 0;
+    return FU_RUNNING;
+}
+
+static int step(fu_run *run, double h)
+{
+    run->newton_tolerance = 1e-3 * run->round_off; /* what Newton leaves does work on every step */
+    return fu_newton_step(run, &newton, h);
+}
+
+/* Local error of positions, m: h^3/12 times the rate of acceleration, from the means of this step and the one before. */
+static double error(fu_run *run, double h)
+{
+    const double factor = h * h * h / 12.0 / (0.5 * h + *middle(run).since);
+    for (int i = 0; i < run->model->n_dof; ++i)
+        run->work[i] = factor * (run->next.acceleration[i] - run->now.acceleration[i]);
+    return fu_filtered_size(run);
+}
+
+/* Work of the forces that are not conserved, as the step has it: energy balances to rounding. */
+static void book(fu_run *run, double h)
+{
+    const fu_model *model = run->model;
+    const fu_state *now = &run->now, *next = &run->next;
+    const middle_view m = middle(run);
+    double force[3];
+    *m.since = 0.5 * h;
+    for (int i = 0; i < model->n_dof; ++i) m.force[i] = 0.0;
+    fu_rate_forces(model, m.q, m.v, m.force);
+    const int n_flexible = model->n_rigids ? model->rigids[0].dof : model->n_dof; /* gyroscopic moments do no work */
+    for (int i = 0; i < n_flexible; ++i) run->dissipated += m.force[i] * run->psi[i];
+    for (int k = 0; k < model->n_springs; ++k)
+        run->dissipated += h * fu_discrete_spring(model, &model->springs[k], now->q, next->q, h, force);
+    for (int i = 0; i < model->n_dof; ++i) m.force[i] = 0.0;
+    fu_loads(model, now->t + 0.5 * h, m.q, m.force);
+    for (int i = 0; i < model->n_dof; ++i) run->external -= m.force[i] * run->psi[i];
+    if (!model->n_motions) return;
+    /* of the motions: velocities there are given, so that their mean is not quite psi/h */
+    residual(run, h);
+    fu_mass_times(model, next->acceleration, m.force);
+    for (int k = 0; k < model->n_motions; ++k) {
+        const int i = model->motions[k].dof;
+        int counted = 0;
+        for (int other = 0; other < k; ++other) counted |= model->motions[other].dof == i;
+        if (!counted)
+            run->external += run->force[i] * run->psi[i] +
+                             m.force[i] * (0.5 * h * (now->v[i] + next->v[i]) - run->psi[i]);
+    }
+}
+
+const fu_integrator fu_energy_method = {"energy", start, step, error, book, 1, &newton};

@@ -1,0 +1,100 @@
+"""The explicit method, and the choice between it and generalised-alpha."""
+
+import funicular as fu
+import numpy as np
+import pytest
+from funicular.settings import RunSettings
+
+
+def soft(elements: int = 4, youngs_modulus: float = 2e6, damping_time: float = 0.0) -> fu.Scene:
+    """A pendulum of cable12, fixed at one end."""
+    scene = fu.Scene()
+    scene.cable("rope", start=(0, 0, 0), end=(1, 0, 0), elements=elements, element="cable12",
+                section=fu.Rectangle(height=0.02, width=0.02),
+                material=fu.Material(youngs_modulus=youngs_modulus, poisson_ratio=0.0, density=1000,
+                                     damping_time=damping_time))
+    scene.pin("rope", s=0.0)
+    return scene
+
+
+def rider(planar: bool = False) -> fu.Scene:
+    """A body that turns and slides over nodes, loads, a damper, a moving support: everything that has a book."""
+    scene = fu.Scene()
+    scene.cable("rope", start=(0, 0, 0), end=(10, 0, 0), elements=6, element="cable8p" if planar else "cable12",
+                section=fu.Rectangle(height=0.05, width=0.05),
+                material=fu.Material(youngs_modulus=2e6, poisson_ratio=0.0, density=1000, damping_time=1e-3,
+                                     mass_damping=0.2))
+    scene.pin("rope", s=0.0)
+    scene.motion("rope", s=10.0, displacement=(0.0, fu.Harmonic(amplitude=0.1, frequency=1.5), 0.0))
+    out = 0.0 if planar else -0.1
+    scene.rigid_body("A", mass=5.0, inertia=(0.1, 0.2, 0.3), position=(2.0, -0.3, -out), velocity=(4.0, 0, 0),
+                     angular_velocity=(0, 0, 3.0) if planar else (1.0, 2.0, 3.0))
+    scene.slide("A", along="rope", s=2.0, at=(0, 0.3, out), name="trolley")
+    scene.force("rope", s=5.0, value=(3.0, 0.0, 0.0), follower=True, scale=fu.Harmonic(amplitude=1.0, frequency=1.0))
+    scene.spring(("rope", 5.0), (5.0, 1.0, 0.0), stiffness=20.0, damping=3.0, length=0.0)
+    return scene
+
+
+@pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
+@pytest.mark.parametrize(("scene", "name", "duration", "steps"), [(soft, "rope.nodal_vectors", 0.02, (4, 8)),
+                                                                  (rider, "A.position", 0.6, (40, 80))])
+def test_explicit_keeps_order_8(scene, name, duration, steps):
+    """Without slides, and across the boundary of two elements, where r_xx jumps."""
+    def last(**settings) -> np.ndarray:
+        return scene().run(duration, integrator="explicit", output_step=duration, **settings)[name][-1]
+
+    reference = last(tol=1e-12)
+    errors = [np.abs(last(step=duration / n) - reference).max() for n in steps]
+    assert errors[0] / errors[1] > 2**7, errors
+
+
+@pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
+@pytest.mark.parametrize("planar", [False, True])
+def test_explicit_and_genalpha_agree_on_everything(planar):
+    explicit = rider(planar).run(1.0, integrator="explicit", tol=1e-9, output_step=0.1)
+    implicit = rider(planar).run(1.0, integrator="genalpha", tol=1e-6, output_step=0.1)
+    for name in ("A.position", "A.orientation", "trolley.s", "rope.nodal_vectors", "energy.dissipated",
+                 "energy.external"):
+        np.testing.assert_allclose(explicit[name], implicit[name], atol=2e-5 * np.ptp(explicit[name]) + 1e-12,
+                                   err_msg=name)
+    assert explicit.report["element_crossings"] == implicit.report["element_crossings"] > 0
+    assert explicit["trolley.residual"].max() < 1e-12
+    balance = explicit.energy_balance()
+    assert np.abs(balance.relative).max() < 1e-9, "books are summed with the stages' weights"
+    assert np.abs(np.linalg.norm(explicit["A.orientation"], axis=1) - 1).max() < 1e-15
+
+
+def test_explicit_is_right_about_a_stiff_scene_too():
+    """Where stability rules the step, the error stays at tol."""
+    stiff = soft(youngs_modulus=7e8)
+    explicit, fine = (stiff.run(0.02, integrator="explicit", tol=tol, output_step=0.01) for tol in (1e-3, 1e-10))
+    assert explicit.report["rejected_steps"] > 0
+    apart = np.abs(explicit["rope.nodal_vectors"] - fine["rope.nodal_vectors"])[:, :, 0].max()
+    assert apart < 1e-3 * fine.report["largest_motion_m"]
+
+
+def test_auto_takes_the_cheaper_and_says_why():
+    assert RunSettings(duration=1.0).integrator == "auto"
+    loose = soft(16, 2e8).run(0.1, tol=1e-3, output_step=0.1).report
+    tight = soft(4, 2e5).run(0.01, tol=1e-8, output_step=0.01).report
+    assert (loose["integrator"], tight["integrator"]) == ("genalpha", "explicit")
+    assert "highest frequency" in tight["integrator_reason"] and "evaluations a second" in loose["integrator_reason"]
+
+
+@pytest.mark.parametrize(("settings", "reason"), [
+    ({"step": 1e-4}, "the step is fixed"),
+    ({"spectral_radius": 0.5}, "spectral_radius is given"),
+    ({"integrator": "genalpha"}, "as asked for"),
+])
+def test_auto_leaves_to_genalpha_what_only_it_can(settings, reason):
+    report = soft(2, 1e4).run(0.01, output_step=0.01, tol=1e-8, **settings).report
+    assert report["integrator"] == "genalpha"
+    assert reason in report["integrator_reason"]
+
+
+def test_damping_counts_in_the_choice():
+    """A decay faster than the fastest vibration bounds the explicit step."""
+    assert soft(4, 2e5).run(0.01, tol=1e-6, output_step=0.01).report["integrator"] == "explicit"
+    report = soft(4, 2e5, damping_time=100.0).run(0.01, tol=1e-6, output_step=0.01).report
+    assert report["integrator"] == "genalpha"
+    assert "fastest decay" in report["integrator_reason"]

@@ -1,0 +1,445 @@
+"""Runs that write while they go on: killed at any instant, they leave a whole file, and go on to the same numbers."""
+
+import fcntl
+import os
+import random
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+import xarray
+from funicular import (
+    Circle,
+    EndOfCableError,
+    FunicularWarning,
+    Harmonic,
+    Material,
+    ResultFileError,
+    Scene,
+    SceneError,
+    load_run,
+    streaming,
+)
+from funicular.netcdf import File
+from funicular.settings import INTEGRATORS
+from numpy.testing import assert_array_equal
+
+
+def short(speed: float = 1.0) -> Scene:
+    """A cable of four elements with a rider."""
+    scene = Scene()
+    wire = scene.cable("wire", start=(0, 0, 0), end=(1.5, 0, 0), elements=4, element="cable12",
+                       section=Circle(radius=0.01),
+                       material=Material(youngs_modulus=4e6, poisson_ratio=0, density=4200))
+    scene.pin(wire, s=0.0)
+    scene.pin(wire, s=1.5)
+    body = scene.rigid_body("A", mass=1.0, inertia=(1e-3, 1e-3, 1e-3), position=(0.2, 0, 0), velocity=(speed, 0, 0))
+    scene.slide(body, along=wire, s=0.2, name="trolley")
+    return scene
+
+
+def content(path) -> dict[str, bytes]:
+    run = load_run(path)
+    return {name: run[name].tobytes() for name in ["time", *run.keys()]}
+
+
+class Killed(BaseException):
+    """Stands for kill -9: nothing that the run would still do comes after it."""
+
+
+def failing(monkeypatch, writes: int, error: BaseException):
+    """Raise in place of all writes after so many, half-way through; a number in the header is written or is not."""
+    left = [writes]
+    pwrite, replace = os.pwrite, os.replace
+
+    def fails() -> bool:
+        left[0] -= 1
+        return left[0] < 0
+
+    def put(descriptor, data, at):
+        if fails():
+            pwrite(descriptor, data[: len(data) // 2 if len(data) > 4 else 0], at)
+            raise error
+        return pwrite(descriptor, data, at)
+
+    def move(old, new):
+        if fails():
+            raise error
+        replace(old, new)
+
+    monkeypatch.setattr(os, "pwrite", put)
+    monkeypatch.setattr(os, "replace", move)
+    monkeypatch.setattr(Path, "replace", move)
+    return left
+
+
+SETTINGS = {"duration": 0.2, "output_step": 0.01, "tol": 1e-3}
+WRITES = 65
+"""Of such a run: rows, their number and the checkpoint 20 times; the file's start and its end."""
+
+
+@pytest.fixture(scope="module")
+def uninterrupted(tmp_path_factory):
+    path = tmp_path_factory.mktemp("whole") / "x.nc"
+    short().run(**SETTINGS, save=path)
+    return content(path)
+
+
+@pytest.fixture
+def stopped(tmp_path, monkeypatch):
+    """The file of a run that was killed half-way."""
+    path = tmp_path / "x.nc"
+    with monkeypatch.context() as patch:
+        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
+        failing(patch, WRITES // 2, Killed())
+        with pytest.raises(Killed):
+            short().run(**SETTINGS, save=path)
+    return path
+
+
+def resumed(path, **changes):
+    return short().run(**SETTINGS | changes, save=path, resume=True)
+
+
+def refused(path, message: str):
+    return pytest.raises(ResultFileError, match=rf"^{re.escape(str(path))}: {message}")
+
+
+ANEW = "; start the run anew, without resume$"
+
+
+def test_the_file_holds_what_a_run_in_memory_has(uninterrupted):
+    run = short().run(**SETTINGS)
+    assert {name: run[name].tobytes() for name in ["time", *run.keys()]} == uninterrupted
+
+
+def test_results_do_not_depend_on_when_they_are_written(uninterrupted, tmp_path, monkeypatch):
+    monkeypatch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
+    left = failing(monkeypatch, WRITES, Killed())
+    short().run(**SETTINGS, save=tmp_path / "x.nc")
+    assert left == [0]  # so that the next test goes through all of them
+    assert content(tmp_path / "x.nc") == uninterrupted
+    assert [p.name for p in tmp_path.iterdir()] == ["x.nc"]
+
+
+@pytest.mark.parametrize("writes", [*range(0, 12), *range(13, WRITES - 5, 4), *range(WRITES - 5, WRITES)])
+def test_dying_in_the_middle_of_a_write(uninterrupted, tmp_path, monkeypatch, writes):
+    path, state = tmp_path / "x.nc", tmp_path / "x.nc.state"
+    with monkeypatch.context() as patch:
+        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
+        failing(patch, writes, Killed())
+        with pytest.raises(Killed):
+            short().run(**SETTINGS, save=path)
+    assert path.exists() == (writes > 2)  # its first row, the number of rows, its name
+    assert state.exists() == (writes > 3)
+    if path.exists():
+        with xarray.open_dataset(path) as dataset:
+            assert dataset["time"].values.tobytes() == content(path)["time"]
+        assert all(uninterrupted[name].startswith(values) for name, values in content(path).items())
+    if state.exists():
+        if load_run(path).status == "unfinished":
+            run = resumed(path)
+            assert (run.status, len(run.report["resumed_at_s"])) == ("completed", 1)
+            assert not state.exists()
+        assert content(path) == uninterrupted
+
+
+@pytest.mark.filterwarnings("ignore:initial velocities broke a joint")
+@pytest.mark.parametrize("integrator", [name for name in INTEGRATORS if name != "auto"])
+def test_every_integrator_goes_on_exactly(tmp_path, monkeypatch, integrator):
+    """With a motion, a spring, a follower, damping and a hinge as well; stopped twice."""
+    settings = {"duration": 0.05, "output_step": 0.001, "tol": 1e-4, "integrator": integrator}
+    everything().run(**settings, save=tmp_path / "whole.nc")
+    monkeypatch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
+    for writes, resume in ((40, False), (50, True)):
+        with monkeypatch.context() as patch:
+            failing(patch, writes, Killed())
+            with pytest.raises(Killed):
+                everything().run(**settings, save=tmp_path / "x.nc", resume=resume)
+        seen = load_run(tmp_path / "x.nc").events
+    run = everything().run(**settings, save=tmp_path / "x.nc", resume=True)
+    assert 0 < run.report["resumed_at_s"][0] < run.report["resumed_at_s"][1] < 0.05
+    assert content(tmp_path / "x.nc") == content(tmp_path / "whole.nc")
+    again, whole = run.report, load_run(tmp_path / "whole.nc").report
+    assert len(whole["events"]) > len(seen) > 0 and whole["events"][: len(seen)] == seen
+    assert {name: value for name, value in again.items() if name not in ("time_s", "resumed_at_s", "settings")} == {
+        name: value for name, value in whole.items() if name not in ("time_s", "settings")}
+
+
+def everything() -> Scene:
+    scene = Scene()
+    material = Material(youngs_modulus=4e6, poisson_ratio=0, density=4200, damping_time=1e-4)
+    for name, start, end in (("wire", (0, 0, 0), (1.5, 0, 0)), ("arm", (1.5, 0, 0), (1.5, -0.5, 0))):
+        scene.cable(name, start=start, end=end, elements=3, element="cable12", section=Circle(radius=0.01),
+                    material=material, up=(0, 0, 1))
+    scene.motion("wire", s=0.0, displacement=(0, Harmonic(amplitude=0.01, frequency=5.0), 0))
+    scene.pin("arm", s=0.5)
+    scene.join("wire", s=1.5, to="arm", at=0.0, rotation="free")
+    scene.rigid_body("A", mass=1.0, inertia=(1e-3, 2e-3, 3e-3), position=(0.48, 0, 0), velocity=(1, 0, 0),
+                     angular_velocity=(1, 2, 3))
+    scene.slide("A", along="wire", s=0.48, name="trolley")
+    scene.spring("A", (0.5, 1, 0), stiffness=50.0, damping=1.0)
+    scene.force("wire", s=1.0, value=(2, 0, 0), follower=True)
+    scene.event("passes", quantity="wire.position.y", s=1.0, value=-0.001)
+    scene.event("late", quantity="trolley.s", value=0.52)
+    scene.event("turned", function=lambda time, state: state["A.orientation"][1] - 0.01)
+    return scene
+
+
+def test_rows_are_written_between_checkpoints(tmp_path, monkeypatch):
+    """Of a run that pauses once in ten rows, with a clock that is slower than its steps."""
+    monkeypatch.setattr(streaming, "CHECKPOINT_INTERVAL", 1e9)
+    monkeypatch.setattr(streaming, "ROWS_INTERVAL", 0.0)
+    path, seen = tmp_path / "x.nc", []
+    settings = {"duration": 0.15, "output_step": 5e-4, "step": 5e-6}
+    run = short().run(**settings, save=path, progress=lambda time: seen.append((time, load_run(path).time[-1])))
+    assert len(seen) > 3 and all(time - written < 5e-4 + 5e-6 for time, written in seen)
+    memory = short().run(**settings)
+    assert all(run[name].tobytes() == memory[name].tobytes() for name in run.keys())
+
+
+def test_an_equilibrium_to_start_from(tmp_path, monkeypatch):
+    scene = pendulum()
+    scene.pin("wire", s=1.0)
+    settings, path = {"duration": 0.1, "tol": 1e-3}, tmp_path / "x.nc"
+    scene.run(**settings, initial="equilibrium", save=tmp_path / "whole.nc")
+    with monkeypatch.context() as patch:
+        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
+        failing(patch, 100, Killed())
+        with pytest.raises(Killed):
+            scene.run(**settings, initial="equilibrium", save=path)
+    with refused(path, "its run cannot go on from another state" + ANEW):
+        scene.run(**settings, initial=scene.equilibrium(load_steps=3, tolerance=1e-5), save=path, resume=True)
+    scene.run(**settings, initial=scene.equilibrium(), save=path, resume=True)
+    assert content(path) == content(tmp_path / "whole.nc")
+
+
+def test_ctrl_c_leaves_what_there_is_and_goes_on(uninterrupted, tmp_path):
+    path = tmp_path / "x.nc"
+
+    def stop(time: float) -> None:
+        if time > 0.095:
+            raise KeyboardInterrupt
+
+    with pytest.warns(FunicularWarning, match=r"interrupted at .*, and resume goes on with it$"):
+        run = short().run(**SETTINGS, save=path, progress=stop)
+    assert (run.status, load_run(path).status) == ("interrupted", "interrupted")
+    assert len(run.time) == 11
+    resumed(path)
+    assert content(path) == uninterrupted
+    assert [p.name for p in tmp_path.iterdir()] == ["x.nc"]
+
+
+def test_a_run_that_ends_early_leaves_its_rows_and_no_checkpoint(tmp_path):
+    path = tmp_path / "x.nc"
+    with pytest.raises(EndOfCableError) as stopped:
+        short(5.0).run(duration=0.5, output_step=0.01, tol=1e-3, save=path)
+    run = load_run(path)
+    assert run.status == "end_of_cable" and 0.2 < run.time[-1] < 0.4
+    assert_array_equal(stopped.value.run["trolley.s"], run["trolley.s"])
+    assert run["trolley.s"][-1] == pytest.approx(1.5, abs=1e-9)
+    assert [p.name for p in tmp_path.iterdir()] == ["x.nc"]
+    with refused(path, r"its run has come to its end \(end_of_cable\): there is nothing to resume" + ANEW):
+        short(5.0).run(duration=0.5, output_step=0.01, tol=1e-3, save=path, resume=True)
+
+
+def test_a_new_run_takes_the_place_of_a_stopped_one(stopped, uninterrupted):
+    short().run(**SETTINGS, save=stopped)
+    assert content(stopped) == uninterrupted
+    assert [p.name for p in stopped.parent.iterdir()] == ["x.nc"]
+
+
+def test_a_run_that_cannot_start_leaves_the_older_file(uninterrupted, tmp_path):
+    path = tmp_path / "x.nc"
+    short().run(**SETTINGS, save=path)
+    with pytest.raises(SceneError, match=r"bytes of results, more than the .* that are free on the disk"):
+        short().run(duration=1.0, output_step=1e-15, save=path)
+    assert content(path) == uninterrupted
+
+
+def test_full_disk(tmp_path, monkeypatch, uninterrupted):
+    monkeypatch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
+    path = tmp_path / "x.nc"
+    with monkeypatch.context() as patch:
+        failing(patch, 30, OSError(28, "No space left on device"))
+        with refused(path, "the results could not be written: No space left on device; its first 10 times are whole; "
+                           "make room, and go on with resume"):
+            short().run(**SETTINGS, save=path)
+    assert len(load_run(path).time) == 10
+    assert {p.name for p in tmp_path.iterdir()} == {"x.nc", "x.nc.state"}
+    resumed(path)
+    assert content(path) == uninterrupted
+
+
+def test_what_cannot_be_resumed(stopped, tmp_path):
+    state, whole = tmp_path / "x.nc.state", (tmp_path / "x.nc.state").read_bytes()
+    with refused(tmp_path / "y.nc", "there is no run to resume: there is no such file" + ANEW):
+        resumed(tmp_path / "y.nc")
+    with pytest.raises(ResultFileError, match=r"^run: there is nothing to resume without a file of results; name it"):
+        short().run(**SETTINGS, resume=True)
+    with refused(stopped, "its run was started with tol = 0.001, and cannot go on with 0.01; resume it with the sett"):
+        resumed(stopped, tol=1e-2)
+    with refused(stopped, "its run was started with duration = 0.2, and cannot go on with 0.3;"):
+        resumed(stopped, duration=0.3)
+    other = short()
+    other.pin("wire", s=0.75)
+    with refused(stopped, "its run cannot go on with another scene" + ANEW):
+        other.run(**SETTINGS, save=stopped, resume=True)
+    for damaged in (whole[:-1], whole[:20], b"", whole.replace(b"{", b"[", 1), whole[:-1] + bytes([whole[-1] ^ 1])):
+        state.write_bytes(damaged)
+        with refused(stopped, r"its checkpoint x\.nc\.state is damaged" + ANEW):
+            resumed(stopped)
+    state.write_bytes(whole.replace(b'"programs": "', b'"programs": "0'))
+    with refused(stopped, "its run cannot go on with another version of funicular, NumPy or SciPy" + ANEW):
+        resumed(stopped)
+    state.write_bytes(whole)
+    File(stopped, writable=True).truncate(3)
+    with refused(stopped, "it has 3 times, but its checkpoint is of the one after 10"):
+        resumed(stopped)
+    state.unlink()
+    with refused(stopped, r"its checkpoint x\.nc\.state is missing" + ANEW):
+        resumed(stopped)
+
+
+def test_auto_goes_on_with_the_same_integrator(stopped):
+    """A spectral radius that is given decides for genalpha, also where it is the default."""
+    with refused(stopped, 'its run cannot go on with integrator "genalpha"' + ANEW):
+        resumed(stopped, spectral_radius=0.9)
+
+
+def test_two_runs_do_not_write_one_file(stopped):
+    writing = File(stopped, writable=True)
+    fcntl.flock(writing.descriptor, fcntl.LOCK_EX)
+    for resume in (False, True):
+        with refused(stopped, "another run is writing it; wait for its end, or give another name$"):
+            short().run(**SETTINGS, save=stopped, resume=resume)
+
+
+def test_a_report_longer_than_its_room(tmp_path, monkeypatch, uninterrupted):
+    monkeypatch.setattr(streaming, "REPORT_ROOM", 0)
+    run = short().run(**SETTINGS, save=tmp_path / "x.nc")
+    assert run.status == "completed"
+    assert content(tmp_path / "x.nc") == uninterrupted
+    assert [p.name for p in tmp_path.iterdir()] == ["x.nc"]
+
+
+def test_a_run_read_from_its_file_can_be_saved_again(tmp_path, uninterrupted):
+    run = short().run(**SETTINGS, save=tmp_path / "x.nc")
+    run.save(tmp_path / "y.nc")
+    assert content(tmp_path / "y.nc") == uninterrupted
+    run.save(tmp_path / "x.nc")
+    assert content(tmp_path / "x.nc") == uninterrupted
+    assert load_run(tmp_path / "x.nc").report == run.report
+
+
+CHILD = """
+import sys
+from funicular import streaming
+from funicular.cli import app
+streaming.CHECKPOINT_INTERVAL = streaming.ROWS_INTERVAL = 0.0
+app(sys.argv[1:])
+"""
+
+
+def start(folder: Path, name: str, *options: str) -> subprocess.Popen:
+    arguments = ["run", "scene.toml", "-o", name, *options]
+    return subprocess.Popen([sys.executable, "-c", CHILD, *arguments], cwd=folder, stdout=subprocess.DEVNULL)
+
+
+def times(path: Path) -> int:
+    with xarray.open_dataset(path) as dataset:
+        return dataset.sizes["time"]
+
+
+def await_file(running: subprocess.Popen, path: Path, least: int = 1) -> float:
+    """Wait for the file to have so many times; when that was, in s."""
+    while running.poll() is None and not (path.exists() and times(path) >= least):
+        time.sleep(0.002)
+    return time.monotonic()
+
+
+@pytest.fixture
+def whole(tmp_path) -> tuple[dict[str, bytes], float]:
+    """What a run of about half a second writes, and how long it writes, in s; its scene.toml is in the folder."""
+    scene = short()
+    scene.run_settings = {"duration": 0.3, "output_step": 5e-4, "step": 1e-5}
+    (tmp_path / "scene.toml").write_text(scene.to_toml())
+    running = start(tmp_path, "whole.nc")
+    begin = await_file(running, tmp_path / "whole.nc")
+    assert running.wait() == 0
+    return content(tmp_path / "whole.nc"), time.monotonic() - begin
+
+
+def check_killed(path: Path, expected: dict[str, bytes]) -> None:
+    for name, values in content(path).items():
+        assert expected[name].startswith(values), name
+
+
+def check_resumed(path: Path, expected: dict[str, bytes]) -> None:
+    if load_run(path).status == "unfinished":  # and not killed on the way out
+        assert start(path.parent, path.name, "--resume").wait() == 0
+    assert content(path) == expected
+
+
+def test_kill(whole, tmp_path):
+    path, least = tmp_path / "x.nc", 1
+    for options in ([], ["--resume"]):
+        running = start(tmp_path, path.name, *options)
+        await_file(running, path, least + 150)
+        running.kill()
+        assert running.wait() == -signal.SIGKILL
+        check_killed(path, whole[0])
+        least = times(path)
+    assert 300 < least < 601
+    check_resumed(path, whole[0])
+
+
+@pytest.mark.slow
+def test_kill_at_20_random_instants(whole, tmp_path):
+    expected, seconds = whole
+    random_ones, reached = random.Random(4), []
+    while len(reached) < 20:
+        path = tmp_path / f"{len(reached)}.nc"
+        running = start(tmp_path, path.name)
+        await_file(running, path)
+        time.sleep(random_ones.random() * seconds)
+        running.kill()
+        if running.wait() == -signal.SIGKILL:
+            check_killed(path, expected)
+            reached.append((times(path), path))
+    for _, path in sorted(reached)[-4:]:
+        check_resumed(path, expected)
+
+
+MEMORY = """
+import resource, sys
+sys.path.insert(0, {tests!r})
+from test_streaming import pendulum
+pendulum().run(duration={rows} * 1e-3, step=1e-3, output_step=1e-3, save="x.nc")
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+"""
+
+
+def pendulum() -> Scene:
+    scene = Scene()
+    scene.cable("wire", start=(0, 0, 0), end=(1, 0, 0), elements=4, element="cable12", section=Circle(radius=0.01),
+                material=Material(youngs_modulus=4e6, poisson_ratio=0, density=4200))
+    scene.pin("wire", s=0.0)
+    return scene
+
+
+def peak(rows: int, folder: Path) -> float:
+    code = MEMORY.format(tests=str(Path(__file__).parent), rows=rows)
+    done = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True, check=True)
+    return int(done.stdout) / 1024
+
+
+@pytest.mark.slow
+def test_memory_does_not_grow_with_duration(tmp_path):
+    few, many = peak(20_000, tmp_path), peak(100_000, tmp_path)
+    assert (tmp_path / "x.nc").stat().st_size > 40e6
+    assert many - few < 4.0  # MB
