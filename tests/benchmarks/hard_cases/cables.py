@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 from funicular import Circle, Material, Ramp, Scene
 
-from .case import CONVERGED, Subject, figures, positions, simulate
+from .case import BALANCE, CONVERGED, Subject, figures, positions, simulate
 
 HERE = Subject()
 STEEL = Material(youngs_modulus=210e9, poisson_ratio=0.3, density=7850)
@@ -91,12 +91,12 @@ def compared(name: str, integrator: str):
     return run, figures(run, reference(name))
 
 
-@HERE.case("a steel wire of 100 m and a rubber cord", error=2e-4, balance=1e-3, residual=1e-9, gap=1e-8)
+@HERE.case("a steel wire of 100 m and a rubber cord", error=2e-4, balance=BALANCE, residual=1e-9, gap=1e-8)
 def metal_and_rubber(integrator):
     return compared("steel and rubber", integrator)[1]
 
 
-@HERE.case("a slack cable goes taut", error=2e-3, balance=1e-3, pull=(20, 30))
+@HERE.case("a slack cable goes taut", error=2e-3, balance=BALANCE, pull=(20, 30))
 def going_taut(integrator):
     """`pull`: the largest force at a pin over the weight."""
     run, found = compared("slack goes taut", integrator)
@@ -104,14 +104,14 @@ def going_taut(integrator):
     return found | {"pull": float(np.linalg.norm(run["rope@0.force"], axis=1).max()) / weight}
 
 
-@HERE.case("compression that buckles", error=5e-4, balance=1e-3, sideways=(0.05, 0.2))
+@HERE.case("compression that buckles", error=5e-4, balance=BALANCE, sideways=(0.05, 0.2))
 def pushed(integrator):
     """`sideways`: m."""
     run, found = compared("buckling", integrator)
     return found | {"sideways": float(-positions(run)[:, :, 1].min())}
 
 
-@HERE.case("a bent cable falls free", error=1e-4, balance=1e-3, fall=1e-12)
+@HERE.case("a bent cable falls free", error=1e-4, balance=BALANCE, fall=1e-12)
 def free_fall(integrator):
     """`fall`: of the centre of mass beside g t²/2, m."""
     run, found = compared("free fall", integrator)
@@ -122,7 +122,7 @@ def free_fall(integrator):
     return found | {"fall": float(np.abs(centre - exact).max())}
 
 
-@HERE.case("a cable that whips", error=1e-3, balance=2e-3, outruns=(2, 3))
+@HERE.case("a cable that whips", error=1e-3, balance=BALANCE, outruns=(2, 3))
 def cracking(integrator):
     """`outruns`: speed of the tip over that of a free fall as deep."""
     run, found = compared("whip", integrator)
