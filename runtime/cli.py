@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import warnings
 from collections.abc import Iterator
@@ -112,6 +113,55 @@ def _report(run: Run, path: Path, pictures: Path | None, forces: bool) -> None:
     for heading, text in rows:
         table.add_row(heading, escape(text))
     Console().print(table)
+
+
+@app.command()
+def bench(
+    scene: Annotated[str, typer.Argument(metavar="SCENE", help="a scene file, or the name of a bundled scene")],
+    integrators: Annotated[str | None, typer.Option(help="names with commas between (default: all)")] = None,
+    tols: Annotated[str, typer.Option(help="tolerances")] = "1e-2,1e-3,1e-4,1e-5",
+    elements: Annotated[str, typer.Option(help="meshes: x2 is twice the scene's elements, 24 is 24 a cable")] = "x1,x2",
+    outputs: Annotated[str | None, typer.Option(help="what is compared, such as A.position,trolley.s,wire.tip,"
+                                                "wire@0.5 (default: bodies, slides, a point of each cable)")] = None,
+    duration: Annotated[float | None, typer.Option(help="s, instead of the scene's")] = None,
+    output_step: Annotated[float | None, typer.Option(help="s (default: a fiftieth of the duration)")] = None,
+    repetitions: Annotated[int, typer.Option(help="of each run that takes less than 1 s, taking turns; times are "
+                                              "medians")] = 5,
+    out: Annotated[Path, typer.Option(metavar="DIR", help="where SCENE-bench.csv and .png are written")] = Path(),
+) -> None:
+    """Measure error against time over integrators, tolerances and meshes.
+
+    The reference is computed, too, and how far it is converged is told. Combinations that fail are told, as well.
+    """
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # one thread, as CPU time says it; before NumPy is loaded
+    from funicular.bench import bench, grid
+    from funicular.bench_report import print_table, save
+    from funicular.results import check_writable
+    from funicular.scene_file import load_scene
+    from rich.console import Console
+
+    with _told_without_traceback():
+        described, name = load_scene(scene), f"{Path(scene).stem}-bench"
+        numbers = _numbers(tols)
+        tried = grid(described, integrators=_listed(integrators), tols=numbers, elements=_listed(elements),
+                     outputs=_listed(outputs), duration=duration, output_step=output_step, repetitions=repetitions)
+        check_writable(_existing(out) / f"{name}.csv")
+        with Console(stderr=True).status("") as status:
+            result = bench(described, tried, status.update)
+        print_table(result, Console())
+        for path in save(result, out, name):
+            print(f"written: {path}")
+
+
+def _listed(text: str | None) -> list[str] | None:
+    return None if text is None else [word.strip() for word in text.split(",") if word.strip()]
+
+
+def _numbers(text: str) -> list[float]:
+    try:
+        return list(map(float, _listed(text)))
+    except ValueError as error:
+        raise typer.BadParameter(f"--tols: {error}") from None
 
 
 @app.command()

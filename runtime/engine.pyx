@@ -84,6 +84,10 @@ cdef extern from "engine.h" nogil:
         void *dgbtrs
         void *dgetrf
         void *dgetrs
+        void *zgbtrf
+        void *zgbtrs
+        void *zgetrf
+        void *zgetrs
         void *dgemm
         void *dgemv
     ctypedef struct fu_system:
@@ -144,6 +148,24 @@ cdef extern from "engine.h" nogil:
         const double *c
         const double *error
         const double *coarse
+    ctypedef struct fu_collocation:
+        double A[9]
+        double A_inverse[9]
+        double c[3]
+        double T[9]
+        double T_inverse[9]
+        double gamma, alpha, beta
+        double error[3]
+    ctypedef struct fu_complex_system:
+        void *K
+        void *B
+        void *C
+        void *D
+        void *X
+        void *x
+        double *D_real
+        int *pivot_band
+        int *pivot_border
     ctypedef struct fu_watch:
         int kind, index, direction
         double value
@@ -175,13 +197,16 @@ cdef extern from "engine.h" nogil:
         double inertia, rate, stiffness
     ctypedef struct fu_integrator:
         const char *name
-    const fu_integrator fu_genalpha_method, fu_explicit_method, fu_energy_method
+    const fu_integrator fu_genalpha_method, fu_explicit_method, fu_energy_method, fu_radau_method
     ctypedef struct fu_run:
         const fu_model *model
         const fu_integrator *integrator
         int order
         fu_genalpha scheme
         fu_tableau tableau
+        fu_collocation collocation
+        fu_complex_system complex_newton
+        int per_step
         double *scratch
         int n_watches
         const fu_watch *watches
@@ -231,6 +256,10 @@ LAPACK.dgbtrf = <void *>cython_lapack.dgbtrf
 LAPACK.dgbtrs = <void *>cython_lapack.dgbtrs
 LAPACK.dgetrf = <void *>cython_lapack.dgetrf
 LAPACK.dgetrs = <void *>cython_lapack.dgetrs
+LAPACK.zgbtrf = <void *>cython_lapack.zgbtrf
+LAPACK.zgbtrs = <void *>cython_lapack.zgbtrs
+LAPACK.zgetrf = <void *>cython_lapack.zgetrf
+LAPACK.zgetrs = <void *>cython_lapack.zgetrs
 LAPACK.dgemm = <void *>cython_blas.dgemm
 LAPACK.dgemv = <void *>cython_blas.dgemv
 
@@ -491,6 +520,23 @@ cdef class Engine:
         stage = self.model.n_q + self.model.n_dof
         self.run.scratch = self._doubles(np.zeros((t.stages + 2) * stage + 2 * (t.stages + 1)))
 
+    def _collocation(self, method):
+        o, system = &self.run.collocation, &self.run.newton
+        cdef int k
+        for k in range(9):
+            o.A[k], o.A_inverse[k] = method.A.flat[k], method.A_inverse.flat[k]
+            o.T[k], o.T_inverse[k] = method.T.flat[k], method.T_inverse.flat[k]
+        for k in range(3):
+            o.c[k], o.error[k] = method.c[k], method.error[k]
+        o.gamma, o.alpha, o.beta = method.gamma, method.alpha, method.beta
+        n, m, rows = system.n, system.m, 3 * system.width + 1
+        c = &self.run.complex_newton
+        c.K, c.B, c.C = self._doubles(np.zeros(2 * rows * n)), self._doubles(np.zeros(2 * n * m)), self._doubles(np.zeros(2 * n * m))
+        c.D, c.X, c.x = self._doubles(np.zeros(2 * m * m)), self._doubles(np.zeros(2 * n * m)), self._doubles(np.zeros(2 * (n + m)))
+        c.D_real, c.pivot_band, c.pivot_border = self._doubles(np.zeros(m * m)), self._ints(np.zeros(n)), self._ints(np.zeros(m))
+        of = 15 * self.model.n_dof + 3 * self.model.n_q + 7 + n + m
+        self.run.scratch = self._doubles(np.zeros(of))
+
     cdef _matrix(self):
         """The unfactored Newton matrix, (unknowns, unknowns) sparse."""
         from scipy.sparse import coo_array
@@ -635,6 +681,9 @@ cdef class Engine:
         if method.name == "explicit":
             run.integrator = &fu_explicit_method
             self._tableau(method)
+        elif method.name == "radau":
+            run.integrator, run.per_step = &fu_radau_method, 1
+            self._collocation(method)
         elif method.name == "energy":
             run.integrator = &fu_energy_method
             run.scratch = self._doubles(np.zeros(self.model.n_q + 2 * self.model.n_dof + 1))

@@ -18,10 +18,9 @@ STABLE = 4.5
 stability interval is 5.96)."""
 STABLE_DAMPING = 6.0
 """The same for the highest rate of decay (the real interval is 6.40)."""
-STEP_OVER_EVALUATION = 6.0
-"""Cost of a step of genalpha over that of an evaluation of eq 38, by tests/benchmarks/choice.py."""
-STEPS_OF_GENALPHA = 12.0
-"""genalpha needs this over sqrt(tol) steps for a radian of the motion as a whole, by the same."""
+COST_OF_RADAU = 6e3
+"""Evaluations of eq 38 that a radian of the motion as a whole costs radau at tol = 1e-4, by
+tests/benchmarks/choice.py; they grow with the third root of 1/tol."""
 ITERATIONS = 20
 
 
@@ -64,7 +63,34 @@ class Explicit:
         self.order = DOP853.error_estimator_order
 
 
-Integrator = GeneralisedAlpha | Explicit | EnergyMomentum
+class Radau:
+    """Radau IIA of three stages, of order 5 (Hairer & Wanner 1996, IV.5 and IV.8), from its nodes.
+
+    Steps are chosen by an embedded estimate of order 3; ``order`` is that of the error of a step.
+    """
+
+    name, order = "radau", 4
+
+    def __init__(self) -> None:
+        root = np.sqrt(6.0)
+        self.c = np.array([(4 - root) / 10, (4 + root) / 10, 1.0])
+        powers = np.arange(3)
+        values = self.c[:, None] ** powers  # of monomials at the nodes; their integrals from 0 to the nodes
+        self.A = (self.c[:, None] ** (powers + 1) / (powers + 1)) @ np.linalg.inv(values)
+        self.A_inverse = np.linalg.inv(self.A)
+        eigenvalues, vectors = np.linalg.eig(self.A_inverse)
+        real = int(np.argmin(np.abs(eigenvalues.imag)))
+        up = int(np.argmax(eigenvalues.imag))
+        self.gamma, self.alpha, self.beta = eigenvalues[real].real, eigenvalues[up].real, -eigenvalues[up].imag
+        self.T = np.column_stack([vectors[:, real].real, vectors[:, up].real, vectors[:, up].imag])
+        self.T_inverse = np.linalg.inv(self.T)
+        # weights with 1/gamma at the start, of order 3; less those of the method, over gamma's share and by A^-1
+        at_start = 1 / self.gamma
+        embedded = np.linalg.solve(values.T, 1 / (powers + 1) - at_start * (powers == 0))
+        self.error = (embedded - self.A[-1]) @ self.A_inverse / at_start
+
+
+Integrator = GeneralisedAlpha | Radau | Explicit | EnergyMomentum
 
 
 def choose(settings: RunSettings, scene: Scene, model: Model,
@@ -72,21 +98,22 @@ def choose(settings: RunSettings, scene: Scene, model: Model,
     """The integrator of a run, and why it is that one. "auto" takes the cheaper by stiffness and tolerance."""
     implicit = GeneralisedAlpha(settings.spectral_radius)
     if settings.integrator != "auto":
-        made = {"genalpha": lambda: implicit, "explicit": Explicit, "energy": EnergyMomentum}[settings.integrator]()
+        made = {"genalpha": lambda: implicit, "explicit": Explicit, "radau": Radau,
+                "energy": EnergyMomentum}[settings.integrator]()
         return made, "as asked for"
     if settings.step is not None:
-        return implicit, "the step is fixed: genalpha is stable at any"
+        return implicit, "the step is fixed: genalpha holds at any"
     if "spectral_radius" in settings.model_fields_set:
         return implicit, "spectral_radius is given, which is genalpha's"
     frequency, decay = fastest_rates(model, engine)
     slow = slowest_rate(scene, model, settings.duration)
     explicit_cost = 12 * max(frequency / STABLE, decay / STABLE_DAMPING)
-    implicit_cost = STEP_OVER_EVALUATION * STEPS_OF_GENALPHA * slow / np.sqrt(settings.tol)
+    implicit_cost = COST_OF_RADAU * slow * (1e-4 / settings.tol) ** (1 / 3)
     better = explicit_cost < implicit_cost
     reason = (f"stability asks the explicit method for {explicit_cost:.3g} evaluations a second (highest frequency "
               f"{frequency:.3g} rad/s" + (f", fastest decay {decay:.3g} 1/s" if decay else "")
-              + f"), tol asks genalpha for work like {implicit_cost:.3g}")
-    return (Explicit() if better else implicit), reason
+              + f"), tol asks radau for work like {implicit_cost:.3g}")
+    return (Explicit() if better else Radau()), reason
 
 
 def slowest_rate(scene: Scene, model: Model, duration: float) -> float:

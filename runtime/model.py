@@ -296,7 +296,7 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
         if step < settings.step * (1 - 1e-6):
             messages.append(f"step {settings.step:.6g} s was made {step:.6g} s, so that steps end on output times")
     method, reason = choose(settings, scene, model, engine)
-    set_up = time.perf_counter() - begin
+    set_up, cpu = time.perf_counter() - begin, time.process_time()
     status, change = engine.start(
         duration=settings.duration,
         output_step=output_step,
@@ -320,13 +320,15 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
         if stream is not None:
             stream.start(model, engine, partial(named, model, scene, engine), pace, watcher.happened)
         status = engine.advance(on_progress, pace.every, stream)
+    cpu, wall = time.process_time() - cpu, time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
     if status == "completed":
         for note in notes(engine, settings):
             messages.append(note)
             warnings.warn(note, FunicularWarning, stacklevel=3)
-    wall = time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
-    return recorded(model, scene, engine, settings, status, messages, reason, watcher,
-                    {"set_up": set_up, "total": wall})
+    recording = recorded(model, scene, engine, settings, status, messages, reason, watcher,
+                         {"set_up": set_up, "total": wall})
+    recording.report["solve_cpu_s"] = cpu  # of the integration alone, which other work on the machine leaves alone
+    return recording
 
 
 def _check_size(model: Model, settings: RunSettings, stream: Stream | None) -> float:

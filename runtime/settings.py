@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar
 from funicular.validation import Count, Part, one_of, positive, within
 from pydantic import Field, model_validator
 
-INTEGRATORS = ("auto", "genalpha", "explicit", "energy")
+INTEGRATORS = ("auto", "genalpha", "explicit", "radau", "energy")
 
 Duration = Annotated[float, positive("s")]
 
@@ -17,10 +17,12 @@ class RunSettings(Part):
 
     duration in s; tol: the error aimed at in positions, relative to the largest motion in the scene, by which
     the step is chosen; step: a fixed step in s instead, divided where need be so that steps end on output times;
-    output_step in s, a hundredth of the duration if not given; integrator: "genalpha" (implicit, order 2),
-    "explicit" (Runge-Kutta of order 8) or "auto", the cheaper of them for this scene and tol; spectral_radius of
-    genalpha at infinity: 1 keeps and 0 removes the fastest vibrations; initial: the start, "drawn" or "equilibrium"
-    (static, under the loads at t = 0); save: the file to write, or None.
+    output_step in s, a hundredth of the duration if not given; integrator: "explicit" (Runge-Kutta of order 8),
+    "radau" (implicit, order 5, for stiff scenes), "genalpha" (implicit, order 2, with control of the dissipation),
+    "energy" (order 2, keeps energy and momenta), or "auto": the cheaper of the first two for this scene and tol,
+    genalpha where step or spectral_radius is given; spectral_radius of genalpha at infinity: 1 keeps and 0 removes the
+    fastest vibrations; initial: the start, "drawn" or "equilibrium" (static, under the loads at t = 0); save: the file
+    to write, or None.
     """
 
     kind: ClassVar[str] = "run"

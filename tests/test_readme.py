@@ -29,6 +29,17 @@ def test_both_ways_of_writing_the_scene_are_one(tmp_path, monkeypatch, capsys):
     assert from_file.to_toml() == space["scene"].to_toml()
 
 
+def test_its_events_happen():
+    """On the scene above them, run a little longer than there."""
+    space = {"scene": loads(block("toml"), "README.md")}
+    (example,) = re.findall(r"^```python\n(.*?)^```", README.split("## Through time")[1].split("\n## ")[0],
+                            re.MULTILINE | re.DOTALL)
+    exec(example, space)
+    run = space["scene"].run(duration=1.0, tol=1e-4)
+    assert {event["name"] for event in run.events} >= {"low"}
+    assert run.status == "event" and run["A.position"][-1, 1] == pytest.approx(-0.03, abs=1e-9)
+
+
 def test_rest_vibrations_and_section_forces(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (example,) = re.findall(r"^```python\n(.*?)^```", README.split("## What a scene may hold")[1].split("\n## ")[0],

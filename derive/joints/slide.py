@@ -14,8 +14,8 @@ import numpy as np
 from funicular.derive import body_kernels
 from funicular.derive.axis import Axis
 from funicular.derive.frames import cross, tangent_frame
-from funicular.derive.spec import Element
 from funicular.derive.secant import STATES, Secant
+from funicular.derive.spec import Element
 from funicular.derive.stages import Derivation, Program, jacobian
 
 ENTRIES = {2: ("l", "m"), 3: ("l", "m1", "m2")}  # of C, by dim

@@ -55,7 +55,7 @@ static void copy_all(copier *c, fu_run *run)
  * not depend on it. */
 void fu_pause(fu_run *run)
 {
-    run->factored = 0;
+    run->factored = run->predictor = 0;
     run->h_factored = 0.0;
 }
 

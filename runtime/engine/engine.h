@@ -98,6 +98,10 @@ typedef struct {
     void (*dgbtrf)(int *, int *, int *, int *, double *, int *, int *, int *);
     void (*dgbtrs)(char *, int *, int *, int *, int *, double *, int *, int *, double *, int *, int *);
     void (*dgetrf)(int *, int *, double *, int *, int *, int *);
+    void (*zgbtrf)(int *, int *, int *, int *, void *, int *, int *, int *);
+    void (*zgbtrs)(char *, int *, int *, int *, int *, void *, int *, int *, void *, int *, int *);
+    void (*zgetrf)(int *, int *, void *, int *, int *, int *);
+    void (*zgetrs)(char *, int *, int *, void *, int *, int *, void *, int *, int *);
     void (*dgetrs)(char *, int *, int *, double *, int *, int *, double *, int *, int *);
     void (*dgemm)(char *, char *, int *, int *, int *, double *, double *, int *, double *, int *, double *, double *,
                   int *);
@@ -244,6 +248,19 @@ typedef struct {
     const double *error, *coarse;     /* stages + 1: the last is of the state at the end */
 } fu_tableau;
 
+/* Implicit Runge-Kutta method of three stages, stiffly accurate: A^-1 = T L T^-1 with L = gamma beside the block of
+ * alpha +- i beta; `error` over the stages' increments, beside gamma0 = 1/gamma times the rate at the start. */
+typedef struct {
+    double A[9], A_inverse[9], c[3], T[9], T_inverse[9], gamma, alpha, beta, error[3];
+} fu_collocation;
+
+/* A complex matrix laid out as an fu_system; real systems of two steps combine to it. */
+typedef struct {
+    void *K, *B, *C, *D, *X, *x; /* double _Complex; x: right side and solution */
+    double *D_real;              /* the real system's border before it was factored */
+    int *pivot_band, *pivot_border;
+} fu_complex_system;
+
 /* What the user watches: an entry of the state less a value, or a function of his. */
 enum { FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_CALL };
 typedef struct {
@@ -312,7 +329,7 @@ typedef struct {
     int conserves; /* energy, so that a slide that enters another element must not cost any: velocities stay */
     const fu_newton *newton; /* null where there is none */
 } fu_integrator;
-extern const fu_integrator fu_genalpha_method, fu_explicit_method, fu_energy_method;
+extern const fu_integrator fu_genalpha_method, fu_explicit_method, fu_energy_method, fu_radau_method;
 
 struct fu_run {
     const fu_model *model;
@@ -320,7 +337,10 @@ struct fu_run {
     int order;           /* of the error in positions as controlled */
     fu_genalpha scheme;
     fu_tableau tableau;
-    double *scratch;     /* of the integrator, within a step: checkpoints do not hold it */
+    fu_collocation collocation;
+    fu_complex_system complex_newton;
+    int per_step;        /* tol is of each step's error, and not of its rate */
+    double *scratch;     /* of the integrator: checkpoints do not hold it */
     int n_watches;
     const fu_watch *watches;
     double *watched;     /* per watch: its value at `now`, 0 where it has just passed */
@@ -343,11 +363,13 @@ struct fu_run {
     double dissipated, dissipated_power, external, external_power; /* J, W */
     double recorded; /* s: time of the last row */
     double motion, least_motion, extent; /* m: largest so far, assumed at least, largest coordinate of a position */
+    double allowed; /* m: error of the step */
     double newton_tolerance, round_off; /* of increments, m: where Newton may stop, and where it cannot go on */
     int factored, stopped_joint, turned;
     int struggle; /* steps rejected of late, less those taken */
     fu_failure failure; /* of the last step that failed */
     fu_books books;
+    int predictor; /* the scratch holds a last step's stages */
     int rest_start; /* for order.py only: start the scheme from zero accelerations */
 };
 
@@ -369,6 +391,10 @@ double fu_spread_size(fu_run *run);
 double fu_filtered_size(fu_run *run);
 double fu_row_unit(double inertia, double mass);
 void fu_joint_coordinates(const fu_model *model, const fu_state *state, int j, int *at);
+
+/* projection.c */
+int fu_find_slides(fu_run *run);
+int fu_return_to_joints(fu_run *run);
 
 /* books.c */
 double fu_external_power(fu_run *run, const fu_state *state, const double *reaction);

@@ -9,8 +9,6 @@
 
 #include <string.h>
 
-#define MOST_PROJECTIONS 10
-
 /* stage k of the scratch: rates of q, then of v */
 static double *stage(fu_run *run, int k)
 {
@@ -65,44 +63,7 @@ static int move_to(fu_run *run, const double *row, int n, double t, double h)
     combine(run, row, n, h, next->q, next->v);
     next->t = t;
     if (model->n_motions) fu_prescribe(model, next);
-    for (int j = 0; j < model->n_joints; ++j) {
-        next->s[j] = run->now.s[j] + (t - run->now.t) * run->s_slope[j];
-        if (fu_find_arc_length(model, next, j, &next->s[j])) return fu_fail(run, FU_LOST_RIDER, next->v, j);
-    }
-    return 0;
-}
-
-static void normalise(const fu_model *model, double *q)
-{
-    for (int b = 0; b < model->n_rigids; ++b) {
-        const fu_body *kernel = model->rigids[b].kernel;
-        double *p = q + model->rigids[b].configuration + kernel->dim, square = 0.0;
-        const int n = kernel->configuration - kernel->dim;
-        for (int i = 0; i < n; ++i) square += p[i] * p[i];
-        for (int i = 0; i < n; ++i) p[i] /= sqrt(square);
-    }
-}
-
-/* `next` back onto its joints: positions, s, velocities; 0 when that converged */
-static int project(fu_run *run)
-{
-    const fu_model *model = run->model;
-    fu_state *next = &run->next;
-    if (!model->n_joints) return 0;
-    for (int i = 0;; ++i) {
-        if (fu_project_positions(model, next, &run->accelerator, run->work))
-            return fu_fail(run, FU_MATRIX, next->v, -1);
-        const double size = fu_size(model, run->work);
-        if (!(size < 1e30) || i == MOST_PROJECTIONS) return fu_fail(run, FU_ITERATION, run->work, -1);
-        fu_move(model, next->q, run->work);
-        for (int j = 0; j < model->n_joints; ++j)
-            if (fu_find_arc_length(model, next, j, &next->s[j])) return fu_fail(run, FU_LOST_RIDER, next->v, j);
-        if (size <= fmax(run->round_off, run->newton_tolerance)) break;
-    }
-    if (fu_project_velocities(model, next, &run->accelerator, run->work))
-        return fu_fail(run, FU_MATRIX, next->v, -1);
-    for (int i = 0; i < model->n_dof; ++i) next->v[i] += run->work[i];
-    return 0;
+    return fu_find_slides(run);
 }
 
 static int start(fu_run *run)
@@ -131,8 +92,7 @@ static int step(fu_run *run, double h)
         keep(run, k, next);
     }
     if (move_to(run, tableau->b, n, run->now.t + h, h)) return 1;
-    normalise(model, next->q);
-    if (project(run)) return 1;
+    if (fu_return_to_joints(run)) return 1;
     if (fu_accelerations(model, next, &run->accelerator, next->acceleration, joints, reaction))
         return fu_fail(run, FU_MATRIX, next->v, -1);
     keep(run, n, next);

@@ -4,6 +4,8 @@
 #include <string.h>
 
 #define SMALLEST_STEP 1e-12 /* of the duration */
+#define FIRST_PART 1e-3     /* of the duration: errors in it share one allowance */
+#define SAFETY 0.5          /* what the logarithm costs */
 #define SHORT_STEP 1e-3     /* of the usual step */
 #define MOST_STRUGGLE 10000 /* steps rejected beyond those taken */
 #define DIVISIONS 8         /* of a fixed step that do not count */
@@ -203,12 +205,17 @@ static double allow(fu_run *run, double h)
 {
     run->round_off = 4e-16 * fmax(run->extent, run->motion);
     const double scale = fmax(run->motion, run->least_motion);
-    const double allowed = fmax(run->tol * scale * h / run->duration, run->round_off);
+    /* Of what is allowed until t, relative to the motion until then, a step gets the part h/t: local errors then add up
+     * to tol times the logarithm of the times at most. With h/duration the first instants, in which hardly anything has
+     * moved yet, would take most of the steps. */
+    const double share = SAFETY * h / fmax(run->now.t + h, FIRST_PART * run->duration);
+    const double allowed = fmax(run->tol * scale * (run->per_step ? 1.0 : share), run->round_off);
     /* what Newton leaves has the same sign step after step and acts like a force: it counts (T/h)^2 times in
-     * positions, the local error T/h times */
-    run->newton_tolerance = fmin(1e-2 * h / run->duration * (run->fixed_step > 0.0 ? run->last_error : allowed),
-                                 1e-14 * fmax(run->extent, scale)); /* keeps joints' residuals small at any tol */
-    return allowed;
+     * positions, the local error T/h times; a fixed step is solved as well as it can be, whatever its error */
+    const double extent = fmax(run->extent, scale);
+    run->newton_tolerance = run->fixed_step > 0.0 ? fmin(1e-2 * h / run->duration * run->last_error, 1e-14 * extent)
+                                                  : fmin(0.1 * h / run->duration * allowed, 1e-11 * extent);
+    return run->allowed = allowed;
 }
 
 /* The next step by the last one's error over what is allowed: the error falls with the power order + 1 of the step,
@@ -234,7 +241,9 @@ static int step_towards(fu_run *run, double target)
         double h = fitted(remaining, want);
         if ((h < smallest && remaining > smallest) || run->struggle > MOST_STRUGGLE) return FU_NO_CONVERGENCE;
         const double allowed = allow(run, h);
+        run->failure.cause = FU_NO_FAILURE;
         if (run->integrator->step(run, h)) {
+            if (!run->failure.cause) fu_fail(run, FU_ITERATION, run->next.v, -1);
             want = 0.5 * h;
             ++run->statistics.rejected;
             ++run->struggle;

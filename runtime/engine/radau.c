@@ -1,0 +1,430 @@
+/* Radau IIA of three stages, order 5, on the index-1 form of the equations (eq 38): implicit, for stiff scenes.
+ *
+ * Unknowns are the stages' velocities less those at the start, Z; configurations follow from them by the same
+ * quadrature (attitudes by a few sweeps of it), slides by C_l = 0, accelerations by eq 38. Newton's systems are, for
+ * each eigenvalue L of A^-1,
+ *
+ *   (M + (h/L) D + (h/L)^2 K) x + H' mu = M r,   H x = H r,   r = (h/L)^2 (T^-1 a - (L/h) T^-1 Z)
+ *
+ * with T^-1 Z growing by (L/h) x: the real one is that of any implicit step, the complex one has the same parts. What
+ * depends on the state in M^-1 H' but K is left out. The end of the step is its last stage, projected on the joints.
+ * (Hairer & Wanner 1996, IV.8.)
+ */
+#include "engine.h"
+
+#include <complex.h>
+#include <string.h>
+#undef I
+
+typedef double _Complex complex_;
+
+#define MOST_ITERATIONS 10
+#define SLOW 0.3          /* contraction above which the matrix is made anew for the next step */
+#define SAFE 3e-3         /* of the allowed error: what Newton may leave */
+#define SWEEPS 2          /* of the attitudes' quadrature for each iteration */
+
+enum { STAGES = 3 };
+
+/* Scratch: stages' increments of velocity, accelerations, their transforms (n_dof each), the last step's increments and
+ * its size, configurations (n_q each), powers. */
+typedef struct {
+    double *Z, *a, *w, *last, *q, *powers, *h_last, *unknowns;
+} workspace;
+
+static workspace space(const fu_run *run)
+{
+    const long n = run->model->n_dof, stages = STAGES * n;
+    double *p = run->scratch;
+    return (workspace){p,
+                       p + stages,
+                       p + 2 * stages,
+                       p + 3 * stages,
+                       p + 4 * stages,
+                       p + 4 * stages + STAGES * (long)run->model->n_q,
+                       p + 4 * stages + STAGES * (long)run->model->n_q + 2 * STAGES,
+                       p + 4 * stages + STAGES * (long)run->model->n_q + 2 * STAGES + 1};
+}
+
+static complex_ times_i(double value)
+{
+    return value * (complex_)_Complex_I;
+}
+
+/* complex += real factor * system, entry by entry */
+static void accumulate(fu_run *run, complex_ factor)
+{
+    const fu_system *s = &run->newton;
+    const fu_complex_system *c = &run->complex_newton;
+    const long band = (long)(3 * s->width + 1) * s->n, side = (long)s->n * s->m, corner = (long)s->m * s->m;
+    complex_ *K = c->K, *B = c->B, *C = c->C, *D = c->D;
+    for (long i = 0; i < band; ++i) K[i] += factor * s->K[i];
+    for (long i = 0; i < side; ++i) B[i] += factor * s->B[i];
+    for (long i = 0; i < side; ++i) C[i] += factor * s->C[i];
+    for (long i = 0; i < corner; ++i) D[i] += factor * s->D[i];
+}
+
+static int is_damped(const fu_model *model)
+{
+    int damped = 0;
+    for (int c = 0; c < model->n_cables; ++c) damped |= model->cables[c].tau > 0.0 || model->cables[c].mass_damping > 0.0;
+    for (int k = 0; k < model->n_springs; ++k) damped |= model->springs[k].damping > 0.0;
+    return damped || model->n_rigids; /* a body's gyroscopic moment goes with its velocity */
+}
+
+static int factor_complex(fu_run *run)
+{
+    const fu_system *s = &run->newton;
+    const fu_complex_system *c = &run->complex_newton;
+    const fu_lapack *lapack = run->model->lapack;
+    int n = s->n, m = s->m, width = s->width, rows = 3 * width + 1, info = 0;
+    complex_ *B = c->B, *C = c->C, *D = c->D, *X = c->X;
+    if (n) lapack->zgbtrf(&n, &n, &width, &width, c->K, &rows, c->pivot_band, &info);
+    if (info || !m) return info;
+    for (long i = 0; i < (long)n * m; ++i) X[i] = B[i];
+    if (n) lapack->zgbtrs("N", &n, &width, &width, &m, c->K, &rows, c->pivot_band, X, &n, &info);
+    for (int k = 0; k < m; ++k)
+        for (int r = 0; r < m; ++r)
+            for (int i = 0; i < n; ++i) D[(long)k * m + r] -= C[(long)r * n + i] * X[(long)k * n + i];
+    lapack->zgetrf(&m, &m, D, &m, c->pivot_border, &info);
+    return info;
+}
+
+static void solve_complex(fu_run *run)
+{
+    const fu_system *s = &run->newton;
+    const fu_complex_system *c = &run->complex_newton;
+    const fu_lapack *lapack = run->model->lapack;
+    int n = s->n, m = s->m, width = s->width, rows = 3 * width + 1, one = 1, info;
+    complex_ *x = c->x, *y = x + n, *C = c->C, *X = c->X;
+    if (n) lapack->zgbtrs("N", &n, &width, &width, &one, c->K, &rows, c->pivot_band, x, &n, &info);
+    if (!m) return;
+    for (int r = 0; r < m; ++r)
+        for (int i = 0; i < n; ++i) y[r] -= C[(long)r * n + i] * x[i];
+    lapack->zgetrs("N", &m, &one, c->D, &m, c->pivot_border, y, &m, &info);
+    for (int k = 0; k < m; ++k)
+        for (int i = 0; i < n; ++i) x[i] -= y[k] * X[(long)k * n + i];
+}
+
+/* The real and the complex matrix at `now`. Both are made of M + J, K and D, which systems of other weights differ by. */
+static int factor(fu_run *run, double h)
+{
+    const double begin = fu_clock();
+    const fu_collocation *method = &run->collocation;
+    const fu_system *s = &run->newton;
+    const fu_complex_system *c = &run->complex_newton;
+    const double real = h / method->gamma, rate = 1.0 / real;
+    const complex_ other = h / (method->alpha + times_i(method->beta));
+    const complex_ by_stiffness = other * other / (real * real), by_damping = other / real;
+    const int damped = is_damped(run->model);
+    memset(c->K, 0, sizeof(complex_) * (size_t)(3 * s->width + 1) * (size_t)s->n);
+    memset(c->B, 0, sizeof(complex_) * (size_t)s->n * (size_t)s->m);
+    memset(c->C, 0, sizeof(complex_) * (size_t)s->n * (size_t)s->m);
+    memset(c->D, 0, sizeof(complex_) * (size_t)s->m * (size_t)s->m);
+    fu_matrix(run, (fu_weights){1.0, 0.0, 2.0 * real * real});
+    accumulate(run, by_stiffness - 1.0);
+    if (damped) {
+        fu_matrix(run, (fu_weights){1.0, 0.0, real * real});
+        accumulate(run, 2.0 - by_stiffness - by_damping);
+    }
+    fu_matrix(run, (fu_weights){1.0, rate, real * real});
+    accumulate(run, damped ? by_damping : 2.0 - by_stiffness);
+    memcpy(c->D_real, s->D, sizeof(double) * (size_t)s->m * (size_t)s->m);
+    int info = fu_system_factor_band(&run->newton, run->model->lapack);
+    if (!info) info = fu_system_factor_border(&run->newton, run->model->lapack);
+    if (!info) info = factor_complex(run);
+    run->factored = !info;
+    run->h_factored = h;
+    run->statistics.factorisations += 2;
+    run->statistics.time_factor += fu_clock() - begin;
+    return info;
+}
+
+/* run->rhs = [M r; H r] of dofs r that keep to the supports */
+static void right_side(fu_run *run, const double *r, double *unknowns)
+{
+    const fu_model *model = run->model;
+    const fu_system *s = &run->newton;
+    const int beyond = model->n_band + model->n_border_dof;
+    for (int i = 0; i < model->n_dof; ++i)
+        if (model->place[i] >= 0) unknowns[model->place[i]] = r[i];
+    for (int i = 0; i < model->n_dof; ++i) run->work[i] = r[i];
+    for (int k = 0; k < model->n_motions; ++k) run->work[model->motions[k].dof] = 0.0;
+    fu_mass_times(model, run->work, run->psi);
+    fu_gather(model, run->psi, run->rhs);
+    for (int i = 0; i < model->n_extra; ++i) run->rhs[beyond + i] = 0.0;
+    for (int j = 0; j < model->n_joints; ++j)
+        for (int d = 0; d < model->joints[j].kernel->dim; ++d) {
+            const int row = model->n_border_dof + model->joints[j].unknown + 1 + d;
+            const double *along = s->C + (long)row * s->n;
+            double sum = 0.0;
+            for (int i = 0; i < s->n; ++i) sum += along[i] * unknowns[i];
+            for (int i = 0; i < model->n_border_dof; ++i)
+                sum += run->complex_newton.D_real[(long)i * s->m + row] * unknowns[s->n + i];
+            run->rhs[s->n + row] = sum;
+        }
+}
+
+/* A stage's dofs, moved by the quadrature of velocities; attitudes by sweeps over those at hand. */
+static void configure(fu_run *run, workspace w, double h)
+{
+    const fu_model *model = run->model;
+    const fu_collocation *method = &run->collocation;
+    const fu_state *now = &run->now;
+    const int n = model->n_dof, n_flexible = model->n_rigids ? model->rigids[0].dof : n;
+    for (int k = 0; k < STAGES; ++k) {
+        double *q = w.q + (long)k * model->n_q;
+        const double *row = method->A + STAGES * k;
+        for (int i = 0; i < n_flexible; ++i)
+            q[i] = now->q[i] + h * (method->c[k] * now->v[i] + row[0] * w.Z[i] + row[1] * w.Z[n + i] +
+                                    row[2] * w.Z[2 * n + i]);
+    }
+    for (int sweep = 0; sweep < SWEEPS; ++sweep)
+        for (int b = 0; b < model->n_rigids; ++b) {
+            const fu_rigid *body = &model->rigids[b];
+            const int at = body->configuration, size = body->kernel->configuration;
+            double rates[STAGES][7], velocity[6];
+            for (int k = 0; k < STAGES; ++k) {
+                for (int i = 0; i < body->kernel->velocity; ++i)
+                    velocity[i] = now->v[body->dof + i] + w.Z[(long)k * n + body->dof + i];
+                fu_body_rate(body->kernel, w.q + (long)k * model->n_q + at, velocity, rates[k]);
+            }
+            for (int k = 0; k < STAGES; ++k) {
+                const double *row = method->A + STAGES * k;
+                for (int i = 0; i < size; ++i)
+                    w.q[(long)k * model->n_q + at + i] =
+                        now->q[at + i] + h * (row[0] * rates[0][i] + row[1] * rates[1][i] + row[2] * rates[2][i]);
+            }
+        }
+}
+
+/* `next` at stage k, without accelerations; 0 when its slides were found */
+static int place_stage(fu_run *run, workspace w, int k, double h)
+{
+    const fu_model *model = run->model;
+    fu_state *next = &run->next;
+    memcpy(next->q, w.q + (long)k * model->n_q, sizeof(double) * (size_t)model->n_q);
+    for (int i = 0; i < model->n_dof; ++i) next->v[i] = run->now.v[i] + w.Z[(long)k * model->n_dof + i];
+    next->t = run->now.t + run->collocation.c[k] * h;
+    if (model->n_motions) fu_prescribe(model, next);
+    return fu_find_slides(run);
+}
+
+/* accelerations of all stages; 0 when they were found */
+static int evaluate(fu_run *run, workspace w, double h)
+{
+    const double begin = fu_clock();
+    const fu_model *model = run->model;
+    fu_state *next = &run->next;
+    double *reaction = model->n_motions ? run->force : 0;
+    configure(run, w, h);
+    for (int k = 0; k < STAGES; ++k) {
+        if (place_stage(run, w, k, h)) return 1;
+        if (fu_accelerations(model, next, &run->accelerator, next->acceleration, 0, reaction)) return 1;
+        memcpy(w.a + (long)k * model->n_dof, next->acceleration, sizeof(double) * (size_t)model->n_dof);
+        w.powers[2 * k] = fu_dissipation(model, next->q, next->v);
+        w.powers[2 * k + 1] = fu_external_power(run, next, reaction);
+    }
+    run->statistics.evaluations += STAGES;
+    run->statistics.time_residual += fu_clock() - begin;
+    return 0;
+}
+
+/* One Newton correction of the stages; returns its size as a length. */
+static double correct(fu_run *run, workspace w, double h)
+{
+    const double begin = fu_clock();
+    const fu_model *model = run->model;
+    const fu_collocation *method = &run->collocation;
+    const int n = model->n_dof, all = run->newton.n + run->newton.m;
+    const double real = h / method->gamma;
+    const complex_ eigenvalue = method->alpha + times_i(method->beta), other = h / eigenvalue;
+    complex_ *x = run->complex_newton.x;
+    for (int i = 0; i < n; ++i)
+        for (int r = 0; r < STAGES; ++r) {
+            const double *row = method->T_inverse + STAGES * r;
+            w.w[(long)r * n + i] = 0.0;
+            for (int k = 0; k < STAGES; ++k) {
+                const double *A = method->A_inverse + STAGES * k;
+                w.w[(long)r * n + i] += row[k] * (w.a[(long)k * n + i] - (A[0] * w.Z[i] + A[1] * w.Z[n + i] +
+                                                                       A[2] * w.Z[2 * n + i]) / h);
+            }
+        }
+    for (int i = 0; i < n; ++i) {
+        const complex_ r = other * other * (w.w[n + i] + times_i(w.w[2 * n + i]));
+        w.w[i] *= real * real;
+        w.w[n + i] = creal(r);
+        w.w[2 * n + i] = cimag(r);
+    }
+    for (int part = 1; part < STAGES; ++part) {
+        right_side(run, w.w + (long)part * n, w.unknowns);
+        for (int i = 0; i < all; ++i) x[i] = part == 1 ? run->rhs[i] : x[i] + times_i(run->rhs[i]);
+    }
+    solve_complex(run);
+    right_side(run, w.w, w.unknowns);
+    fu_system_solve(&run->newton, model->lapack, run->rhs);
+    fu_spread(model, run->rhs, w.w);
+    for (int i = 0; i < n; ++i) w.w[i] /= real;
+    for (int part = 1; part < STAGES; ++part) {
+        for (int i = 0; i < all; ++i) run->rhs[i] = part == 1 ? creal(x[i] / other) : cimag(x[i] / other);
+        fu_spread(model, run->rhs, w.w + (long)part * n);
+    }
+    for (int i = 0; i < model->n_extra; ++i) run->rhs[model->n_band + model->n_border_dof + i] = 0.0;
+    double largest = 0.0;
+    for (int k = 0; k < STAGES; ++k) {
+        const double *row = method->T + STAGES * k;
+        for (int i = 0; i < n; ++i) {
+            const double change = row[0] * w.w[i] + row[1] * w.w[n + i] + row[2] * w.w[2 * n + i];
+            w.Z[(long)k * n + i] += change;
+            run->work[i] = h * change;
+        }
+        const double size = fu_size(model, run->work);
+        if (!(size <= largest)) largest = size;
+    }
+    run->statistics.time_solve += fu_clock() - begin;
+    return largest;
+}
+
+/* Stages from the last step's polynomial, else from the acceleration at hand. */
+static void predict(fu_run *run, workspace w, double h)
+{
+    const fu_model *model = run->model;
+    const fu_collocation *method = &run->collocation;
+    const int n = model->n_dof;
+    const double *c = method->c;
+    for (int k = 0; k < STAGES; ++k) {
+        double weight[STAGES];
+        const double x = run->predictor ? 1.0 + c[k] * h / *w.h_last : 0.0;
+        for (int j = 0; j < STAGES; ++j) { /* Lagrange on 0 and the nodes */
+            weight[j] = x / c[j];
+            for (int m = 0; m < STAGES; ++m)
+                if (m != j) weight[j] *= (x - c[m]) / (c[j] - c[m]);
+        }
+        for (int i = 0; i < n; ++i)
+            w.Z[(long)k * n + i] = run->predictor
+                ? weight[0] * w.last[i] + weight[1] * w.last[n + i] + weight[2] * w.last[2 * n + i] - w.last[2 * n + i]
+                : c[k] * h * run->now.acceleration[i];
+        memcpy(w.q + (long)k * model->n_q, run->now.q, sizeof(double) * (size_t)model->n_q);
+    }
+}
+
+static int iterate(fu_run *run, workspace w, double h)
+{
+    double last = 0.0;
+    const double enough = fmax(run->fixed_step > 0.0 ? run->newton_tolerance : SAFE * run->allowed, run->round_off);
+    predict(run, w, h);
+    for (int i = 0; i < MOST_ITERATIONS; ++i) {
+        if (evaluate(run, w, h)) return 1;
+        const double size = correct(run, w, h);
+        ++run->statistics.newton_iterations;
+        if (!(size < 1e30)) return fu_fail(run, FU_ITERATION, run->work, -1);
+        double ratio = 1.0;
+        if (i > 0) {
+            ratio = size / last;
+            if (ratio >= 2.0 || (ratio >= 1.0 && size > 100.0 * run->round_off && i > 2))
+                return fu_fail(run, FU_ITERATION, run->work, -1);
+            run->contraction = ratio < 1e-3 ? 1e-3 : ratio > 0.9 ? 0.9 : ratio;
+        }
+        if (size * run->contraction / (1.0 - run->contraction) <= enough || size <= run->round_off) {
+            if (run->contraction > SLOW) run->factored = 0;
+            return 0;
+        }
+        last = size;
+    }
+    return fu_fail(run, FU_ITERATION, run->work, -1);
+}
+
+static int start(fu_run *run)
+{
+    run->factored = run->predictor = 0;
+    return FU_RUNNING;
+}
+
+/* `next` as `now`, for what is linearised there and for what a step does not change */
+static void begin_step(fu_run *run)
+{
+    const fu_model *model = run->model;
+    const fu_state *now = &run->now;
+    fu_state *next = &run->next;
+    next->t = now->t;
+    memcpy(next->q, now->q, sizeof(double) * (size_t)model->n_q);
+    memcpy(next->v, now->v, sizeof(double) * (size_t)model->n_dof);
+    memcpy(next->acceleration, now->acceleration, sizeof(double) * (size_t)model->n_dof);
+    memcpy(next->s, now->s, sizeof(double) * (size_t)model->n_joints);
+    memcpy(next->f, now->f, 3 * sizeof(double) * (size_t)model->n_joints);
+    memcpy(next->spring, now->spring, 3 * sizeof(double) * (size_t)model->n_springs);
+    memcpy(next->element, now->element, sizeof(int) * (size_t)model->n_joints);
+    memcpy(next->director, now->director, 3 * sizeof(double) * (size_t)model->n_joints);
+}
+
+static int step(fu_run *run, double h)
+{
+    const fu_model *model = run->model;
+    const workspace w = space(run);
+    fu_state *next = &run->next;
+    fu_joint_output *joints = (fu_joint_output *)run->accelerator.joints;
+    if (fabs(h - run->h_factored) > 1e-6 * h) run->factored = 0;
+    for (int fresh = !run->factored;; fresh = 1) {
+        begin_step(run);
+        if (fresh) {
+            if (factor(run, h)) return 1;
+            run->contraction = 0.5; /* nothing is known yet */
+        }
+        const int failed = iterate(run, w, h);
+        if (!failed) break;
+        run->factored = run->predictor = 0;
+        if (fresh) {
+            ++run->statistics.newton_failures;
+            return 1;
+        }
+    }
+    configure(run, w, h);
+    if (place_stage(run, w, STAGES - 1, h) || fu_return_to_joints(run)) return 1;
+    if (fu_accelerations(model, next, &run->accelerator, next->acceleration, joints, model->n_motions ? run->force : 0))
+        return 1;
+    for (int j = 0; j < model->n_joints; ++j) memcpy(next->f + 3 * j, joints[j].force, sizeof joints[j].force);
+    fu_spring_state(model, next);
+    return 0;
+}
+
+/* (L/h - J)^-1 of the rate at the start and what the stages say of it, for the real L: an estimate of order 3, damped
+ * where the scene is stiff. */
+static double error(fu_run *run, double h)
+{
+    const fu_model *model = run->model;
+    const fu_collocation *method = &run->collocation;
+    const workspace w = space(run);
+    const int n = model->n_dof;
+    const double real = h / method->gamma, *e = method->error;
+    for (int i = 0; i < n; ++i) {
+        double by_velocity = run->now.acceleration[i], by_position = run->now.v[i];
+        for (int k = 0; k < STAGES; ++k) {
+            const double *row = method->A + STAGES * k;
+            by_velocity += e[k] * w.Z[(long)k * n + i] / h;
+            by_position += e[k] * (method->c[k] * run->now.v[i] + row[0] * w.Z[i] + row[1] * w.Z[n + i] +
+                                   row[2] * w.Z[2 * n + i]);
+        }
+        w.w[i] = real * real * by_velocity + real * by_position;
+    }
+    right_side(run, w.w, w.unknowns);
+    fu_system_solve(&run->newton, model->lapack, run->rhs);
+    for (int i = 0; i < model->n_extra; ++i) run->rhs[model->n_band + model->n_border_dof + i] = 0.0;
+    return fu_spread_size(run);
+}
+
+/* Powers by the stages' weights, the last row of A; and the stages, for the next prediction. */
+static void book(fu_run *run, double h)
+{
+    const workspace w = space(run);
+    const double *b = run->collocation.A + STAGES * (STAGES - 1);
+    for (int k = 0; k < STAGES; ++k) {
+        run->dissipated += h * b[k] * w.powers[2 * k];
+        run->external += h * b[k] * w.powers[2 * k + 1];
+    }
+    run->dissipated_power = fu_dissipation(run->model, run->next.q, run->next.v);
+    run->external_power = fu_external_power(run, &run->next, run->force);
+    memcpy(w.last, w.Z, sizeof(double) * STAGES * (size_t)run->model->n_dof);
+    *w.h_last = h;
+    run->predictor = 1;
+}
+
+const fu_integrator fu_radau_method = {"radau", start, step, error, book, 0, 0};

@@ -1,0 +1,285 @@
+"""Error against time, side by side with Exudyn, interleaved in one run, one thread each.
+
+    pip install '.[bench]' && python tests/benchmarks/exudyn_side_by_side.py [--out FILE.csv] [--plot FILE.png]
+        [--cases pendulum] [--repetitions 3] [--limit 20]
+
+Scenes: the flexible pendulum (CASES: D0) and the sliding mass (S1), with Exudyn's cable, which is cable12 here with
+strain="engineering", but for three Gauss points where here are five for the bending. Compared is a path, the tip's or
+the mass's; its error is the largest distance from the converged path of the same mesh over 50 times, over the largest
+motion. Each code has its own converged path: here that of the explicit integration with a small tolerance, there the
+limit of its steps. The second table has how far these are from each other, and how far each is converged: ours by
+another tolerance, theirs by the limit that is found without its finest step.
+
+Set are fixed steps there, tolerances and fixed steps here. Times are CPU seconds of the solver, set-up apart, medians
+of repetitions that take turns. Ours contains the 50 outputs, theirs none. A time to reach an error is interpolated on
+the curve; one in brackets was not reached and is extrapolated from the two finest points.
+"""
+
+import os
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+from statistics import median
+
+import exudyn_models as peer
+import numpy as np
+from funicular import FunicularError, Material, Rectangle, Scene
+from funicular.bench_outputs import distance, largest_change
+from funicular.settings import INTEGRATORS
+from sliding import sliding_mass
+from table import parser, show
+
+DURATION, OUTPUTS = 1.0, 50
+TARGETS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
+TOLS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
+STEPS = (50, 100, 200, 500, 1000, 2000, 4000, 8000, 16000, 32000, 64000)
+REFERENCE_TOLS = (1e-6, 1e-8)
+
+
+def pendulum(elements: int, youngs_modulus: float) -> Scene:
+    """A cable of 1 m, pinned at one end and let go from the horizontal."""
+    scene = Scene()
+    rope = scene.cable("wire", start=(0, 0, 0), end=(1, 0, 0), elements=elements, element="cable12",
+                       strain="engineering", section=Rectangle(height=0.02, width=0.02),
+                       material=Material(youngs_modulus=youngs_modulus, poisson_ratio=0.0, density=7200))
+    scene.pin(rope, s=0.0)
+    return scene
+
+
+@dataclass
+class Case:
+    """A scene here and there; order: with which Exudyn's error falls with the step."""
+
+    name: str
+    elements: int
+    ours: Callable[[], Scene]
+    theirs: Callable[[], peer.System]
+    order: int
+
+    def path(self, run) -> np.ndarray:
+        """(time, 3): what is compared."""
+        return run["A.position"] if "A.position" in run else run["wire.nodal_vectors"][:, -1, 0]
+
+
+def cases() -> list[Case]:
+    """All of them."""
+    made = [Case(f"pendulum, E {modulus:.0e}", n, partial(pendulum, n, modulus), partial(peer.pendulum, n, modulus), 2)
+            for modulus in (2e6, 7e8) for n in (8, 32, 128)]
+    for name, modulus, mass in (("sliding mass", 0.4e9, 1.0), ("sliding mass, flexible", 2e6, 5.0)):
+        made += [Case(name, n, partial(sliding_mass, n, strain="engineering", youngs_modulus=modulus, mass=mass),
+                      partial(peer.sliding_mass, n, modulus, mass), 1) for n in (3, 12, 48)]
+    return made
+
+
+class TooLongError(Exception):
+    """A run took longer than the limit."""
+
+
+@dataclass
+class Point:
+    """One setting of one code: how it is run, its times and its error."""
+
+    method: str
+    setting: float
+    run: Callable[[], tuple[np.ndarray | None, float]]
+    path: np.ndarray | None = None
+    times: list[float] = field(default_factory=list)
+    error: float = np.nan
+
+    @property
+    def seconds(self) -> float:
+        """Median CPU seconds."""
+        return median(self.times)
+
+
+def integrate(case: Case, limit: float, **settings) -> tuple[np.ndarray, float]:
+    """Path and CPU seconds here. Raises TooLongError, FunicularError."""
+    begin = time.process_time()
+
+    def watch(reached: float) -> None:
+        if time.process_time() - begin > limit:
+            raise TooLongError
+
+    run = case.ours().run(DURATION, output_step=DURATION / OUTPUTS, progress=watch, **settings)
+    return case.path(run), run.report["solve_cpu_s"]
+
+
+def their_turn(case: Case, steps: int) -> tuple[None, float]:
+    """CPU seconds there; the path is taken apart, since sensors take time."""
+    return None, peer.cpu_seconds(case.theirs, DURATION, steps)
+
+
+def curve(settings, make: Callable[[float], Point], limit: float) -> list[Point]:
+    """Points of a method, from the coarsest setting on, until one is over the limit or fails."""
+    points = []
+    for setting in settings:
+        point = make(setting)
+        try:
+            path, seconds = point.run()
+        except TooLongError:
+            print(f"  {point.method} {setting:g}: over the limit", flush=True)
+            break
+        except (FunicularError, peer.StoppedError) as stop:
+            print(f"  {point.method} {setting:g}: {stop}", flush=True)
+            continue
+        point.path, point.times = path if path is not None else point.path, [seconds]
+        points.append(point)
+        if seconds > limit / 2:
+            break
+    return points
+
+
+def our_curves(case: Case, limit: float) -> dict[str, list[Point]]:
+    """Work and precision here: each integrator by its tolerance, generalised-alpha by its step as well."""
+    curves = {}
+    for integrator in (name for name in INTEGRATORS if name != "auto"):
+        curves[integrator] = curve(TOLS, lambda tol, name=integrator: Point(
+            f"{name} tol", tol, partial(integrate, case, limit, integrator=name, tol=tol)), limit)
+    curves["genalpha step"] = curve((DURATION / n for n in STEPS), lambda step: Point(
+        "genalpha step", step, partial(integrate, case, limit, integrator="genalpha", step=step)), limit)
+    return curves
+
+
+def their_curve(case: Case, limit: float) -> list[Point]:
+    """Work and precision there."""
+    points = curve(STEPS, lambda n: Point("exudyn", DURATION / n, partial(their_turn, case, n)), limit)
+    kept = []
+    for point in points:
+        try:
+            point.path = peer.trajectory(case.theirs, DURATION, round(DURATION / point.setting), OUTPUTS)
+        except peer.StoppedError as stop:
+            print(f"  exudyn step {point.setting:g}: {stop}", flush=True)
+            continue
+        kept.append(point)
+    return kept
+
+
+def limit_of(points: list[Point], order: int) -> tuple[np.ndarray, float]:
+    """The path that steps halved again and again lead to, and how much it differs without the finest step."""
+    def extrapolated(coarse: Point, fine: Point) -> np.ndarray:
+        return fine.path + (fine.path - coarse.path) / (2**order - 1)
+
+    last, before = extrapolated(*points[-2:]), extrapolated(*points[-3:-1])
+    return last, distance(last, before)
+
+
+def converged(case: Case) -> tuple[np.ndarray, float]:
+    """Our path, and how far two tolerances agree on it."""
+    loose, tight = (integrate(case, np.inf, integrator="explicit", tol=tol)[0] for tol in REFERENCE_TOLS)
+    return tight, distance(loose, tight)
+
+
+def time_to(points: list[Point], target: float) -> tuple[float, bool]:
+    """CPU seconds to reach an error, on the lower envelope of points; whether that was reached."""
+    ordered, best = sorted(points, key=lambda p: p.seconds), []
+    for point in ordered:
+        if not best or point.error < best[-1].error:
+            best.append(point)
+    if not best:
+        return np.nan, False
+    if target >= best[0].error:
+        return best[0].seconds, True
+    errors, seconds = np.log([p.error for p in best]), np.log([p.seconds for p in best])
+    if target >= best[-1].error:
+        return float(np.exp(np.interp(-np.log(target), -errors, seconds))), True
+    if len(best) < 2:
+        return np.nan, False
+    slope = (seconds[-1] - seconds[-2]) / (errors[-2] - errors[-1])
+    return float(np.exp(seconds[-1] + slope * (errors[-1] - np.log(target)))), False
+
+
+def compare(case: Case, repetitions: int, limit: float) -> tuple[list[dict], dict, dict[str, list[Point]]]:
+    """Rows of times to reach errors, how converged that is, and all curves."""
+    ours, theirs = our_curves(case, limit), their_curve(case, limit)
+    everything = [*theirs, *(point for points in ours.values() for point in points)]
+    for _ in range(repetitions - 1):
+        for point in everything:
+            if point.seconds < limit / 10:
+                point.times.append(point.run()[1])
+    exact, agreement = converged(case)
+    their_exact, their_agreement = limit_of(theirs, case.order)
+    motion = largest_change(exact)
+    for points in ours.values():
+        for point in points:
+            point.error = distance(point.path, exact) / motion
+    for point in theirs:
+        point.error = distance(point.path, their_exact) / motion
+    rows = []
+    for target in TARGETS:
+        found = {name: time_to(points, target) for name, points in ours.items()}
+        reached = {name: seconds for name, (seconds, there) in found.items() if there}
+        peer_seconds, there = time_to(theirs, target)
+        best = min(reached, key=reached.get, default=None)
+        rows.append({"case": case.name, "elements": case.elements, "error": target,
+                     **{f"{name} / s": _bracketed(*found[name]) for name in found},
+                     "exudyn / s": _bracketed(peer_seconds, there), "best": best or "",
+                     "times faster": peer_seconds / reached[best] if best else np.nan})
+    check = {"case": case.name, "elements": case.elements, "theirs from ours": distance(exact, their_exact) / motion,
+             "theirs uncertain by": their_agreement / motion, "ours uncertain by": agreement / motion}
+    return rows, check, ours | {"exudyn": theirs}
+
+
+def _bracketed(seconds: float, reached: bool) -> str:
+    text = f"{seconds:.2g}"
+    return text if reached or np.isnan(seconds) else f"({text})"
+
+
+def draw(curves: dict[tuple[str, int], dict[str, list[Point]]], path: Path) -> None:
+    """A panel a case: error over CPU seconds."""
+    from funicular.plot import STYLE
+    from matplotlib import pyplot, rc_context
+
+    columns = 3
+    lines = -(-len(curves) // columns)
+    names = list(dict.fromkeys(name for each in curves.values() for name in each))
+    with rc_context(STYLE):
+        figure, panels = pyplot.subplots(lines, columns, figsize=(10, 2.6 * lines), sharey=True, squeeze=False)
+        for axes, ((case, elements), each) in zip(panels.flat, curves.items(), strict=False):
+            for name, points in each.items():
+                theirs = name == "exudyn"
+                axes.loglog([p.seconds for p in points], [p.error for p in points], marker="s" if theirs else "o",
+                            markersize=3.5, color="0.25" if theirs else f"C{names.index(name)}", label=name)
+            axes.set_title(f"{case}, {elements} elements", fontsize=9)
+            axes.set_ylim(1e-8, 0.2)
+            axes.margins(x=0.06)
+        for axes in panels[:, 0]:
+            axes.set_ylabel("error / largest motion")
+        for axes in panels.flat[max(len(curves) - columns, 0) : len(curves)]:
+            axes.set_xlabel("CPU time / s")
+        for axes in panels.flat[len(curves) :]:
+            axes.set_visible(False)
+        handles = {label: handle for axes in panels.flat for handle, label in
+                   zip(*axes.get_legend_handles_labels(), strict=True)}
+        figure.legend(handles.values(), handles.keys(), loc="outside upper center", ncols=len(names))
+        figure.savefig(path, dpi=110)
+
+
+def main() -> None:
+    """Measure, print, draw."""
+    options = parser(__doc__, repetitions=(3, "of each run, but for those that take longer than a tenth of the limit"),
+                     limit=(20, "CPU seconds that a run may take"))
+    options.add_argument("--cases", default="", metavar="TEXT", help="only those with TEXT in their name")
+    options.add_argument("--elements", type=int, help="only this number of elements")
+    options.add_argument("--plot", type=Path, metavar="FILE.png", help="draw the picture")
+    options = options.parse_args()
+    rows, checks, curves = [], [], {}
+    for case in cases():
+        if options.cases in case.name and options.elements in (None, case.elements):
+            print(f"{case.name}, {case.elements} elements", flush=True)
+            found, check, curves[case.name, case.elements] = compare(case, options.repetitions, options.limit)
+            rows, checks = rows + found, [*checks, check]
+    show(rows, options.out)
+    show(checks)
+    if options.plot:
+        draw(curves, options.plot)
+        print(f"written: {options.plot}")
+
+
+if __name__ == "__main__":
+    main()
