@@ -686,7 +686,7 @@ cdef class Engine:
             self._collocation(method)
         elif method.name == "energy":
             run.integrator = &fu_energy_method
-            run.scratch = self._doubles(np.zeros(self.model.n_q + 2 * self.model.n_dof + 1))
+            run.scratch = self._doubles(np.zeros(self.model.n_q + 2 * self.model.n_dof))
         else:
             run.integrator = &fu_genalpha_method
             run.scheme.alpha_m, run.scheme.alpha_f, run.scheme.beta, run.scheme.gamma = method.parameters

@@ -16,15 +16,15 @@
 
 #include <string.h>
 
-/* Scratch: the middle of the step, and how long before `now` the acceleration there belongs. */
+/* Scratch: the middle of the step. */
 typedef struct {
-    double *q, *v, *force, *since;
+    double *q, *v, *force;
 } middle_view;
 
 static middle_view middle(const fu_run *run)
 {
-    double *q = run->scratch, *v = q + run->model->n_q, *force = v + run->model->n_dof;
-    return (middle_view){q, v, force, force + run->model->n_dof};
+    double *q = run->scratch, *v = q + run->model->n_q;
+    return (middle_view){q, v, v + run->model->n_dof};
 }
 
 static double sigma(double h)
@@ -187,7 +187,7 @@ static const fu_newton newton = {predict, kinematics, residual, matrix, apply, 2
 
 static int start(fu_run *run)
 {
-    *middle(run).since = 0.0;
+    run->since = 0.0;
     run->factored = 0;
     return FU_RUNNING;
 }
@@ -201,7 +201,7 @@ static int step(fu_run *run, double h)
 /* Local error of positions, m: h^3/12 times the rate of acceleration, from the means of this step and the one before. */
 static double error(fu_run *run, double h)
 {
-    const double factor = h * h * h / 12.0 / (0.5 * h + *middle(run).since);
+    const double factor = h * h * h / 12.0 / (0.5 * h + run->since);
     for (int i = 0; i < run->model->n_dof; ++i)
         run->work[i] = factor * (run->next.acceleration[i] - run->now.acceleration[i]);
     return fu_filtered_size(run);
@@ -214,7 +214,7 @@ static void book(fu_run *run, double h)
     const fu_state *now = &run->now, *next = &run->next;
     const middle_view m = middle(run);
     double force[3];
-    *m.since = 0.5 * h;
+    run->since = 0.5 * h;
     for (int i = 0; i < model->n_dof; ++i) m.force[i] = 0.0;
     fu_rate_forces(model, m.q, m.v, m.force);
     const int n_flexible = model->n_rigids ? model->rigids[0].dof : model->n_dof; /* gyroscopic moments do no work */

@@ -364,6 +364,7 @@ struct fu_run {
     double recorded; /* s: time of the last row */
     double motion, least_motion, extent; /* m: largest so far, assumed at least, largest coordinate of a position */
     double allowed; /* m: error of the step */
+    double since;   /* s: of the energy method, how long before `now` the accelerations there belong */
     double newton_tolerance, round_off; /* of increments, m: where Newton may stop, and where it cannot go on */
     int factored, stopped_joint, turned;
     int struggle; /* steps rejected of late, less those taken */
