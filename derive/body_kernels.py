@@ -74,8 +74,8 @@ class Step:
 
     def jacobian(self, arm: np.ndarray) -> np.ndarray:
         """By translation and Cayley vector, of a point on this arm."""
-        return np.concatenate([np.eye(len(arm), dtype=int), np.stack([cross(axis, arm) for axis in self.axes.T], axis=1)],
-                              axis=1)
+        turns = np.stack([cross(axis, arm) for axis in self.axes.T], axis=1)
+        return np.concatenate([np.eye(len(arm), dtype=int), turns], axis=1)
 
 
 def discrete_point(body: ModuleType) -> Program:

@@ -100,7 +100,7 @@ class Kernels:
 
     def discrete_force(self) -> Program:
         """Between two configurations: conserves energy and momenta in a step from one to the other."""
-        p = self._program("discrete_force", "discrete gradient of the energy: f . (e_next - e) is its difference", "eq 8")
+        p = self._program("discrete_force", "discrete gradient of the energy, f . (e_next - e) = U_next - U", "eq 8")
         w, A, *c = self._ends(p)
         f = self.law.discrete_forces(p, A, *c, w)
         p.output("f", self._nodal(p, f, w), "N, N m", "dU/de where e_next is e")
@@ -108,7 +108,7 @@ class Kernels:
 
     def step_stiffness(self) -> Program:
         """For the Newton matrix of a step with discrete_force."""
-        p = self._program("step_stiffness", "k, elastic_tangent half-way + k (x) I: tangent with the mean stress", "eq 8")
+        p = self._program("step_stiffness", "k: elastic_tangent half-way + k (x) I has the mean stress", "eq 8")
         w, A, *c = self._ends(p)
         change = [p.vector(f"change_{name}", b - a) for name, a, b in zip(self.gram.names, *c, strict=True)]
         block = self.law.stress_of_turning(p, A, np.array(change), w)

@@ -123,7 +123,8 @@ def _root(expr: sp.Expr) -> sp.Expr:
     return expr.base if expr.exp.is_Integer else sp.sqrt(expr.base)
 
 
-def staged(vectors: np.ndarray) -> tuple[Program, np.ndarray]:
-    """A program for `Secant` whose one input c has the shape of these vectors; and c."""
+def staged(program: Program, vectors: np.ndarray) -> tuple[Program, np.ndarray]:
+    """A program for `Secant` with the symbols of `program`, whose one input c has the shape of these vectors; and c."""
     law = Program("law", "a law at one state", "")
+    law.symbols.update(program.symbols)
     return law, law.input("c", vectors.shape, "1", "strain vectors")

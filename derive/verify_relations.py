@@ -91,8 +91,9 @@ def law(family: Family) -> list[Relation]:
         *(_stiffness_at(spec) if family.law == "continuum_curved" else stiffness),
         Relation("energy", "U", "the law's integral by quadrature", 0, energy),
         Relation("elastic_force", "f", "dU/de", 1, from_kernel("energy", "U", e=entry("e")), n),
-        Relation("discrete_force", "f", "f . (e_next - e) is the difference of U", 0, _difference(energy),
-                 of=lambda k, s: k("discrete_force", s)["f"].ravel().dot((s["e_next"] - s["e"]).ravel())),
+        Relation("discrete_force", "f", "U + f . (e_next - e) is U at e_next", 0,
+                 lambda k, s, t, j: energy(k, s | {"e": s["e_next"]}, t, j),
+                 of=lambda k, s: k("energy", s)["U"] + np.sum(k("discrete_force", s)["f"] * (s["e_next"] - s["e"]))),
         Relation("discrete_force", "f", "dU/de where e_next is e", 1, from_kernel("energy", "U", e=entry("e")), n,
                  of=lambda k, s: k("discrete_force", s, e_next=s["e"])["f"]),
         _step_stiffness(family),
@@ -103,11 +104,6 @@ def law(family: Family) -> list[Relation]:
         *(Relation("section_forces", output, text, 0, path) for output, text, path in section),
     ]
     return [relation for relation in every if relation.kernel not in family.elsewhere]
-
-
-def _difference(energy: Callable) -> Callable:
-    """Path of order 0: the energy at the end of the step less that at its start."""
-    return lambda k, s, t, j: energy(k, s | {"e": s["e_next"]}, t, j) - energy(k, s, t, j)
 
 
 def _step_stiffness(family: Family) -> Relation:

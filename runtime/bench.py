@@ -251,7 +251,7 @@ def _measure(result: Bench, row: Row, scene: Scene) -> None:
     except FunicularError as error:
         row.failed = str(error)
         return
-    row.cpu.append(run.report["solve_cpu_s"])
+    row.cpu.append(run.report["time_s"]["solve_cpu"])
     row.set_up.append(run.report["time_s"]["set_up"])
     row.elements = sum(cable.elements for cable in scene.cables.values())
     row.counts = {name: run.report[name] for name in COUNTS if name in run.report}

@@ -206,7 +206,7 @@ cdef extern from "engine.h" nogil:
         fu_tableau tableau
         fu_collocation collocation
         fu_complex_system complex_newton
-        int per_step
+        double slack
         double *scratch
         int n_watches
         const fu_watch *watches
@@ -677,12 +677,12 @@ cdef class Engine:
         run = &self.run
         run.duration, run.output_step, run.tol = duration, output_step, tol
         run.fixed_step, run.h, run.rest_start = step, first_step, rest_start
-        run.order = method.order
+        run.order, run.slack = method.order, method.slack
         if method.name == "explicit":
             run.integrator = &fu_explicit_method
             self._tableau(method)
         elif method.name == "radau":
-            run.integrator, run.per_step = &fu_radau_method, 1
+            run.integrator = &fu_radau_method
             self._collocation(method)
         elif method.name == "energy":
             run.integrator = &fu_energy_method

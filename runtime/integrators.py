@@ -18,9 +18,11 @@ STABLE = 4.5
 stability interval is 5.96)."""
 STABLE_DAMPING = 6.0
 """The same for the highest rate of decay (the real interval is 6.40)."""
-COST_OF_RADAU = 6e3
-"""Evaluations of eq 38 that a radian of the motion as a whole costs radau at tol = 1e-4, by
+COST_OF_IMPLICIT = 2e3
+"""Evaluations of eq 38 that a radian of the motion as a whole costs the implicit method at tol = 1e-4, by
 tests/benchmarks/choice.py; they grow with the third root of 1/tol."""
+LOOSE = 3e-4
+"""Above this tol order 2 is enough: genalpha is cheaper than radau, by the same."""
 ITERATIONS = 20
 
 
@@ -29,7 +31,7 @@ class GeneralisedAlpha:
     """alpha_m, alpha_f, beta, gamma for a spectral radius at infinite frequency (Chung & Hulbert 1993)."""
 
     spectral_radius: float
-    name, order = "genalpha", 2
+    name, order, slack = "genalpha", 2, 3.0
 
     @property
     def parameters(self) -> tuple[float, float, float, float]:
@@ -43,7 +45,7 @@ class GeneralisedAlpha:
 class EnergyMomentum:
     """Keeps energy and momenta to rounding (Simo & Tarnow 1992; Gonzalez 1996)."""
 
-    name, order = "energy", 2
+    name, order, slack = "energy", 2, 1.0
 
 
 class Explicit:
@@ -53,7 +55,7 @@ class Explicit:
     interval for each evaluation, so that it is the cheaper one at any tolerance.
     """
 
-    name = "explicit"
+    name, slack = "explicit", 1.0
 
     def __init__(self) -> None:
         from scipy.integrate import DOP853
@@ -66,10 +68,10 @@ class Explicit:
 class Radau:
     """Radau IIA of three stages, of order 5 (Hairer & Wanner 1996, IV.5 and IV.8), from its nodes.
 
-    Steps are chosen by an embedded estimate of order 3; ``order`` is that of the error of a step.
+    Steps are chosen by an embedded estimate of order 3, whose error is ``slack`` times that of the method about.
     """
 
-    name, order = "radau", 4
+    name, order, slack = "radau", 3, 60.0
 
     def __init__(self) -> None:
         root = np.sqrt(6.0)
@@ -96,7 +98,7 @@ Integrator = GeneralisedAlpha | Radau | Explicit | EnergyMomentum
 def choose(settings: RunSettings, scene: Scene, model: Model,
            engine: Engine) -> tuple[Integrator, str]:
     """The integrator of a run, and why it is that one. "auto" takes the cheaper by stiffness and tolerance."""
-    implicit = GeneralisedAlpha(settings.spectral_radius)
+    implicit: Integrator = GeneralisedAlpha(settings.spectral_radius)
     if settings.integrator != "auto":
         made = {"genalpha": lambda: implicit, "explicit": Explicit, "radau": Radau,
                 "energy": EnergyMomentum}[settings.integrator]()
@@ -108,12 +110,13 @@ def choose(settings: RunSettings, scene: Scene, model: Model,
     frequency, decay = fastest_rates(model, engine)
     slow = slowest_rate(scene, model, settings.duration)
     explicit_cost = 12 * max(frequency / STABLE, decay / STABLE_DAMPING)
-    implicit_cost = COST_OF_RADAU * slow * (1e-4 / settings.tol) ** (1 / 3)
-    better = explicit_cost < implicit_cost
+    implicit_cost = COST_OF_IMPLICIT * slow * (1e-4 / settings.tol) ** (1 / 3)
+    if settings.tol < LOOSE:
+        implicit = Radau()
     reason = (f"stability asks the explicit method for {explicit_cost:.3g} evaluations a second (highest frequency "
               f"{frequency:.3g} rad/s" + (f", fastest decay {decay:.3g} 1/s" if decay else "")
-              + f"), tol asks radau for work like {implicit_cost:.3g}")
-    return (Explicit() if better else Radau()), reason
+              + f"), tol asks {implicit.name} for work like {implicit_cost:.3g}")
+    return (Explicit() if explicit_cost < implicit_cost else implicit), reason
 
 
 def slowest_rate(scene: Scene, model: Model, duration: float) -> float:

@@ -296,6 +296,8 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
         if step < settings.step * (1 - 1e-6):
             messages.append(f"step {settings.step:.6g} s was made {step:.6g} s, so that steps end on output times")
     method, reason = choose(settings, scene, model, engine)
+    if method.name == "energy":
+        _check_conserves(model, scene)
     set_up, cpu = time.perf_counter() - begin, time.process_time()
     status, change = engine.start(
         duration=settings.duration,
@@ -327,8 +329,17 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
             warnings.warn(note, FunicularWarning, stacklevel=3)
     recording = recorded(model, scene, engine, settings, status, messages, reason, watcher,
                          {"set_up": set_up, "total": wall})
-    recording.report["solve_cpu_s"] = cpu  # of the integration alone, which other work on the machine leaves alone
+    recording.report["time_s"]["solve_cpu"] = cpu  # of the integration alone, whatever else the machine does
     return recording
+
+
+def _check_conserves(model: Model, scene: Scene) -> None:
+    """Raise SceneError for a cable whose law has no discrete gradient."""
+    for cable in model.cables:
+        if not hasattr(kernels_of(cable.library), f"{cable.element}_{cable.law}_discrete_force"):
+            raise SceneError(scene.cables[cable.name].where,
+                             f'integrator "energy" has no discrete gradient of the law "{cable.law}"',
+                             "take another law, or another integrator")
 
 
 def _check_size(model: Model, settings: RunSettings, stream: Stream | None) -> float:

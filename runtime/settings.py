@@ -19,10 +19,10 @@ class RunSettings(Part):
     the step is chosen; step: a fixed step in s instead, divided where need be so that steps end on output times;
     output_step in s, a hundredth of the duration if not given; integrator: "explicit" (Runge-Kutta of order 8),
     "radau" (implicit, order 5, for stiff scenes), "genalpha" (implicit, order 2, with control of the dissipation),
-    "energy" (order 2, keeps energy and momenta), or "auto": the cheaper of the first two for this scene and tol,
-    genalpha where step or spectral_radius is given; spectral_radius of genalpha at infinity: 1 keeps and 0 removes the
-    fastest vibrations; initial: the start, "drawn" or "equilibrium" (static, under the loads at t = 0); save: the file
-    to write, or None.
+    "energy" (order 2, keeps energy and momenta to rounding), or "auto": the cheapest of the first three for this scene
+    and tol, genalpha where step or spectral_radius is given; spectral_radius of genalpha at infinity: 1 keeps and 0
+    removes the fastest vibrations, energy's is 1; initial: the start, "drawn" or "equilibrium" (static, under the loads
+    at t = 0); save: the file to write, or None.
     """
 
     kind: ClassVar[str] = "run"
@@ -34,6 +34,13 @@ class RunSettings(Part):
     spectral_radius: Annotated[float, within(0, 1, ends=True)] = 0.9
     initial: Annotated[str, one_of(("drawn", "equilibrium"))] = "drawn"
     save: str | None = None
+
+    @model_validator(mode="after")
+    def _radius_fits(self) -> RunSettings:
+        if self.integrator == "energy" and "spectral_radius" in self.model_fields_set and self.spectral_radius < 1:
+            raise ValueError("integrator \"energy\" keeps all vibrations, its spectral_radius is 1, got "
+                             f"{self.spectral_radius:g}: give the material a damping_time, or take \"genalpha\"")
+        return self
 
     @model_validator(mode="after")
     def _steps_fit(self) -> RunSettings:

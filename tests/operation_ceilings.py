@@ -25,59 +25,75 @@ CEILINGS = {
     },
     "beam24_continuum": {
         "stiffness": 217, "energy": 486, "elastic_force": 757, "elastic_tangent": 5125, "damping_force": 992,
-        "damping_tangent": 8798, "dissipation": 693, "section_forces": 490
+        "damping_tangent": 8798, "dissipation": 693, "section_forces": 490,
+        "discrete_force": 1110, "step_stiffness": 751
     },
     "beam24_continuum_curved": {
-        "stiffness_at": 1953, "energy": 1858, "elastic_force": 2129, "elastic_tangent": 12611, "section_forces": 4578
+        "stiffness_at": 1953, "energy": 1858, "elastic_force": 2129, "elastic_tangent": 12611, "section_forces": 4578,
+        "discrete_force": 2510, "step_stiffness": 2095
     },
     "cable12_green_exact_curved": {
-        "stiffness": 266, "energy": 310, "elastic_force": 735, "elastic_tangent": 2865, "section_forces": 608
+        "stiffness": 266, "energy": 310, "elastic_force": 735, "elastic_tangent": 2865, "section_forces": 608,
+        "discrete_force": 1321, "step_stiffness": 161
     },
     "cable12_engineering_exact_curved": {
-        "stiffness": 266, "energy": 325, "elastic_force": 760, "elastic_tangent": 2940, "section_forces": 616
+        "stiffness": 266, "energy": 325, "elastic_force": 760, "elastic_tangent": 2940, "section_forces": 616,
+        "discrete_force": 1341, "step_stiffness": 161
     },
     "beam12p_continuum_curved": {
-        "stiffness_at": 521, "energy": 572, "elastic_force": 656, "elastic_tangent": 2590, "section_forces": 616
+        "stiffness_at": 521, "energy": 572, "elastic_force": 656, "elastic_tangent": 2590, "section_forces": 616,
+        "discrete_force": 823, "step_stiffness": 675
     },
     "cable12_green_exact": {
         "stiffness": 0, "energy": 251, "elastic_force": 476, "elastic_tangent": 1681, "damping_force": 561,
-        "damping_tangent": 3501, "dissipation": 301, "section_forces": 258
+        "damping_tangent": 3501, "dissipation": 301, "section_forces": 258,
+        "discrete_force": 892, "step_stiffness": 161
     },
     "cable12_green_linear": {
-        "stiffness": 0, "energy": 150, "elastic_force": 222, "elastic_tangent": 661, "section_forces": 156
+        "stiffness": 0, "energy": 150, "elastic_force": 222, "elastic_tangent": 661, "section_forces": 156,
+        "discrete_force": 407, "step_stiffness": 161
     },
     "cable12_engineering_exact": {
         "stiffness": 0, "energy": 266, "elastic_force": 501, "elastic_tangent": 1741, "damping_force": 594,
-        "damping_tangent": 3759, "dissipation": 325, "section_forces": 260
+        "damping_tangent": 3759, "dissipation": 325, "section_forces": 260,
+        "discrete_force": 907, "step_stiffness": 161
     },
     "cable12_engineering_linear": {
-        "stiffness": 0, "energy": 165, "elastic_force": 257, "elastic_tangent": 746, "section_forces": 161
+        "stiffness": 0, "energy": 165, "elastic_force": 257, "elastic_tangent": 746, "section_forces": 161,
+        "discrete_force": 442, "step_stiffness": 161
     },
     "cable18_green_exact": {
         "stiffness": 0, "energy": 410, "elastic_force": 788, "elastic_tangent": 5134, "damping_force": 1776,
-        "damping_tangent": 12942, "dissipation": 1023, "section_forces": 516
+        "damping_tangent": 12942, "dissipation": 1023, "section_forces": 516,
+        "discrete_force": 1363, "step_stiffness": 980
     },
     "cable18_engineering_exact": {
         "stiffness": 0, "energy": 425, "elastic_force": 813, "elastic_tangent": 5194, "damping_force": 1831,
-        "damping_tangent": 13372, "dissipation": 1063, "section_forces": 518
+        "damping_tangent": 13372, "dissipation": 1063, "section_forces": 518,
+        "discrete_force": 1378, "step_stiffness": 980
     },
     "beam12p_continuum": {
         "stiffness": 94, "energy": 219, "elastic_force": 303, "elastic_tangent": 1295, "damping_force": 396,
-        "damping_tangent": 2126, "dissipation": 297, "section_forces": 144
+        "damping_tangent": 2126, "dissipation": 297, "section_forces": 144,
+        "discrete_force": 455, "step_stiffness": 337
     },
     "cable8p_green_exact": {
         "stiffness": 0, "energy": 194, "elastic_force": 356, "elastic_tangent": 990, "damping_force": 338,
-        "damping_tangent": 1374, "dissipation": 205, "section_forces": 182
+        "damping_tangent": 1374, "dissipation": 205, "section_forces": 182,
+        "discrete_force": 685, "step_stiffness": 127
     },
     "cable8p_green_linear": {
-        "stiffness": 0, "energy": 112, "elastic_force": 154, "elastic_tangent": 351, "section_forces": 102
+        "stiffness": 0, "energy": 112, "elastic_force": 154, "elastic_tangent": 351, "section_forces": 102,
+        "discrete_force": 284, "step_stiffness": 127
     },
     "cable8p_engineering_exact": {
         "stiffness": 0, "energy": 209, "elastic_force": 381, "elastic_tangent": 1050, "damping_force": 362,
-        "damping_tangent": 1506, "dissipation": 223, "section_forces": 184
+        "damping_tangent": 1506, "dissipation": 223, "section_forces": 184,
+        "discrete_force": 700, "step_stiffness": 127
     },
     "cable8p_engineering_linear": {
-        "stiffness": 0, "energy": 127, "elastic_force": 189, "elastic_tangent": 436, "section_forces": 107
+        "stiffness": 0, "energy": 127, "elastic_force": 189, "elastic_tangent": 436, "section_forces": 107,
+        "discrete_force": 319, "step_stiffness": 127
     },
     "beam24_structural": {
         "stiffness": 360, "energy": 533, "elastic_force": 1067, "elastic_tangent": 7419, "damping_force": 1385,
@@ -87,11 +103,29 @@ CEILINGS = {
         "stiffness": 133, "energy": 223, "elastic_force": 343, "elastic_tangent": 1266, "damping_force": 452,
         "damping_tangent": 2313, "dissipation": 329, "section_forces": 343
     },
-    "rigid": {"point": 207, "point_force": 183, "inertia_force": 45, "inertia_tangent": 48, "kinetic_energy": 31},
-    "planar_rigid": {"point": 40, "point_force": 23, "inertia_force": 3, "inertia_tangent": 0, "kinetic_energy": 9},
-    "slide_beam24_rigid": {"constraint": 599, "terms": 1646, "residual": 209, "tangent": 286},
-    "slide_cable12_rigid": {"constraint": 472, "terms": 1429, "residual": 209, "tangent": 286},
-    "slide_cable18_rigid": {"constraint": 698, "terms": 2198, "residual": 332, "tangent": 512},
-    "slide_beam12p_planar_rigid": {"constraint": 156, "terms": 569, "residual": 97, "tangent": 113},
-    "slide_cable8p_planar_rigid": {"constraint": 156, "terms": 569, "residual": 97, "tangent": 113},
+    "rigid": {
+        "point": 207, "point_force": 183, "inertia_force": 45, "inertia_tangent": 48, "kinetic_energy": 31,
+        "discrete_point": 230
+    },
+    "planar_rigid": {
+        "point": 40, "point_force": 23, "inertia_force": 3, "inertia_tangent": 0, "kinetic_energy": 9,
+        "discrete_point": 18
+    },
+    "slide_beam24_rigid": {"constraint": 599, "terms": 1646, "residual": 209, "tangent": 286, "discrete_gradient": 397},
+    "slide_cable12_rigid": {
+        "constraint": 472, "terms": 1429, "residual": 209, "tangent": 286,
+        "discrete_gradient": 397
+    },
+    "slide_cable18_rigid": {
+        "constraint": 698, "terms": 2198, "residual": 332, "tangent": 512,
+        "discrete_gradient": 703
+    },
+    "slide_beam12p_planar_rigid": {
+        "constraint": 156, "terms": 569, "residual": 97, "tangent": 113,
+        "discrete_gradient": 193
+    },
+    "slide_cable8p_planar_rigid": {
+        "constraint": 156, "terms": 569, "residual": 97, "tangent": 113,
+        "discrete_gradient": 193
+    },
 }

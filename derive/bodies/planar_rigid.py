@@ -56,8 +56,7 @@ def arm(program: Program, A: np.ndarray, u: np.ndarray) -> np.ndarray:
 
 
 def step_turn(program: Program, b: np.ndarray, A: np.ndarray, b_next: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Stage: theta = 2 tan(half the turn), with A_next u - A u = theta x (A + A_next) u/2, and the axis out of the plane.
-    """
+    """Stage: theta = 2 tan(half the turn), with A_next u - A u = theta x (A + A_next) u/2, and the axis across."""
     sine = program.define("turn_sine", b[2] * b_next[3] - b[3] * b_next[2])
     theta = program.define("theta", 2 * sine / (1 + program.define("turn_cosine", b[2:].dot(b_next[2:]))))
     return np.array([theta]), np.array([[1]])

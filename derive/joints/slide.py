@@ -186,8 +186,8 @@ def _discrete_gradient(name: str, element: Element, rider: ModuleType) -> Progra
         r_next - r = N~ de + D e~ ds,   (r_next + r)/2 = N~ e~ + D de ds/4.
 
     A force f acts on cable and rider at one place, N~ e~, so that it makes no moment; the part of r along which it does
-    no work for that is D (e~ - theta x de/4) in place of r_x. After Gonzalez, Comput. Methods Appl. Mech. Eng. 174 (1999)
-    165-174, for a constraint that turns with the scene.
+    no work for that is D (e~ - theta x de/4) in place of r_x. After Gonzalez, Comput. Methods Appl. Mech. Eng. 174
+    (1999) 165-174, for a constraint that turns with the scene.
     """
     p = Program(f"{name}_discrete_gradient", "discrete Jacobian of phi over a step", "eq 19")
     law = Program("axis", "shape functions at one place", "")

@@ -205,7 +205,7 @@ class Cable(Damping):
 
     def discrete_forces(self, program: Program, A, now, then, w) -> np.ndarray:
         """Stages: forces f on strain vectors with f . (then - now) = the difference of U, by the mean vectors."""
-        law, c = staged(now)
+        law, c = staged(program, now)
         terms = list(self._terms(law, A, c, w))
         inputs = zip(c.ravel(), zip(now.ravel(), then.ravel(), strict=True), strict=True)
         secant = Secant(program, law, dict(inputs))

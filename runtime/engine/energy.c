@@ -16,7 +16,7 @@
 
 #include <string.h>
 
-/* Scratch: the middle of the step. */
+/* Scratch: the middle of the step, and forces. */
 typedef struct {
     double *q, *v, *force;
 } middle_view;
@@ -194,7 +194,8 @@ static int start(fu_run *run)
 
 static int step(fu_run *run, double h)
 {
-    run->newton_tolerance = 1e-3 * run->round_off; /* what Newton leaves does work on every step */
+    /* what Newton leaves does work on the step: it is measured by psi and not by positions */
+    run->newton_tolerance = 1e-17 * h * fu_size(run->model, run->now.v);
     return fu_newton_step(run, &newton, h);
 }
 

@@ -326,7 +326,7 @@ typedef struct {
     int (*step)(fu_run *run, double h);
     double (*error)(fu_run *run, double h);
     void (*book)(fu_run *run, double h);
-    int conserves; /* energy, so that a slide that enters another element must not cost any: velocities stay */
+    int conserves; /* energy: velocities stay as they are where the scheme starts anew, projecting them would cost some */
     const fu_newton *newton; /* null where there is none */
 } fu_integrator;
 extern const fu_integrator fu_genalpha_method, fu_explicit_method, fu_energy_method, fu_radau_method;
@@ -339,7 +339,7 @@ struct fu_run {
     fu_tableau tableau;
     fu_collocation collocation;
     fu_complex_system complex_newton;
-    int per_step;        /* tol is of each step's error, and not of its rate */
+    double slack;        /* how much larger the estimate of the local error is than that error */
     double *scratch;     /* of the integrator: checkpoints do not hold it */
     int n_watches;
     const fu_watch *watches;
@@ -360,11 +360,11 @@ struct fu_run {
     double *s_slope;                          /* per joint: predicts ds/dt */
     /* From here to the end numbers alone, which a checkpoint copies as they are. */
     double h, h_factored, contraction, last_error;
+    double since; /* energy.c: how long before `now` the acceleration there belongs, s */
     double dissipated, dissipated_power, external, external_power; /* J, W */
     double recorded; /* s: time of the last row */
     double motion, least_motion, extent; /* m: largest so far, assumed at least, largest coordinate of a position */
     double allowed; /* m: error of the step */
-    double since;   /* s: of the energy method, how long before `now` the accelerations there belong */
     double newton_tolerance, round_off; /* of increments, m: where Newton may stop, and where it cannot go on */
     int factored, stopped_joint, turned;
     int struggle; /* steps rejected of late, less those taken */

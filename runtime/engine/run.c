@@ -82,11 +82,6 @@ static int record_row(fu_run *run)
     return info ? FU_SINGULAR : fu_check_books(run, energies, row == 0) ? FU_UNSTABLE : FU_RUNNING;
 }
 
-static int is_short(const fu_run *run, double h)
-{
-    return h < SHORT_STEP * (run->fixed_step > 0.0 ? run->fixed_step : run->h);
-}
-
 /* Start of the scheme, consistent: velocities projected on the joints where that is asked for, accelerations and forces
  * from eq 38. Starting it from zero accelerations instead makes every error fall with the first power of the step
  * (tests/benchmarks/order.py). */
@@ -162,7 +157,7 @@ static void accept(fu_run *run, double h, fu_event event)
  * starts anew. Were they carried over, the short steps around a boundary would raise what the constraints left in them
  * by the ratio of the steps, crossing by crossing, and a spectral radius of 1 never lets it decay. Returns
  * FU_END_OF_CABLE where there is no neighbour. */
-static int enter(fu_run *run, int j, int side, double h)
+static int enter(fu_run *run, int j, int side)
 {
     const fu_model *model = run->model;
     fu_state *now = &run->now;
@@ -175,13 +170,13 @@ static int enter(fu_run *run, int j, int side, double h)
     now->s[j] = fu_element_start(model, j, side > 0 ? element : element + 1);
     ++run->statistics.crossings;
     fu_watch_now(run, (fu_event){FU_NO_EVENT, 0, 0});
-    return start_scheme(run, !run->integrator->conserves || is_short(run, h));
+    return start_scheme(run, !run->integrator->conserves);
 }
 
-/* What follows from an event that `now` stands on after a step h. */
-static int happened(fu_run *run, fu_event event, double h)
+/* What follows from an event that `now` stands on. */
+static int happened(fu_run *run, fu_event event)
 {
-    if (event.kind == FU_CROSSING) return enter(run, event.which, event.side, h);
+    if (event.kind == FU_CROSSING) return enter(run, event.which, event.side);
     run->event = event;
     return FU_EVENT;
 }
@@ -190,7 +185,8 @@ static int happened(fu_run *run, fu_event event, double h)
  * in its accelerations: they must not go on. */
 static int refresh(fu_run *run, double h)
 {
-    return is_short(run, h) ? start_scheme(run, 1) : FU_RUNNING;
+    return h < SHORT_STEP * (run->fixed_step > 0.0 ? run->fixed_step : run->h)
+               ? start_scheme(run, !run->integrator->conserves) : FU_RUNNING;
 }
 
 /* The step that ends at the target, or one of equal steps to there, none larger than wanted. */
@@ -209,7 +205,7 @@ static double allow(fu_run *run, double h)
      * to tol times the logarithm of the times at most. With h/duration the first instants, in which hardly anything has
      * moved yet, would take most of the steps. */
     const double share = SAFETY * h / fmax(run->now.t + h, FIRST_PART * run->duration);
-    const double allowed = fmax(run->tol * scale * (run->per_step ? 1.0 : share), run->round_off);
+    const double allowed = fmax(run->tol * scale * fmin(1.0, run->slack * share), run->round_off);
     /* what Newton leaves has the same sign step after step and acts like a force: it counts (T/h)^2 times in
      * positions, the local error T/h times; a fixed step is solved as well as it can be, whatever its error */
     const double extent = fmax(run->extent, scale);
@@ -235,7 +231,7 @@ static int step_towards(fu_run *run, double target)
     const int adaptive = run->fixed_step <= 0.0;
     const fu_event none = {FU_NO_EVENT, 0, 0}, late = fu_late_event(run);
     double want = adaptive ? run->h : run->fixed_step;
-    if (late.kind) return happened(run, late, want);
+    if (late.kind) return happened(run, late);
     for (;;) {
         const double remaining = target - run->now.t;
         double h = fitted(remaining, want);
@@ -262,7 +258,7 @@ static int step_towards(fu_run *run, double target)
         if (event.kind == FU_CROSSING && run->turned >= MOST_TURNS) event = none;
         if (fu_stands_on_boundary(run, event)) {
             ++run->turned;
-            return happened(run, event, h);
+            return happened(run, event);
         }
         if (event.kind) {
             for (int i = 0; i <= model->n_joints + run->n_watches; ++i) { /* the first of several */
@@ -279,7 +275,7 @@ static int step_towards(fu_run *run, double target)
             }
             accept(run, h, event);
             const int status = event.kind == FU_CROSSING ? FU_RUNNING : refresh(run, h);
-            return status ? status : happened(run, event, h);
+            return status ? status : happened(run, event);
         }
         accept(run, h, event);
         run->turned = 0;

@@ -107,7 +107,7 @@ def integrate(case: Case, limit: float, **settings) -> tuple[np.ndarray, float]:
             raise TooLongError
 
     run = case.ours().run(DURATION, output_step=DURATION / OUTPUTS, progress=watch, **settings)
-    return case.path(run), run.report["solve_cpu_s"]
+    return case.path(run), run.report["time_s"]["solve_cpu"]
 
 
 def their_turn(case: Case, steps: int) -> tuple[None, float]:

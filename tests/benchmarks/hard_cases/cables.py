@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 from funicular import Circle, Material, Ramp, Scene
 
-from .case import BALANCE, CONVERGED, Subject, figures, positions, simulate
+from .case import BALANCE, CONVERGED, SHAKEN, Subject, figures, positions, simulate
 
 HERE = Subject()
 STEEL = Material(youngs_modulus=210e9, poisson_ratio=0.3, density=7850)
@@ -96,7 +96,7 @@ def metal_and_rubber(integrator):
     return compared("steel and rubber", integrator)[1]
 
 
-@HERE.case("a slack cable goes taut", error=2e-3, balance=BALANCE, pull=(20, 30))
+@HERE.case("a slack cable goes taut", error=2e-3, balance=SHAKEN, pull=(20, 30))
 def going_taut(integrator):
     """`pull`: the largest force at a pin over the weight."""
     run, found = compared("slack goes taut", integrator)
@@ -122,7 +122,8 @@ def free_fall(integrator):
     return found | {"fall": float(np.abs(centre - exact).max())}
 
 
-@HERE.case("a cable that whips", error=1e-3, balance=BALANCE, outruns=(2, 3))
+@HERE.case("a cable that whips", error={"genalpha": 2e-4, "energy": 2e-4, "explicit": 2e-5, "radau": 4e-3},
+           balance=SHAKEN, outruns=(2, 3))
 def cracking(integrator):
     """`outruns`: speed of the tip over that of a free fall as deep."""
     run, found = compared("whip", integrator)

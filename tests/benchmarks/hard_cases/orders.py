@@ -15,7 +15,8 @@ from .case import Subject, simulate
 from .crossings import rider
 
 HERE = Subject()
-IN_TIME = {"genalpha": (1.25e-4, 6.25e-5), "energy": (1.25e-4, 6.25e-5), "explicit": (6.25e-4, 5e-4)}
+IN_TIME = {"genalpha": (1.25e-4, 6.25e-5), "energy": (1.25e-4, 6.25e-5), "explicit": (6.25e-4, 5e-4),
+           "radau": (5e-4, 2.5e-4)}
 """Two fixed steps of each method, small enough for the order to show and large enough for rounding not to."""
 
 
@@ -30,7 +31,8 @@ def exact():
     return quantities(simulate(rider(0.25, 1.0, elements=3), 0.5, integrator="explicit", tol=1e-12, output_step=0.02))
 
 
-@HERE.case("order in time", **{name: {"genalpha": (1.8, 2.3), "energy": (1.8, 2.3), "explicit": (7.5, 8.6)}
+@HERE.case("order in time", **{name: {"genalpha": (1.8, 2.3), "energy": (1.8, 2.3), "explicit": (7.5, 8.6),
+                                      "radau": (4.7, 5.3)}
                                for name in ("positions", "velocities", "multipliers")})
 def in_time(integrator):
     """Of what an output has; a node is crossed on the way."""

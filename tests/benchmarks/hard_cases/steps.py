@@ -42,12 +42,12 @@ def too_large(name: str):
     return measure
 
 
-STABLE = {"genalpha": 5, "energy": 5}
+STABLE = {"genalpha": 5, "energy": 5, "radau": 5}
 
 for name in COARSE:
-    HERE.case(f"too large a step: {name}", stopped={"genalpha": (0, 0), "energy": (0, 0), "explicit": (1, 1)},
+    HERE.case(f"too large a step: {name}", stopped=dict.fromkeys(STABLE, (0, 0)) | {"explicit": (1, 1)},
               kept={"explicit": (2, 20)}, **{
-                  "error / told": STABLE, "quiet error": {method: 1e-2 for method in STABLE},
+                  "error / told": STABLE, "quiet error": dict.fromkeys(STABLE, 1e-2),
                   "times too large": (30, 1e4)})(too_large(name))
 
 
@@ -80,8 +80,9 @@ def long(spectral_radius: float):
 
 
 HERE.case("100,000 steps", steps=(1e5, 1.01e5), crossings=(40, 200), residual=1e-11, gap=1e-11, drift=1e-12,
-          growth={"genalpha": 1e-5, "energy": 1e-12, "explicit": 1e-12},
-          loss={"genalpha": 2e-3, "energy": 1e-12, "explicit": 1e-9}, slow=["explicit"])(long(1.0))
+          growth={"genalpha": 1e-5, "energy": 1e-12, "explicit": 1e-12, "radau": 1e-12},
+          loss={"genalpha": 2e-3, "energy": 1e-12, "explicit": 1e-9, "radau": 6e-4},
+          slow=["explicit", "radau"])(long(1.0))
 HERE.case("100,000 steps, spectral radius 0.5", integrators=["genalpha"], steps=(1e5, 1.01e5), growth=1e-5, loss=0.1,
           residual=1e-11, gap=1e-11, drift=1e-12, slow=["genalpha"])(long(0.5))
 
