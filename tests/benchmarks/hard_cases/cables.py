@@ -122,7 +122,7 @@ def free_fall(integrator):
     return found | {"fall": float(np.abs(centre - exact).max())}
 
 
-@HERE.case("a cable that whips", error={"genalpha": 2e-4, "energy": 2e-4, "explicit": 2e-5, "radau": 4e-3},
+@HERE.case("a cable that whips", error={"genalpha": 6e-4, "energy": 2e-4, "explicit": 4e-6, "radau": 3e-4},
            balance=SHAKEN, outruns=(2, 3))
 def cracking(integrator):
     """`outruns`: speed of the tip over that of a free fall as deep."""

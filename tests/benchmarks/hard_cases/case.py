@@ -21,7 +21,7 @@ origin."""
 HELD = {"genalpha": 5e-9, "energy": 1e-11, "explicit": 1e-11, "radau": 1e-11}
 """Bounds of the distance of riders to their cables, m: where Newton's iteration stops, and rounding where positions are
 projected."""
-SHAKEN = BALANCE | {"radau": 0.1}
+SHAKEN = BALANCE | {"radau": 1e-2}
 """The same where much energy is in waves that Radau IIA does not resolve, and damps."""
 
 Bounds = dict[str, float | tuple[float, float]]
