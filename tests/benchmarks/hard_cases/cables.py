@@ -123,7 +123,7 @@ def free_fall(integrator):
 
 
 @HERE.case("a cable that whips", error={"genalpha": 6e-4, "energy": 2e-4, "explicit": 4e-6, "radau": 3e-4},
-           balance=SHAKEN, outruns=(2, 3))
+           balance=SHAKEN, outruns=(2, 3), slow=["energy"])
 def cracking(integrator):
     """`outruns`: speed of the tip over that of a free fall as deep."""
     run, found = compared("whip", integrator)

@@ -95,7 +95,7 @@ def thrown_up(speed: float) -> Scene:
 
 
 @HERE.case("a rider that turns round on a node of a sagging cable", apart=2.0, balance=BALANCE, residual=HELD, gap=HELD,
-           slow=["explicit", "radau"])
+           slow=["energy", "explicit", "radau"])
 def turning_on_a_sagging_cable(integrator):
     """`apart`: two riders, one that just enters the next element and one that just does not, over the way their speeds
     of 1 µm/s apart would make."""

@@ -55,10 +55,10 @@ M2 = {(0.25, 0.2): 1.31817, (0.5, 0.2): 1.82459, (0.5, 0.5): 2.02212}
 for at, table in M1.items():
     for alpha, exact in table.items():
         HERE.case(f"M1, a force at α {alpha:g}, {at}", error=5e-4,
-                  slow=["explicit", "radau"])(measured(alpha, 1e-4, at, exact))
+                  slow=["energy", "explicit", "radau"])(measured(alpha, 1e-4, at, exact))
 for (alpha, mu), exact in M2.items():
     HERE.case(f"M2, a mass of {mu:g} at α {alpha:g}", error=1e-3,
-              slow=["explicit", "radau"])(measured(alpha, mu, "largest", exact))
+              slow=["energy", "explicit", "radau"])(measured(alpha, mu, "largest", exact))
 
 
 def arc(degrees: float, period: float):
@@ -83,7 +83,8 @@ def arc(degrees: float, period: float):
 
 
 for degrees, period in ((60, 2.152874667), (90, 2.367841948)):
-    HERE.case(f"M4, a bead on a fixed arc, from {degrees} degrees", off=(-1e-5, 1e-5))(arc(degrees, period))
+    HERE.case(f"M4, a bead on a fixed arc, from {degrees} degrees", off=(-1e-5, 1e-5),
+              slow=["genalpha", "energy"])(arc(degrees, period))
 
 
 def on_a_string(kappa: float, exact: float):
