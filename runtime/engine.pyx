@@ -40,7 +40,8 @@ cdef extern from "blocks.h" nogil:
 
 cdef extern from "engine.h" nogil:
     int FU_JOINT_TERMS, FU_JOINT_OUTPUTS, FU_MAX_COORDINATES
-    int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT
+    int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT, FU_UNSTABLE
+    int FU_NO_FAILURE, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE
     int FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_CALL
     int FU_SIGNAL_TERMS, FU_BAND_GROUP
     long FU_BAND_BEYOND(int width)
@@ -184,6 +185,10 @@ cdef extern from "engine.h" nogil:
         double value
     ctypedef struct fu_event:
         int kind, which, side
+    ctypedef struct fu_failure:
+        int cause, dof, joint
+    ctypedef struct fu_books:
+        double exchanged, grown, lost
     ctypedef struct fu_statistics:
         long steps, rejected, newton_iterations, factorisations, crossings, newton_failures, evaluations
         double h_min, h_max, error_sum, time_factor, time_solve, time_residual, time_output
@@ -239,6 +244,8 @@ cdef extern from "engine.h" nogil:
         double *s_slope
         double h, h_factored, contraction, motion
         int factored, stopped_joint, rest_start
+        fu_failure failure
+        fu_books books
     void fu_linearise(fu_run *run, double h, const double *change)
     int fu_system_factor_band(fu_system *system, const fu_lapack *lapack)
     int fu_system_factor_border(fu_system *system, const fu_lapack *lapack)
@@ -250,6 +257,8 @@ cdef extern from "engine.h" nogil:
     void fu_prescribe(const fu_model *model, fu_state *state)
     void fu_carry_directors(const fu_model *model, fu_state *state)
     double fu_elastic_energy(const fu_model *model, const double *q)
+    int fu_moves(const fu_run *run)
+    int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S)
     int fu_start(fu_run *run)
     int fu_advance(fu_run *run, double seconds)
     void fu_pause(fu_run *run)
@@ -271,7 +280,10 @@ LAPACK.zgetrf = <void *>cython_lapack.zgetrf
 LAPACK.zgetrs = <void *>cython_lapack.zgetrs
 
 STATUS = {FU_DONE: "completed", FU_END_OF_CABLE: "end_of_cable", FU_NO_CONVERGENCE: "no_convergence",
-          FU_SINGULAR: "singular", FU_EVENT: "event"}
+          FU_SINGULAR: "singular", FU_EVENT: "event",
+          FU_UNSTABLE: "unstable"}
+CAUSES = {FU_NO_FAILURE: None, FU_ITERATION: "iteration", FU_MATRIX: "matrix", FU_ERROR: "error",
+          FU_LOST_RIDER: "lost_rider", FU_NOT_FINITE: "not_finite"}
 JOINT_OUTPUTS = ("s_rate", "s_acceleration", "force", "multiplier", "residual")
 
 
@@ -848,6 +860,35 @@ cdef class Engine:
     def time(self):
         """Time reached, s."""
         return self.run.now.t
+
+    @property
+    def failure(self):
+        """Of the last step that failed: why (see CAUSES), and the dof and joint (or None) where that shows most."""
+        f = self.run.failure
+        return CAUSES[f.cause], f.dof, f.joint if f.joint >= 0 else None
+
+    @property
+    def books(self):
+        """Energy that has come from nowhere, that went there, and that was exchanged or in motion, J."""
+        b = self.run.books
+        return b.grown, b.lost, b.exchanged
+
+    @property
+    def moves(self):
+        """Whether anything has moved beyond rounding."""
+        return bool(fu_moves(&self.run))
+
+    def compliance(self):
+        """(multipliers, multipliers): H M^-1 H' at the time reached, singular where joints hold the same."""
+        cdef int n = self.model.n_multipliers
+        cdef double[:, ::1] S = np.zeros((max(n, 1), max(n, 1)))
+        if fu_compliance(&self.model, &self.run.now, &self.run.accelerator, &S[0, 0]):
+            raise ValueError("the mass matrix is singular")
+        return np.asarray(S)[:n, :n]
+
+    def now(self):
+        """t, q, v, s at the time reached."""
+        return self._snapshot(&self.run.now)
 
     @property
     def stopped_joint(self):

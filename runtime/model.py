@@ -14,6 +14,7 @@ from functools import partial
 import numpy as np
 from funicular.actions import Actions, DeadLoad, LoadModel, SignalModel, SpringModel
 from funicular.constants import constants
+from funicular.diagnosis import notes, redundant
 from funicular.elements import gauge
 from funicular.errors import FunicularWarning, SceneError
 from funicular.integrators import choose
@@ -307,9 +308,12 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
         first_step=min(output_step, 1e-3 * settings.duration),
         room=None if stream is None else pace.room,
     )
+    if doubled := redundant(model, engine):
+        raise SceneError("scene", f"is over-constrained: {doubled} hold the same",
+                         "leave one of them out, or hold the body at other points")
     if status == "singular":
-        raise SceneError("scene", "the equations are singular at the start: a joint holds what another one holds "
-                         "already, or a cable's director lies along its tangent", "look at the slides, and at up")
+        raise SceneError("scene", "the equations are singular at the start: a mass is zero, or a cable's director lies "
+                         "along its tangent", "look at masses and inertias, and at up")
     largest = float(np.max(np.abs(change) * model.weight, initial=0.0))  # rates of slopes and turns as those of points
     if largest > 1e-9 * (1.0 + np.max(np.abs(model.v) * model.weight, initial=0.0)):
         messages.append(f"initial velocities broke a joint: changed by up to {largest:.3g} m/s to keep it")
@@ -319,6 +323,10 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
             stream.start(model, engine, partial(named, model, scene, engine), pace, watcher.happened)
         status = engine.advance(on_progress, pace.every, stream)
     cpu, wall = time.process_time() - cpu, time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
+    if status == "completed":
+        for note in notes(engine, settings):
+            messages.append(note)
+            warnings.warn(note, FunicularWarning, stacklevel=3)
     recording = recorded(model, scene, engine, settings, status, messages, reason, watcher,
                          {"set_up": set_up, "total": wall})
     recording.report["time_s"]["solve_cpu"] = cpu  # of the integration alone, whatever else the machine does

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from funicular.diagnosis import stopped
 from funicular.placing import ends_of, joined, node_of
 from funicular.rotations import rotate
 from funicular.scene import Scene
@@ -155,7 +156,7 @@ def recorded(model: Model, scene: Scene, engine, settings: RunSettings, status: 
     }
     return Recording(
         **vars(named(model, scene, engine)),
-        status="no_convergence" if status == "singular" else status,
+        status="no_convergence" if status in ("singular", "unstable") else status,
         message=_message(model, engine, status, settings, watcher),
         report=report,
     )
@@ -199,16 +200,8 @@ def _message(model: Model, engine, status: str, settings: RunSettings, watcher: 
                 f'slide "{joint.name}": ran off the {end} of cable "{cable.name}" at {when}; '
                 "what was computed up to there is kept"
             )
-        case "no_convergence":
-            return (
-                f"no step converged at {when}, down to the smallest step; what was computed up to there is "
-                "kept. Try a smaller tol or step, or damping_time in the material"
-            )
-        case "singular":
-            return (
-                f"the equations are singular at {when}: a joint or the mass matrix is degenerate "
-                "(is a cable's director parallel to its tangent?)"
-            )
+        case "no_convergence" | "singular" | "unstable":
+            return stopped(model, engine, status, settings)
         case "event":
             return f'stopped by event "{watcher.stopped_by}" at {when}'
         case "interrupted":

@@ -49,12 +49,21 @@ int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
     return !work->mass.definite; /* else it would be in K, which the Newton matrix takes */
 }
 
+/* The border of M: that of the bodies. */
+static void border(const fu_model *model, fu_accelerator *work)
+{
+    fu_system *s = &work->mass;
+    const int n = model->n_border_dof, whole = n + model->n_multipliers;
+    fu_system_clear_border(s);
+    for (int k = 0; k < n; ++k)
+        memcpy(s->D + (long)k * s->m, work->bodies + (long)k * whole, sizeof(double) * (size_t)n);
+}
+
 /* Border of [M H'; H 0] at a state whose terms are evaluated. */
 static int factor_border(const fu_model *model, const fu_state *state, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
-    fu_system_clear_border(s);
-    memcpy(s->D, work->bodies, sizeof(double) * (size_t)(s->m * s->m));
+    border(model, work);
     for (int j = 0; j < model->n_joints; ++j) {
         const fu_joint *joint = &model->joints[j];
         const terms_view t = view(work, j);
@@ -95,6 +104,35 @@ static double minus_H(const fu_model *model, const fu_state *state, const fu_acc
     double sum = 0.0;
     for (int k = 0; k < n; ++k) sum -= H[k] * x[joint_dof(model, &model->joints[j], state->element[j], k)];
     return sum;
+}
+
+/* S = H M^-1 H' (multipliers x multipliers) at a state: singular where joints hold the same. */
+int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S)
+{
+    fu_system *s = &work->mass;
+    const int n = model->n_multipliers, whole = s->m;
+    evaluate(model, state, work);
+    s->m = model->n_border_dof; /* M alone */
+    border(model, work);
+    const int info = fu_system_factor_border(s, model->lapack);
+    for (int j = 0; j < model->n_joints && !info; ++j) {
+        const fu_joint *joint = &model->joints[j];
+        for (int c = 0; c < joint->kernel->dim - 1; ++c) {
+            const double *H = view(work, j).H + c * joint->kernel->coordinates;
+            for (int i = 0; i < model->n_dof; ++i) work->work[i] = 0.0;
+            for (int k = 0; k < joint->kernel->coordinates; ++k)
+                work->work[joint_dof(model, joint, state->element[j], k)] += H[k];
+            fu_gather(model, work->work, work->rhs);
+            fu_system_solve(s, model->lapack, work->rhs);
+            fu_spread(model, work->rhs, work->work);
+            for (int i = 0; i < model->n_joints; ++i)
+                for (int d = 0; d < model->joints[i].kernel->dim - 1; ++d)
+                    S[(joint->multiplier + c) * n + model->joints[i].multiplier + d] =
+                        -minus_H(model, state, work, i, d, work->work);
+        }
+    }
+    s->m = whole;
+    return info;
 }
 
 /* Eq 38. `joints` may be null, and `reaction`: what supports give to each dof, zero to rounding where it is free. */

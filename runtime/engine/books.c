@@ -1,6 +1,9 @@
 /* What goes in and out of a scene's energy from outside and to heat. */
 #include "engine.h"
 
+#define MOST_GROWTH 0.5    /* of the energy exchanged, or of motion: beyond it the result is none */
+#define LEAST_MOTION 1e-6  /* of the size of the scene: at rest the books hold rounding alone */
+
 /* power of the loads and, with the forces that the supports give, of the motions at a state */
 double fu_external_power(fu_run *run, const fu_state *state, const double *reaction)
 {
@@ -29,4 +32,28 @@ void fu_book_trapezoid(fu_run *run, double h)
     run->external += 0.5 * h * (run->external_power + external);
     run->dissipated_power = dissipated;
     run->external_power = external;
+}
+
+/* Whether anything moves beyond rounding */
+int fu_moves(const fu_run *run)
+{
+    return run->motion > LEAST_MOTION * run->extent;
+}
+
+/* The books at an output: kinetic, elastic, potential, dissipated, and minus external energy. Not zero where energy
+ * has come from nowhere, as where an explicit method's step is beyond its limit. */
+int fu_check_books(fu_run *run, const double energies[FU_ENERGIES], int first)
+{
+    fu_books *books = &run->books;
+    double grown = 0.0, changes = 0.0;
+    for (int k = 0; k < FU_ENERGIES; ++k) {
+        if (first) books->first[k] = energies[k];
+        grown += energies[k] - books->first[k];
+        changes += fabs(energies[k] - books->first[k]);
+    }
+    books->exchanged = fmax(books->exchanged, fmax(0.5 * changes, energies[0]));
+    books->grown = fmax(books->grown, grown);
+    books->lost = fmax(books->lost, -grown);
+    if (!fu_moves(run) || grown <= MOST_GROWTH * books->exchanged) return 0;
+    return fu_fail(run, FU_NO_FAILURE, run->now.v, -1);
 }

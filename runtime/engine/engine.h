@@ -251,6 +251,7 @@ typedef struct {
 int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work);
 int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerator *work, double *acceleration,
                      fu_joint_output *joints, double *reaction);
+int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S);
 int fu_project_positions(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change);
 int fu_project_velocities(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change);
 int fu_find_arc_length(const fu_model *model, const fu_state *state, int joint, double *s);
@@ -297,7 +298,21 @@ typedef struct {
     double h_min, h_max, error_sum, time_factor, time_solve, time_residual, time_output;
 } fu_statistics;
 
-enum { FU_RUNNING = 0, FU_DONE = 1, FU_END_OF_CABLE = 2, FU_NO_CONVERGENCE = 3, FU_SINGULAR = 4, FU_EVENT = 5 };
+enum { FU_RUNNING = 0, FU_DONE = 1, FU_END_OF_CABLE = 2, FU_NO_CONVERGENCE = 3, FU_SINGULAR = 4, FU_EVENT = 5,
+       FU_UNSTABLE = 6 };
+
+/* Why a step failed, and where that shows most: a dof, and a joint or -1. */
+enum { FU_NO_FAILURE = 0, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE };
+typedef struct {
+    int cause, dof, joint;
+} fu_failure;
+
+/* The books since the start, J: energies then, the most exchanged between them (or in motion), the most that came from
+ * nowhere and that went there. */
+#define FU_ENERGIES 5
+typedef struct {
+    double first[FU_ENERGIES], exchanged, grown, lost;
+} fu_books;
 
 /* Rows of output, one an output time; joint: FU_JOINT_OUTPUTS numbers a joint in the order of fu_joint_output. */
 #define FU_JOINT_OUTPUTS 10
@@ -372,6 +387,9 @@ struct fu_run {
     double allowed; /* m: error of the step */
     double newton_tolerance, round_off; /* of increments, m: where Newton may stop, and where it cannot go on */
     int factored, stopped_joint, turned;
+    int struggle; /* steps rejected of late, less those taken */
+    fu_failure failure; /* of the last step that failed */
+    fu_books books;
     int predictor; /* the scratch holds a last step's stages */
     int rest_start; /* for order.py only: start the scheme from zero accelerations */
 };
@@ -402,6 +420,12 @@ int fu_return_to_joints(fu_run *run);
 /* books.c */
 double fu_external_power(fu_run *run, const fu_state *state, const double *reaction);
 void fu_book_trapezoid(fu_run *run, double h);
+int fu_moves(const fu_run *run);
+int fu_check_books(fu_run *run, const double energies[FU_ENERGIES], int first);
+
+/* failure.c: why a step failed */
+int fu_fail(fu_run *run, int cause, const double *dofs, int joint);
+int fu_fail_at(fu_run *run, int cause, int unknown);
 
 /* events.c */
 fu_event fu_find_event(const fu_run *run, fu_event known);

@@ -87,18 +87,20 @@ static int step(fu_run *run, double h)
     powers(run, 0)[1] = run->external_power;
     for (int k = 1; k < n; ++k) {
         if (move_to(run, tableau->A + k * n, k, run->now.t + tableau->c[k] * h, h)) return 1;
-        if (fu_accelerations(model, next, &run->accelerator, next->acceleration, 0, reaction)) return 1;
+        if (fu_accelerations(model, next, &run->accelerator, next->acceleration, 0, reaction))
+            return fu_fail(run, FU_MATRIX, next->v, -1);
         keep(run, k, next);
     }
     if (move_to(run, tableau->b, n, run->now.t + h, h)) return 1;
     if (fu_return_to_joints(run)) return 1;
-    if (fu_accelerations(model, next, &run->accelerator, next->acceleration, joints, reaction)) return 1;
+    if (fu_accelerations(model, next, &run->accelerator, next->acceleration, joints, reaction))
+        return fu_fail(run, FU_MATRIX, next->v, -1);
     keep(run, n, next);
     run->statistics.evaluations += n;
     for (int j = 0; j < model->n_joints; ++j) memcpy(next->f + 3 * j, joints[j].force, sizeof joints[j].force);
     fu_spring_state(model, next);
     for (int i = 0; i < model->n_dof; ++i)
-        if (!(fabs(next->v[i]) < 1e30)) return 1;
+        if (!(fabs(next->v[i]) < 1e30)) return fu_fail(run, FU_NOT_FINITE, next->v, -1);
     return 0;
 }
 

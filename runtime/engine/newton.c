@@ -36,7 +36,11 @@ static int factor(fu_run *run, const fu_newton *method, double h)
     const double begin = fu_clock();
     method->matrix(run, h);
     int info = fu_system_factor_band(&run->newton, run->model->lapack);
-    if (!info) info = fu_system_factor_border(&run->newton, run->model->lapack);
+    if (info) fu_fail_at(run, FU_MATRIX, info - 1);
+    else {
+        info = fu_system_factor_border(&run->newton, run->model->lapack);
+        if (info) fu_fail_at(run, FU_MATRIX, run->newton.n + info - 1);
+    }
     run->factored = !info;
     run->h_factored = h;
     ++run->statistics.factorisations;
@@ -89,6 +93,23 @@ void fu_predict_extra(fu_run *run, double h)
     }
 }
 
+/* The iteration has failed where its last correction, in run->rhs and run->work, is largest; returns 1. */
+static int blame(fu_run *run)
+{
+    const fu_model *model = run->model;
+    const double *extra = run->rhs + model->n_band + model->n_border_dof;
+    double largest = fu_size(model, run->work);
+    int joint = -1;
+    for (int j = 0; j < model->n_joints; ++j)
+        for (int d = 0; d <= model->joints[j].kernel->dim; ++d) {
+            const double size = fabs(extra[model->joints[j].unknown + d]);
+            if (!(size > largest)) continue;
+            largest = size;
+            joint = j;
+        }
+    return fu_fail(run, FU_ITERATION, run->work, joint);
+}
+
 /* Newton from the prediction with the matrix at hand; 0 when it converged */
 static int iterate(fu_run *run, const fu_newton *method, double h)
 {
@@ -105,10 +126,10 @@ static int iterate(fu_run *run, const fu_newton *method, double h)
         run->statistics.time_solve += fu_clock() - begin;
         const double size = method->apply(run, h);
         ++run->statistics.newton_iterations;
-        if (!(size < 1e30)) return 1;
+        if (!(size < 1e30)) return blame(run);
         if (i > 0) {
             ratio = size / last;
-            if (ratio >= 1.0 && size > 100.0 * run->round_off) return 1;
+            if (ratio >= 1.0 && size > 100.0 * run->round_off) return blame(run);
             run->contraction = ratio < 1e-3 ? 1e-3 : ratio > 0.9 ? 0.9 : ratio;
         }
         if (size * run->contraction / (1.0 - run->contraction) <= run->newton_tolerance ||
@@ -119,7 +140,7 @@ static int iterate(fu_run *run, const fu_newton *method, double h)
         }
         last = size;
     }
-    return 1;
+    return blame(run);
 }
 
 /* One step of size h from `now` to `next`; 0 when the Newton iteration converged. */

@@ -9,7 +9,7 @@ int fu_find_slides(fu_run *run)
     fu_state *next = &run->next;
     for (int j = 0; j < run->model->n_joints; ++j) {
         next->s[j] = run->now.s[j] + (next->t - run->now.t) * run->s_slope[j];
-        if (fu_find_arc_length(run->model, next, j, &next->s[j])) return 1;
+        if (fu_find_arc_length(run->model, next, j, &next->s[j])) return fu_fail(run, FU_LOST_RIDER, next->v, j);
     }
     return 0;
 }
@@ -33,15 +33,16 @@ int fu_return_to_joints(fu_run *run)
     normalise(model, next->q);
     if (!model->n_joints) return 0;
     for (int i = 0;; ++i) {
-        if (fu_project_positions(model, next, &run->accelerator, run->work)) return 1;
+        if (fu_project_positions(model, next, &run->accelerator, run->work))
+            return fu_fail(run, FU_MATRIX, next->v, -1);
         const double size = fu_size(model, run->work);
-        if (!(size < 1e30) || i == MOST_PROJECTIONS) return 1;
+        if (!(size < 1e30) || i == MOST_PROJECTIONS) return fu_fail(run, FU_ITERATION, run->work, -1);
         fu_move(model, next->q, run->work);
         for (int j = 0; j < model->n_joints; ++j)
-            if (fu_find_arc_length(model, next, j, &next->s[j])) return 1;
+            if (fu_find_arc_length(model, next, j, &next->s[j])) return fu_fail(run, FU_LOST_RIDER, next->v, j);
         if (size <= fmax(run->round_off, run->newton_tolerance)) break;
     }
-    if (fu_project_velocities(model, next, &run->accelerator, run->work)) return 1;
+    if (fu_project_velocities(model, next, &run->accelerator, run->work)) return fu_fail(run, FU_MATRIX, next->v, -1);
     for (int i = 0; i < model->n_dof; ++i) next->v[i] += run->work[i];
     return 0;
 }

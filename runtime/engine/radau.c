@@ -316,11 +316,12 @@ static int iterate(fu_run *run, workspace w, double h)
         if (evaluate(run, w, h)) return 1;
         const double size = correct(run, w, h);
         ++run->statistics.newton_iterations;
-        if (!(size < 1e30)) return 1;
+        if (!(size < 1e30)) return fu_fail(run, FU_ITERATION, run->work, -1);
         double ratio = 1.0;
         if (i > 0) {
             ratio = size / last;
-            if (ratio >= 2.0 || (ratio >= 1.0 && size > 100.0 * run->round_off && i > 2)) return 1;
+            if (ratio >= 2.0 || (ratio >= 1.0 && size > 100.0 * run->round_off && i > 2))
+                return fu_fail(run, FU_ITERATION, run->work, -1);
             run->contraction = ratio < 1e-3 ? 1e-3 : ratio > 0.9 ? 0.9 : ratio;
         }
         if (size * run->contraction / (1.0 - run->contraction) <= enough || size <= run->round_off) {
@@ -329,7 +330,7 @@ static int iterate(fu_run *run, workspace w, double h)
         }
         last = size;
     }
-    return 1;
+    return fu_fail(run, FU_ITERATION, run->work, -1);
 }
 
 static int start(fu_run *run)

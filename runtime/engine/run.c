@@ -7,6 +7,8 @@
 #define FIRST_PART 1e-3     /* of the duration: errors in it share one allowance */
 #define SAFETY 0.5          /* what the logarithm costs */
 #define SHORT_STEP 1e-3     /* of the usual step */
+#define MOST_STRUGGLE 10000 /* steps rejected beyond those taken */
+#define DIVISIONS 8         /* of a fixed step that do not count */
 #define MOST_TURNS 2        /* of a slide on one boundary before a step is taken all the same: it rests there */
 
 /* largest distance that a node or a body's centre has moved, m */
@@ -47,6 +49,7 @@ static double extent(const fu_model *model, const double *origin, const double *
     return largest;
 }
 
+/* FU_SINGULAR, FU_UNSTABLE, or FU_RUNNING where all is well */
 static int record_row(fu_run *run)
 {
     const double begin = fu_clock();
@@ -71,10 +74,12 @@ static int record_row(fu_run *run)
         fu_spring_force(model, &model->springs[k], now->q, now->v, r->spring + 3 * (row * model->n_springs + k), by_gap,
                         by_rate);
     }
+    const double energies[FU_ENERGIES] = {r->kinetic[row], r->elastic[row], r->potential[row], run->dissipated,
+                                          -run->external};
     ++r->n;
     run->recorded = now->t;
     run->statistics.time_output += fu_clock() - begin;
-    return info;
+    return info ? FU_SINGULAR : fu_check_books(run, energies, row == 0) ? FU_UNSTABLE : FU_RUNNING;
 }
 
 /* Start of the scheme, consistent: velocities projected on the joints where that is asked for, accelerations and forces
@@ -141,6 +146,7 @@ static void accept(fu_run *run, double h, fu_event event)
     const double moved = motion(model, run->first, run->now.q);
     if (moved > run->motion) run->motion = moved;
     fu_watch_now(run, event);
+    run->struggle -= run->struggle > 0 ? run->fixed_step > 0.0 ? DIVISIONS : 1 : 0;
     fu_statistics *s = &run->statistics;
     ++s->steps;
     if (s->steps == 1 || h < s->h_min) s->h_min = h;
@@ -229,18 +235,23 @@ static int step_towards(fu_run *run, double target)
     for (;;) {
         const double remaining = target - run->now.t;
         double h = fitted(remaining, want);
-        if (h < smallest && remaining > smallest) return FU_NO_CONVERGENCE;
+        if ((h < smallest && remaining > smallest) || run->struggle > MOST_STRUGGLE) return FU_NO_CONVERGENCE;
         const double allowed = allow(run, h);
+        run->failure.cause = FU_NO_FAILURE;
         if (run->integrator->step(run, h)) {
+            if (!run->failure.cause) fu_fail(run, FU_ITERATION, run->next.v, -1);
             want = 0.5 * h;
             ++run->statistics.rejected;
+            ++run->struggle;
             continue;
         }
         const double error = run->integrator->error(run, h), ratio = error / allowed;
         if (adaptive && !(ratio <= 2.0)) {
+            fu_fail(run, FU_ERROR, run->work, -1);
             want = run->h = h * fmax(0.2, 0.8 * pow(ratio, -1.0 / run->order));
             if (!(want > 0.0)) want = run->h = 0.2 * h;
             ++run->statistics.rejected;
+            ++run->struggle;
             continue;
         }
         fu_event event = fu_find_event(run, none);
@@ -278,8 +289,8 @@ static int step_towards(fu_run *run, double target)
 /* Record where the run has stopped, if that is not done already. */
 int fu_stop(fu_run *run)
 {
-    if (run->now.t > run->recorded && record_row(run)) return FU_SINGULAR;
-    return FU_EVENT;
+    const int recorded = run->now.t > run->recorded ? record_row(run) : FU_RUNNING;
+    return recorded ? recorded : FU_EVENT;
 }
 
 /* Go on for about so many seconds, or to the pause; the status tells whether there is more to do. */
@@ -291,7 +302,8 @@ int fu_advance(fu_run *run, double seconds)
         if (target > run->duration * (1.0 - 1e-12)) target = run->duration;
         if (run->now.t >= target - 1e-12 * run->duration) {
             run->now.t = target;
-            if (record_row(run)) return FU_SINGULAR;
+            const int recorded = record_row(run);
+            if (recorded) return recorded;
             if (target == run->duration) return FU_DONE;
             if (run->record.n == run->record.pause || fu_clock() > until) return FU_RUNNING;
         } else {
@@ -299,7 +311,7 @@ int fu_advance(fu_run *run, double seconds)
             if (status == FU_EVENT) return status;
             if (status) {
                 const int stopped = fu_stop(run);
-                return stopped == FU_SINGULAR ? stopped : status;
+                return stopped == FU_EVENT ? status : stopped;
             }
             if (fu_clock() > until) return FU_RUNNING;
         }

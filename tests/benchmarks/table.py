@@ -27,6 +27,11 @@ def show(rows: list[dict], out: Path | None = None) -> None:
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
     for line in cells:
         print("  ".join(cell.rjust(width) for cell, width in zip(line, widths, strict=True)))
+    write(rows, out)
+
+
+def write(rows: list[dict], out: Path | None) -> None:
+    """Write rows of equal keys to ``out`` if given."""
     if out is not None:
         with out.open("w", newline="", encoding="utf-8") as file:
             writer = csv.DictWriter(file, rows[0])

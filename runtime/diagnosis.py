@@ -1,0 +1,128 @@
+"""Why a run stopped, and what its results are worth: place, likely cause and remedy, in words."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from funicular.model import Model
+    from funicular.settings import RunSettings
+
+KEPT = "what was computed up to there is kept"
+
+FOLDED, STRETCHED = 0.8, 3.0
+"""Elements shorter or longer than this part of their undeformed length are named."""
+
+SAME, NEARLY = 1e-12, 1e-8
+"""Constraints whose compliance H M^-1 H' has eigenvalues of such a ratio hold the same; or nearly, if a run failed."""
+
+QUIET_ERROR, QUIET_LOSS = 5e-3, 0.05
+"""Of the largest motion, of the energy exchanged: errors of a fixed step beyond these are told."""
+
+
+def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
+    """The message of a run that found no acceptable step, lost a joint or whose energy grew."""
+    when = f"t = {engine.time:.6g} s of {settings.duration:.6g} s"
+    cause, dof, joint = engine.failure
+    _, q, v, _ = engine.now()
+    where, (state, folded) = place(model, dof, joint), condition(model, dof, q, v)
+    if status == "unstable":
+        grown, _, exchanged = engine.books
+        return (f"energy came from nowhere at {when}: {grown:.3g} J, where {exchanged:.3g} J were exchanged; fastest "
+                f"is {where} ({state}); {KEPT}. {_too_large(engine, settings)}")
+    if doubled := redundant(model, engine, NEARLY):
+        return (f"no step converged at {when}: {doubled} hold nearly the same; {KEPT}. "
+                "Leave one of them out, or hold the body at points farther apart")
+    if status == "singular" or cause == "matrix":
+        return (f"the equations are singular at {when}, first at {where} ({state}): a joint or the mass matrix is "
+                f"degenerate, as where a cable's tangent vanishes or its director lies along it; {KEPT}. "
+                "Look at the masses and at up, or take more elements there")
+    what = {"iteration": f"the iteration does not settle, least of all at {where}",
+            "error": f"the error stays above what tol allows, most of all at {where}",
+            "lost_rider": f"{where} does not find its place on the cable any more",
+            "not_finite": f"{where} runs away"}[cause]
+    counts = engine.statistics
+    gone = f" after {counts['steps']} steps down to {counts['smallest_step_s']:.2g} s" if counts["steps"] else ""
+    if settings.step is not None and engine.integrator == "explicit":
+        remedy = _too_large(engine, settings)
+    elif folded:
+        remedy = "The cable folds up there: take more elements, or damping_time in the material"
+    else:
+        remedy = ("Look at loads, masses and stiffnesses there; else try a smaller "
+                  f"{'tol' if settings.step is None else 'step'}, or damping_time in the material")
+    return f"no step converged at {when}{gone}: {what} ({state}); {KEPT}. {remedy}"
+
+
+def _too_large(engine, settings: RunSettings) -> str:
+    size = f"tol {settings.tol:g}" if settings.step is None else f"step {settings.step:g} s"
+    others = "" if settings.step is None else ", or none, so that tol chooses it"
+    stable = ', or integrator="genalpha"' if engine.integrator == "explicit" else ""
+    return f'The {size} is too large for integrator "{engine.integrator}": take a smaller one{others}{stable}'
+
+
+def redundant(model: Model, engine, ratio: float = SAME) -> str:
+    """Names of slides of one body that hold the same at the time reached; empty where there are none.
+
+    Slides of different bodies never do: each acts on its own body, whose mass is not zero.
+    """
+    riders = [joint.rider for joint in model.joints]
+    shared = sorted({rider for rider in riders if riders.count(rider) > 1})
+    S = engine.compliance() if shared else None
+    names = []
+    for rider in shared:
+        joints = [joint for joint in model.joints if joint.rider == rider]
+        rows = np.concatenate([joint.multiplier + np.arange(model.dim - 1) for joint in joints])
+        scale = 1 / np.sqrt(np.diag(S)[rows])
+        values, vectors = np.linalg.eigh(scale[:, None] * S[np.ix_(rows, rows)] * scale)
+        idle = values < ratio * values[-1]
+        share = np.linalg.norm(vectors[:, idle], axis=1).reshape(len(joints), -1).max(axis=1)
+        names += [f'"{joint.name}"' for joint, part in zip(joints, share, strict=True) if part > 1e-3]
+    return " and ".join(filter(None, ["slides " * bool(names) + ", ".join(names[:-1]), *names[-1:]]))
+
+
+def place(model: Model, dof: int, joint: int | None = None) -> str:
+    """What a dof, or a joint, is of."""
+    if joint is not None:
+        return f'slide "{model.joints[joint].name}" on cable "{model.cables[model.joints[joint].cable].name}"'
+    for cable in model.cables:
+        if cable.coordinates.start <= dof < cable.coordinates.stop:
+            node = (dof - cable.first) // (cable.shape[1] * cable.shape[2])
+            return f'cable "{cable.name}" at s = {node * cable.length:.6g} m'
+    return [f'body "{body.name}"' for body in model.rigids if body.dof <= dof][-1]
+
+
+def condition(model: Model, dof: int, q: np.ndarray, v: np.ndarray) -> tuple[str, bool]:
+    """How the place of a dof fares, and whether its cable is folded up there."""
+    speed = f"{abs(v[dof]) * model.weight[dof]:.3g} m/s"
+    for cable in model.cables:
+        if cable.coordinates.start <= dof < cable.coordinates.stop:
+            node = (dof - cable.first) // (cable.shape[1] * cable.shape[2])
+            r = q[cable.coordinates].reshape(cable.shape)[:, 0]
+            stretch = np.linalg.norm(np.diff(r, axis=0), axis=1)[max(node - 1, 0) : node + 1] / cable.length
+            worst = stretch[np.argmax(np.abs(np.log(np.maximum(stretch, 1e-300))))]
+            fair = FOLDED < worst < STRETCHED
+            told = "" if fair else f"its elements there are {worst:.3g} times their length at rest, "
+            return told + speed, bool(worst <= FOLDED)
+    return speed, False
+
+
+def notes(engine, settings: RunSettings) -> list[str]:
+    """What a user should know of a completed run whose results are coarse; empty where they are good."""
+    counts, told = engine.statistics, []
+    if settings.step is not None and counts["rejected_steps"]:
+        told.append(f"{counts['rejected_steps']} times no step of {settings.step:g} s was possible: it was divided, "
+                    f"down to {counts['smallest_step_s']:.3g} s")
+    if not engine.moves:
+        return told
+    error = counts["sum_of_local_error_estimates_m"] / counts["largest_motion_m"]
+    if settings.step is not None and error > QUIET_ERROR:
+        told.append(f"the estimated errors of the steps sum up to {error:.2g} of the largest motion: take a smaller "
+                    "step, or none, so that tol chooses it")
+    grown, lost, exchanged = engine.books
+    if max(grown, lost) > QUIET_LOSS * exchanged:
+        told.append(f"the integration {'took away' if lost > grown else 'added'} energy, up to "
+                    f"{max(grown, lost) / exchanged:.2g} of what was exchanged: take a smaller step or tol"
+                    + (", or a spectral_radius nearer to 1" if lost > grown and settings.spectral_radius < 1 else ""))
+    return told

@@ -1,0 +1,32 @@
+/* Why a step failed, and where: what a message can name. */
+#include "engine.h"
+
+/* Remember the cause, the dof that moves farthest (or is no number), and the joint; returns 1. */
+int fu_fail(fu_run *run, int cause, const double *dofs, int joint)
+{
+    const fu_model *model = run->model;
+    double largest = -1.0;
+    run->failure = (fu_failure){cause, 0, joint};
+    for (int i = 0; i < model->n_dof; ++i) {
+        const double size = fabs(dofs[i]) * model->weight[i];
+        if (size <= largest) continue;
+        run->failure.dof = i;
+        if (size != size) break;
+        largest = size;
+    }
+    return 1;
+}
+
+/* The same by the unknown at which a matrix is singular. */
+int fu_fail_at(fu_run *run, int cause, int unknown)
+{
+    const fu_model *model = run->model;
+    const int extra = unknown - model->n_band - model->n_border_dof;
+    run->failure = (fu_failure){cause, 0, -1};
+    for (int i = 0; i < model->n_dof; ++i)
+        if (model->place[i] == unknown) run->failure.dof = i;
+    for (int j = 0; j < model->n_joints && extra >= 0; ++j)
+        if (model->joints[j].unknown <= extra && extra <= model->joints[j].unknown + model->joints[j].kernel->dim)
+            run->failure.joint = j;
+    return 1;
+}
