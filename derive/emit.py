@@ -218,7 +218,7 @@ def _shared(members: list[Derived]) -> dict[str, str]:
 
     Raises FamilyError where two families do not agree on them.
     """
-    first = next(member for member in members if not member.family.elsewhere)
+    first = min(members, key=lambda member: len(member.family.elsewhere))
     kernels = _signatures(first)
     for other in members:
         theirs = _signatures(other)

@@ -98,7 +98,7 @@ def test_radau_reaches_tol_however_stiff(youngs_modulus):
         run = stiff.run(0.05, integrator="radau", tol=tol, output_step=0.01)
         apart = np.abs(run["rope.nodal_vectors"] - fine["rope.nodal_vectors"])[:, :, 0].max()
         assert apart < 3 * tol * fine.report["largest_motion_m"]
-        assert run.report["steps"] < 400
+        assert run.report["steps"] < 1000  # explicit: 9000 with the stiffest
 
 
 def test_explicit_is_right_about_a_stiff_scene_too():
