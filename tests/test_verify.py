@@ -119,7 +119,7 @@ def test_an_energy_that_is_wrong_in_spec_and_text_alike_is_found(generated, caps
     out = capsys.readouterr().out
     assert f"{name}_energy: U is not the law's integral" in out
     assert f"{name}_dissipation: P is not the law's integral" in out
-    assert "force: f is not" not in out
+    assert f"{name}_elastic_force: f is not" not in out
     assert "tangent: K is not" not in out
 
 
