@@ -1,11 +1,19 @@
-"""Build of the extension modules with their C files side by side: setuptools compiles those of one module in turn."""
+"""Build of the extension modules: their C files side by side, since setuptools compiles those of one module in turn;
+OpenMP for those that take it, where the compiler has it.
+"""
 
 from __future__ import annotations
 
 import os
+import tempfile
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 from setuptools.command.build_ext import build_ext
+from setuptools.errors import CompileError, LinkError
+
+THREADED = ("funicular.engine",)
+OPENMP = "-fopenmp"
 
 
 class ParallelBuild(build_ext):
@@ -13,6 +21,11 @@ class ParallelBuild(build_ext):
 
     def build_extensions(self) -> None:
         """Build all modules; files in a pool of as many threads as there are cores, each calling the compiler."""
+        if self._has_openmp():
+            for module in self.extensions:
+                if module.name in THREADED:
+                    module.extra_compile_args.append(OPENMP)
+                    module.extra_link_args.append(OPENMP)
         compile_in_turn = self.compiler.compile
         with ThreadPoolExecutor(os.cpu_count()) as pool:
 
@@ -24,3 +37,15 @@ class ParallelBuild(build_ext):
 
             self.compiler.compile = compile_side_by_side
             super().build_extensions()
+
+    def _has_openmp(self) -> bool:
+        """Whether a program with it compiles and links."""
+        with tempfile.TemporaryDirectory() as folder:
+            source = Path(folder) / "openmp.c"
+            source.write_text("#include <omp.h>\nint main(void) { return omp_get_max_threads() < 1; }\n")
+            try:
+                objects = self.compiler.compile([str(source)], output_dir=folder, extra_postargs=[OPENMP])
+                self.compiler.link_executable(objects, str(Path(folder) / "openmp"), extra_postargs=[OPENMP])
+            except (CompileError, LinkError):
+                return False
+        return True

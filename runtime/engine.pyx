@@ -133,6 +133,8 @@ cdef extern from "engine.h" nogil:
         const int *dead_dof
         const double *dead_value
         const fu_lapack *lapack
+        int threads
+        double *parts
     ctypedef struct fu_state:
         double t
         double *q
@@ -246,6 +248,7 @@ cdef extern from "engine.h" nogil:
         int factored, stopped_joint, rest_start
         fu_failure failure
         fu_books books
+    int fu_has_threads()
     void fu_linearise(fu_run *run, double h, const double *change)
     int fu_system_factor_band(fu_system *system, const fu_lapack *lapack)
     int fu_system_factor_border(fu_system *system, const fu_lapack *lapack)
@@ -392,6 +395,7 @@ cdef class Engine:
         m.combination_start = self._ints(model.combinations.indptr)
         m.combination_place = self._ints(model.combinations.indices)
         m.combination_value = self._doubles(model.combinations.data)
+        m.threads, m.parts = 1, NULL
         m.gravity, m.zero = self._doubles(model.gravity), self._doubles(np.zeros(model.n_dof))
         self._work_space(model)
 
@@ -695,6 +699,17 @@ cdef class Engine:
         cdef double[::1] dofs = np.zeros(max(1, self.model.n_dof))
         fu_spread(&self.model, &x[0], &dofs[0])
         return np.asarray(dofs)[:self.model.n_dof]
+
+    def use_threads(self, int threads):
+        """Let so many threads share the elements; whether that is possible: OpenMP was there when this was built."""
+        cdef int i
+        if not fu_has_threads():
+            return False
+        self.model.threads = threads
+        if threads > 1:
+            self.model.parts = self._zeros(max([1] + [self.cables[i].n_elements * self.cables[i].coordinates ** 2
+                                                      for i in range(self.model.n_cables)]))
+        return True
 
     def watch(self, watcher):
         """Watch for the events of a `Watcher`; call it before `start`."""

@@ -295,6 +295,8 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
         step = output_step / np.ceil(output_step / settings.step * (1 - 1e-9))
         if step < settings.step * (1 - 1e-6):
             messages.append(f"step {settings.step:.6g} s was made {step:.6g} s, so that steps end on output times")
+    if settings.threads > 1 and not engine.use_threads(settings.threads):
+        messages.append(f"threads = {settings.threads} came to 1: the compiler that built this had no OpenMP")
     method, reason = choose(settings, scene, model, engine)
     if method.name == "energy":
         _check_conserves(model, scene)

@@ -274,6 +274,7 @@ class Scene:
         integrator: str | None = None,
         spectral_radius: float | None = None,
         initial: str | Equilibrium | None = None,
+        threads: int | None = None,
         save: str | os.PathLike | None = None,
         resume: bool = False,
         progress: bool | Callable[[float], None] | None = None,
@@ -298,6 +299,7 @@ class Scene:
             "integrator": integrator,
             "spectral_radius": spectral_radius,
             "initial": initial if state is None else "equilibrium",
+            "threads": threads,
             "save": None if save is None else os.fspath(save),
         }
         settings = RunSettings(**self.run_settings | {k: v for k, v in given.items() if v is not None})

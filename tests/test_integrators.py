@@ -136,3 +136,15 @@ def test_damping_counts_in_the_choice():
     report = soft(4, 2e5, damping_time=100.0).run(0.01, tol=1e-6, output_step=0.01).report
     assert report["integrator"] == "radau"
     assert "fastest decay" in report["integrator_reason"]
+
+
+@pytest.mark.parametrize("integrator", ["genalpha", "explicit", "radau"])
+def test_threads_change_no_bit(integrator):
+    """Groups of elements as with one, each with a place of its own: 37 elements end in an incomplete one."""
+    runs = [soft(37, 2e4, damping_time=1e-4).run(1e-3, integrator=integrator, output_step=5e-4, threads=threads)
+            for threads in (1, 2, 3)]
+    assert runs[0].report["messages"] == []
+    for run in runs[1:]:
+        assert run["rope.nodal_vectors"].tobytes() == runs[0]["rope.nodal_vectors"].tobytes()
+        assert run.report["messages"] in ([], [f"threads = {run.report['settings']['threads']} came to 1: the compiler "
+                                              "that built this had no OpenMP"])

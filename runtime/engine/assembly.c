@@ -1,6 +1,8 @@
 /* Sums over elements and bodies: forces, energies, and the band and body blocks of a Newton matrix. */
 #include "engine.h"
 
+#include <string.h>
+
 #define CHUNK 16 /* elements whose forces wait to be added: few enough to stay in the first cache */
 
 /* Elements of a cable from the k-th on. */
@@ -53,6 +55,33 @@ static void elastic_tangents(const fu_cable *cable, int n, const fu_elements *of
                                     K + k * cable->coordinates * cable->coordinates);
 }
 
+typedef void (*work_on)(const fu_cable *cable, int n, const fu_elements *of, double *out);
+
+/* What a cable's elements give, `size` numbers each, to model->parts: groups of them on as many threads as the model
+ * has. The groups are those of one thread and each has its place, so that the bits do not depend on the number. */
+static void on_threads(const fu_model *model, const fu_cable *cable, const double *q, int group, int size, work_on work)
+{
+    const int groups = (cable->n_elements + group - 1) / group;
+#ifdef _OPENMP
+#pragma omp parallel for num_threads(model->threads) schedule(static)
+#endif
+    for (int g = 0; g < groups; ++g) {
+        const int k = g * group, left = cable->n_elements - k;
+        const fu_elements of = elements_from(cable, q, 0, k);
+        work(cable, left < group ? left : group, &of, model->parts + (long)k * size);
+    }
+}
+
+/* whether the compiler had OpenMP */
+int fu_has_threads(void)
+{
+#ifdef _OPENMP
+    return 1;
+#else
+    return 0;
+#endif
+}
+
 /* f of the cable's dofs += what n elements from the k-th on give, one after the other */
 static void add_forces(const fu_cable *cable, int k, int n, const double *part, double *f)
 {
@@ -86,6 +115,11 @@ void fu_internal_forces(const fu_model *model, const double *q, const double *v,
     double part[CHUNK * FU_MAX_COORDINATES];
     for (int c = 0; c < model->n_cables; ++c) {
         const fu_cable *cable = &model->cables[c];
+        if (model->threads > 1) {
+            on_threads(model, cable, q, CHUNK, cable->coordinates, elastic_forces);
+            add_forces(cable, 0, cable->n_elements, model->parts, f);
+            continue;
+        }
         for (int k = 0, n; k < cable->n_elements; k += n) {
             n = chunk(cable, k);
             const fu_elements of = elements_from(cable, q, v, k);
@@ -179,12 +213,15 @@ void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, 
         const fu_cable *cable = &model->cables[c];
         const int size = cable->coordinates * cable->coordinates;
         const double mass = inertia + stiffness * rate * cable->mass_damping;
+        const int threaded = model->threads > 1 && stiffness != 0.0;
+        if (threaded) on_threads(model, cable, q, FU_BLOCK_ELEMENTS, size, elastic_tangents);
         for (int k = 0; k < cable->n_elements; ++k) {
             const int j = k % FU_BLOCK_ELEMENTS, left = cable->n_elements - k;
             const fu_elements of = elements_from(cable, q, v, k);
             K = every + j * size;
             if (stiffness != 0.0) {
-                if (j == 0) elastic_tangents(cable, left < FU_BLOCK_ELEMENTS ? left : FU_BLOCK_ELEMENTS, &of, every);
+                if (threaded) memcpy(K, model->parts + (long)k * size, sizeof(double) * (size_t)size);
+                else if (j == 0) elastic_tangents(cable, left < FU_BLOCK_ELEMENTS ? left : FU_BLOCK_ELEMENTS, &of, every);
                 if (cable->tau > 0.0) {
                     cable->law->damping_tangent(of.l, of.e, of.v, of.A, of.tau, rate, Q);
                     for (int i = 0; i < size; ++i) K[i] += Q[i];

@@ -156,6 +156,8 @@ typedef struct {
     const int *dead_dof;
     const double *dead_value;
     const fu_lapack *lapack;
+    int threads;   /* over elements */
+    double *parts; /* what a cable's elements give, with more than one: forces or tangents */
 } fu_model;
 
 /* State of the motion at one instant. */
@@ -189,6 +191,7 @@ int fu_extra(const fu_model *model, int k);
 double fu_size(const fu_model *model, const double *dofs);
 
 /* assembly.c */
+int fu_has_threads(void);
 void fu_mass_times(const fu_model *model, const double *a, double *f);
 void fu_internal_forces(const fu_model *model, const double *q, const double *v, double *f);
 void fu_rate_forces(const fu_model *model, const double *q, const double *v, double *f);

@@ -21,6 +21,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import time
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import partial
@@ -29,7 +30,7 @@ from statistics import median
 
 import exudyn_models as peer
 import numpy as np
-from funicular import FunicularError, Material, Rectangle, Scene
+from funicular import FunicularError, FunicularWarning, Material, Rectangle, Scene
 from funicular.bench_outputs import distance, largest_change
 from funicular.settings import INTEGRATORS
 from sliding import sliding_mass
@@ -268,6 +269,7 @@ def main() -> None:
     options.add_argument("--elements", type=int, help="only this number of elements")
     options.add_argument("--plot", type=Path, metavar="FILE.png", help="draw the picture")
     options = options.parse_args()
+    warnings.simplefilter("ignore", FunicularWarning)  # coarse steps are meant
     rows, checks, curves = [], [], {}
     for case in cases():
         if options.cases in case.name and options.elements in (None, case.elements):
