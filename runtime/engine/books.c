@@ -2,7 +2,7 @@
 #include "engine.h"
 
 #define MOST_GROWTH 0.5    /* of the energy exchanged, or of motion: beyond it the result is none */
-#define LEAST_MOTION 1e-6  /* of the size of the scene: at rest the books hold rounding alone */
+#define LEAST_MOTION 1e-3  /* of the size of the scene: less is rounding, or how a motion begins */
 
 /* power of the loads and, with the forces that the supports give, of the motions at a state */
 double fu_external_power(fu_run *run, const fu_state *state, const double *reaction)
