@@ -162,7 +162,13 @@ def their_curve(case: Case, limit: float) -> list[Point]:
 
 
 def limit_of(points: list[Point], order: int) -> tuple[np.ndarray, float]:
-    """The path that steps halved again and again lead to, and how much it differs without the finest step."""
+    """The path that steps halved again and again lead to, and how much it differs without the finest step.
+
+    Raises TooLongError for fewer than three steps within the limit.
+    """
+    if len(points) < 3:
+        raise TooLongError(f"{len(points)} runs there within the limit show no limit of their path")
+
     def extrapolated(coarse: Point, fine: Point) -> np.ndarray:
         return fine.path + (fine.path - coarse.path) / (2**order - 1)
 
@@ -274,7 +280,12 @@ def main() -> None:
     for case in cases():
         if options.cases in case.name and options.elements in (None, case.elements):
             print(f"{case.name}, {case.elements} elements", flush=True)
-            found, check, curves[case.name, case.elements] = compare(case, options.repetitions, options.limit)
+            try:
+                found, check, each = compare(case, options.repetitions, options.limit)
+            except TooLongError as error:
+                print(f"  left out: {error}; give a larger --limit", flush=True)
+                continue
+            curves[case.name, case.elements] = each
             rows, checks = rows + found, [*checks, check]
     show(rows, options.out)
     show(checks)
