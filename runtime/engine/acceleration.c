@@ -153,7 +153,8 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
     for (int i = 0; i < model->n_dof; ++i) work->work[i] = -work->force[i] - work->work[i];
     for (int j = 0; j < model->n_joints; ++j)
         for (int c = 0; c < model->joints[j].kernel->dim - 1; ++c)
-            lambda[model->joints[j].multiplier + c] = view(work, j).W[c] + minus_H(model, state, work, j, c, prescribed);
+            lambda[model->joints[j].multiplier + c] =
+                view(work, j).W[c] + minus_H(model, state, work, j, c, prescribed);
     solve(model, work, work->work, acceleration);
     for (int i = 0; i < model->n_dof; ++i) acceleration[i] += prescribed[i];
     if (joints)
@@ -190,8 +191,9 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
     return 0;
 }
 
-/* change = the smallest (in the mass norm) increment of the dofs that makes C_m = 0, to first order */
-int fu_project_positions(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change)
+/* change = the smallest (in the mass norm) change of the dofs with H change = -C_m, or, of velocities, -H v */
+static int project(const fu_model *model, const fu_state *state, fu_accelerator *work, int of_velocities,
+                   double *change)
 {
     double *lambda = work->rhs + model->n_band + model->n_border_dof;
     evaluate(model, state, work);
@@ -200,24 +202,22 @@ int fu_project_positions(const fu_model *model, const fu_state *state, fu_accele
     for (int i = 0; i < model->n_dof; ++i) work->work[i] = 0.0;
     for (int j = 0; j < model->n_joints; ++j)
         for (int c = 0; c < model->joints[j].kernel->dim - 1; ++c)
-            lambda[model->joints[j].multiplier + c] = -view(work, j).C[1 + c];
+            lambda[model->joints[j].multiplier + c] =
+                of_velocities ? minus_H(model, state, work, j, c, state->v) : -view(work, j).C[1 + c];
     solve(model, work, work->work, change);
     return 0;
 }
 
-/* change = the smallest (in the mass norm) change of v that makes H v = 0 */
+/* change = an increment of the dofs that makes C_m = 0, to first order */
+int fu_project_positions(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change)
+{
+    return project(model, state, work, 0, change);
+}
+
+/* change = a change of v that makes H v = 0 */
 int fu_project_velocities(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change)
 {
-    double *lambda = work->rhs + model->n_band + model->n_border_dof;
-    evaluate(model, state, work);
-    const int info = factor_border(model, state, work);
-    if (info) return info;
-    for (int i = 0; i < model->n_dof; ++i) work->work[i] = 0.0;
-    for (int j = 0; j < model->n_joints; ++j)
-        for (int c = 0; c < model->joints[j].kernel->dim - 1; ++c)
-            lambda[model->joints[j].multiplier + c] = minus_H(model, state, work, j, c, state->v);
-    solve(model, work, work->work, change);
-    return 0;
+    return project(model, state, work, 1, change);
 }
 
 /* C, C_s, the Newton step for s, and the tangent, of a joint where it stands with this s */
