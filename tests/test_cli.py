@@ -188,6 +188,7 @@ def test_settings_and_defaults_reach_the_engine(engine):
         "spectral_radius": 0.5,
         "initial": "drawn",
         "save": None,
+        "threads": 1,
     }
 
 
