@@ -222,7 +222,7 @@ cdef extern from "engine.h" nogil:
         fu_tableau tableau
         fu_collocation collocation
         fu_complex_system complex_newton
-        double slack
+        double caution, slack
         double *scratch
         int n_watches
         const fu_watch *watches
@@ -742,7 +742,7 @@ cdef class Engine:
         run = &self.run
         run.duration, run.output_step, run.tol = duration, output_step, tol
         run.fixed_step, run.h, run.rest_start = step, first_step, rest_start
-        run.order, run.slack = method.order, method.slack
+        run.order, run.slack, run.caution = method.order, method.slack, method.caution
         if method.name == "explicit":
             run.integrator = &fu_explicit_method
             self._tableau(method)

@@ -31,7 +31,7 @@ class GeneralisedAlpha:
     """alpha_m, alpha_f, beta, gamma for a spectral radius at infinite frequency (Chung & Hulbert 1993)."""
 
     spectral_radius: float
-    name, order, slack = "genalpha", 2, 2.0
+    name, order, slack, caution = "genalpha", 2, 2.0, 0.0
 
     @property
     def parameters(self) -> tuple[float, float, float, float]:
@@ -45,7 +45,7 @@ class GeneralisedAlpha:
 class EnergyMomentum:
     """Keeps energy and momenta to rounding (Simo & Tarnow 1992; Gonzalez 1996)."""
 
-    name, order, slack = "energy", 2, 1.0
+    name, order, slack, caution = "energy", 2, 1.0, 0.0
 
 
 class Explicit:
@@ -55,7 +55,7 @@ class Explicit:
     interval for each evaluation, so that it is the cheaper one at any tolerance.
     """
 
-    name, slack = "explicit", 1.0
+    name, slack, caution = "explicit", 1.0, 0.0
 
     def __init__(self) -> None:
         from scipy.integrate import DOP853
@@ -68,10 +68,11 @@ class Explicit:
 class Radau:
     """Radau IIA of three stages, of order 5 (Hairer & Wanner 1996, IV.5 and IV.8), from its nodes.
 
-    Steps are chosen by an embedded estimate of order 3, whose error is ``slack`` times that of the method about.
+    Steps are chosen by an embedded estimate of order 3, whose error is about ``slack`` times the method's. After a
+    step that failed the next ones stay below ``caution`` of it for a while: factorisations are dear.
     """
 
-    name, order, slack = "radau", 3, 7.0
+    name, order, slack, caution = "radau", 3, 7.0, 0.65
 
     def __init__(self) -> None:
         root = np.sqrt(6.0)

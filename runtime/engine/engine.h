@@ -362,6 +362,7 @@ struct fu_run {
     fu_tableau tableau;
     fu_collocation collocation;
     fu_complex_system complex_newton;
+    double caution;      /* of a step that failed: what the next ones stay below, 0 where failures are cheap */
     double slack;        /* how much larger the estimate of the local error is than that error */
     double *scratch;     /* of the integrator: checkpoints do not hold it */
     int n_watches;
@@ -388,6 +389,7 @@ struct fu_run {
     double recorded; /* s: time of the last row */
     double motion, least_motion, extent; /* m: largest so far, assumed at least, largest coordinate of a position */
     double allowed; /* m: error of the step */
+    double ceiling; /* s: that steps stay below, after one that failed */
     double newton_tolerance, round_off; /* of increments, m: where Newton may stop, and where it cannot go on */
     int factored, stopped_joint, turned;
     int struggle; /* steps rejected of late, less those taken */

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#define RECOVERY 1.05       /* of what steps stay below after a failure, with each step that is taken */
 #define SMALLEST_STEP 1e-12 /* of the duration */
 #define FIRST_PART 1e-3     /* of the duration: errors in it share one allowance */
 #define SAFETY 0.5          /* what the logarithm costs */
@@ -109,6 +110,7 @@ int fu_start(fu_run *run)
 {
     const fu_model *model = run->model;
     fu_state *now = &run->now;
+    run->ceiling = run->duration;
     fu_prescribe(model, now);
     fu_carry_directors(model, now);
     for (int j = 0; j < model->n_joints; ++j)
@@ -215,11 +217,14 @@ static double allow(fu_run *run, double h)
 }
 
 /* The next step by the last one's error over what is allowed: the error falls with the power order + 1 of the step,
- * what is allowed with the first. Small changes are not worth a new factorisation. */
+ * what is allowed with the first. Small changes are not worth a new factorisation. After a step that failed the next ones
+ * stay below it for a while. */
 static void adapt(fu_run *run, double h, double ratio)
 {
     const double factor = fmin(2.0, 0.8 * pow(fmax(ratio, 1e-12), -1.0 / run->order));
-    if (factor > 1.4) run->h = fmax(run->h, h * factor);
+    run->ceiling = fmin(RECOVERY * run->ceiling, run->duration);
+    const double larger = fmin(h * factor, run->ceiling);
+    if (larger > 1.4 * h) run->h = fmax(run->h, larger);
     else if (factor < 0.8) run->h = h * factor;
 }
 
@@ -241,6 +246,10 @@ static int step_towards(fu_run *run, double target)
         if (run->integrator->step(run, h)) {
             if (!run->failure.cause) fu_fail(run, FU_ITERATION, run->next.v, -1);
             want = 0.5 * h;
+            if (adaptive && run->caution > 0.0) {
+                run->h = want;
+                run->ceiling = run->caution * h;
+            }
             ++run->statistics.rejected;
             ++run->struggle;
             continue;
