@@ -4,8 +4,9 @@
 
 One thread, compiled as the engine is, 16 elements in the first cache, gathering and scattering included: least of the
 repetitions. Operations as the manifest counts them, and what they are a second over the machine's peak: that of fused
-multiply-adds in AVX2 (two operations each), measured here. The kernels do not fuse, so that a half is all they could
-reach; divisions and square roots, four to eight times as long as a product, keep those that have many far below.
+multiply-adds in AVX2 (two operations each), measured here. The kernels do not fuse: they could
+reach half of it, or three quarters where the core has adders apart from its multipliers; divisions and square roots,
+four to eight times as long as a product, keep those that have many far below.
 """
 
 from __future__ import annotations
