@@ -39,7 +39,7 @@ def draw(results: dict[str, Bench], path: Path) -> None:
             axes.set_title(name, fontsize=10)
         panels[1].set_ylabel("")
         handles, labels = panels[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside upper center", ncols=len(labels))
+        figure.legend(handles, labels, loc="outside upper center", ncols=4)
         figure.savefig(path, dpi=100)
 
 
