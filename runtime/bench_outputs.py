@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from funicular.errors import SceneError, near
 from funicular.libraries import kernels_of
+from funicular.placing import node_of
 from funicular.results import QUANTITIES
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ PLACES = ("tip", "middle")
 
 def default_outputs(scene: Scene) -> list[str]:
     """Where bodies and slides are, and of each cable the end, or its middle where the end is held."""
-    held = {(support.cable, scene.cables[support.cable].node_at(support.s)) for support in scene.supports}
+    held = {node_of(scene, support) for support in scene.supports}
     places = [f"{name}.{'middle' if (name, cable.elements) in held else 'tip'}"
               for name, cable in scene.cables.items()]
     return [f"{name}.position" for name in scene.bodies] + [f"{name}.s" for name in scene.slides] + places

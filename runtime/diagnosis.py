@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from funicular.model import Model
+    from funicular.model import CableModel, Model
     from funicular.settings import RunSettings
 
 KEPT = "what was computed up to there is kept"
@@ -86,26 +86,32 @@ def place(model: Model, dof: int, joint: int | None = None) -> str:
     """What a dof, or a joint, is of."""
     if joint is not None:
         return f'slide "{model.joints[joint].name}" on cable "{model.cables[model.joints[joint].cable].name}"'
-    for cable in model.cables:
-        if cable.coordinates.start <= dof < cable.coordinates.stop:
-            node = (dof - cable.first) // (cable.shape[1] * cable.shape[2])
-            return f'cable "{cable.name}" at s = {node * cable.length:.6g} m'
+    if (found := _node(model, dof)) is not None:
+        cable, node = found
+        return f'cable "{cable.name}" at s = {node * cable.length:.6g} m'
     return [f'body "{body.name}"' for body in model.rigids if body.dof <= dof][-1]
 
 
 def condition(model: Model, dof: int, q: np.ndarray, v: np.ndarray) -> tuple[str, bool]:
     """How the place of a dof fares, and whether its cable is folded up there."""
     speed = f"{abs(v[dof]) * model.weight[dof]:.3g} m/s"
+    if (found := _node(model, dof)) is None:
+        return speed, False
+    cable, node = found
+    r = q[cable.coordinates].reshape(cable.shape)[:, 0]
+    stretch = np.linalg.norm(np.diff(r, axis=0), axis=1)[max(node - 1, 0) : node + 1] / cable.length
+    worst = stretch[np.argmax(np.abs(np.log(np.maximum(stretch, 1e-300))))]
+    fair = FOLDED < worst < STRETCHED
+    told = "" if fair else f"its elements there are {worst:.3g} times their length at rest, "
+    return told + speed, bool(worst <= FOLDED)
+
+
+def _node(model: Model, dof: int) -> tuple[CableModel, int] | None:
+    """Cable and number of the node that a dof is of; None where it is a body's."""
     for cable in model.cables:
         if cable.coordinates.start <= dof < cable.coordinates.stop:
-            node = (dof - cable.first) // (cable.shape[1] * cable.shape[2])
-            r = q[cable.coordinates].reshape(cable.shape)[:, 0]
-            stretch = np.linalg.norm(np.diff(r, axis=0), axis=1)[max(node - 1, 0) : node + 1] / cable.length
-            worst = stretch[np.argmax(np.abs(np.log(np.maximum(stretch, 1e-300))))]
-            fair = FOLDED < worst < STRETCHED
-            told = "" if fair else f"its elements there are {worst:.3g} times their length at rest, "
-            return told + speed, bool(worst <= FOLDED)
-    return speed, False
+            return cable, (dof - cable.first) // (cable.shape[1] * cable.shape[2])
+    return None
 
 
 def notes(engine, settings: RunSettings) -> list[str]:

@@ -70,7 +70,7 @@ cdef extern from "engine.h" nogil:
         const double *coefficients
         double amplitude, angular_frequency, phase
     ctypedef struct fu_motion:
-        int dof, signal
+        int dof, signal, first
         double base, linear, cosine, sine
     ctypedef struct fu_dead_load:
         int signal, first, n
@@ -455,10 +455,12 @@ cdef class Engine:
                 raise ValueError(f"a signal's pieces need {FU_SIGNAL_TERMS} coefficients")
             g.breaks, g.coefficients = self._doubles(signal.breaks), self._doubles(signal.coefficients)
             g.amplitude, g.angular_frequency, g.phase = signal.amplitude, signal.angular_frequency, signal.phase
+        moved = set()
         for i, motion in enumerate(model.motions):
             o = &self.motions[i]
             o.dof, o.signal, o.base, o.linear = motion.dof, motion.signal, motion.base, motion.linear
-            o.cosine, o.sine = motion.cosine, motion.sine
+            o.cosine, o.sine, o.first = motion.cosine, motion.sine, motion.dof not in moved
+            moved.add(motion.dof)
         dofs, values = [], []
         for i, load in enumerate(model.dead_loads):
             d = &self.dead_loads[i]
@@ -555,7 +557,7 @@ cdef class Engine:
         t.A, t.b, t.c = self._doubles(method.A), self._doubles(method.b), self._doubles(method.c)
         t.error, t.coarse = self._doubles(method.error), self._doubles(method.coarse)
         stage = self.model.n_q + self.model.n_dof
-        self.run.scratch = self._doubles(np.zeros((t.stages + 2) * stage + 2 * (t.stages + 1)))
+        self.run.scratch = self._zeros((t.stages + 2) * stage + 2 * (t.stages + 1))
 
     def _collocation(self, method):
         o, system = &self.run.collocation, &self.run.newton
@@ -568,11 +570,10 @@ cdef class Engine:
         o.gamma, o.alpha, o.beta = method.gamma, method.alpha, method.beta
         n, m, rows = system.n, system.m, 3 * system.width + 1
         c = &self.run.complex_newton
-        c.K, c.B, c.C = self._doubles(np.zeros(2 * rows * n)), self._doubles(np.zeros(2 * n * m)), self._doubles(np.zeros(2 * n * m))
-        c.D, c.X, c.x = self._doubles(np.zeros(2 * m * m)), self._doubles(np.zeros(2 * n * m)), self._doubles(np.zeros(2 * (n + m)))
-        c.D_real, c.pivot_band, c.pivot_border = self._doubles(np.zeros(m * m)), self._ints(np.zeros(n)), self._ints(np.zeros(m))
-        of = 15 * self.model.n_dof + 3 * self.model.n_q + 7 + n + m
-        self.run.scratch = self._doubles(np.zeros(of))
+        c.K, c.D, c.x = self._zeros(2 * rows * n), self._zeros(2 * m * m), self._zeros(2 * (n + m))
+        c.B, c.C, c.X = self._zeros(2 * n * m), self._zeros(2 * n * m), self._zeros(2 * n * m)
+        c.D_real, c.pivot_band, c.pivot_border = self._zeros(m * m), self._ints(np.zeros(n)), self._ints(np.zeros(m))
+        self.run.scratch = self._zeros(12 * self.model.n_dof + 3 * self.model.n_q + 7 + n + m)
 
     cdef _matrix(self):
         """The unfactored Newton matrix, (unknowns, unknowns) sparse."""
@@ -751,7 +752,7 @@ cdef class Engine:
             self._collocation(method)
         elif method.name == "energy":
             run.integrator = &fu_energy_method
-            run.scratch = self._doubles(np.zeros(self.model.n_q + 2 * self.model.n_dof))
+            run.scratch = self._zeros(self.model.n_q + 2 * self.model.n_dof)
         else:
             run.integrator = &fu_genalpha_method
             run.scheme.alpha_m, run.scheme.alpha_f, run.scheme.beta, run.scheme.gamma = method.parameters

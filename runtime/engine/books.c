@@ -16,9 +16,7 @@ double fu_external_power(fu_run *run, const fu_state *state, const double *react
     }
     for (int k = 0; k < model->n_motions; ++k) {
         const int i = model->motions[k].dof;
-        int counted = 0;
-        for (int m = 0; m < k; ++m) counted |= model->motions[m].dof == i;
-        if (!counted) power += reaction[i] * state->v[i];
+        if (model->motions[k].first) power += reaction[i] * state->v[i];
     }
     return power;
 }

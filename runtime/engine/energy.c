@@ -231,9 +231,7 @@ static void book(fu_run *run, double h)
     fu_mass_times(model, next->acceleration, m.force);
     for (int k = 0; k < model->n_motions; ++k) {
         const int i = model->motions[k].dof;
-        int counted = 0;
-        for (int other = 0; other < k; ++other) counted |= model->motions[other].dof == i;
-        if (!counted)
+        if (model->motions[k].first)
             run->external += run->force[i] * run->psi[i] +
                              m.force[i] * (0.5 * h * (now->v[i] + next->v[i]) - run->psi[i]);
     }

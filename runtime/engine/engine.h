@@ -65,7 +65,7 @@ typedef struct {
 
 /* A dof that follows signals: q = base + linear f + cosine cos f + sine sin f */
 typedef struct {
-    int dof, signal;
+    int dof, signal, first; /* first: of those of its dof, whose work is counted once */
     double base, linear, cosine, sine;
 } fu_motion;
 
@@ -218,7 +218,7 @@ void fu_loads_matrix(const fu_model *model, double t, const double *q, const dou
 /* springs.c */
 void fu_spring_force(const fu_model *model, const fu_spring *spring, const double *q, const double *v, double force[3],
                      double by_gap[9], double by_rate[9]);
-void fu_spring_state(const fu_model *model, fu_state *state);
+void fu_forces_of_springs(const fu_model *model, const fu_state *state, double *forces);
 void fu_spring_forces(const fu_model *model, const double *q, const double *v, double *f);
 void fu_spring_pull(const fu_model *model, const fu_spring *spring, const double *q, const double force[3], double *f);
 void fu_spring_matrix(const fu_model *model, const fu_spring *spring, const fu_state *state, const double *psi,
@@ -421,6 +421,7 @@ void fu_joint_coordinates(const fu_model *model, const fu_state *state, int j, i
 /* projection.c */
 int fu_find_slides(fu_run *run);
 int fu_return_to_joints(fu_run *run);
+int fu_complete(fu_run *run, fu_state *state);
 
 /* books.c */
 double fu_external_power(fu_run *run, const fu_state *state, const double *reaction);

@@ -37,10 +37,10 @@ static double value(const fu_run *run, const fu_state *state, fu_event event)
     return event.side * (state->s[event.which] - fu_element_start(run->model, event.which, boundary));
 }
 
-/* whether a watch passes between the value kept and that of a state */
-static fu_event passes(const fu_run *run, const fu_state *state, int k)
+/* whether a watch passes between the value kept and this one */
+static fu_event passes(const fu_run *run, int k, double after)
 {
-    const double before = run->watched[k], after = watched(run, state, k);
+    const double before = run->watched[k];
     const int side = before < 0.0 && after >= 0.0 ? 1 : before > 0.0 && after < 0.0 ? -1 : 0;
     return side && run->watches[k].direction * side >= 0 ? (fu_event){FU_WATCHED, k, side}
                                                          : (fu_event){FU_NO_EVENT, 0, 0};
@@ -61,7 +61,7 @@ fu_event fu_find_event(const fu_run *run, fu_event known)
         }
     }
     for (int k = 0; k < run->n_watches && !found.kind; ++k)
-        if (known.kind != FU_WATCHED || known.which != k) found = passes(run, &run->next, k);
+        if (known.kind != FU_WATCHED || known.which != k) found = passes(run, k, watched(run, &run->next, k));
     return found;
 }
 
@@ -111,11 +111,12 @@ double fu_locate(fu_run *run, fu_event event, double h)
 void fu_watch_now(fu_run *run, fu_event event)
 {
     for (int k = 0; k < run->n_watches; ++k) {
-        const fu_event it = event.kind == FU_WATCHED && event.which == k ? event : passes(run, &run->now, k);
-        const double value = watched(run, &run->now, k);
-        if (it.kind) run->watched[k] = 0.0;
+        const int known = event.kind == FU_WATCHED && event.which == k;
+        const double value = known ? 0.0 : watched(run, &run->now, k);
+        const fu_event late = passes(run, k, value);
+        if (known || late.kind) run->watched[k] = 0.0;
         else if (value != 0.0) run->watched[k] = value;
-        if (it.kind && !(event.kind == FU_WATCHED && event.which == k)) run->late[k] = it.side;
+        if (!known && late.kind) run->late[k] = late.side;
     }
 }
 

@@ -78,10 +78,8 @@ static int step(fu_run *run, double h)
     const fu_tableau *tableau = &run->tableau;
     const int n = tableau->stages;
     fu_state *next = &run->next;
-    fu_joint_output *joints = (fu_joint_output *)run->accelerator.joints;
     double *reaction = model->n_motions ? run->force : 0;
-    memcpy(next->element, run->now.element, sizeof(int) * (size_t)model->n_joints);
-    memcpy(next->director, run->now.director, 3 * sizeof(double) * (size_t)model->n_joints);
+    fu_predict_extra(run, h);
     rates(model, &run->now, stage(run, 0));
     powers(run, 0)[0] = run->dissipated_power;
     powers(run, 0)[1] = run->external_power;
@@ -93,12 +91,9 @@ static int step(fu_run *run, double h)
     }
     if (move_to(run, tableau->b, n, run->now.t + h, h)) return 1;
     if (fu_return_to_joints(run)) return 1;
-    if (fu_accelerations(model, next, &run->accelerator, next->acceleration, joints, reaction))
-        return fu_fail(run, FU_MATRIX, next->v, -1);
+    if (fu_complete(run, next)) return fu_fail(run, FU_MATRIX, next->v, -1);
     keep(run, n, next);
     run->statistics.evaluations += n;
-    for (int j = 0; j < model->n_joints; ++j) memcpy(next->f + 3 * j, joints[j].force, sizeof joints[j].force);
-    fu_spring_state(model, next);
     for (int i = 0; i < model->n_dof; ++i)
         if (!(fabs(next->v[i]) < 1e30)) return fu_fail(run, FU_NOT_FINITE, next->v, -1);
     return 0;

@@ -1,5 +1,8 @@
-/* What the integrators on eq 38 share: slides where C_l = 0, and projection of what the constraints lost in a step. */
+/* What the integrators on eq 38 share: slides where C_l = 0, projection of what the constraints lost in a step, and what
+ * follows from positions and velocities. */
 #include "engine.h"
+
+#include <string.h>
 
 #define MOST_PROJECTIONS 10
 
@@ -44,5 +47,19 @@ int fu_return_to_joints(fu_run *run)
     }
     if (fu_project_velocities(model, next, &run->accelerator, run->work)) return fu_fail(run, FU_MATRIX, next->v, -1);
     for (int i = 0; i < model->n_dof; ++i) next->v[i] += run->work[i];
+    return 0;
+}
+
+/* Accelerations of a state by eq 38, and with them the forces of joints and springs; what supports give, in run->force,
+ * where something moves them. 0 when that was found. */
+int fu_complete(fu_run *run, fu_state *state)
+{
+    const fu_model *model = run->model;
+    fu_joint_output *joints = (fu_joint_output *)run->accelerator.joints;
+    const int info = fu_accelerations(model, state, &run->accelerator, state->acceleration, joints,
+                                      model->n_motions ? run->force : 0);
+    if (info) return info;
+    for (int j = 0; j < model->n_joints; ++j) memcpy(state->f + 3 * j, joints[j].force, sizeof joints[j].force);
+    fu_forces_of_springs(model, state, state->spring);
     return 0;
 }

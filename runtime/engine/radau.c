@@ -343,25 +343,16 @@ static int start(fu_run *run)
 static void begin_step(fu_run *run)
 {
     const fu_model *model = run->model;
-    const fu_state *now = &run->now;
-    fu_state *next = &run->next;
-    next->t = now->t;
-    memcpy(next->q, now->q, sizeof(double) * (size_t)model->n_q);
-    memcpy(next->v, now->v, sizeof(double) * (size_t)model->n_dof);
-    memcpy(next->acceleration, now->acceleration, sizeof(double) * (size_t)model->n_dof);
-    memcpy(next->s, now->s, sizeof(double) * (size_t)model->n_joints);
-    memcpy(next->f, now->f, 3 * sizeof(double) * (size_t)model->n_joints);
-    memcpy(next->spring, now->spring, 3 * sizeof(double) * (size_t)model->n_springs);
-    memcpy(next->element, now->element, sizeof(int) * (size_t)model->n_joints);
-    memcpy(next->director, now->director, 3 * sizeof(double) * (size_t)model->n_joints);
+    const size_t dofs = sizeof(double) * (size_t)model->n_dof;
+    fu_predict_extra(run, 0.0);
+    memcpy(run->next.q, run->now.q, sizeof(double) * (size_t)model->n_q);
+    memcpy(run->next.v, run->now.v, dofs);
+    memcpy(run->next.acceleration, run->now.acceleration, dofs);
 }
 
 static int step(fu_run *run, double h)
 {
-    const fu_model *model = run->model;
     const workspace w = space(run);
-    fu_state *next = &run->next;
-    fu_joint_output *joints = (fu_joint_output *)run->accelerator.joints;
     if (fabs(h - run->h_factored) > 1e-6 * h) run->factored = 0;
     for (int fresh = !run->factored;; fresh = 1) {
         begin_step(run);
@@ -379,11 +370,7 @@ static int step(fu_run *run, double h)
     }
     configure(run, w, h);
     if (place_stage(run, w, STAGES - 1, h) || fu_return_to_joints(run)) return 1;
-    if (fu_accelerations(model, next, &run->accelerator, next->acceleration, joints, model->n_motions ? run->force : 0))
-        return 1;
-    for (int j = 0; j < model->n_joints; ++j) memcpy(next->f + 3 * j, joints[j].force, sizeof joints[j].force);
-    fu_spring_state(model, next);
-    return 0;
+    return fu_complete(run, &run->next);
 }
 
 /* (L/h - J)^-1 of the rate at the start and what the stages say of it, for the real L: an estimate of order 3, damped

@@ -70,11 +70,7 @@ static int record_row(fu_run *run)
     r->potential[row] = fu_potential_energy(model, now->q);
     r->dissipated[row] = run->dissipated;
     r->external[row] = run->external;
-    for (int k = 0; k < model->n_springs; ++k) {
-        double by_gap[9], by_rate[9];
-        fu_spring_force(model, &model->springs[k], now->q, now->v, r->spring + 3 * (row * model->n_springs + k), by_gap,
-                        by_rate);
-    }
+    fu_forces_of_springs(model, now, r->spring + 3 * row * model->n_springs);
     const double energies[FU_ENERGIES] = {r->kinetic[row], r->elastic[row], r->potential[row], run->dissipated,
                                           -run->external};
     ++r->n;
@@ -95,14 +91,10 @@ static int start_scheme(fu_run *run, int project)
         if (fu_project_velocities(model, now, &run->accelerator, run->before)) return FU_SINGULAR;
         for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->before[i];
     }
-    if (fu_accelerations(model, now, &run->accelerator, now->acceleration, joints, run->force)) return FU_SINGULAR;
+    if (fu_complete(run, now)) return FU_SINGULAR;
     run->dissipated_power = fu_dissipation(model, now->q, now->v);
     run->external_power = fu_external_power(run, now, run->force);
-    for (int j = 0; j < model->n_joints; ++j) {
-        run->s_slope[j] = joints[j].s_rate;
-        memcpy(now->f + 3 * j, joints[j].force, sizeof joints[j].force);
-    }
-    fu_spring_state(model, now);
+    for (int j = 0; j < model->n_joints; ++j) run->s_slope[j] = joints[j].s_rate;
     return run->integrator->start(run);
 }
 

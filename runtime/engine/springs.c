@@ -161,12 +161,12 @@ void fu_spring_matrix(const fu_model *model, const fu_spring *spring, const fu_s
     }
 }
 
-/* the springs' forces of a state, as it stands */
-void fu_spring_state(const fu_model *model, fu_state *state)
+/* the force of each spring on its first end, 3 each */
+void fu_forces_of_springs(const fu_model *model, const fu_state *state, double *forces)
 {
     double by_gap[9], by_rate[9];
     for (int k = 0; k < model->n_springs; ++k)
-        fu_spring_force(model, &model->springs[k], state->q, state->v, state->spring + 3 * k, by_gap, by_rate);
+        fu_spring_force(model, &model->springs[k], state->q, state->v, forces + 3 * k, by_gap, by_rate);
 }
 
 /* Force on the first end over a step from q to q_next that takes as much work as the spring stores, and as much more as
