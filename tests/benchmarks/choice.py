@@ -17,20 +17,11 @@ import funicular as fu
 import numpy as np
 from funicular.integrators import COST_OF_IMPLICIT, STABLE, fastest_rates, slowest_rate
 from funicular.model import build
+from pendulum import pendulum
 from table import arguments, show
 
 TOLS = (1e-3, 1e-4, 1e-5, 1e-6)
 INTEGRATORS = ("explicit", "radau", "genalpha")
-
-
-def pendulum(elements: int, youngs_modulus: float) -> fu.Scene:
-    """A rope of 1 m, let go from the horizontal."""
-    scene = fu.Scene()
-    scene.cable("rope", start=(0, 0, 0), end=(1, 0, 0), elements=elements, element="cable12", strain="engineering",
-                section=fu.Rectangle(height=0.02, width=0.02),
-                material=fu.Material(youngs_modulus=youngs_modulus, poisson_ratio=0.0, density=1000))
-    scene.pin("rope", s=0.0)
-    return scene
 
 
 def rider() -> fu.Scene:
@@ -48,10 +39,10 @@ def rider() -> fu.Scene:
 
 
 SCENES = {
-    "pendulum, 8, E 2e6": (lambda: pendulum(8, 2e6), 0.3),
-    "pendulum, 32, E 2e6": (lambda: pendulum(32, 2e6), 0.3),
-    "pendulum, 8, E 7e8": (lambda: pendulum(8, 7e8), 0.1),
-    "pendulum, 8, steel": (lambda: pendulum(8, 2.1e11), 0.05),
+    "pendulum, 8, E 2e6": (lambda: pendulum(8, 2e6, 1000), 0.3),
+    "pendulum, 32, E 2e6": (lambda: pendulum(32, 2e6, 1000), 0.3),
+    "pendulum, 8, E 7e8": (lambda: pendulum(8, 7e8, 1000), 0.1),
+    "pendulum, 8, steel": (lambda: pendulum(8, 2.1e11, 1000), 0.05),
     "rider on a soft rope": (rider, 1.0),
     "first scene": (lambda: fu.load_scene("paper51"), 0.3),
 }

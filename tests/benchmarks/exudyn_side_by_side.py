@@ -30,9 +30,10 @@ from statistics import median
 
 import exudyn_models as peer
 import numpy as np
-from funicular import FunicularError, FunicularWarning, Material, Rectangle, Scene
+from funicular import FunicularError, FunicularWarning, Scene
 from funicular.bench_outputs import distance, largest_change
 from funicular.settings import INTEGRATORS
+from pendulum import pendulum
 from sliding import sliding_mass
 from table import parser, show
 
@@ -41,16 +42,6 @@ TARGETS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 TOLS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 STEPS = (50, 100, 200, 500, 1000, 2000, 4000, 8000, 16000, 32000, 64000)
 REFERENCE_TOLS = (1e-6, 1e-8)
-
-
-def pendulum(elements: int, youngs_modulus: float) -> Scene:
-    """A cable of 1 m, pinned at one end and let go from the horizontal."""
-    scene = Scene()
-    rope = scene.cable("wire", start=(0, 0, 0), end=(1, 0, 0), elements=elements, element="cable12",
-                       strain="engineering", section=Rectangle(height=0.02, width=0.02),
-                       material=Material(youngs_modulus=youngs_modulus, poisson_ratio=0.0, density=7200))
-    scene.pin(rope, s=0.0)
-    return scene
 
 
 @dataclass
@@ -70,7 +61,8 @@ class Case:
 
 def cases() -> list[Case]:
     """All of them."""
-    made = [Case(f"pendulum, E {modulus:.0e}", n, partial(pendulum, n, modulus), partial(peer.pendulum, n, modulus), 2)
+    made = [Case(f"pendulum, E {modulus:.0e}", n, partial(pendulum, n, modulus, 7200),
+                 partial(peer.pendulum, n, modulus), 2)
             for modulus in (2e6, 7e8) for n in (8, 32, 128)]
     for name, modulus, mass in (("sliding mass", 0.4e9, 1.0), ("sliding mass, flexible", 2e6, 5.0)):
         made += [Case(name, n, partial(sliding_mass, n, strain="engineering", youngs_modulus=modulus, mass=mass),

@@ -1,0 +1,256 @@
+# What kernels.h, blocks.h and engine.h declare, as far as engine.pyx uses it.
+
+cdef extern from "kernels.h" nogil:
+    ctypedef struct fu_element:
+        const char *name
+        int vectors, dim, nodes
+    ctypedef struct fu_body:
+        const char *name
+        int dim, configuration, velocity
+    ctypedef struct fu_slide:
+        const char *name
+        int coordinates, dim
+    ctypedef struct fu_law:
+        const char *name
+    ctypedef struct fu_tables:
+        int n_elements, n_laws, n_bodys, n_slides
+        const fu_element *elements
+        const fu_law *laws
+        const fu_body *bodys
+        const fu_slide *slides
+
+cdef extern from "blocks.h" nogil:
+    ctypedef struct fu_law_blocks:
+        pass
+    const fu_law_blocks *fu_blocks_of(const char *law)
+
+cdef extern from "engine.h" nogil:
+    int FU_JOINT_TERMS, FU_JOINT_OUTPUTS, FU_MAX_COORDINATES
+    int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT, FU_UNSTABLE
+    int FU_NO_FAILURE, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE
+    int FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_CALL
+    int FU_SIGNAL_TERMS, FU_BAND_GROUP
+    long FU_BAND_BEYOND(int width)
+    long FU_BAND_LENGTH(int n, int width)
+    ctypedef struct fu_cable:
+        const fu_element *kernel
+        const fu_law *law
+        const fu_law_blocks *blocks
+        int n_elements, first, coordinates, per_node, A_stride
+        double length, tau, mass_damping
+        const double *m
+        const double *A
+    ctypedef struct fu_rigid:
+        const fu_body *kernel
+        int configuration, dof
+        double mass
+        double J[9]
+    ctypedef struct fu_joint:
+        const fu_slide *kernel
+        int cable, rider, unknown, multiplier, carries_director
+        double u[3]
+        double mass
+    ctypedef struct fu_signal:
+        int n
+        const double *breaks
+        const double *coefficients
+        double amplitude, angular_frequency, phase
+    ctypedef struct fu_motion:
+        int dof, signal, first
+        double base, linear, cosine, sine
+    ctypedef struct fu_dead_load:
+        int signal, first, n
+    ctypedef struct fu_load:
+        int kind, signal, on, element
+        double x
+        double u[3]
+        double c[3]
+    ctypedef struct fu_end:
+        int cable, body, element
+        double u[3]
+        double N[32]
+    ctypedef struct fu_spring:
+        fu_end ends[2]
+        int dim, unknown
+        double stiffness, damping, length, mass
+    ctypedef struct fu_lapack:
+        void *dgbtrf
+        void *dgbtrs
+        void *dpbtrf
+        void *dgetrf
+        void *dgetrs
+        void *zgbtrf
+        void *zgbtrs
+        void *zgetrf
+        void *zgetrs
+    ctypedef struct fu_span:
+        int first, end
+    ctypedef struct fu_system:
+        int n, width, m, definite
+        double *K
+        double *L
+        double *B
+        double *C
+        double *D
+        double *X
+        fu_span *span_B
+        fu_span *span_C
+        int *coupled
+        int *pivot_band
+        int *pivot_border
+    ctypedef struct fu_model:
+        int n_cables, n_rigids, n_joints, n_springs, n_motions, n_dead_loads, n_loads
+        const fu_cable *cables
+        const fu_rigid *rigids
+        const fu_joint *joints
+        const fu_spring *springs
+        const fu_motion *motions
+        const fu_dead_load *dead_loads
+        const fu_load *loads
+        const fu_signal *signals
+        int n_q, n_dof, n_band, n_border_dof, n_extra, n_multipliers
+        const int *place
+        const int *combination_start
+        const int *combination_place
+        const double *combination_value
+        const double *weight
+        const double *gravity
+        const double *zero
+        const int *dead_dof
+        const double *dead_value
+        const fu_lapack *lapack
+        int threads
+        double *parts
+    ctypedef struct fu_state:
+        double t
+        double *q
+        double *v
+        double *acceleration
+        double *a
+        double *s
+        double *f
+        double *spring
+        int *element
+        double *director
+    ctypedef struct fu_accelerator:
+        fu_system mass
+        double *bodies
+        double *rhs
+        double *terms
+        double *force
+        double *work
+        double *prescribed
+        double *joints
+    ctypedef struct fu_genalpha:
+        double alpha_m, alpha_f, beta, gamma
+    ctypedef struct fu_tableau:
+        int stages
+        const double *A
+        const double *b
+        const double *c
+        const double *error
+        const double *coarse
+    ctypedef struct fu_collocation:
+        double A[9]
+        double A_inverse[9]
+        double c[3]
+        double T[9]
+        double T_inverse[9]
+        double gamma, alpha, beta
+        double error[3]
+    ctypedef struct fu_complex_system:
+        void *K
+        void *B
+        void *C
+        void *D
+        void *X
+        void *x
+        double *D_real
+        int *pivot_band
+        int *pivot_border
+    ctypedef struct fu_watch:
+        int kind, index, direction
+        double value
+    ctypedef struct fu_event:
+        int kind, which, side
+    ctypedef struct fu_failure:
+        int cause, dof, joint
+    ctypedef struct fu_books:
+        double exchanged, grown, lost
+    ctypedef struct fu_statistics:
+        long steps, rejected, newton_iterations, factorisations, crossings, newton_failures, evaluations
+        double h_min, h_max, error_sum, time_factor, time_solve, time_residual, time_output
+    ctypedef struct fu_record:
+        int n, first, pause
+        double *time
+        double *q
+        double *v
+        double *acceleration
+        double *reaction
+        double *s
+        double *joint
+        double *kinetic
+        double *elastic
+        double *potential
+        double *dissipated
+        double *external
+        double *spring
+    ctypedef struct fu_weights:
+        double inertia, rate, stiffness
+    ctypedef struct fu_integrator:
+        const char *name
+    const fu_integrator fu_genalpha_method, fu_explicit_method, fu_energy_method, fu_radau_method
+    ctypedef struct fu_run:
+        const fu_model *model
+        const fu_integrator *integrator
+        int order
+        fu_genalpha scheme
+        fu_tableau tableau
+        fu_collocation collocation
+        fu_complex_system complex_newton
+        double caution, slack
+        double *scratch
+        int n_watches
+        const fu_watch *watches
+        double *watched
+        int *late
+        double (*call)(void *context, int watch, const fu_state *state) noexcept nogil
+        void *context
+        fu_event event
+        double duration, output_step, fixed_step, tol
+        fu_state now, next
+        fu_system newton
+        fu_accelerator accelerator
+        fu_record record
+        fu_statistics statistics
+        double *rhs
+        double *psi
+        double *force
+        double *work
+        double *before
+        double *first
+        double *s_slope
+        double h, h_factored, contraction, motion
+        int factored, stopped_joint, rest_start
+        fu_failure failure
+        fu_books books
+    int fu_has_threads()
+    void fu_linearise(fu_run *run, double h, const double *change)
+    int fu_system_factor_band(fu_system *system, const fu_lapack *lapack)
+    int fu_system_factor_border(fu_system *system, const fu_lapack *lapack)
+    void fu_system_solve(const fu_system *system, const fu_lapack *lapack, double *x)
+    void fu_static_move(fu_run *run, const double *change)
+    void fu_static_residual(fu_run *run)
+    void fu_matrix(fu_run *run, fu_weights weights)
+    void fu_spread(const fu_model *model, const double *x, double *dofs)
+    void fu_prescribe(const fu_model *model, fu_state *state)
+    void fu_carry_directors(const fu_model *model, fu_state *state)
+    double fu_elastic_energy(const fu_model *model, const double *q)
+    int fu_moves(const fu_run *run)
+    int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S)
+    int fu_start(fu_run *run)
+    int fu_advance(fu_run *run, double seconds)
+    void fu_pause(fu_run *run)
+    long fu_save(const fu_run *run, char *bytes)
+    void fu_restore(fu_run *run, const char *bytes)
+    int fu_stop(fu_run *run)
