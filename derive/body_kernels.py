@@ -74,7 +74,7 @@ class Step:
 
     def jacobian(self, arm: np.ndarray) -> np.ndarray:
         """By translation and Cayley vector, of a point on this arm."""
-        turns = np.stack([cross(axis, arm) for axis in self.axes.T], axis=1)
+        turns = np.array([cross(axis, arm) for axis in self.axes.T], dtype=object).reshape(-1, len(arm)).T
         return np.concatenate([np.eye(len(arm), dtype=int), turns], axis=1)
 
 

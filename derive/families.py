@@ -8,7 +8,8 @@ from functools import partial
 from types import ModuleType
 
 from funicular.derive import body_kernels, element_kernels, law_kernels, structural_kernels
-from funicular.derive.bodies import BODIES
+from funicular.derive.bodies import BODIES, RIDERS
+from funicular.derive.bodies.point import Point
 from funicular.derive.elements import ELEMENTS
 from funicular.derive.joints import slide
 from funicular.derive.laws import DAMPED_LIKE, law_like, law_name, structural
@@ -45,11 +46,11 @@ def _body(body: ModuleType) -> Family:
                   rider=body.NAME)
 
 
-def _slide(element: Element, rider: ModuleType) -> Family:
+def _slide(element: Element, rider: ModuleType | Point) -> Family:
     return Family(f"slide_{element.name}_{rider.NAME}",
                   f"sliding joint of a {rider.NAME} rider on a {element.name} cable",
                   partial(slide.build, element, rider),
-                  ("joints.slide", f"elements.{element.name}", f"bodies.{rider.NAME}"),
+                  ("joints.slide", f"elements.{element.name}", "bodies.point" if isinstance(rider, Point) else f"bodies.{rider.NAME}"),
                   role="slide",
                   facts={"coordinates": element.n_coordinates + rider.N_VELOCITY, "dim": element.dim},
                   element=element, rider=rider.NAME)
@@ -58,7 +59,7 @@ def _slide(element: Element, rider: ModuleType) -> Family:
 def of_element(element: Element) -> list[Family]:
     """An element's own kernels, its laws, and the slide of each rider of its dimension."""
     return [_element(element), *(_law(element, law) for law in element.laws),
-            *(_slide(element, rider) for rider in BODIES.values() if rider.DIM == element.dim)]
+            *(_slide(element, rider) for rider in RIDERS.values() if rider.DIM == element.dim)]
 
 
 def families() -> dict[str, Family]:

@@ -79,7 +79,7 @@ def _turned(family: Family, s: State, random: np.random.Generator) -> dict[str, 
         rider = RIDERS[family.rider]
         changes |= rider.sample(random, near)
         turn = np.zeros(rider.n_velocity)
-        turn[rider.rotations.start] = TURN
+        turn[rider.rotations][:1] = TURN
         changes["b"] = rider.moved(np, changes["b"], turn)
     return changes | following(family, s | changes, random)
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 from funicular.derive.bodies import planar_rigid, rigid
+from funicular.derive.bodies.point import POINTS
 
 
 def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -151,7 +152,50 @@ class PlanarRigid:
         return np.zeros((1, 1))
 
 
-RIDERS = {rigid.NAME: Rigid, planar_rigid.NAME: PlanarRigid}
+class Point:
+    """bodies/point.py: b where the arm u starts, both in global axes."""
+
+    def __init__(self, dim: int):
+        self.dim = self.n_velocity = dim
+        self.rotations = slice(dim, dim)
+
+    def sample(self, random: np.random.Generator, near: np.ndarray) -> dict[str, np.ndarray]:
+        """A point not far from `near` and off it, and velocities."""
+        n, u, off = self.dim, random.normal(size=self.dim) / 3, random.uniform(0.5, 1.5, self.dim) / 8
+        return {"b": near - u + off, "u": u, "w": 1 + random.normal(size=n), "wdot": random.normal(size=n)}
+
+    def at_rest(self, point: np.ndarray) -> dict[str, np.ndarray]:
+        """Holding a point."""
+        u = np.array([0.0, 0.25, 0.125])[: self.dim]
+        return {"b": point - u, "u": u}
+
+    def point(self, b: np.ndarray, u: np.ndarray) -> np.ndarray:
+        """The rider's point in global axes."""
+        return b + u
+
+    def moved(self, numbers, b: np.ndarray, motion: np.ndarray) -> np.ndarray:
+        """The origin moves."""
+        return b + motion
+
+    def step(self, b: np.ndarray, b_next: np.ndarray) -> np.ndarray:
+        """Translation from one configuration to another."""
+        return b_next - b
+
+    def turn(self, b: np.ndarray, motion: np.ndarray) -> np.ndarray:
+        """It does not turn."""
+        return np.concatenate([0 * b, 0 * b])[:3]
+
+    def frame(self, random: np.random.Generator) -> tuple:
+        """A turn of the global frame: its matrix, and what it makes of a configuration."""
+        Q, _ = (Rigid if self.dim == 3 else PlanarRigid).frame(random)
+        return Q, lambda b: Q @ b
+
+    def bracket(self, g: np.ndarray) -> np.ndarray:
+        """No rotations."""
+        return np.zeros((0, 0))
+
+
+RIDERS = {rigid.NAME: Rigid, planar_rigid.NAME: PlanarRigid, **{name: Point(p.DIM) for name, p in POINTS.items()}}
 
 
 def spin(w: np.ndarray, dim: int) -> np.ndarray:

@@ -60,6 +60,8 @@ def _frame(family: Family, k: Numbers, s: State, out: dict, n_e: int) -> Iterato
     turned = {**s, "e": s["e"] @ Q.T, "v": s["v"] @ Q.T, "b": turn(s["b"]), "w": s["w"].copy()}
     turned["w"][: element.dim] = Q @ s["w"][: element.dim]
     turned["director"] = Q @ s["director"]
+    if rider.n_velocity == element.dim:  # the arm of a mere point is in global axes
+        turned["u"] = Q @ s["u"]
     new = k("terms", turned)
     yield "turned scene: same C, s_rate, Q_d, W", max(
         relative(new[name] - out[name], max(relative(out[name], 1), 1.0)) for name in _OUTPUTS), 256 * EPS

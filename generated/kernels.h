@@ -288,12 +288,26 @@ void slide_beam24_rigid_residual(fu_real l, fu_real x, const fu_real *e, const f
 void slide_beam24_rigid_tangent(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *J, fu_real *K);
 void slide_beam24_rigid_discrete_gradient(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
 
+/* slide_beam24_point: sliding joint of a point rider on a beam24 cable */
+void slide_beam24_point_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
+void slide_beam24_point_terms(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *v, const fu_real *w, const fu_real *director, fu_real *C, fu_real *C_q, fu_real *C_s, fu_real *G, fu_real *s_rate, fu_real *Q_d, fu_real *H, fu_real *W, fu_real *s_bias);
+void slide_beam24_point_residual(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *phi, fu_real *g);
+void slide_beam24_point_tangent(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *J, fu_real *K);
+void slide_beam24_point_discrete_gradient(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
+
 /* slide_cable12_rigid: sliding joint of a rigid rider on a cable12 cable */
 void slide_cable12_rigid_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
 void slide_cable12_rigid_terms(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *v, const fu_real *w, const fu_real *director, fu_real *C, fu_real *C_q, fu_real *C_s, fu_real *G, fu_real *s_rate, fu_real *Q_d, fu_real *H, fu_real *W, fu_real *s_bias);
 void slide_cable12_rigid_residual(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *phi, fu_real *g);
 void slide_cable12_rigid_tangent(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *J, fu_real *K);
 void slide_cable12_rigid_discrete_gradient(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
+
+/* slide_cable12_point: sliding joint of a point rider on a cable12 cable */
+void slide_cable12_point_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
+void slide_cable12_point_terms(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *v, const fu_real *w, const fu_real *director, fu_real *C, fu_real *C_q, fu_real *C_s, fu_real *G, fu_real *s_rate, fu_real *Q_d, fu_real *H, fu_real *W, fu_real *s_bias);
+void slide_cable12_point_residual(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *phi, fu_real *g);
+void slide_cable12_point_tangent(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *J, fu_real *K);
+void slide_cable12_point_discrete_gradient(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
 
 /* slide_cable18_rigid: sliding joint of a rigid rider on a cable18 cable */
 void slide_cable18_rigid_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
@@ -302,6 +316,13 @@ void slide_cable18_rigid_residual(fu_real l, fu_real x, const fu_real *e, const 
 void slide_cable18_rigid_tangent(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *J, fu_real *K);
 void slide_cable18_rigid_discrete_gradient(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
 
+/* slide_cable18_point: sliding joint of a point rider on a cable18 cable */
+void slide_cable18_point_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
+void slide_cable18_point_terms(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *v, const fu_real *w, const fu_real *director, fu_real *C, fu_real *C_q, fu_real *C_s, fu_real *G, fu_real *s_rate, fu_real *Q_d, fu_real *H, fu_real *W, fu_real *s_bias);
+void slide_cable18_point_residual(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *phi, fu_real *g);
+void slide_cable18_point_tangent(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *J, fu_real *K);
+void slide_cable18_point_discrete_gradient(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
+
 /* slide_beam12p_planar_rigid: sliding joint of a planar_rigid rider on a beam12p cable */
 void slide_beam12p_planar_rigid_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
 void slide_beam12p_planar_rigid_terms(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *v, const fu_real *w, const fu_real *director, fu_real *C, fu_real *C_q, fu_real *C_s, fu_real *G, fu_real *s_rate, fu_real *Q_d, fu_real *H, fu_real *W, fu_real *s_bias);
@@ -309,12 +330,26 @@ void slide_beam12p_planar_rigid_residual(fu_real l, fu_real x, const fu_real *e,
 void slide_beam12p_planar_rigid_tangent(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *J, fu_real *K);
 void slide_beam12p_planar_rigid_discrete_gradient(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
 
+/* slide_beam12p_planar_point: sliding joint of a planar_point rider on a beam12p cable */
+void slide_beam12p_planar_point_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
+void slide_beam12p_planar_point_terms(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *v, const fu_real *w, const fu_real *director, fu_real *C, fu_real *C_q, fu_real *C_s, fu_real *G, fu_real *s_rate, fu_real *Q_d, fu_real *H, fu_real *W, fu_real *s_bias);
+void slide_beam12p_planar_point_residual(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *phi, fu_real *g);
+void slide_beam12p_planar_point_tangent(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *J, fu_real *K);
+void slide_beam12p_planar_point_discrete_gradient(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
+
 /* slide_cable8p_planar_rigid: sliding joint of a planar_rigid rider on a cable8p cable */
 void slide_cable8p_planar_rigid_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
 void slide_cable8p_planar_rigid_terms(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *v, const fu_real *w, const fu_real *director, fu_real *C, fu_real *C_q, fu_real *C_s, fu_real *G, fu_real *s_rate, fu_real *Q_d, fu_real *H, fu_real *W, fu_real *s_bias);
 void slide_cable8p_planar_rigid_residual(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *phi, fu_real *g);
 void slide_cable8p_planar_rigid_tangent(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *J, fu_real *K);
 void slide_cable8p_planar_rigid_discrete_gradient(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
+
+/* slide_cable8p_planar_point: sliding joint of a planar_point rider on a cable8p cable */
+void slide_cable8p_planar_point_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
+void slide_cable8p_planar_point_terms(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *v, const fu_real *w, const fu_real *director, fu_real *C, fu_real *C_q, fu_real *C_s, fu_real *G, fu_real *s_rate, fu_real *Q_d, fu_real *H, fu_real *W, fu_real *s_bias);
+void slide_cable8p_planar_point_residual(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *phi, fu_real *g);
+void slide_cable8p_planar_point_tangent(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *J, fu_real *K);
+void slide_cable8p_planar_point_discrete_gradient(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
 
 /* What the engine needs of a element. */
 typedef struct {

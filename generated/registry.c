@@ -282,6 +282,15 @@ static const fu_slide slides[] = {
      slide_beam24_rigid_tangent,
      slide_beam24_rigid_discrete_gradient
     },
+    {"slide_beam24_point",
+     27,
+     3,
+     slide_beam24_point_constraint,
+     slide_beam24_point_terms,
+     slide_beam24_point_residual,
+     slide_beam24_point_tangent,
+     slide_beam24_point_discrete_gradient
+    },
     {"slide_cable12_rigid",
      18,
      3,
@@ -290,6 +299,15 @@ static const fu_slide slides[] = {
      slide_cable12_rigid_residual,
      slide_cable12_rigid_tangent,
      slide_cable12_rigid_discrete_gradient
+    },
+    {"slide_cable12_point",
+     15,
+     3,
+     slide_cable12_point_constraint,
+     slide_cable12_point_terms,
+     slide_cable12_point_residual,
+     slide_cable12_point_tangent,
+     slide_cable12_point_discrete_gradient
     },
     {"slide_cable18_rigid",
      24,
@@ -300,6 +318,15 @@ static const fu_slide slides[] = {
      slide_cable18_rigid_tangent,
      slide_cable18_rigid_discrete_gradient
     },
+    {"slide_cable18_point",
+     21,
+     3,
+     slide_cable18_point_constraint,
+     slide_cable18_point_terms,
+     slide_cable18_point_residual,
+     slide_cable18_point_tangent,
+     slide_cable18_point_discrete_gradient
+    },
     {"slide_beam12p_planar_rigid",
      15,
      2,
@@ -309,6 +336,15 @@ static const fu_slide slides[] = {
      slide_beam12p_planar_rigid_tangent,
      slide_beam12p_planar_rigid_discrete_gradient
     },
+    {"slide_beam12p_planar_point",
+     14,
+     2,
+     slide_beam12p_planar_point_constraint,
+     slide_beam12p_planar_point_terms,
+     slide_beam12p_planar_point_residual,
+     slide_beam12p_planar_point_tangent,
+     slide_beam12p_planar_point_discrete_gradient
+    },
     {"slide_cable8p_planar_rigid",
      11,
      2,
@@ -317,6 +353,15 @@ static const fu_slide slides[] = {
      slide_cable8p_planar_rigid_residual,
      slide_cable8p_planar_rigid_tangent,
      slide_cable8p_planar_rigid_discrete_gradient
+    },
+    {"slide_cable8p_planar_point",
+     10,
+     2,
+     slide_cable8p_planar_point_constraint,
+     slide_cable8p_planar_point_terms,
+     slide_cable8p_planar_point_residual,
+     slide_cable8p_planar_point_tangent,
+     slide_cable8p_planar_point_discrete_gradient
     }
 };
 
@@ -1136,6 +1181,26 @@ static void call_slide_beam24_rigid_discrete_gradient(const fu_real *const *a, f
 {
     slide_beam24_rigid_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
 }
+static void call_slide_beam24_point_constraint(const fu_real *const *a, fu_real *const *out)
+{
+    slide_beam24_point_constraint(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]);
+}
+static void call_slide_beam24_point_terms(const fu_real *const *a, fu_real *const *out)
+{
+    slide_beam24_point_terms(*a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]);
+}
+static void call_slide_beam24_point_residual(const fu_real *const *a, fu_real *const *out)
+{
+    slide_beam24_point_residual(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_slide_beam24_point_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    slide_beam24_point_tangent(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_slide_beam24_point_discrete_gradient(const fu_real *const *a, fu_real *const *out)
+{
+    slide_beam24_point_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
+}
 static void call_slide_cable12_rigid_constraint(const fu_real *const *a, fu_real *const *out)
 {
     slide_cable12_rigid_constraint(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]);
@@ -1155,6 +1220,26 @@ static void call_slide_cable12_rigid_tangent(const fu_real *const *a, fu_real *c
 static void call_slide_cable12_rigid_discrete_gradient(const fu_real *const *a, fu_real *const *out)
 {
     slide_cable12_rigid_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
+}
+static void call_slide_cable12_point_constraint(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable12_point_constraint(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]);
+}
+static void call_slide_cable12_point_terms(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable12_point_terms(*a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]);
+}
+static void call_slide_cable12_point_residual(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable12_point_residual(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_slide_cable12_point_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable12_point_tangent(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_slide_cable12_point_discrete_gradient(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable12_point_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
 }
 static void call_slide_cable18_rigid_constraint(const fu_real *const *a, fu_real *const *out)
 {
@@ -1176,6 +1261,26 @@ static void call_slide_cable18_rigid_discrete_gradient(const fu_real *const *a, 
 {
     slide_cable18_rigid_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
 }
+static void call_slide_cable18_point_constraint(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable18_point_constraint(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]);
+}
+static void call_slide_cable18_point_terms(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable18_point_terms(*a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]);
+}
+static void call_slide_cable18_point_residual(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable18_point_residual(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_slide_cable18_point_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable18_point_tangent(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_slide_cable18_point_discrete_gradient(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable18_point_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
+}
 static void call_slide_beam12p_planar_rigid_constraint(const fu_real *const *a, fu_real *const *out)
 {
     slide_beam12p_planar_rigid_constraint(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]);
@@ -1196,6 +1301,26 @@ static void call_slide_beam12p_planar_rigid_discrete_gradient(const fu_real *con
 {
     slide_beam12p_planar_rigid_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
 }
+static void call_slide_beam12p_planar_point_constraint(const fu_real *const *a, fu_real *const *out)
+{
+    slide_beam12p_planar_point_constraint(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]);
+}
+static void call_slide_beam12p_planar_point_terms(const fu_real *const *a, fu_real *const *out)
+{
+    slide_beam12p_planar_point_terms(*a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]);
+}
+static void call_slide_beam12p_planar_point_residual(const fu_real *const *a, fu_real *const *out)
+{
+    slide_beam12p_planar_point_residual(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_slide_beam12p_planar_point_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    slide_beam12p_planar_point_tangent(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_slide_beam12p_planar_point_discrete_gradient(const fu_real *const *a, fu_real *const *out)
+{
+    slide_beam12p_planar_point_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
+}
 static void call_slide_cable8p_planar_rigid_constraint(const fu_real *const *a, fu_real *const *out)
 {
     slide_cable8p_planar_rigid_constraint(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]);
@@ -1215,6 +1340,26 @@ static void call_slide_cable8p_planar_rigid_tangent(const fu_real *const *a, fu_
 static void call_slide_cable8p_planar_rigid_discrete_gradient(const fu_real *const *a, fu_real *const *out)
 {
     slide_cable8p_planar_rigid_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
+}
+static void call_slide_cable8p_planar_point_constraint(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable8p_planar_point_constraint(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]);
+}
+static void call_slide_cable8p_planar_point_terms(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable8p_planar_point_terms(*a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]);
+}
+static void call_slide_cable8p_planar_point_residual(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable8p_planar_point_residual(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_slide_cable8p_planar_point_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable8p_planar_point_tangent(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_slide_cable8p_planar_point_discrete_gradient(const fu_real *const *a, fu_real *const *out)
+{
+    slide_cable8p_planar_point_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
 }
 
 const fu_kernel fu_kernels[] = {
@@ -1422,26 +1567,51 @@ const fu_kernel fu_kernels[] = {
     {"slide_beam24_rigid_residual", call_slide_beam24_rigid_residual},
     {"slide_beam24_rigid_tangent", call_slide_beam24_rigid_tangent},
     {"slide_beam24_rigid_discrete_gradient", call_slide_beam24_rigid_discrete_gradient},
+    {"slide_beam24_point_constraint", call_slide_beam24_point_constraint},
+    {"slide_beam24_point_terms", call_slide_beam24_point_terms},
+    {"slide_beam24_point_residual", call_slide_beam24_point_residual},
+    {"slide_beam24_point_tangent", call_slide_beam24_point_tangent},
+    {"slide_beam24_point_discrete_gradient", call_slide_beam24_point_discrete_gradient},
     {"slide_cable12_rigid_constraint", call_slide_cable12_rigid_constraint},
     {"slide_cable12_rigid_terms", call_slide_cable12_rigid_terms},
     {"slide_cable12_rigid_residual", call_slide_cable12_rigid_residual},
     {"slide_cable12_rigid_tangent", call_slide_cable12_rigid_tangent},
     {"slide_cable12_rigid_discrete_gradient", call_slide_cable12_rigid_discrete_gradient},
+    {"slide_cable12_point_constraint", call_slide_cable12_point_constraint},
+    {"slide_cable12_point_terms", call_slide_cable12_point_terms},
+    {"slide_cable12_point_residual", call_slide_cable12_point_residual},
+    {"slide_cable12_point_tangent", call_slide_cable12_point_tangent},
+    {"slide_cable12_point_discrete_gradient", call_slide_cable12_point_discrete_gradient},
     {"slide_cable18_rigid_constraint", call_slide_cable18_rigid_constraint},
     {"slide_cable18_rigid_terms", call_slide_cable18_rigid_terms},
     {"slide_cable18_rigid_residual", call_slide_cable18_rigid_residual},
     {"slide_cable18_rigid_tangent", call_slide_cable18_rigid_tangent},
     {"slide_cable18_rigid_discrete_gradient", call_slide_cable18_rigid_discrete_gradient},
+    {"slide_cable18_point_constraint", call_slide_cable18_point_constraint},
+    {"slide_cable18_point_terms", call_slide_cable18_point_terms},
+    {"slide_cable18_point_residual", call_slide_cable18_point_residual},
+    {"slide_cable18_point_tangent", call_slide_cable18_point_tangent},
+    {"slide_cable18_point_discrete_gradient", call_slide_cable18_point_discrete_gradient},
     {"slide_beam12p_planar_rigid_constraint", call_slide_beam12p_planar_rigid_constraint},
     {"slide_beam12p_planar_rigid_terms", call_slide_beam12p_planar_rigid_terms},
     {"slide_beam12p_planar_rigid_residual", call_slide_beam12p_planar_rigid_residual},
     {"slide_beam12p_planar_rigid_tangent", call_slide_beam12p_planar_rigid_tangent},
     {"slide_beam12p_planar_rigid_discrete_gradient", call_slide_beam12p_planar_rigid_discrete_gradient},
+    {"slide_beam12p_planar_point_constraint", call_slide_beam12p_planar_point_constraint},
+    {"slide_beam12p_planar_point_terms", call_slide_beam12p_planar_point_terms},
+    {"slide_beam12p_planar_point_residual", call_slide_beam12p_planar_point_residual},
+    {"slide_beam12p_planar_point_tangent", call_slide_beam12p_planar_point_tangent},
+    {"slide_beam12p_planar_point_discrete_gradient", call_slide_beam12p_planar_point_discrete_gradient},
     {"slide_cable8p_planar_rigid_constraint", call_slide_cable8p_planar_rigid_constraint},
     {"slide_cable8p_planar_rigid_terms", call_slide_cable8p_planar_rigid_terms},
     {"slide_cable8p_planar_rigid_residual", call_slide_cable8p_planar_rigid_residual},
     {"slide_cable8p_planar_rigid_tangent", call_slide_cable8p_planar_rigid_tangent},
     {"slide_cable8p_planar_rigid_discrete_gradient", call_slide_cable8p_planar_rigid_discrete_gradient},
+    {"slide_cable8p_planar_point_constraint", call_slide_cable8p_planar_point_constraint},
+    {"slide_cable8p_planar_point_terms", call_slide_cable8p_planar_point_terms},
+    {"slide_cable8p_planar_point_residual", call_slide_cable8p_planar_point_residual},
+    {"slide_cable8p_planar_point_tangent", call_slide_cable8p_planar_point_tangent},
+    {"slide_cable8p_planar_point_discrete_gradient", call_slide_cable8p_planar_point_discrete_gradient},
 };
 const int fu_n_kernels = sizeof fu_kernels / sizeof fu_kernels[0];
 
@@ -1449,5 +1619,5 @@ const fu_tables fu_all = {
     5, elements,
     18, laws,
     2, bodys,
-    5, slides
+    10, slides
 };

@@ -13,6 +13,7 @@ from types import ModuleType
 import numpy as np
 from funicular.derive import body_kernels
 from funicular.derive.axis import Axis
+from funicular.derive.bodies.point import Point
 from funicular.derive.frames import cross, tangent_frame
 from funicular.derive.secant import STATES, Secant
 from funicular.derive.spec import Element
@@ -25,7 +26,7 @@ _C_DOC = "constraint in the tangent frame: C_l, then C_m across the cable"
 class Slide:
     """Symbols that every kernel of the joint starts from: inputs, derivations and r_p = r - p (eq 19)."""
 
-    def __init__(self, program: Program, element: Element, rider: ModuleType):
+    def __init__(self, program: Program, element: Element, rider: ModuleType | Point):
         self.program, self.element, self.rider = program, element, rider
         self.entries = ENTRIES[element.dim]
         self.axis = Axis(program, element)
@@ -88,13 +89,13 @@ class Slide:
         return self.C_cut.dot(derivation.array(np.array(self.cut, dtype=object)))
 
 
-def build(element: Element, rider: ModuleType) -> list[Program]:
+def build(element: Element, rider: ModuleType | Point) -> list[Program]:
     """The kernels of the slide of a rider on a cable of this element."""
     name = f"slide_{element.name}_{rider.NAME}"
     return [kernel(name, element, rider) for kernel in (_constraint, _terms, _residual, _tangent, _discrete_gradient)]
 
 
-def _constraint(name: str, element: Element, rider: ModuleType) -> Program:
+def _constraint(name: str, element: Element, rider: ModuleType | Point) -> Program:
     p = Program(f"{name}_constraint", "C, C_s and the Newton step for s", "eq 19-22")
     slide = Slide(p, element, rider)
     C = slide.constraint()
@@ -107,7 +108,7 @@ def _constraint(name: str, element: Element, rider: ModuleType) -> Program:
     return p
 
 
-def _terms(name: str, element: Element, rider: ModuleType) -> Program:
+def _terms(name: str, element: Element, rider: ModuleType | Point) -> Program:
     p = Program(f"{name}_terms", "terms of the equations of motion with the slide", "eq 20-37")
     slide = Slide(p, element, rider)
     v = p.input("v", slide.e.shape, "m/s, 1/s", "rates of the nodal vectors")
@@ -144,7 +145,7 @@ def _terms(name: str, element: Element, rider: ModuleType) -> Program:
     return p
 
 
-def _lagrangian(p: Program, element: Element, rider: ModuleType):
+def _lagrangian(p: Program, element: Element, rider: ModuleType | Point):
     """phi = r_p, its Jacobian by (e, rider, s), and the gradient of f . phi.
 
     The integrator carries s and the whole force f on the joint as unknowns instead of C_M and its multipliers:
@@ -160,7 +161,7 @@ def _lagrangian(p: Program, element: Element, rider: ModuleType):
     return slide, J, g
 
 
-def _residual(name: str, element: Element, rider: ModuleType) -> Program:
+def _residual(name: str, element: Element, rider: ModuleType | Point) -> Program:
     p = Program(f"{name}_residual", "phi and the gradient of f . phi by (e, rider, s)", "eq 19, 28-30")
     slide, _, g = _lagrangian(p, element, rider)
     p.output("phi", slide.r_p, "m", "r(s) - p")
@@ -168,7 +169,7 @@ def _residual(name: str, element: Element, rider: ModuleType) -> Program:
     return p
 
 
-def _tangent(name: str, element: Element, rider: ModuleType) -> Program:
+def _tangent(name: str, element: Element, rider: ModuleType | Point) -> Program:
     p = Program(f"{name}_tangent", "derivatives of phi and of the gradient of f . phi", "eq 19, 28-30")
     slide, J, g = _lagrangian(p, element, rider)
     p.stage("derivative of the gradient")
@@ -178,7 +179,7 @@ def _tangent(name: str, element: Element, rider: ModuleType) -> Program:
     return p
 
 
-def _discrete_gradient(name: str, element: Element, rider: ModuleType) -> Program:
+def _discrete_gradient(name: str, element: Element, rider: ModuleType | Point) -> Program:
     """G (de, psi, ds) = phi_next - phi - theta x (phi_next + phi)/2, theta the rider's turn: zero on the joint.
 
     With N~ = (N(s) + N(s_next))/2 and the divided difference D = N[s, s_next] of the shape functions

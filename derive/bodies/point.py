@@ -1,0 +1,70 @@
+"""A rider that is a point of something else: where its body's origin is, and the arm from there, in global axes.
+
+Whatever has points can ride by this one, a cable as well as a body of modes: the chain rule through the point's own
+Jacobian (dp = P dq) and the bias of its acceleration is the engine's.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import sympy as sp
+from funicular.derive.stages import AXES, Derivation, Program
+
+
+@dataclass(frozen=True)
+class Point:
+    """The interface of a body's module (bodies/rigid.py), for a point in space or in the plane."""
+
+    NAME: str
+    DIM: int
+
+    @property
+    def N_CONFIGURATION(self) -> int:
+        """Length of b."""
+        return self.DIM
+
+    @property
+    def N_VELOCITY(self) -> int:
+        """Length of w."""
+        return self.DIM
+
+    def configuration(self, program: Program) -> np.ndarray:
+        """Input b: where the arm starts."""
+        return program.input("b", self.DIM, "m", "origin of what carries the point")
+
+    def velocity(self, program: Program) -> np.ndarray:
+        """Input w: velocity of the point."""
+        return program.input("w", self.DIM, "m/s", "velocity of the point")
+
+    def attachment(self, program: Program) -> np.ndarray:
+        """Input u: the point from its origin."""
+        return program.input("u", self.DIM, "m", "point from the origin, in global axes")
+
+    def axes(self, program: Program, b: np.ndarray) -> None:
+        """None: a point has no attitude."""
+
+    def rate(self, b: np.ndarray, A: None, w: np.ndarray) -> dict[sp.Symbol, sp.Expr]:
+        """Value on b of the derivation along the velocity w."""
+        return dict(zip(b, w, strict=True))
+
+    def tangents(self, program: Program, b: np.ndarray, A: None) -> list[Derivation]:
+        """Derivations along the axes."""
+        units = np.eye(self.DIM, dtype=int)
+        return [Derivation(program, f"d_{AXES[k].upper()}", self.rate(b, A, units[k])) for k in range(self.DIM)]
+
+    def origin(self, b: np.ndarray) -> np.ndarray:
+        """Where the arm starts."""
+        return b
+
+    def arm(self, program: Program, A: None, u: np.ndarray) -> np.ndarray:
+        """The point from there."""
+        return u
+
+    def step_turn(self, program: Program, b: np.ndarray, A: None, b_next: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """No turn, about no axes."""
+        return np.zeros(3 if self.DIM == 3 else 1, dtype=int), np.zeros((self.DIM, 0), dtype=int)
+
+
+POINTS = {point.NAME: point for point in (Point("point", 3), Point("planar_point", 2))}
