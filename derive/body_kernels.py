@@ -14,8 +14,8 @@ from funicular.derive.stages import Derivation, Program
 
 def build(body: ModuleType) -> list[Program]:
     """Every kernel of a body."""
-    return [point(body), point_force(body), inertia_force(body), inertia_tangent(body), kinetic_energy(body),
-            discrete_point(body)]
+    return [point(body), point_force(body), frame(body), inertia_force(body), inertia_tangent(body),
+            kinetic_energy(body), discrete_point(body)]
 
 
 def _position(p: Program, body: ModuleType, b: np.ndarray, u: np.ndarray):
@@ -59,6 +59,24 @@ def point_force(body: ModuleType) -> Program:
     force = np.array([p.define(f"g{k}", f.dot(column)) for k, column in enumerate(p_q.T)])
     p.output("K", np.stack([d.array(force) for d in by], axis=1), "N/m, N, N m",
              "derivatives of p_q' f by translation and rotation")
+    return p
+
+
+def frame(body: ModuleType) -> Program:
+    """The body's axes, and what a moment on them does."""
+    p = Program(f"{body.NAME}_frame", "axes, their turn, and the derivative of a moment on them", body.SOURCE)
+    b = body.configuration(p)
+    turns = body.N_VELOCITY - body.DIM
+    m = p.input("m", turns, "N m", "moment in global axes, held fixed")
+    p.stage("axes")
+    A = body.axes(p, b)
+    T = np.zeros((turns, body.N_VELOCITY), dtype=object)
+    T[:, body.DIM :] = A if turns == body.DIM else 1
+    p.stage("moment about the axes of rotation")
+    g = np.array([p.define(f"g{k}", m.dot(column)) for k, column in enumerate(T.T)])
+    p.output("A", A, "1", "axes of the body by columns")
+    p.output("T", T, "rad", "dA = (T dq)~ A: turn about global axes by translation and rotation")
+    p.output("K", np.stack([d.array(g) for d in body.tangents(p, b, A)], axis=1), "N m", "derivatives of T' m")
     return p
 
 

@@ -11,7 +11,7 @@ from funicular.derive import body_kernels, element_kernels, law_kernels, structu
 from funicular.derive.bodies import BODIES, RIDERS
 from funicular.derive.bodies.point import Point
 from funicular.derive.elements import ELEMENTS
-from funicular.derive.joints import slide
+from funicular.derive.joints import frame, pair, slide
 from funicular.derive.laws import DAMPED_LIKE, law_like, law_name, structural
 from funicular.derive.spec import Element, Family
 
@@ -56,6 +56,19 @@ def _slide(element: Element, rider: ModuleType | Point) -> Family:
                   element=element, rider=rider.NAME)
 
 
+def _frame(dim: int) -> Family:
+    return Family(frame.FRAMES[dim], f"frame of two vectors in {_SPACE[dim]}", partial(frame.build, dim),
+                  ("joints.frame",), role="frame", facts={"dim": dim}, dim=dim)
+
+
+def _joint(dim: int, name: str) -> Family:
+    return Family(f"joint_{name}", f"{name.replace('_', ' ')} joint between two frames", partial(pair.build, dim, name),
+                  ("joints.pair",), role="joint", facts={"dim": dim, "rows": pair.rows(dim, name)}, dim=dim)
+
+
+_SPACE = {2: "the plane", 3: "space"}
+
+
 def of_element(element: Element) -> list[Family]:
     """An element's own kernels, its laws, and the slide of each rider of its dimension."""
     return [_element(element), *(_law(element, law) for law in element.laws),
@@ -63,12 +76,14 @@ def of_element(element: Element) -> list[Family]:
 
 
 def families() -> dict[str, Family]:
-    """Every family by name: elements, their laws, bodies, and the slide for each pair of element and rider."""
+    """Every family by name: elements, their laws, bodies, the slide for each pair of element and rider, joints."""
     of_role: dict[str, list[Family]] = {"element": [], "law": [], "slide": []}
     for element in ELEMENTS.values():
         for family in of_element(element):
             of_role[family.role].append(family)
-    every = [*of_role["element"], *of_role["law"], *map(_body, BODIES.values()), *of_role["slide"]]
+    joints = [_joint(dim, name) for dim, of_dim in pair.JOINTS.items() for name in of_dim]
+    every = [*of_role["element"], *of_role["law"], *map(_body, BODIES.values()), *of_role["slide"],
+             *map(_frame, frame.FRAMES), *joints]
     return {f.name: f for f in every}
 
 

@@ -40,3 +40,21 @@ def tangent_frame(program: Program, tangent: np.ndarray, director: np.ndarray | 
     k = unit(program, "k", program.vector("m", cross(i, director)))
     j = program.vector("j", cross(k, i))
     return np.stack([i, j, k], axis=1)
+
+
+def turning(p: Program, A_t: np.ndarray, tangent: np.ndarray, director: np.ndarray | None = None) -> list[np.ndarray]:
+    """Rotation rate of the frame for each entry of tangent and director.
+
+    Not from derivatives of i: these are what is left of 1 - i_x^2, without digits where i is along an axis.
+    """
+    i, dim = A_t[:, 0], len(tangent)
+    inverse = p.define("inv_t", 1 / p.define("t_i", tangent.dot(i)))
+    units = np.eye(dim, dtype=int)
+    across = [[i[0] * axis[1] - i[1] * axis[0]] if dim == 2 else cross(i, axis) for axis in units]
+    omega = [inverse * np.array(w) for w in across]
+    if director is not None:  # k stays normal to the director: about i, too
+        k = A_t[:, 2]
+        about = p.vector("about", k * p.define("inv_n", 1 / p.define("n_j", director.dot(A_t[:, 1]))))
+        lean = p.define("lean", director.dot(i) * inverse)
+        omega = [w - lean * part * i for w, part in zip(omega, about, strict=True)] + [part * i for part in about]
+    return [p.vector(f"omega{m}", w) for m, w in enumerate(omega)]

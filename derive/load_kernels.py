@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 from funicular.derive.axis import Axis
-from funicular.derive.frames import cross, tangent_frame
+from funicular.derive.frames import cross, tangent_frame, turning
 from funicular.derive.spec import Element
 from funicular.derive.stages import Program, jacobian
 
 
 def build(element: Element) -> list[Program]:
     """The load kernels of an element."""
-    return [on_axis(element), follower_force(element), moment(element)]
+    return [on_axis(element), slopes(element), follower_force(element), moment(element)]
 
 
 def on_axis(element: Element) -> Program:
@@ -21,6 +21,16 @@ def on_axis(element: Element) -> Program:
     p.stage("shape functions")
     p.output("N", axis.shape(), "1, m", "shape functions at (x, 0, 0)")
     p.output("N_x", axis.shape("x"), "1/m, 1", "their derivatives by x")
+    return p
+
+
+def slopes(element: Element) -> Program:
+    """What a frame that goes along the centreline is made of: r_x, r_y, r_z there, and how they change with x."""
+    p = Program(f"{element.name}_slopes", "slopes of a point of the centreline, and their derivatives by x", "eq 13-16")
+    axis = Axis(p, element)
+    p.stage("derivatives of the shape functions")
+    p.output("S", [[axis.shape(letter + order) for order in ("", "x", "xx")] for letter in "xyz"], "1/m, 1",
+             "shape functions by x, y, z (zeros where there is no such slope), then by x so many times more")
     return p
 
 
@@ -40,27 +50,9 @@ def follower_force(element: Element) -> Program:
     c = p.input("c", A_t.shape[1], "N", f"components along {' '.join('ijk'[: A_t.shape[1]])} of the tangent frame")
     force = p.vector("F", A_t.dot(c))
     p.stage("rotation of the frame by tangent and director, derivatives of the force")
-    turning = _turning(p, A_t, tangent, *director)
-    _generalised(p, element, [N], [force], shapes, np.stack([cross(omega, force) for omega in turning], axis=1))
+    rotation = turning(p, A_t, tangent, *director)
+    _generalised(p, element, [N], [force], shapes, np.stack([cross(omega, force) for omega in rotation], axis=1))
     return p
-
-
-def _turning(p: Program, A_t: np.ndarray, tangent: np.ndarray, director: np.ndarray | None = None) -> list[np.ndarray]:
-    """Rotation rate of the frame for each entry of tangent and director.
-
-    Not from derivatives of i: these are what is left of 1 - i_x^2, without digits where i is along an axis.
-    """
-    i, dim = A_t[:, 0], len(tangent)
-    inverse = p.define("inv_t", 1 / p.define("t_i", tangent.dot(i)))
-    units = np.eye(dim, dtype=int)
-    across = [[i[0] * axis[1] - i[1] * axis[0]] if dim == 2 else cross(i, axis) for axis in units]
-    omega = [inverse * np.array(w) for w in across]
-    if director is not None:  # k stays normal to the director: about i, too
-        k = A_t[:, 2]
-        about = p.vector("about", k * p.define("inv_n", 1 / p.define("n_j", director.dot(A_t[:, 1]))))
-        lean = p.define("lean", director.dot(i) * inverse)
-        omega = [w - lean * part * i for w, part in zip(omega, about, strict=True)] + [part * i for part in about]
-    return [p.vector(f"omega{m}", w) for m, w in enumerate(omega)]
 
 
 def turning_slopes(element: Element) -> list[str]:

@@ -97,7 +97,8 @@ class Family:
     `modules` are its specs: their text, and all that they import here, is in the spec hash. Families of one `role` have
     kernels of the same signatures, but for those in `own`; the engine reaches them through a table, each with its
     `facts` (integers).
-    `element`, `law` and `rider` (the name of a body) are what the kernels are about: verification samples their states.
+    `element`, `law`, `rider` (the name of a body) and `dim` are what the kernels are about: verification samples their
+    states.
     `lacks` names kernels of the role that this one cannot have: the table holds a null pointer there.
     `shared` names, by kernel, the family of the role whose kernel this one takes instead of one of its own.
     `like` is the law in laws/ whose section stiffness and scale the law shares: itself, but for a law of the user's.
@@ -117,6 +118,7 @@ class Family:
     law: str | None = None
     like: str | None = None
     rider: str | None = None
+    dim: int | None = None
     spec: Path | None = None
 
     @property

@@ -113,4 +113,4 @@ def _far(family: Family, s: State, random: np.random.Generator) -> dict[str, np.
 
 
 def _dim(family: Family) -> int:
-    return family.element.dim if family.element else RIDERS[family.rider].dim
+    return family.dim or (family.element.dim if family.element else RIDERS[family.rider].dim)

@@ -15,10 +15,11 @@ from funicular.derive.verify_motion import RIDERS, cross, exponential, spin, tur
 
 def relations(family: Family) -> list[Relation]:
     """The relations of a family's kernels."""
+    from funicular.derive.verify_joints import frame_relations, joint_relations
     from funicular.derive.verify_slide import slide
 
-    table: dict[str, Callable[[Family], list[Relation]]] = {"element": element, "law": law, "slide": slide,
-                                                               "body": body}
+    table: dict[str, Callable[[Family], list[Relation]]] = {
+        "element": element, "law": law, "slide": slide, "body": body, "frame": frame_relations, "joint": joint_relations}
     return table[family.role](family)
 
 
@@ -183,6 +184,8 @@ def body(family: Family) -> list[Relation]:
         spread = (s["J"].trace() / 2) * np.eye(3, dtype=int) - s["J"]
         return sum(s["mass"] * s["w"][i] ** 2 for i in range(dim)) / 2 + _spinning(spread, spin(s["w"], dim))
 
+    from funicular.derive.verify_joints import body_frame_relations
+
     at = Relation("point", "p", "R + A u by quaternions or complex numbers", 0,
                   lambda k, s, t, j: rider.point(s["b"], s["u"]))
     p_q = Relation("point", "p_q", "dp by translation and rotation about body axes", 1, by_coordinate, n)
@@ -193,6 +196,7 @@ def body(family: Family) -> list[Relation]:
         Relation("point", "bias", "d²p/dt² at constant velocities", 2, lambda k, s, t, j: point(k, s, t * s["w"])),
         replace(at, kernel="point_force"),
         replace(p_q, kernel="point_force"),
+        *body_frame_relations(rider),
         Relation("point_force", "K", "d(p_q' f) by translation and rotation", 1, force_of_point, n),
         Relation("discrete_point", "P", "P step is p_next - p", 0,
                  lambda k, s, t, j: rider.point(s["b_next"], s["u"]) - rider.point(s["b"], s["u"]),

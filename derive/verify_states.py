@@ -10,6 +10,7 @@ import sympy as sp
 from funicular.derive import law_kernels, verify_curved
 from funicular.derive.spec import Element, Family, x
 from funicular.derive.verify_exact import ExactProgram
+from funicular.derive.verify_joints import samples
 from funicular.derive.verify_motion import RIDERS, exponential
 from funicular.derive.verify_numbers import Numbers
 from funicular.derive.verify_reference import Shape
@@ -28,6 +29,9 @@ def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
     for seed in SEEDS:
         random = np.random.default_rng(seed)
         state: dict[str, np.ndarray] = {}
+        if family.dim:
+            found.append(samples(family, random))
+            continue
         dim = family.element.dim if family.element else RIDERS[family.rider].dim
         if family.element:
             state |= element_state(family.element, random)
@@ -37,6 +41,7 @@ def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
             near = on_axis(family.element, state) if family.element else random.normal(size=dim)
             state |= RIDERS[family.rider].sample(random, near)
             state |= {"mass": np.float64(1.7), "J": _inertia(random), "a": random.normal(size=len(state["w"]))}
+            state["m"] = random.normal(size=len(state["w"]) - dim)
         state |= following(family, state, random.spawn(1)[0])
         if family.element and family.rider:
             state["director"] = director(family.element, state, random)
@@ -46,6 +51,8 @@ def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
         if family.role == "element":
             state |= loads(family.element, random)
         found.append(state)
+    if family.dim:
+        return found
     rest = found[0] | at_rest(family)
     if family.law and family.law.endswith("_curved"):
         rest["e0"] = rest["e"]

@@ -38,6 +38,7 @@ void beam24_gravity(fu_real l, fu_real density, const fu_real *section, const fu
 void beam24_inertia_force(const fu_real *m, const fu_real *a, fu_real *f);
 void beam24_position(fu_real l, const fu_real *at, const fu_real *e, fu_real *N, fu_real *r);
 void beam24_on_axis(fu_real l, fu_real x, fu_real *N, fu_real *N_x);
+void beam24_slopes(fu_real l, fu_real x, fu_real *S);
 void beam24_follower_force(fu_real l, fu_real x, const fu_real *e, const fu_real *c, fu_real *f, fu_real *K);
 void beam24_moment(fu_real l, fu_real x, const fu_real *e, const fu_real *M, fu_real *f, fu_real *K);
 
@@ -47,6 +48,7 @@ void cable12_gravity(fu_real l, fu_real density, const fu_real *section, const f
 void cable12_inertia_force(const fu_real *m, const fu_real *a, fu_real *f);
 void cable12_position(fu_real l, const fu_real *at, const fu_real *e, fu_real *N, fu_real *r);
 void cable12_on_axis(fu_real l, fu_real x, fu_real *N, fu_real *N_x);
+void cable12_slopes(fu_real l, fu_real x, fu_real *S);
 void cable12_follower_force(fu_real l, fu_real x, const fu_real *e, const fu_real *c, fu_real *f, fu_real *K);
 void cable12_moment(fu_real l, fu_real x, const fu_real *e, const fu_real *M, fu_real *f, fu_real *K);
 
@@ -56,6 +58,7 @@ void cable18_gravity(fu_real l, fu_real density, const fu_real *section, const f
 void cable18_inertia_force(const fu_real *m, const fu_real *a, fu_real *f);
 void cable18_position(fu_real l, const fu_real *at, const fu_real *e, fu_real *N, fu_real *r);
 void cable18_on_axis(fu_real l, fu_real x, fu_real *N, fu_real *N_x);
+void cable18_slopes(fu_real l, fu_real x, fu_real *S);
 void cable18_follower_force(fu_real l, fu_real x, const fu_real *e, const fu_real *c, fu_real *f, fu_real *K);
 void cable18_moment(fu_real l, fu_real x, const fu_real *e, const fu_real *M, fu_real *f, fu_real *K);
 
@@ -65,6 +68,7 @@ void beam12p_gravity(fu_real l, fu_real density, const fu_real *section, const f
 void beam12p_inertia_force(const fu_real *m, const fu_real *a, fu_real *f);
 void beam12p_position(fu_real l, const fu_real *at, const fu_real *e, fu_real *N, fu_real *r);
 void beam12p_on_axis(fu_real l, fu_real x, fu_real *N, fu_real *N_x);
+void beam12p_slopes(fu_real l, fu_real x, fu_real *S);
 void beam12p_follower_force(fu_real l, fu_real x, const fu_real *e, const fu_real *c, fu_real *f, fu_real *K);
 void beam12p_moment(fu_real l, fu_real x, const fu_real *e, const fu_real *M, fu_real *f, fu_real *K);
 
@@ -74,6 +78,7 @@ void cable8p_gravity(fu_real l, fu_real density, const fu_real *section, const f
 void cable8p_inertia_force(const fu_real *m, const fu_real *a, fu_real *f);
 void cable8p_position(fu_real l, const fu_real *at, const fu_real *e, fu_real *N, fu_real *r);
 void cable8p_on_axis(fu_real l, fu_real x, fu_real *N, fu_real *N_x);
+void cable8p_slopes(fu_real l, fu_real x, fu_real *S);
 void cable8p_follower_force(fu_real l, fu_real x, const fu_real *e, const fu_real *c, fu_real *f, fu_real *K);
 void cable8p_moment(fu_real l, fu_real x, const fu_real *e, const fu_real *M, fu_real *f, fu_real *K);
 
@@ -268,6 +273,7 @@ void cable8p_engineering_linear_section_forces(fu_real l, fu_real x, const fu_re
 /* rigid: rigid body */
 void rigid_point(const fu_real *b, const fu_real *u, const fu_real *w, fu_real *p, fu_real *p_q, fu_real *v, fu_real *bias);
 void rigid_point_force(const fu_real *b, const fu_real *u, const fu_real *f, fu_real *p, fu_real *p_q, fu_real *K);
+void rigid_frame(const fu_real *b, const fu_real *m, fu_real *A, fu_real *T, fu_real *K);
 void rigid_inertia_force(fu_real mass, const fu_real *J, const fu_real *w, const fu_real *a, fu_real *f);
 void rigid_inertia_tangent(fu_real mass, const fu_real *J, const fu_real *w, fu_real *M, fu_real *D);
 void rigid_kinetic_energy(fu_real mass, const fu_real *J, const fu_real *w, fu_real *T);
@@ -276,6 +282,7 @@ void rigid_discrete_point(const fu_real *b, const fu_real *u, const fu_real *b_n
 /* planar_rigid: planar rigid body */
 void planar_rigid_point(const fu_real *b, const fu_real *u, const fu_real *w, fu_real *p, fu_real *p_q, fu_real *v, fu_real *bias);
 void planar_rigid_point_force(const fu_real *b, const fu_real *u, const fu_real *f, fu_real *p, fu_real *p_q, fu_real *K);
+void planar_rigid_frame(const fu_real *b, const fu_real *m, fu_real *A, fu_real *T, fu_real *K);
 void planar_rigid_inertia_force(fu_real mass, const fu_real *J, const fu_real *w, const fu_real *a, fu_real *f);
 void planar_rigid_inertia_tangent(fu_real mass, const fu_real *J, const fu_real *w, fu_real *M, fu_real *D);
 void planar_rigid_kinetic_energy(fu_real mass, const fu_real *J, const fu_real *w, fu_real *T);
@@ -351,6 +358,96 @@ void slide_cable8p_planar_point_residual(fu_real l, fu_real x, const fu_real *e,
 void slide_cable8p_planar_point_tangent(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *J, fu_real *K);
 void slide_cable8p_planar_point_discrete_gradient(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
 
+/* frame: frame of two vectors in space */
+void frame_axes(const fu_real *a, const fu_real *b, fu_real *A, fu_real *T);
+void frame_motion(const fu_real *a, const fu_real *b, const fu_real *a_rate, const fu_real *b_rate, const fu_real *a_second, const fu_real *b_second, fu_real *omega, fu_real *alpha);
+void frame_moment(const fu_real *a, const fu_real *b, const fu_real *m, fu_real *g, fu_real *K);
+
+/* planar_frame: frame of two vectors in the plane */
+void planar_frame_axes(const fu_real *a, const fu_real *b, fu_real *A, fu_real *T);
+void planar_frame_motion(const fu_real *a, const fu_real *b, const fu_real *a_rate, const fu_real *b_rate, const fu_real *a_second, const fu_real *b_second, fu_real *omega, fu_real *alpha);
+void planar_frame_moment(const fu_real *a, const fu_real *b, const fu_real *m, fu_real *g, fu_real *K);
+
+/* joint_spherical: spherical joint between two frames */
+void joint_spherical_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
+void joint_spherical_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
+
+/* joint_revolute: revolute joint between two frames */
+void joint_revolute_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
+void joint_revolute_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
+
+/* joint_revolute_angle: revolute angle joint between two frames */
+void joint_revolute_angle_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
+void joint_revolute_angle_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
+
+/* joint_universal: universal joint between two frames */
+void joint_universal_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
+void joint_universal_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
+
+/* joint_cylindrical: cylindrical joint between two frames */
+void joint_cylindrical_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
+void joint_cylindrical_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
+
+/* joint_cylindrical_angle: cylindrical angle joint between two frames */
+void joint_cylindrical_angle_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
+void joint_cylindrical_angle_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
+
+/* joint_cylindrical_distance: cylindrical distance joint between two frames */
+void joint_cylindrical_distance_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
+void joint_cylindrical_distance_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
+
+/* joint_prismatic: prismatic joint between two frames */
+void joint_prismatic_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
+void joint_prismatic_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
+
+/* joint_prismatic_distance: prismatic distance joint between two frames */
+void joint_prismatic_distance_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
+void joint_prismatic_distance_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
+
+/* joint_weld: weld joint between two frames */
+void joint_weld_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
+void joint_weld_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
+
+/* joint_distance: distance joint between two frames */
+void joint_distance_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
+void joint_distance_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
+
+/* joint_aligned: aligned joint between two frames */
+void joint_aligned_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
+void joint_aligned_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
+
+/* joint_locked: locked joint between two frames */
+void joint_locked_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
+void joint_locked_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
+
+/* joint_planar_spherical: planar spherical joint between two frames */
+void joint_planar_spherical_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
+void joint_planar_spherical_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
+
+/* joint_planar_revolute_angle: planar revolute angle joint between two frames */
+void joint_planar_revolute_angle_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
+void joint_planar_revolute_angle_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
+
+/* joint_planar_prismatic: planar prismatic joint between two frames */
+void joint_planar_prismatic_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
+void joint_planar_prismatic_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
+
+/* joint_planar_prismatic_distance: planar prismatic distance joint between two frames */
+void joint_planar_prismatic_distance_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
+void joint_planar_prismatic_distance_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
+
+/* joint_planar_weld: planar weld joint between two frames */
+void joint_planar_weld_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
+void joint_planar_weld_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
+
+/* joint_planar_distance: planar distance joint between two frames */
+void joint_planar_distance_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
+void joint_planar_distance_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
+
+/* joint_planar_locked: planar locked joint between two frames */
+void joint_planar_locked_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
+void joint_planar_locked_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
+
 /* What the engine needs of a element. */
 typedef struct {
     const char *name;
@@ -362,6 +459,7 @@ typedef struct {
     void (*inertia_force)(const fu_real *m, const fu_real *a, fu_real *f);
     void (*position)(fu_real l, const fu_real *at, const fu_real *e, fu_real *N, fu_real *r);
     void (*on_axis)(fu_real l, fu_real x, fu_real *N, fu_real *N_x);
+    void (*slopes)(fu_real l, fu_real x, fu_real *S);
     void (*follower_force)(fu_real l, fu_real x, const fu_real *e, const fu_real *c, fu_real *f, fu_real *K);
     void (*moment)(fu_real l, fu_real x, const fu_real *e, const fu_real *M, fu_real *f, fu_real *K);
 } fu_element;
@@ -387,6 +485,7 @@ typedef struct {
     int velocity;
     void (*point)(const fu_real *b, const fu_real *u, const fu_real *w, fu_real *p, fu_real *p_q, fu_real *v, fu_real *bias);
     void (*point_force)(const fu_real *b, const fu_real *u, const fu_real *f, fu_real *p, fu_real *p_q, fu_real *K);
+    void (*frame)(const fu_real *b, const fu_real *m, fu_real *A, fu_real *T, fu_real *K);
     void (*inertia_force)(fu_real mass, const fu_real *J, const fu_real *w, const fu_real *a, fu_real *f);
     void (*inertia_tangent)(fu_real mass, const fu_real *J, const fu_real *w, fu_real *M, fu_real *D);
     void (*kinetic_energy)(fu_real mass, const fu_real *J, const fu_real *w, fu_real *T);
@@ -405,6 +504,24 @@ typedef struct {
     void (*discrete_gradient)(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
 } fu_slide;
 
+/* What the engine needs of a frame. */
+typedef struct {
+    const char *name;
+    int dim;
+    void (*axes)(const fu_real *a, const fu_real *b, fu_real *A, fu_real *T);
+    void (*motion)(const fu_real *a, const fu_real *b, const fu_real *a_rate, const fu_real *b_rate, const fu_real *a_second, const fu_real *b_second, fu_real *omega, fu_real *alpha);
+    void (*moment)(const fu_real *a, const fu_real *b, const fu_real *m, fu_real *g, fu_real *K);
+} fu_frame;
+
+/* What the engine needs of a joint. */
+typedef struct {
+    const char *name;
+    int dim;
+    int rows;
+    void (*force)(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
+    void (*motion)(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
+} fu_joint;
+
 /* Every table, one entry a family. */
 typedef struct {
     int n_elements;
@@ -415,6 +532,10 @@ typedef struct {
     const fu_body *bodys;
     int n_slides;
     const fu_slide *slides;
+    int n_frames;
+    const fu_frame *frames;
+    int n_joints;
+    const fu_joint *joints;
 } fu_tables;
 extern const fu_tables fu_all;
 

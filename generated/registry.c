@@ -11,6 +11,7 @@ static const fu_element elements[] = {
      beam24_inertia_force,
      beam24_position,
      beam24_on_axis,
+     beam24_slopes,
      beam24_follower_force,
      beam24_moment
     },
@@ -23,6 +24,7 @@ static const fu_element elements[] = {
      cable12_inertia_force,
      cable12_position,
      cable12_on_axis,
+     cable12_slopes,
      cable12_follower_force,
      cable12_moment
     },
@@ -35,6 +37,7 @@ static const fu_element elements[] = {
      cable18_inertia_force,
      cable18_position,
      cable18_on_axis,
+     cable18_slopes,
      cable18_follower_force,
      cable18_moment
     },
@@ -47,6 +50,7 @@ static const fu_element elements[] = {
      beam12p_inertia_force,
      beam12p_position,
      beam12p_on_axis,
+     beam12p_slopes,
      beam12p_follower_force,
      beam12p_moment
     },
@@ -59,6 +63,7 @@ static const fu_element elements[] = {
      cable8p_inertia_force,
      cable8p_position,
      cable8p_on_axis,
+     cable8p_slopes,
      cable8p_follower_force,
      cable8p_moment
     }
@@ -254,6 +259,7 @@ static const fu_body bodys[] = {
      6,
      rigid_point,
      rigid_point_force,
+     rigid_frame,
      rigid_inertia_force,
      rigid_inertia_tangent,
      rigid_kinetic_energy,
@@ -265,6 +271,7 @@ static const fu_body bodys[] = {
      3,
      planar_rigid_point,
      planar_rigid_point_force,
+     planar_rigid_frame,
      planar_rigid_inertia_force,
      planar_rigid_inertia_tangent,
      planar_rigid_kinetic_energy,
@@ -365,6 +372,144 @@ static const fu_slide slides[] = {
     }
 };
 
+static const fu_frame frames[] = {
+    {"frame",
+     3,
+     frame_axes,
+     frame_motion,
+     frame_moment
+    },
+    {"planar_frame",
+     2,
+     planar_frame_axes,
+     planar_frame_motion,
+     planar_frame_moment
+    }
+};
+
+static const fu_joint joints[] = {
+    {"joint_spherical",
+     3,
+     3,
+     joint_spherical_force,
+     joint_spherical_motion
+    },
+    {"joint_revolute",
+     3,
+     5,
+     joint_revolute_force,
+     joint_revolute_motion
+    },
+    {"joint_revolute_angle",
+     3,
+     6,
+     joint_revolute_angle_force,
+     joint_revolute_angle_motion
+    },
+    {"joint_universal",
+     3,
+     4,
+     joint_universal_force,
+     joint_universal_motion
+    },
+    {"joint_cylindrical",
+     3,
+     4,
+     joint_cylindrical_force,
+     joint_cylindrical_motion
+    },
+    {"joint_cylindrical_angle",
+     3,
+     5,
+     joint_cylindrical_angle_force,
+     joint_cylindrical_angle_motion
+    },
+    {"joint_cylindrical_distance",
+     3,
+     5,
+     joint_cylindrical_distance_force,
+     joint_cylindrical_distance_motion
+    },
+    {"joint_prismatic",
+     3,
+     5,
+     joint_prismatic_force,
+     joint_prismatic_motion
+    },
+    {"joint_prismatic_distance",
+     3,
+     6,
+     joint_prismatic_distance_force,
+     joint_prismatic_distance_motion
+    },
+    {"joint_weld",
+     3,
+     6,
+     joint_weld_force,
+     joint_weld_motion
+    },
+    {"joint_distance",
+     3,
+     1,
+     joint_distance_force,
+     joint_distance_motion
+    },
+    {"joint_aligned",
+     3,
+     2,
+     joint_aligned_force,
+     joint_aligned_motion
+    },
+    {"joint_locked",
+     3,
+     3,
+     joint_locked_force,
+     joint_locked_motion
+    },
+    {"joint_planar_spherical",
+     2,
+     2,
+     joint_planar_spherical_force,
+     joint_planar_spherical_motion
+    },
+    {"joint_planar_revolute_angle",
+     2,
+     3,
+     joint_planar_revolute_angle_force,
+     joint_planar_revolute_angle_motion
+    },
+    {"joint_planar_prismatic",
+     2,
+     2,
+     joint_planar_prismatic_force,
+     joint_planar_prismatic_motion
+    },
+    {"joint_planar_prismatic_distance",
+     2,
+     3,
+     joint_planar_prismatic_distance_force,
+     joint_planar_prismatic_distance_motion
+    },
+    {"joint_planar_weld",
+     2,
+     3,
+     joint_planar_weld_force,
+     joint_planar_weld_motion
+    },
+    {"joint_planar_distance",
+     2,
+     1,
+     joint_planar_distance_force,
+     joint_planar_distance_motion
+    },
+    {"joint_planar_locked",
+     2,
+     1,
+     joint_planar_locked_force,
+     joint_planar_locked_motion
+    }
+};
+
 static void call_beam24_mass(const fu_real *const *a, fu_real *const *out)
 {
     beam24_mass(*a[0], *a[1], a[2], out[0]);
@@ -384,6 +529,10 @@ static void call_beam24_position(const fu_real *const *a, fu_real *const *out)
 static void call_beam24_on_axis(const fu_real *const *a, fu_real *const *out)
 {
     beam24_on_axis(*a[0], *a[1], out[0], out[1]);
+}
+static void call_beam24_slopes(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_slopes(*a[0], *a[1], out[0]);
 }
 static void call_beam24_follower_force(const fu_real *const *a, fu_real *const *out)
 {
@@ -413,6 +562,10 @@ static void call_cable12_on_axis(const fu_real *const *a, fu_real *const *out)
 {
     cable12_on_axis(*a[0], *a[1], out[0], out[1]);
 }
+static void call_cable12_slopes(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_slopes(*a[0], *a[1], out[0]);
+}
 static void call_cable12_follower_force(const fu_real *const *a, fu_real *const *out)
 {
     cable12_follower_force(*a[0], *a[1], a[2], a[3], out[0], out[1]);
@@ -440,6 +593,10 @@ static void call_cable18_position(const fu_real *const *a, fu_real *const *out)
 static void call_cable18_on_axis(const fu_real *const *a, fu_real *const *out)
 {
     cable18_on_axis(*a[0], *a[1], out[0], out[1]);
+}
+static void call_cable18_slopes(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_slopes(*a[0], *a[1], out[0]);
 }
 static void call_cable18_follower_force(const fu_real *const *a, fu_real *const *out)
 {
@@ -469,6 +626,10 @@ static void call_beam12p_on_axis(const fu_real *const *a, fu_real *const *out)
 {
     beam12p_on_axis(*a[0], *a[1], out[0], out[1]);
 }
+static void call_beam12p_slopes(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_slopes(*a[0], *a[1], out[0]);
+}
 static void call_beam12p_follower_force(const fu_real *const *a, fu_real *const *out)
 {
     beam12p_follower_force(*a[0], *a[1], a[2], a[3], out[0], out[1]);
@@ -496,6 +657,10 @@ static void call_cable8p_position(const fu_real *const *a, fu_real *const *out)
 static void call_cable8p_on_axis(const fu_real *const *a, fu_real *const *out)
 {
     cable8p_on_axis(*a[0], *a[1], out[0], out[1]);
+}
+static void call_cable8p_slopes(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_slopes(*a[0], *a[1], out[0]);
 }
 static void call_cable8p_follower_force(const fu_real *const *a, fu_real *const *out)
 {
@@ -1121,6 +1286,10 @@ static void call_rigid_point_force(const fu_real *const *a, fu_real *const *out)
 {
     rigid_point_force(a[0], a[1], a[2], out[0], out[1], out[2]);
 }
+static void call_rigid_frame(const fu_real *const *a, fu_real *const *out)
+{
+    rigid_frame(a[0], a[1], out[0], out[1], out[2]);
+}
 static void call_rigid_inertia_force(const fu_real *const *a, fu_real *const *out)
 {
     rigid_inertia_force(*a[0], a[1], a[2], a[3], out[0]);
@@ -1144,6 +1313,10 @@ static void call_planar_rigid_point(const fu_real *const *a, fu_real *const *out
 static void call_planar_rigid_point_force(const fu_real *const *a, fu_real *const *out)
 {
     planar_rigid_point_force(a[0], a[1], a[2], out[0], out[1], out[2]);
+}
+static void call_planar_rigid_frame(const fu_real *const *a, fu_real *const *out)
+{
+    planar_rigid_frame(a[0], a[1], out[0], out[1], out[2]);
 }
 static void call_planar_rigid_inertia_force(const fu_real *const *a, fu_real *const *out)
 {
@@ -1361,6 +1534,190 @@ static void call_slide_cable8p_planar_point_discrete_gradient(const fu_real *con
 {
     slide_cable8p_planar_point_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
 }
+static void call_frame_axes(const fu_real *const *a, fu_real *const *out)
+{
+    frame_axes(a[0], a[1], out[0], out[1]);
+}
+static void call_frame_motion(const fu_real *const *a, fu_real *const *out)
+{
+    frame_motion(a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_frame_moment(const fu_real *const *a, fu_real *const *out)
+{
+    frame_moment(a[0], a[1], a[2], out[0], out[1]);
+}
+static void call_planar_frame_axes(const fu_real *const *a, fu_real *const *out)
+{
+    planar_frame_axes(a[0], a[1], out[0], out[1]);
+}
+static void call_planar_frame_motion(const fu_real *const *a, fu_real *const *out)
+{
+    planar_frame_motion(a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_planar_frame_moment(const fu_real *const *a, fu_real *const *out)
+{
+    planar_frame_moment(a[0], a[1], a[2], out[0], out[1]);
+}
+static void call_joint_spherical_force(const fu_real *const *a, fu_real *const *out)
+{
+    joint_spherical_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_joint_spherical_motion(const fu_real *const *a, fu_real *const *out)
+{
+    joint_spherical_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
+}
+static void call_joint_revolute_force(const fu_real *const *a, fu_real *const *out)
+{
+    joint_revolute_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_joint_revolute_motion(const fu_real *const *a, fu_real *const *out)
+{
+    joint_revolute_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
+}
+static void call_joint_revolute_angle_force(const fu_real *const *a, fu_real *const *out)
+{
+    joint_revolute_angle_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_joint_revolute_angle_motion(const fu_real *const *a, fu_real *const *out)
+{
+    joint_revolute_angle_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
+}
+static void call_joint_universal_force(const fu_real *const *a, fu_real *const *out)
+{
+    joint_universal_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_joint_universal_motion(const fu_real *const *a, fu_real *const *out)
+{
+    joint_universal_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
+}
+static void call_joint_cylindrical_force(const fu_real *const *a, fu_real *const *out)
+{
+    joint_cylindrical_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_joint_cylindrical_motion(const fu_real *const *a, fu_real *const *out)
+{
+    joint_cylindrical_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
+}
+static void call_joint_cylindrical_angle_force(const fu_real *const *a, fu_real *const *out)
+{
+    joint_cylindrical_angle_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_joint_cylindrical_angle_motion(const fu_real *const *a, fu_real *const *out)
+{
+    joint_cylindrical_angle_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
+}
+static void call_joint_cylindrical_distance_force(const fu_real *const *a, fu_real *const *out)
+{
+    joint_cylindrical_distance_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_joint_cylindrical_distance_motion(const fu_real *const *a, fu_real *const *out)
+{
+    joint_cylindrical_distance_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
+}
+static void call_joint_prismatic_force(const fu_real *const *a, fu_real *const *out)
+{
+    joint_prismatic_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_joint_prismatic_motion(const fu_real *const *a, fu_real *const *out)
+{
+    joint_prismatic_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
+}
+static void call_joint_prismatic_distance_force(const fu_real *const *a, fu_real *const *out)
+{
+    joint_prismatic_distance_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_joint_prismatic_distance_motion(const fu_real *const *a, fu_real *const *out)
+{
+    joint_prismatic_distance_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
+}
+static void call_joint_weld_force(const fu_real *const *a, fu_real *const *out)
+{
+    joint_weld_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_joint_weld_motion(const fu_real *const *a, fu_real *const *out)
+{
+    joint_weld_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
+}
+static void call_joint_distance_force(const fu_real *const *a, fu_real *const *out)
+{
+    joint_distance_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_joint_distance_motion(const fu_real *const *a, fu_real *const *out)
+{
+    joint_distance_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
+}
+static void call_joint_aligned_force(const fu_real *const *a, fu_real *const *out)
+{
+    joint_aligned_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_joint_aligned_motion(const fu_real *const *a, fu_real *const *out)
+{
+    joint_aligned_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
+}
+static void call_joint_locked_force(const fu_real *const *a, fu_real *const *out)
+{
+    joint_locked_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_joint_locked_motion(const fu_real *const *a, fu_real *const *out)
+{
+    joint_locked_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
+}
+static void call_joint_planar_spherical_force(const fu_real *const *a, fu_real *const *out)
+{
+    joint_planar_spherical_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_joint_planar_spherical_motion(const fu_real *const *a, fu_real *const *out)
+{
+    joint_planar_spherical_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
+}
+static void call_joint_planar_revolute_angle_force(const fu_real *const *a, fu_real *const *out)
+{
+    joint_planar_revolute_angle_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_joint_planar_revolute_angle_motion(const fu_real *const *a, fu_real *const *out)
+{
+    joint_planar_revolute_angle_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
+}
+static void call_joint_planar_prismatic_force(const fu_real *const *a, fu_real *const *out)
+{
+    joint_planar_prismatic_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_joint_planar_prismatic_motion(const fu_real *const *a, fu_real *const *out)
+{
+    joint_planar_prismatic_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
+}
+static void call_joint_planar_prismatic_distance_force(const fu_real *const *a, fu_real *const *out)
+{
+    joint_planar_prismatic_distance_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_joint_planar_prismatic_distance_motion(const fu_real *const *a, fu_real *const *out)
+{
+    joint_planar_prismatic_distance_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
+}
+static void call_joint_planar_weld_force(const fu_real *const *a, fu_real *const *out)
+{
+    joint_planar_weld_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_joint_planar_weld_motion(const fu_real *const *a, fu_real *const *out)
+{
+    joint_planar_weld_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
+}
+static void call_joint_planar_distance_force(const fu_real *const *a, fu_real *const *out)
+{
+    joint_planar_distance_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_joint_planar_distance_motion(const fu_real *const *a, fu_real *const *out)
+{
+    joint_planar_distance_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
+}
+static void call_joint_planar_locked_force(const fu_real *const *a, fu_real *const *out)
+{
+    joint_planar_locked_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_joint_planar_locked_motion(const fu_real *const *a, fu_real *const *out)
+{
+    joint_planar_locked_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
+}
 
 const fu_kernel fu_kernels[] = {
     {"beam24_mass", call_beam24_mass},
@@ -1368,6 +1725,7 @@ const fu_kernel fu_kernels[] = {
     {"beam24_inertia_force", call_beam24_inertia_force},
     {"beam24_position", call_beam24_position},
     {"beam24_on_axis", call_beam24_on_axis},
+    {"beam24_slopes", call_beam24_slopes},
     {"beam24_follower_force", call_beam24_follower_force},
     {"beam24_moment", call_beam24_moment},
     {"cable12_mass", call_cable12_mass},
@@ -1375,6 +1733,7 @@ const fu_kernel fu_kernels[] = {
     {"cable12_inertia_force", call_cable12_inertia_force},
     {"cable12_position", call_cable12_position},
     {"cable12_on_axis", call_cable12_on_axis},
+    {"cable12_slopes", call_cable12_slopes},
     {"cable12_follower_force", call_cable12_follower_force},
     {"cable12_moment", call_cable12_moment},
     {"cable18_mass", call_cable18_mass},
@@ -1382,6 +1741,7 @@ const fu_kernel fu_kernels[] = {
     {"cable18_inertia_force", call_cable18_inertia_force},
     {"cable18_position", call_cable18_position},
     {"cable18_on_axis", call_cable18_on_axis},
+    {"cable18_slopes", call_cable18_slopes},
     {"cable18_follower_force", call_cable18_follower_force},
     {"cable18_moment", call_cable18_moment},
     {"beam12p_mass", call_beam12p_mass},
@@ -1389,6 +1749,7 @@ const fu_kernel fu_kernels[] = {
     {"beam12p_inertia_force", call_beam12p_inertia_force},
     {"beam12p_position", call_beam12p_position},
     {"beam12p_on_axis", call_beam12p_on_axis},
+    {"beam12p_slopes", call_beam12p_slopes},
     {"beam12p_follower_force", call_beam12p_follower_force},
     {"beam12p_moment", call_beam12p_moment},
     {"cable8p_mass", call_cable8p_mass},
@@ -1396,6 +1757,7 @@ const fu_kernel fu_kernels[] = {
     {"cable8p_inertia_force", call_cable8p_inertia_force},
     {"cable8p_position", call_cable8p_position},
     {"cable8p_on_axis", call_cable8p_on_axis},
+    {"cable8p_slopes", call_cable8p_slopes},
     {"cable8p_follower_force", call_cable8p_follower_force},
     {"cable8p_moment", call_cable8p_moment},
     {"beam24_continuum_stiffness", call_beam24_continuum_stiffness},
@@ -1552,12 +1914,14 @@ const fu_kernel fu_kernels[] = {
     {"cable8p_engineering_linear_section_forces", call_cable8p_engineering_linear_section_forces},
     {"rigid_point", call_rigid_point},
     {"rigid_point_force", call_rigid_point_force},
+    {"rigid_frame", call_rigid_frame},
     {"rigid_inertia_force", call_rigid_inertia_force},
     {"rigid_inertia_tangent", call_rigid_inertia_tangent},
     {"rigid_kinetic_energy", call_rigid_kinetic_energy},
     {"rigid_discrete_point", call_rigid_discrete_point},
     {"planar_rigid_point", call_planar_rigid_point},
     {"planar_rigid_point_force", call_planar_rigid_point_force},
+    {"planar_rigid_frame", call_planar_rigid_frame},
     {"planar_rigid_inertia_force", call_planar_rigid_inertia_force},
     {"planar_rigid_inertia_tangent", call_planar_rigid_inertia_tangent},
     {"planar_rigid_kinetic_energy", call_planar_rigid_kinetic_energy},
@@ -1612,6 +1976,52 @@ const fu_kernel fu_kernels[] = {
     {"slide_cable8p_planar_point_residual", call_slide_cable8p_planar_point_residual},
     {"slide_cable8p_planar_point_tangent", call_slide_cable8p_planar_point_tangent},
     {"slide_cable8p_planar_point_discrete_gradient", call_slide_cable8p_planar_point_discrete_gradient},
+    {"frame_axes", call_frame_axes},
+    {"frame_motion", call_frame_motion},
+    {"frame_moment", call_frame_moment},
+    {"planar_frame_axes", call_planar_frame_axes},
+    {"planar_frame_motion", call_planar_frame_motion},
+    {"planar_frame_moment", call_planar_frame_moment},
+    {"joint_spherical_force", call_joint_spherical_force},
+    {"joint_spherical_motion", call_joint_spherical_motion},
+    {"joint_revolute_force", call_joint_revolute_force},
+    {"joint_revolute_motion", call_joint_revolute_motion},
+    {"joint_revolute_angle_force", call_joint_revolute_angle_force},
+    {"joint_revolute_angle_motion", call_joint_revolute_angle_motion},
+    {"joint_universal_force", call_joint_universal_force},
+    {"joint_universal_motion", call_joint_universal_motion},
+    {"joint_cylindrical_force", call_joint_cylindrical_force},
+    {"joint_cylindrical_motion", call_joint_cylindrical_motion},
+    {"joint_cylindrical_angle_force", call_joint_cylindrical_angle_force},
+    {"joint_cylindrical_angle_motion", call_joint_cylindrical_angle_motion},
+    {"joint_cylindrical_distance_force", call_joint_cylindrical_distance_force},
+    {"joint_cylindrical_distance_motion", call_joint_cylindrical_distance_motion},
+    {"joint_prismatic_force", call_joint_prismatic_force},
+    {"joint_prismatic_motion", call_joint_prismatic_motion},
+    {"joint_prismatic_distance_force", call_joint_prismatic_distance_force},
+    {"joint_prismatic_distance_motion", call_joint_prismatic_distance_motion},
+    {"joint_weld_force", call_joint_weld_force},
+    {"joint_weld_motion", call_joint_weld_motion},
+    {"joint_distance_force", call_joint_distance_force},
+    {"joint_distance_motion", call_joint_distance_motion},
+    {"joint_aligned_force", call_joint_aligned_force},
+    {"joint_aligned_motion", call_joint_aligned_motion},
+    {"joint_locked_force", call_joint_locked_force},
+    {"joint_locked_motion", call_joint_locked_motion},
+    {"joint_planar_spherical_force", call_joint_planar_spherical_force},
+    {"joint_planar_spherical_motion", call_joint_planar_spherical_motion},
+    {"joint_planar_revolute_angle_force", call_joint_planar_revolute_angle_force},
+    {"joint_planar_revolute_angle_motion", call_joint_planar_revolute_angle_motion},
+    {"joint_planar_prismatic_force", call_joint_planar_prismatic_force},
+    {"joint_planar_prismatic_motion", call_joint_planar_prismatic_motion},
+    {"joint_planar_prismatic_distance_force", call_joint_planar_prismatic_distance_force},
+    {"joint_planar_prismatic_distance_motion", call_joint_planar_prismatic_distance_motion},
+    {"joint_planar_weld_force", call_joint_planar_weld_force},
+    {"joint_planar_weld_motion", call_joint_planar_weld_motion},
+    {"joint_planar_distance_force", call_joint_planar_distance_force},
+    {"joint_planar_distance_motion", call_joint_planar_distance_motion},
+    {"joint_planar_locked_force", call_joint_planar_locked_force},
+    {"joint_planar_locked_motion", call_joint_planar_locked_motion},
 };
 const int fu_n_kernels = sizeof fu_kernels / sizeof fu_kernels[0];
 
@@ -1619,5 +2029,7 @@ const fu_tables fu_all = {
     5, elements,
     18, laws,
     2, bodys,
-    10, slides
+    10, slides,
+    2, frames,
+    20, joints
 };
