@@ -63,7 +63,7 @@ def _frame(dim: int) -> Family:
 
 def _joint(dim: int, name: str) -> Family:
     return Family(f"joint_{name}", f"{name.replace('_', ' ')} joint between two frames", partial(pair.build, dim, name),
-                  ("joints.pair",), role="joint", facts={"dim": dim, "rows": pair.rows(dim, name)}, dim=dim)
+                  ("joints.pair",), role="pair", facts={"dim": dim, "rows": pair.rows(dim, name)}, dim=dim)
 
 
 _SPACE = {2: "the plane", 3: "space"}

@@ -24,7 +24,7 @@ def invariances(family: Family, k: Numbers, states: list[State]) -> Iterator[Inv
     from funicular.derive.verify_slide_invariances import slide
 
     table = {"element": element, "law": law, "slide": slide, "body": body, "frame": frame_invariances,
-             "joint": joint_invariances}
+             "pair": joint_invariances}
     for s in states:
         yield from table[family.role](family, k, s)
 

@@ -19,7 +19,7 @@ def relations(family: Family) -> list[Relation]:
     from funicular.derive.verify_slide import slide
 
     table: dict[str, Callable[[Family], list[Relation]]] = {
-        "element": element, "law": law, "slide": slide, "body": body, "frame": frame_relations, "joint": joint_relations}
+        "element": element, "law": law, "slide": slide, "body": body, "frame": frame_relations, "pair": joint_relations}
     return table[family.role](family)
 
 

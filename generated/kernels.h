@@ -513,14 +513,14 @@ typedef struct {
     void (*moment)(const fu_real *a, const fu_real *b, const fu_real *m, fu_real *g, fu_real *K);
 } fu_frame;
 
-/* What the engine needs of a joint. */
+/* What the engine needs of a pair. */
 typedef struct {
     const char *name;
     int dim;
     int rows;
     void (*force)(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
     void (*motion)(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
-} fu_joint;
+} fu_pair;
 
 /* Every table, one entry a family. */
 typedef struct {
@@ -534,8 +534,8 @@ typedef struct {
     const fu_slide *slides;
     int n_frames;
     const fu_frame *frames;
-    int n_joints;
-    const fu_joint *joints;
+    int n_pairs;
+    const fu_pair *pairs;
 } fu_tables;
 extern const fu_tables fu_all;
 

@@ -387,7 +387,7 @@ static const fu_frame frames[] = {
     }
 };
 
-static const fu_joint joints[] = {
+static const fu_pair pairs[] = {
     {"joint_spherical",
      3,
      3,
@@ -2031,5 +2031,5 @@ const fu_tables fu_all = {
     2, bodys,
     10, slides,
     2, frames,
-    20, joints
+    20, pairs
 };

@@ -3,39 +3,28 @@
 
 #include <string.h>
 
-/* Layout of one joint's terms in the work space; n = coordinates of element and rider. */
-typedef struct {
-    double *C, *C_q, *C_s, *G, *s_rate, *Q_d, *H, *W, *s_bias;
-} terms_view;
-
-static terms_view view(const fu_accelerator *work, int joint)
+static int n_rows(const fu_model *model)
 {
-    double *p = work->terms + (long)joint * FU_JOINT_TERMS;
-    const int n = FU_MAX_COORDINATES;
-    terms_view t = {p, p + 3, p + 3 + 3 * n, p + 6 + 3 * n, p + 6 + 4 * n, p + 7 + 4 * n, p + 10 + 4 * n,
-                    p + 10 + 6 * n, p + 12 + 6 * n};
-    return t;
-}
-
-/* dof of a joint's k-th coordinate: element first, then rider */
-static int joint_dof(const fu_model *model, const fu_joint *joint, int element, int k)
-{
-    const fu_cable *cable = &model->cables[joint->cable];
-    return k < cable->coordinates ? cable->first + element * cable->per_node + k
-                                  : model->rigids[joint->rider].dof + k - cable->coordinates;
+    return model->n_joints + model->n_links;
 }
 
 static void evaluate(const fu_model *model, const fu_state *state, fu_accelerator *work)
 {
     for (int j = 0; j < model->n_joints; ++j) {
         const fu_joint *joint = &model->joints[j];
-        const fu_cable *cable = &model->cables[joint->cable];
-        const fu_rigid *rider = &model->rigids[joint->rider];
-        const int element = state->element[j], at = cable->first + element * cable->per_node;
-        const terms_view t = view(work, j);
-        joint->kernel->terms(cable->length, state->s[j] - fu_element_start(model, j, element), state->q + at,
-                             state->q + rider->configuration, joint->u, state->v + at, state->v + rider->dof,
-                             state->director + 3 * j, t.C, t.C_q, t.C_s, t.G, t.s_rate, t.Q_d, t.H, t.W, t.s_bias);
+        fu_rows *rows = &work->rows[j];
+        rows->first = joint->multiplier;
+        rows->room = joint->room;
+        for (int c = 0; c < rows->room; ++c) rows->scale[c] = joint->mass;
+        fu_slide_terms(model, state, j, rows, &work->slides[j]);
+    }
+    for (int k = 0; k < model->n_links; ++k) {
+        const fu_link *link = &model->links[k];
+        fu_rows *rows = &work->rows[model->n_joints + k];
+        rows->first = link->multiplier;
+        rows->room = rows->rows = link->kernel->rows;
+        memcpy(rows->scale, link->scale, sizeof rows->scale);
+        fu_link_terms(model, link, state, work->slides, work->rows, rows);
     }
 }
 
@@ -60,22 +49,21 @@ static void border(const fu_model *model, fu_accelerator *work)
 }
 
 /* Border of [M H'; H 0] at a state whose terms are evaluated. */
-static int factor_border(const fu_model *model, const fu_state *state, fu_accelerator *work)
+static int factor_border(const fu_model *model, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
     border(model, work);
-    for (int j = 0; j < model->n_joints; ++j) {
-        const fu_joint *joint = &model->joints[j];
-        const terms_view t = view(work, j);
-        const int n = joint->kernel->coordinates;
-        for (int c = 0; c < joint->kernel->dim - 1; ++c)
-            for (int k = 0; k < n; ++k) {
-                const int row = fu_extra(model, joint->multiplier + c);
-                const int dof = joint_dof(model, joint, state->element[j], k);
-                /* rows in kg, so that the border is of one scale */
-                fu_add(model, s, row, dof, joint->mass * t.H[c * n + k]);
-                fu_add(model, s, dof, row, joint->mass * t.H[c * n + k]);
-            }
+    for (int r = 0; r < n_rows(model); ++r) {
+        const fu_rows *rows = &work->rows[r];
+        for (int c = 0; c < rows->room; ++c) {
+            const int row = fu_extra(model, rows->first + c);
+            if (c >= rows->rows) fu_add(model, s, row, row, rows->scale[c]); /* not in use: its multiplier is nil */
+            else
+                for (int k = 0; k < rows->n; ++k) { /* rows in kg, so that the border is of one scale */
+                    fu_add(model, s, row, rows->at[k], rows->scale[c] * rows->H[c * rows->n + k]);
+                    fu_add(model, s, rows->at[k], row, rows->scale[c] * rows->H[c * rows->n + k]);
+                }
+        }
     }
     return fu_system_factor_border(s, model->lapack);
 }
@@ -85,24 +73,19 @@ static void solve(const fu_model *model, fu_accelerator *work, const double *for
 {
     double *x = work->rhs, *lambda = x + model->n_band + model->n_border_dof;
     fu_gather(model, force, x);
-    for (int j = 0; j < model->n_joints; ++j)
-        for (int c = 0; c < model->joints[j].kernel->dim - 1; ++c)
-            lambda[model->joints[j].multiplier + c] *= model->joints[j].mass;
+    for (int r = 0; r < n_rows(model); ++r)
+        for (int c = 0; c < work->rows[r].room; ++c) lambda[work->rows[r].first + c] *= work->rows[r].scale[c];
     fu_system_solve(&work->mass, model->lapack, x);
     fu_spread(model, x, solution);
-    for (int j = 0; j < model->n_joints; ++j)
-        for (int c = 0; c < model->joints[j].kernel->dim - 1; ++c)
-            lambda[model->joints[j].multiplier + c] *= model->joints[j].mass;
+    for (int r = 0; r < n_rows(model); ++r)
+        for (int c = 0; c < work->rows[r].room; ++c) lambda[work->rows[r].first + c] *= work->rows[r].scale[c];
 }
 
-/* -sum_k H_ck x_k: what the joints' right sides lose to known accelerations or velocities */
-static double minus_H(const fu_model *model, const fu_state *state, const fu_accelerator *work, int j, int c,
-                      const double *x)
+/* -sum_k H_ck x_k: what the right sides lose to known accelerations or velocities */
+static double minus_H(const fu_rows *rows, int c, const double *x)
 {
-    const int n = model->joints[j].kernel->coordinates;
-    const double *H = view(work, j).H + c * n;
     double sum = 0.0;
-    for (int k = 0; k < n; ++k) sum -= H[k] * x[joint_dof(model, &model->joints[j], state->element[j], k)];
+    for (int k = 0; k < rows->n; ++k) sum -= rows->H[c * rows->n + k] * x[rows->at[k]];
     return sum;
 }
 
@@ -115,20 +98,18 @@ int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *
     s->m = model->n_border_dof; /* M alone */
     border(model, work);
     const int info = fu_system_factor_border(s, model->lapack);
-    for (int j = 0; j < model->n_joints && !info; ++j) {
-        const fu_joint *joint = &model->joints[j];
-        for (int c = 0; c < joint->kernel->dim - 1; ++c) {
-            const double *H = view(work, j).H + c * joint->kernel->coordinates;
+    for (int r = 0; r < n_rows(model) && !info; ++r) {
+        const fu_rows *rows = &work->rows[r];
+        for (int c = 0; c < rows->rows; ++c) {
+            const double *H = rows->H + c * rows->n;
             for (int i = 0; i < model->n_dof; ++i) work->work[i] = 0.0;
-            for (int k = 0; k < joint->kernel->coordinates; ++k)
-                work->work[joint_dof(model, joint, state->element[j], k)] += H[k];
+            for (int k = 0; k < rows->n; ++k) work->work[rows->at[k]] += H[k];
             fu_gather(model, work->work, work->rhs);
             fu_system_solve(s, model->lapack, work->rhs);
             fu_spread(model, work->rhs, work->work);
-            for (int i = 0; i < model->n_joints; ++i)
-                for (int d = 0; d < model->joints[i].kernel->dim - 1; ++d)
-                    S[(joint->multiplier + c) * n + model->joints[i].multiplier + d] =
-                        -minus_H(model, state, work, i, d, work->work);
+            for (int i = 0; i < n_rows(model); ++i)
+                for (int d = 0; d < work->rows[i].rows; ++d)
+                    S[(rows->first + c) * n + work->rows[i].first + d] = -minus_H(&work->rows[i], d, work->work);
         }
     }
     s->m = whole;
@@ -141,7 +122,7 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
 {
     double *lambda = work->rhs + model->n_band + model->n_border_dof, *prescribed = work->prescribed;
     evaluate(model, state, work);
-    const int info = factor_border(model, state, work);
+    const int info = factor_border(model, work);
     if (info) return info;
     for (int i = 0; i < model->n_dof; ++i) work->force[i] = prescribed[i] = work->work[i] = 0.0;
     fu_internal_forces(model, state->q, state->v, work->force);
@@ -151,41 +132,37 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
         prescribed[model->motions[k].dof] = state->acceleration[model->motions[k].dof];
     if (model->n_motions) fu_mass_times(model, prescribed, work->work);
     for (int i = 0; i < model->n_dof; ++i) work->work[i] = -work->force[i] - work->work[i];
-    for (int j = 0; j < model->n_joints; ++j)
-        for (int c = 0; c < model->joints[j].kernel->dim - 1; ++c)
-            lambda[model->joints[j].multiplier + c] =
-                view(work, j).W[c] + minus_H(model, state, work, j, c, prescribed);
+    for (int r = 0; r < n_rows(model); ++r)
+        for (int c = 0; c < work->rows[r].rows; ++c)
+            lambda[work->rows[r].first + c] = work->rows[r].W[c] + minus_H(&work->rows[r], c, prescribed);
     solve(model, work, work->work, acceleration);
     for (int i = 0; i < model->n_dof; ++i) acceleration[i] += prescribed[i];
+    memcpy(work->multipliers, lambda, sizeof(double) * (size_t)model->n_multipliers);
     if (joints)
         for (int j = 0; j < model->n_joints; ++j) {
-            const fu_joint *joint = &model->joints[j];
-            const terms_view t = view(work, j);
-            const int n = joint->kernel->coordinates, dim = joint->kernel->dim;
-            const int rider = model->cables[joint->cable].coordinates;
+            const fu_rows *rows = &work->rows[j];
+            const fu_slide_state *slide = &work->slides[j];
+            const int dim = model->dim;
             fu_joint_output *out = &joints[j];
             *out = (fu_joint_output){0};
-            out->s_rate = t.s_rate[0];
-            out->s_acceleration = t.s_bias[0];
-            for (int k = 0; k < n; ++k)
-                out->s_acceleration += t.G[k] * acceleration[joint_dof(model, joint, state->element[j], k)];
-            for (int c = 0; c < dim - 1; ++c) out->multiplier[c] = lambda[joint->multiplier + c];
+            out->s_rate = slide->s_rate;
+            out->s_acceleration = slide->s_bias;
+            for (int k = 0; k < rows->n; ++k) out->s_acceleration += slide->G[k] * acceleration[rows->at[k]];
+            for (int c = 0; c < rows->rows; ++c) out->multiplier[c] = lambda[rows->first + c];
             for (int d = 0; d < dim; ++d) {
-                out->residual[d] = t.C[d];
-                for (int c = 0; c < dim - 1; ++c) out->force[d] -= t.H[c * n + rider + d] * out->multiplier[c];
+                out->residual[d] = slide->C[d];
+                for (int c = 0; c < rows->rows; ++c)
+                    out->force[d] -= slide->by_point[c * dim + d] * out->multiplier[c];
             }
         }
     if (reaction) {
         fu_mass_times(model, acceleration, work->work);
         for (int i = 0; i < model->n_dof; ++i) reaction[i] = work->work[i] + work->force[i];
-        for (int j = 0; j < model->n_joints; ++j) {
-            const fu_joint *joint = &model->joints[j];
-            const terms_view t = view(work, j);
-            const int n = joint->kernel->coordinates;
-            for (int k = 0; k < n; ++k)
-                for (int c = 0; c < joint->kernel->dim - 1; ++c)
-                    reaction[joint_dof(model, joint, state->element[j], k)] +=
-                        t.H[c * n + k] * lambda[joint->multiplier + c];
+        for (int r = 0; r < n_rows(model); ++r) {
+            const fu_rows *rows = &work->rows[r];
+            for (int c = 0; c < rows->rows; ++c)
+                for (int k = 0; k < rows->n; ++k)
+                    reaction[rows->at[k]] += rows->H[c * rows->n + k] * lambda[rows->first + c];
         }
     }
     return 0;
@@ -197,40 +174,36 @@ static int project(const fu_model *model, const fu_state *state, fu_accelerator 
 {
     double *lambda = work->rhs + model->n_band + model->n_border_dof;
     evaluate(model, state, work);
-    const int info = factor_border(model, state, work);
+    const int info = factor_border(model, work);
     if (info) return info;
     for (int i = 0; i < model->n_dof; ++i) work->work[i] = 0.0;
-    for (int j = 0; j < model->n_joints; ++j)
-        for (int c = 0; c < model->joints[j].kernel->dim - 1; ++c)
-            lambda[model->joints[j].multiplier + c] =
-                of_velocities ? minus_H(model, state, work, j, c, state->v) : -view(work, j).C[1 + c];
+    for (int r = 0; r < n_rows(model); ++r) {
+        const fu_rows *rows = &work->rows[r];
+        for (int c = 0; c < rows->rows; ++c)
+            lambda[rows->first + c] = of_velocities ? minus_H(rows, c, state->v) - rows->rate[c] : -rows->C[c];
+    }
     solve(model, work, work->work, change);
     return 0;
 }
 
-/* change = an increment of the dofs that makes C_m = 0, to first order */
+/* change = an increment of the dofs that makes constraints zero, to first order */
 int fu_project_positions(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change)
 {
     return project(model, state, work, 0, change);
 }
 
-/* change = a change of v that makes H v = 0 */
+/* change = a change of v that makes H v = 0, or minus what drives them */
 int fu_project_velocities(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change)
 {
     return project(model, state, work, 1, change);
 }
 
-/* C, C_s, the Newton step for s, and the tangent, of a joint where it stands with this s */
+/* Newton step for s of a joint where it stands with this s, and the tangent */
 static double evaluate_constraint(const fu_model *model, const fu_state *state, int j, double s, double i[3])
 {
-    const fu_joint *joint = &model->joints[j];
-    const fu_cable *cable = &model->cables[joint->cable];
-    const int dim = joint->kernel->dim;
-    double C[3], C_s[3], step, A_t[9];
-    joint->kernel->constraint(cable->length, s - fu_element_start(model, j, state->element[j]),
-                              state->q + cable->first + state->element[j] * cable->per_node,
-                              state->q + model->rigids[joint->rider].configuration, joint->u, state->director + 3 * j,
-                              C, C_s, &step, A_t);
+    const int dim = model->dim;
+    double A_t[9];
+    const double step = fu_slide_step(model, state, j, s, A_t);
     for (int d = 0; d < dim; ++d) i[d] = A_t[d * dim];
     return step;
 }

@@ -31,7 +31,10 @@ static void copy_state(copier *c, const fu_model *model, fu_state *state)
     copy(c, state->s, sizeof(double) * joints);
     copy(c, state->f, 3 * sizeof(double) * joints);
     copy(c, state->spring, 3 * sizeof(double) * (size_t)model->n_springs);
+    copy(c, state->multipliers, 6 * sizeof(double) * (size_t)model->n_links);
+    copy(c, state->hold, sizeof(double) * joints);
     copy(c, state->element, sizeof(int) * joints);
+    copy(c, state->mode, sizeof(int) * joints);
     copy(c, state->director, 3 * sizeof(double) * joints);
 }
 

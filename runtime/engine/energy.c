@@ -63,7 +63,7 @@ static void kinematics(fu_run *run, double h)
 
 static const double *configuration(const fu_model *model, const fu_state *state, const fu_joint *joint)
 {
-    return state->q + model->rigids[joint->rider].configuration;
+    return state->q + model->rigids[joint->rider.body].configuration;
 }
 
 static void residual(fu_run *run, double h)
@@ -82,11 +82,11 @@ static void residual(fu_run *run, double h)
         const double length = model->cables[joint->cable].length, start = fu_element_start(model, j, now->element[j]);
         const double *f = next->f + 3 * j;
         double G[3 * FU_MAX_COORDINATES], phi[3], unused[FU_MAX_COORDINATES];
-        int at[FU_MAX_COORDINATES];
-        fu_joint_coordinates(model, next, j, at);
+        int at[FU_SLIDE_COORDINATES + 1];
+        fu_slide_coordinates(model, next, j, at);
         joint->kernel->discrete_gradient(length, now->s[j] - start, next->s[j] - start, now->q + at[0], next->q + at[0],
                                          configuration(model, now, joint), configuration(model, next, joint), G);
-        joint->kernel->residual(length, next->s[j] - start, next->q + at[0], configuration(model, next, joint), joint->u,
+        joint->kernel->residual(length, next->s[j] - start, next->q + at[0], configuration(model, next, joint), joint->rider.u,
                                 f, phi, unused);
         const int s = joint->kernel->coordinates, dim = joint->kernel->dim, n = s + 1;
         double along = 0.0;
@@ -118,16 +118,16 @@ static void joint_matrix(fu_run *run, int j, double stiffness)
     const fu_state *now = &run->now, *next = &run->next;
     fu_system *system = &run->newton;
     const fu_joint *joint = &model->joints[j];
-    const fu_rigid *rider = &model->rigids[joint->rider];
+    const fu_rigid *rider = &model->rigids[joint->rider.body];
     const double length = model->cables[joint->cable].length, start = fu_element_start(model, j, now->element[j]);
     const int s = joint->kernel->coordinates, n = s + 1, dim = joint->kernel->dim;
     const int turns = model->cables[joint->cable].coordinates;
     double G[3 * FU_MAX_COORDINATES], J[3 * FU_MAX_COORDINATES], K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
-    int at[FU_MAX_COORDINATES];
-    fu_joint_coordinates(model, next, j, at);
+    int at[FU_SLIDE_COORDINATES + 1];
+    fu_slide_coordinates(model, next, j, at);
     joint->kernel->discrete_gradient(length, now->s[j] - start, next->s[j] - start, now->q + at[0], next->q + at[0],
                                      configuration(model, now, joint), configuration(model, next, joint), G);
-    joint->kernel->tangent(length, next->s[j] - start, next->q + at[0], configuration(model, next, joint), joint->u,
+    joint->kernel->tangent(length, next->s[j] - start, next->q + at[0], configuration(model, next, joint), joint->rider.u,
                            next->f + 3 * j, J, K);
     fu_cayley_columns(rider->kernel, J, dim, n, turns, run->psi + rider->dof);
     fu_cayley_columns(rider->kernel, K, n, n, turns, run->psi + rider->dof);

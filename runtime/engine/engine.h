@@ -17,9 +17,11 @@
 #include "blocks.h"
 #include "kernels.h"
 
-#define FU_MAX_COORDINATES 32                        /* of one element or one joint; model.py checks */
-#define FU_JOINT_TERMS (13 + 6 * FU_MAX_COORDINATES) /* numbers of one joint in fu_accelerator.terms */
-#define FU_SIGNAL_TERMS 6                            /* coefficients of a piece of a signal */
+#define FU_MAX_COORDINATES 32 /* of one element, or of the kernels of a slide on it; model.py checks */
+#define FU_END_COORDINATES 40 /* of what an end is on, s among them; model.py checks */
+#define FU_SLIDE_COORDINATES (FU_MAX_COORDINATES + FU_END_COORDINATES)
+#define FU_ROW_COORDINATES (2 * (FU_END_COORDINATES + FU_SLIDE_COORDINATES))
+#define FU_SIGNAL_TERMS 6 /* coefficients of a piece of a signal */
 
 typedef struct {
     const fu_element *kernel;
@@ -45,14 +47,50 @@ typedef struct {
     double J[9];
 } fu_rigid;
 
+/* One end of a spring or a joint: a point with axes of the ground (cable and body -1), of a cable's element, of a body; or
+ * axes alone, of the cable where a slide is. */
+enum { FU_UP = -1, FU_CARRIED = -2 };
+typedef struct {
+    int cable, body, element, slide; /* -1 where it is not on one */
+    double u[3];                     /* the point: of the ground; of the body in its axes */
+    double N[FU_MAX_COORDINATES];    /* shape functions at the point of the element */
+    const fu_frame *frame;           /* of a cable; null where there are no axes */
+    int slopes[2];                   /* its vectors: 0 1 2 for r_x r_y r_z; FU_UP; FU_CARRIED for the slide's director */
+    double S[2 * FU_MAX_COORDINATES]; /* derivatives of the shape functions for both, unless on a slide */
+    double up[3];
+    double axes[9]; /* in those of what carries it, by columns */
+} fu_end;
+
+/* Where an end stands and how it moves with its own n coordinates (numbers for fu_add in `at`): dp = P dq, and axes turn
+ * by T dq about global axes; velocities, and accelerations where those of the coordinates are zero. */
+enum { FU_POINT = 1, FU_AXES = 2 };
+typedef struct {
+    int n, at[FU_END_COORDINATES];
+    double p[3], v[3], bias[3], P[3 * FU_END_COORDINATES];
+    double A[9], omega[3], alpha[3], T[3 * FU_END_COORDINATES];
+} fu_place;
+
+/* A slide. It slides, or s is held, at a signal or where it stands, or the rider has left the cable. */
+enum { FU_SLIDES, FU_HELD, FU_LEFT };
 typedef struct {
     const fu_slide *kernel;
-    int cable, rider;
+    int cable;
+    fu_end rider;
+    int native;              /* the kernels take the rider's own configuration: it is a rigid body */
     int unknown, multiplier; /* places beyond the border's dofs: of s and the force, of the multipliers of eq 38 */
+    int room;                /* multipliers that it has: one more where it may be held */
+    int drive;               /* signal that s follows, -1 */
     int carries_director;    /* the element has none of its own */
-    double u[3]; /* the rider's point in body axes, m */
     double mass; /* scale of the constraint rows, kg */
 } fu_joint;
+
+/* A joint between two ends; c = base + its signal drives it. */
+typedef struct {
+    const fu_pair *kernel;
+    fu_end ends[2];
+    int unknown, multiplier, signal;
+    double base, scale[6]; /* scale of its rows, kg or kg m */
+} fu_link;
 
 /* f(t) = a polynomial of t - breaks[i] in each interval (the first and the last go on beyond the breaks)
  *        + amplitude sin(angular_frequency t + phase) */
@@ -81,13 +119,6 @@ typedef struct {
     int element;
     double x, u[3], c[3]; /* c: components, N or N m */
 } fu_load;
-
-/* One end of a spring: a point of the ground (cable and body -1), of a cable's element, of a body. */
-typedef struct {
-    int cable, body, element;
-    double u[3]; /* the point: of the ground; of the body in its axes */
-    double N[FU_MAX_COORDINATES]; /* shape functions at the point of the element */
-} fu_end;
 
 typedef struct {
     fu_end ends[2];
@@ -136,17 +167,18 @@ typedef struct {
 } fu_system;
 
 typedef struct {
-    int n_cables, n_rigids, n_joints, n_springs, n_motions, n_dead_loads, n_loads;
+    int dim, n_cables, n_rigids, n_joints, n_links, n_springs, n_motions, n_dead_loads, n_loads;
     const fu_cable *cables;
     const fu_rigid *rigids;
     const fu_joint *joints;
+    const fu_link *links;
     const fu_spring *springs;
     const fu_motion *motions;
     const fu_dead_load *dead_loads;
     const fu_load *loads;
     const fu_signal *signals;
     int n_q, n_dof, n_band, n_border_dof;
-    int n_extra, n_multipliers; /* unknowns of joints and springs in a Newton system, of joints in eq 38 */
+    int n_extra, n_multipliers; /* unknowns of slides, joints and springs in a Newton system, of the former in eq 38 */
     const int *place;
     const int *combination_start, *combination_place; /* combinations, row by row */
     const double *combination_value;
@@ -168,7 +200,10 @@ typedef struct {
     double *s;       /* per joint: arc-length */
     double *f;       /* per joint: force on the rider, 3 */
     double *spring;  /* per spring: force on its first end, 3 */
+    double *multipliers; /* per link: 6 */
+    double *hold;    /* per joint: s where it is held */
     int *element;    /* per joint: element that holds s */
+    int *mode;       /* per joint: FU_SLIDES and so on */
     double *director; /* per joint: unit vector across the tangent, carried along with the slide */
 } fu_state;
 
@@ -215,6 +250,38 @@ void fu_loads(const fu_model *model, double t, const double *q, double *f);
 void fu_loads_matrix(const fu_model *model, double t, const double *q, const double *psi, double stiffness,
                      fu_system *system);
 
+/* ends.c */
+int fu_end_coordinates(const fu_model *model, const fu_end *end, const fu_state *state, int *at);
+void fu_end_place(const fu_model *model, const fu_end *end, const fu_state *state, double s_rate, int what,
+                  fu_place *place);
+void fu_end_curvature(const fu_model *model, const fu_end *end, const fu_state *state, const double *f, const double *m,
+                      int n, double *K);
+
+/* Constraints H q'' = W over the dofs `at`, with what is left of them C, and their rate at rest: `rows` of them now, from
+ * the multiplier `first` on, which has `room` for some more. */
+typedef struct {
+    int first, room, rows, n, at[FU_ROW_COORDINATES];
+    double H[6 * FU_ROW_COORDINATES], W[6], C[6], rate[6], scale[6];
+} fu_rows;
+
+/* slides.c */
+typedef struct {
+    double C[3], G[FU_SLIDE_COORDINATES], s_rate, s_bias;
+    double by_point[9]; /* derivatives of the rows in use by the rider's point, row by row */
+} fu_slide_state;
+int fu_slide_coordinates(const fu_model *model, const fu_state *state, int j, int *at);
+double fu_slide_held(const fu_model *model, const fu_state *state, int j, double *rate, double *second);
+void fu_slide_residual(const fu_model *model, const fu_state *state, int j, double *phi, double *g);
+void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, double *J, double *K);
+void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows *rows, fu_slide_state *slide);
+double fu_slide_step(const fu_model *model, const fu_state *state, int j, double s, double A_t[9]);
+
+/* links.c */
+int fu_link_residual(const fu_model *model, const fu_link *link, const fu_state *state, double *phi, int *at, double *J);
+int fu_link_tangent(const fu_model *model, const fu_link *link, const fu_state *state, int *at, double *J, double *K);
+void fu_link_terms(const fu_model *model, const fu_link *link, const fu_state *state, const fu_slide_state *slides,
+                   const fu_rows *of_slides, fu_rows *rows);
+
 /* springs.c */
 void fu_spring_force(const fu_model *model, const fu_spring *spring, const double *q, const double *v, double force[3],
                      double by_gap[9], double by_rate[9]);
@@ -244,16 +311,22 @@ typedef struct {
     fu_system mass;   /* [M H'; H 0], its band factored once */
     double *bodies;   /* m x m: the bodies' part of the border */
     double *rhs;      /* unknowns, and FU_BAND_BEYOND */
-    double *terms;    /* per joint: C, C_q, C_s, G, s_rate, Q_d, H, W, s_bias */
+    fu_rows *rows;    /* of the slides, then of the links */
+    fu_slide_state *slides;
     double *force, *work, *prescribed; /* n_dof */
+    double *multipliers;  /* of slides and links, as eq 38 gives them */
     double *joints;       /* FU_JOINT_OUTPUTS a joint */
 } fu_accelerator;
 typedef struct {
-    double s_rate, s_acceleration, force[3], multiplier[2], residual[3];
+    double s_rate, s_acceleration, force[3], multiplier[3], residual[3];
 } fu_joint_output;
+typedef struct {
+    double force[3], moment[3], residual; /* on the second end's carrier, at its point; the largest of phi */
+} fu_link_output;
 int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work);
 int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerator *work, double *acceleration,
                      fu_joint_output *joints, double *reaction);
+void fu_link_outputs(const fu_model *model, const fu_state *state, const fu_accelerator *work, fu_link_output *out);
 int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S);
 int fu_project_positions(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change);
 int fu_project_velocities(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change);
@@ -318,12 +391,13 @@ typedef struct {
 } fu_books;
 
 /* Rows of output, one an output time; joint: FU_JOINT_OUTPUTS numbers a joint in the order of fu_joint_output. */
-#define FU_JOINT_OUTPUTS 10
+#define FU_JOINT_OUTPUTS 11
+#define FU_LINK_OUTPUTS 7
 typedef struct {
     int n;     /* rows recorded since the start */
     int first; /* the row that stands first in the arrays: those before it were taken away */
     int pause; /* at so many rows fu_advance returns, for the caller to call fu_pause */
-    double *time, *q, *v, *acceleration, *reaction, *s, *joint;
+    double *time, *q, *v, *acceleration, *reaction, *s, *joint, *link;
     double *kinetic, *elastic, *potential, *dissipated, *external, *spring;
 } fu_record;
 

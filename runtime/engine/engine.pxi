@@ -45,11 +45,26 @@ cdef extern from "engine.h" nogil:
         int configuration, dof
         double mass
         double J[9]
+    ctypedef struct fu_end:
+        int cable, body, element, slide
+        double u[3]
+        double N[32]
+        const fu_frame *frame
+        int slopes[2]
+        double S[64]
+        double up[3]
+        double axes[9]
     ctypedef struct fu_joint:
         const fu_slide *kernel
-        int cable, rider, unknown, multiplier, carries_director
-        double u[3]
+        int cable, native, unknown, multiplier, room, drive, carries_director
+        fu_end rider
         double mass
+    ctypedef struct fu_link:
+        const fu_pair *kernel
+        fu_end ends[2]
+        int unknown, multiplier, signal
+        double base
+        double scale[6]
     ctypedef struct fu_signal:
         int n
         const double *breaks
@@ -65,10 +80,6 @@ cdef extern from "engine.h" nogil:
         double x
         double u[3]
         double c[3]
-    ctypedef struct fu_end:
-        int cable, body, element
-        double u[3]
-        double N[32]
     ctypedef struct fu_spring:
         fu_end ends[2]
         int dim, unknown
@@ -99,10 +110,11 @@ cdef extern from "engine.h" nogil:
         int *pivot_band
         int *pivot_border
     ctypedef struct fu_model:
-        int n_cables, n_rigids, n_joints, n_springs, n_motions, n_dead_loads, n_loads
+        int dim, n_cables, n_rigids, n_joints, n_links, n_springs, n_motions, n_dead_loads, n_loads
         const fu_cable *cables
         const fu_rigid *rigids
         const fu_joint *joints
+        const fu_link *links
         const fu_spring *springs
         const fu_motion *motions
         const fu_dead_load *dead_loads
@@ -130,7 +142,10 @@ cdef extern from "engine.h" nogil:
         double *s
         double *f
         double *spring
+        double *multipliers
+        double *hold
         int *element
+        int *mode
         double *director
     ctypedef struct fu_accelerator:
         fu_system mass

@@ -42,13 +42,22 @@ static void kinematics(fu_run *run, double h)
     if (model->n_motions) fu_prescribe(model, next);
 }
 
+/* whether the row of this s, as fu_add knows it, is equilibrium along the cable */
+static int slides(const fu_model *model, const fu_state *state, int at)
+{
+    for (int j = 0; j < model->n_joints; ++j)
+        if (fu_extra(model, model->joints[j].unknown) == at) return state->mode[j] == FU_SLIDES;
+    return 0;
+}
+
 /* minus the scaled residual, over the unknowns; run->force keeps the unscaled sum over the dofs */
 static void residual(fu_run *run, double inertia, double scale)
 {
     const double begin = fu_clock();
     const fu_model *model = run->model;
     const fu_state *next = &run->next;
-    double phi[3], g[FU_MAX_COORDINATES], *extra = run->rhs + model->n_band + model->n_border_dof;
+    double phi[3], g[FU_SLIDE_COORDINATES], *extra = run->rhs + model->n_band + model->n_border_dof;
+    int at[2 * FU_SLIDE_COORDINATES];
     if (inertia != 0.0) fu_mass_times(model, next->acceleration, run->force);
     else
         for (int i = 0; i < model->n_dof; ++i) run->force[i] = 0.0;
@@ -56,17 +65,29 @@ static void residual(fu_run *run, double inertia, double scale)
     fu_external_forces(model, next->t, next->q, run->force);
     for (int j = 0; j < model->n_joints; ++j) {
         const fu_joint *joint = &model->joints[j];
-        const fu_cable *cable = &model->cables[joint->cable];
-        int at[FU_MAX_COORDINATES];
-        fu_joint_coordinates(model, next, j, at);
-        joint->kernel->residual(cable->length, next->s[j] - fu_element_start(model, j, next->element[j]),
-                                next->q + at[0], next->q + model->rigids[joint->rider].configuration, joint->u,
-                                next->f + 3 * j, phi, g);
-        const int s = joint->kernel->coordinates;
+        const int s = fu_slide_coordinates(model, next, j, at), mode = next->mode[j];
+        const double unit = fu_row_unit(inertia, joint->mass);
+        double rate, second;
+        fu_slide_residual(model, next, j, phi, g);
         for (int i = 0; i < s; ++i) run->force[at[i]] += g[i];
-        extra[joint->unknown] = -scale * g[s];
+        extra[joint->unknown] = mode == FU_SLIDES ? -scale * g[s]
+            : -unit * (next->s[j] - (mode == FU_HELD ? fu_slide_held(model, next, j, &rate, &second) : run->now.s[j]));
         for (int d = 0; d < joint->kernel->dim; ++d)
-            extra[joint->unknown + 1 + d] = -fu_row_unit(inertia, joint->mass) * phi[d];
+            extra[joint->unknown + 1 + d] = mode == FU_LEFT ? -scale * next->f[3 * j + d] : -unit * phi[d];
+    }
+    for (int k = 0; k < model->n_links; ++k) {
+        const fu_link *link = &model->links[k];
+        const double *multipliers = next->multipliers + 6 * k;
+        double equations[6], J[6 * 2 * FU_END_COORDINATES];
+        const int n = fu_link_residual(model, link, next, equations, at, J);
+        for (int r = 0; r < link->kernel->rows; ++r) {
+            extra[link->unknown + r] = -fu_row_unit(inertia, link->scale[r]) * equations[r];
+            for (int i = 0; i < n; ++i) {
+                const double pull = J[r * n + i] * multipliers[r];
+                if (at[i] < model->n_dof) run->force[at[i]] += pull;
+                else if (slides(model, next, at[i])) extra[at[i] - model->n_dof] -= scale * pull;
+            }
+        }
     }
     for (int k = 0; k < model->n_springs; ++k) {
         const fu_spring *spring = &model->springs[k];
@@ -81,6 +102,15 @@ static void residual(fu_run *run, double inertia, double scale)
     run->statistics.time_residual += fu_clock() - begin;
 }
 
+/* Columns of an end's body, from `first` on, made those of psi; psi null: they are. */
+static void turn_columns(const fu_model *model, const fu_end *end, const double *psi, double *rows, int n_rows,
+                         int n_columns, int first)
+{
+    if (!psi || end->body < 0) return;
+    const fu_rigid *body = &model->rigids[end->body];
+    fu_turn_columns(body->kernel, rows, n_rows, n_columns, first, psi + body->dof);
+}
+
 /* Derivative at `next` of the scaled residual by the unknowns; psi: what moved the bodies there, or null where the
  * unknowns move them from there. */
 static void matrix(fu_run *run, fu_weights w, const double *psi)
@@ -88,31 +118,53 @@ static void matrix(fu_run *run, fu_weights w, const double *psi)
     const fu_model *model = run->model;
     const fu_state *next = &run->next;
     fu_system *system = &run->newton;
-    double J[3 * FU_MAX_COORDINATES], K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
+    double J[6 * 2 * FU_END_COORDINATES], K[4 * FU_END_COORDINATES * FU_END_COORDINATES];
+    int at[2 * FU_SLIDE_COORDINATES];
     fu_system_clear(system);
     fu_dynamic_matrix(model, next->q, next->v, w.inertia, w.rate, w.stiffness, system);
     if (w.stiffness == 0.0) return;
     fu_loads_matrix(model, next->t, next->q, psi, w.stiffness, system);
     for (int j = 0; j < model->n_joints; ++j) {
         const fu_joint *joint = &model->joints[j];
-        const fu_cable *cable = &model->cables[joint->cable];
-        const fu_rigid *rider = &model->rigids[joint->rider];
         const double mass = fu_row_unit(w.inertia, joint->mass);
-        const int s = joint->kernel->coordinates, n = s + 1, dim = joint->kernel->dim, turns = cable->coordinates;
-        int at[FU_MAX_COORDINATES];
-        fu_joint_coordinates(model, next, j, at);
-        joint->kernel->tangent(cable->length, next->s[j] - fu_element_start(model, j, next->element[j]),
-                               next->q + at[0], next->q + rider->configuration, joint->u, next->f + 3 * j, J, K);
+        const int s = fu_slide_coordinates(model, next, j, at), n = s + 1, dim = joint->kernel->dim;
+        const int row = at[s], force = row + 1;
+        fu_slide_tangent(model, next, j, J, K);
         for (int i = 0; i < n; ++i)
-            for (int d = 0; d < dim; ++d) fu_add(model, system, at[i], at[s] + 1 + d, mass * J[d * n + i]);
-        if (psi) {
-            fu_turn_columns(rider->kernel, J, dim, n, turns, psi + rider->dof);
-            fu_turn_columns(rider->kernel, K, n, n, turns, psi + rider->dof);
-        }
+            for (int d = 0; d < dim; ++d)
+                if (i < s || next->mode[j] == FU_SLIDES) fu_add(model, system, at[i], force + d, mass * J[d * n + i]);
+        turn_columns(model, &joint->rider, psi, J, dim, n, model->cables[joint->cable].coordinates);
+        turn_columns(model, &joint->rider, psi, K, n, n, model->cables[joint->cable].coordinates);
+        if (next->mode[j] != FU_SLIDES) fu_add(model, system, row, row, mass);
         for (int i = 0; i < n; ++i) {
-            for (int d = 0; d < dim; ++d) fu_add(model, system, at[s] + 1 + d, at[i], mass * J[d * n + i]);
+            for (int d = 0; d < dim; ++d) {
+                if (next->mode[j] != FU_LEFT) fu_add(model, system, force + d, at[i], mass * J[d * n + i]);
+                else if (i == 0) fu_add(model, system, force + d, force + d, mass);
+            }
+            if (i == s && next->mode[j] != FU_SLIDES) continue;
             for (int k = 0; k < n; ++k)
                 if (K[i * n + k] != 0.0) fu_add(model, system, at[i], at[k], w.stiffness * K[i * n + k]);
+        }
+    }
+    for (int k = 0; k < model->n_links; ++k) {
+        const fu_link *link = &model->links[k];
+        const int n = fu_link_tangent(model, link, next, at, J, K), rows = link->kernel->rows, first = fu_extra(model, link->unknown);
+        int from[2] = {0, 0}, unused[FU_END_COORDINATES];
+        from[1] = fu_end_coordinates(model, &link->ends[0], next, unused);
+        for (int r = 0; r < rows; ++r)
+            for (int i = 0; i < n; ++i)
+                if (at[i] < model->n_dof || slides(model, next, at[i]))
+                    fu_add(model, system, at[i], first + r, fu_row_unit(w.inertia, link->scale[r]) * J[r * n + i]);
+        for (int e = 0; e < 2; ++e) {
+            turn_columns(model, &link->ends[e], psi, J, rows, n, from[e]);
+            turn_columns(model, &link->ends[e], psi, K, n, n, from[e]);
+        }
+        for (int i = 0; i < n; ++i) {
+            for (int r = 0; r < rows; ++r)
+                fu_add(model, system, first + r, at[i], fu_row_unit(w.inertia, link->scale[r]) * J[r * n + i]);
+            if (at[i] >= model->n_dof && !slides(model, next, at[i])) continue;
+            for (int m = 0; m < n; ++m)
+                if (K[i * n + m] != 0.0) fu_add(model, system, at[i], at[m], w.stiffness * K[i * n + m]);
         }
     }
     for (int k = 0; k < model->n_springs; ++k)

@@ -14,17 +14,6 @@ double fu_clock(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* a joint's coordinates for fu_add: element, rider, s; the force follows s */
-void fu_joint_coordinates(const fu_model *model, const fu_state *state, int j, int *at)
-{
-    const fu_joint *joint = &model->joints[j];
-    const fu_cable *cable = &model->cables[joint->cable];
-    const int n = cable->coordinates, all = joint->kernel->coordinates;
-    for (int i = 0; i < n; ++i) at[i] = cable->first + state->element[j] * cable->per_node + i;
-    for (int i = n; i < all; ++i) at[i] = model->rigids[joint->rider].dof + i - n;
-    at[all] = fu_extra(model, joint->unknown);
-}
-
 /* Statics has no mass to scale a joint's rows and force by. */
 double fu_row_unit(double inertia, double mass)
 {
@@ -60,7 +49,7 @@ double fu_spread_size(fu_run *run)
     return largest;
 }
 
-/* the solution in run->rhs, added to s and to the forces of joints and springs */
+/* the solution in run->rhs, added to s and to the forces of slides, joints and springs */
 void fu_apply_extra(fu_run *run, double inertia, double scale)
 {
     const fu_model *model = run->model;
@@ -70,6 +59,11 @@ void fu_apply_extra(fu_run *run, double inertia, double scale)
         run->next.s[j] += extra[joint->unknown];
         for (int d = 0; d < joint->kernel->dim; ++d)
             run->next.f[3 * j + d] += extra[joint->unknown + 1 + d] * fu_row_unit(inertia, joint->mass) / scale;
+    }
+    for (int k = 0; k < model->n_links; ++k) {
+        const fu_link *link = &model->links[k];
+        for (int r = 0; r < link->kernel->rows; ++r)
+            run->next.multipliers[6 * k + r] += extra[link->unknown + r] * fu_row_unit(inertia, link->scale[r]) / scale;
     }
     for (int k = 0; k < model->n_springs; ++k) {
         const fu_spring *spring = &model->springs[k];
@@ -85,11 +79,14 @@ void fu_predict_extra(fu_run *run, double h)
     const size_t real = sizeof(double);
     run->next.t = run->now.t + h;
     memcpy(run->next.f, run->now.f, 3 * real * (size_t)model->n_joints);
+    memcpy(run->next.multipliers, run->now.multipliers, 6 * real * (size_t)model->n_links);
     memcpy(run->next.spring, run->now.spring, 3 * real * (size_t)model->n_springs);
     memcpy(run->next.director, run->now.director, 3 * real * (size_t)model->n_joints);
     for (int j = 0; j < model->n_joints; ++j) {
         run->next.s[j] = run->now.s[j] + h * run->s_slope[j];
         run->next.element[j] = run->now.element[j];
+        run->next.mode[j] = run->now.mode[j];
+        run->next.hold[j] = run->now.hold[j];
     }
 }
 

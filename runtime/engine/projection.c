@@ -11,6 +11,7 @@ int fu_find_slides(fu_run *run)
 {
     fu_state *next = &run->next;
     for (int j = 0; j < run->model->n_joints; ++j) {
+        if (next->mode[j] == FU_LEFT) continue;
         next->s[j] = run->now.s[j] + (next->t - run->now.t) * run->s_slope[j];
         if (fu_find_arc_length(run->model, next, j, &next->s[j])) return fu_fail(run, FU_LOST_RIDER, next->v, j);
     }
@@ -34,7 +35,7 @@ int fu_return_to_joints(fu_run *run)
     const fu_model *model = run->model;
     fu_state *next = &run->next;
     normalise(model, next->q);
-    if (!model->n_joints) return 0;
+    if (!model->n_multipliers) return 0;
     for (int i = 0;; ++i) {
         if (fu_project_positions(model, next, &run->accelerator, run->work))
             return fu_fail(run, FU_MATRIX, next->v, -1);
@@ -42,7 +43,8 @@ int fu_return_to_joints(fu_run *run)
         if (!(size < 1e30) || i == MOST_PROJECTIONS) return fu_fail(run, FU_ITERATION, run->work, -1);
         fu_move(model, next->q, run->work);
         for (int j = 0; j < model->n_joints; ++j)
-            if (fu_find_arc_length(model, next, j, &next->s[j])) return fu_fail(run, FU_LOST_RIDER, next->v, j);
+            if (next->mode[j] != FU_LEFT && fu_find_arc_length(model, next, j, &next->s[j]))
+                return fu_fail(run, FU_LOST_RIDER, next->v, j);
         if (size <= fmax(run->round_off, run->newton_tolerance)) break;
     }
     if (fu_project_velocities(model, next, &run->accelerator, run->work)) return fu_fail(run, FU_MATRIX, next->v, -1);
@@ -60,6 +62,9 @@ int fu_complete(fu_run *run, fu_state *state)
                                       model->n_motions ? run->force : 0);
     if (info) return info;
     for (int j = 0; j < model->n_joints; ++j) memcpy(state->f + 3 * j, joints[j].force, sizeof joints[j].force);
+    for (int k = 0; k < model->n_links; ++k)
+        memcpy(state->multipliers + 6 * k, run->accelerator.multipliers + model->links[k].multiplier,
+               sizeof(double) * (size_t)model->links[k].kernel->rows);
     fu_forces_of_springs(model, state, state->spring);
     return 0;
 }

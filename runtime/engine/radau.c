@@ -139,6 +139,21 @@ static int factor(fu_run *run, double h)
     return info;
 }
 
+/* right sides H r of the constraint rows from this one on */
+static void keep_row(fu_run *run, int first, int rows, const double *unknowns)
+{
+    const fu_model *model = run->model;
+    const fu_system *s = &run->newton;
+    for (int row = model->n_border_dof + first; rows-- > 0; ++row) {
+        const double *along = s->C + (long)row * s->n;
+        double sum = 0.0;
+        for (int i = 0; i < s->n; ++i) sum += along[i] * unknowns[i];
+        for (int i = 0; i < model->n_border_dof; ++i)
+            sum += run->complex_newton.D_real[(long)i * s->m + row] * unknowns[s->n + i];
+        run->rhs[s->n + row] = sum;
+    }
+}
+
 /* run->rhs = [M r; H r] of dofs r that keep to the supports */
 static void right_side(fu_run *run, const double *r, double *unknowns)
 {
@@ -153,15 +168,9 @@ static void right_side(fu_run *run, const double *r, double *unknowns)
     fu_gather(model, run->psi, run->rhs);
     for (int i = 0; i < model->n_extra; ++i) run->rhs[beyond + i] = 0.0;
     for (int j = 0; j < model->n_joints; ++j)
-        for (int d = 0; d < model->joints[j].kernel->dim; ++d) {
-            const int row = model->n_border_dof + model->joints[j].unknown + 1 + d;
-            const double *along = s->C + (long)row * s->n;
-            double sum = 0.0;
-            for (int i = 0; i < s->n; ++i) sum += along[i] * unknowns[i];
-            for (int i = 0; i < model->n_border_dof; ++i)
-                sum += run->complex_newton.D_real[(long)i * s->m + row] * unknowns[s->n + i];
-            run->rhs[s->n + row] = sum;
-        }
+        keep_row(run, model->joints[j].unknown + 1, model->joints[j].kernel->dim, unknowns);
+    for (int k = 0; k < model->n_links; ++k)
+        keep_row(run, model->links[k].unknown, model->links[k].kernel->rows, unknowns);
 }
 
 /* A stage's dofs, moved by the quadrature of velocities; attitudes by sweeps over those at hand. */

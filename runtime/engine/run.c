@@ -71,6 +71,7 @@ static int record_row(fu_run *run)
     r->dissipated[row] = run->dissipated;
     r->external[row] = run->external;
     fu_forces_of_springs(model, now, r->spring + 3 * row * model->n_springs);
+    fu_link_outputs(model, now, &run->accelerator, (fu_link_output *)(r->link + row * model->n_links * FU_LINK_OUTPUTS));
     const double energies[FU_ENERGIES] = {r->kinetic[row], r->elastic[row], r->potential[row], run->dissipated,
                                           -run->external};
     ++r->n;

@@ -4,38 +4,12 @@
 
 #include <string.h>
 
-/* Position and velocity of an end; derivatives P of the position by its dofs (dim rows); returns their number. */
-static int end_point(const fu_model *model, const fu_end *end, int dim, const double *q, const double *v, double p[3],
-                     double rate[3], double *P, int *first)
+/* Position and velocity of an end, and how it moves; returns its first dof. */
+static int end_point(const fu_model *model, const fu_end *end, const double *q, const double *v, fu_place *place)
 {
-    *first = 0;
-    for (int d = 0; d < 3; ++d) {
-        p[d] = end->u[d];
-        rate[d] = 0.0;
-    }
-    if (end->cable >= 0) {
-        const fu_cable *cable = &model->cables[end->cable];
-        const int n = cable->coordinates;
-        *first = cable->first + end->element * cable->per_node;
-        for (int i = 0; i < dim * n; ++i) P[i] = 0.0;
-        for (int d = 0; d < dim; ++d) {
-            p[d] = 0.0;
-            for (int k = 0; k < n / dim; ++k) {
-                P[d * n + k * dim + d] = end->N[k];
-                p[d] += end->N[k] * q[*first + k * dim + d];
-                rate[d] += end->N[k] * v[*first + k * dim + d];
-            }
-        }
-        return n;
-    }
-    if (end->body >= 0) {
-        const fu_rigid *body = &model->rigids[end->body];
-        double bias[3];
-        *first = body->dof;
-        body->kernel->point(q + body->configuration, end->u, v + body->dof, p, P, rate, bias);
-        return body->kernel->velocity;
-    }
-    return 0;
+    const fu_state state = {.q = (double *)q, .v = (double *)v};
+    fu_end_place(model, end, &state, 0.0, FU_POINT, place);
+    return place->n ? place->at[0] : 0;
 }
 
 /* Force on the first end, and its derivatives by the gap p_2 - p_1 and the gap's rate (dim x dim). A length of zero
@@ -74,12 +48,11 @@ static void law(const fu_spring *spring, const double *gap, const double *rate, 
 static void gap_of(const fu_model *model, const fu_spring *spring, const double *q, const double *v, double gap[3],
                    double rate[3])
 {
-    double p[2][3], w[2][3], P[3 * FU_MAX_COORDINATES];
-    int first;
-    for (int e = 0; e < 2; ++e) end_point(model, &spring->ends[e], spring->dim, q, v, p[e], w[e], P, &first);
+    fu_place place[2];
+    for (int e = 0; e < 2; ++e) end_point(model, &spring->ends[e], q, v, &place[e]);
     for (int d = 0; d < 3; ++d) {
-        gap[d] = p[1][d] - p[0][d];
-        rate[d] = w[1][d] - w[0][d];
+        gap[d] = place[1].p[d] - place[0].p[d];
+        rate[d] = place[1].v[d] - place[0].v[d];
     }
 }
 
@@ -94,13 +67,11 @@ void fu_spring_force(const fu_model *model, const fu_spring *spring, const doubl
 /* f += what a force on the first end, and its opposite on the second, puts on the left of the equations of motion */
 void fu_spring_pull(const fu_model *model, const fu_spring *spring, const double *q, const double force[3], double *f)
 {
-    double p[3], w[3], P[3 * FU_MAX_COORDINATES];
-    const double *none = model->zero;
     for (int e = 0; e < 2; ++e) {
-        int first;
-        const int n = end_point(model, &spring->ends[e], spring->dim, q, none, p, w, P, &first);
+        fu_place place;
+        const int first = end_point(model, &spring->ends[e], q, model->zero, &place), n = place.n;
         for (int d = 0; d < spring->dim; ++d)
-            for (int i = 0; i < n; ++i) f[first + i] += (e ? 1.0 : -1.0) * P[d * n + i] * force[d];
+            for (int i = 0; i < n; ++i) f[first + i] += (e ? 1.0 : -1.0) * place.P[d * n + i] * force[d];
     }
 }
 
@@ -119,28 +90,30 @@ void fu_spring_matrix(const fu_model *model, const fu_spring *spring, const fu_s
                       double rate, double stiffness, double unit, fu_system *system)
 {
     const int dim = spring->dim, row = fu_extra(model, spring->unknown);
-    double force[3], by_gap[9], by_rate[9], p[3], w[3];
+    double force[3], by_gap[9], by_rate[9];
     fu_spring_force(model, spring, state->q, state->v, force, by_gap, by_rate);
     for (int d = 0; d < dim; ++d) fu_add(model, system, row + d, row + d, unit);
     for (int e = 0; e < 2; ++e) {
         const fu_end *end = &spring->ends[e];
-        double P[3 * FU_MAX_COORDINATES], turned[3 * FU_MAX_COORDINATES], by_place[3 * FU_MAX_COORDINATES];
-        int first;
-        const int n = end_point(model, end, dim, state->q, state->v, p, w, P, &first);
-        const double sign = e ? 1.0 : -1.0;
+        fu_place place;
+        double turned[3 * FU_END_COORDINATES], by_place[3 * FU_END_COORDINATES];
+        const int first = end_point(model, end, state->q, state->v, &place), n = place.n;
+        const double sign = e ? 1.0 : -1.0, *P = place.P;
         memcpy(turned, P, sizeof turned);
         for (int i = 0; i < dim * n; ++i) by_place[i] = 0.0; /* of the end's velocity, at fixed rates of its dofs */
         if (end->body >= 0) {
             const fu_rigid *body = &model->rigids[end->body];
-            const double *b = state->q + body->configuration, *turn = psi ? psi + body->dof : 0;
-            double P_again[18], K[36];
+            const double *turn = psi ? psi + body->dof : 0;
+            double K[FU_END_COORDINATES * FU_END_COORDINATES];
             for (int d = 0; d < dim; ++d) {
                 const double axis[3] = {d == 0, d == 1, d == 2};
-                body->kernel->point_force(b, end->u, axis, p, P_again, K);
+                memset(K, 0, sizeof(double) * (size_t)(n * n));
+                fu_end_curvature(model, end, state, axis, 0, n, K);
                 for (int i = 0; i < n; ++i)
                     for (int j = 0; j < n; ++j) by_place[d * n + j] += state->v[first + i] * K[i * n + j];
             }
-            body->kernel->point_force(b, end->u, state->spring + 3 * (spring - model->springs), p, P_again, K);
+            memset(K, 0, sizeof(double) * (size_t)(n * n));
+            fu_end_curvature(model, end, state, state->spring + 3 * (spring - model->springs), 0, n, K);
             if (turn) {
                 fu_turn_columns(body->kernel, turned, dim, n, 0, turn);
                 fu_turn_columns(body->kernel, by_place, dim, n, 0, turn);
@@ -204,15 +177,14 @@ void fu_discrete_pull(const fu_model *model, const fu_spring *spring, const doub
 {
     for (int e = 0; e < 2; ++e) {
         const fu_end *end = &spring->ends[e];
-        double p[3], w[3], P[3 * FU_MAX_COORDINATES];
-        int first;
-        const int n = end_point(model, end, spring->dim, q, model->zero, p, w, P, &first);
+        fu_place place;
+        const int first = end_point(model, end, q, model->zero, &place), n = place.n;
         if (end->body >= 0) {
             const fu_rigid *body = &model->rigids[end->body];
-            body->kernel->discrete_point(q + body->configuration, end->u, q_next + body->configuration, P);
+            body->kernel->discrete_point(q + body->configuration, end->u, q_next + body->configuration, place.P);
         }
         for (int d = 0; d < spring->dim; ++d)
-            for (int i = 0; i < n; ++i) f[first + i] += (e ? 1.0 : -1.0) * P[d * n + i] * force[d];
+            for (int i = 0; i < n; ++i) f[first + i] += (e ? 1.0 : -1.0) * place.P[d * n + i] * force[d];
     }
 }
 
