@@ -19,7 +19,7 @@
 
 #define FU_MAX_COORDINATES 32                        /* of one element or one joint; model.py checks */
 #define FU_JOINT_TERMS (13 + 6 * FU_MAX_COORDINATES) /* numbers of one joint in fu_accelerator.terms */
-#define FU_SIGNAL_TERMS 6                            /* coefficients of a piece of a signal */
+#define FU_SIGNAL_TERMS 7                            /* coefficients of a piece of a signal */
 
 typedef struct {
     const fu_element *kernel;
