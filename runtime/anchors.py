@@ -9,7 +9,7 @@ from pydantic import PlainValidator
 
 
 class Anchor(Part):
-    """``s`` (m) of the cable ``on``, or the point ``at`` (m) of the body ``on`` in its axes, or of the ground (on None).
+    """A place: ``s`` (m) of the cable ``on``, or the point ``at`` (m) of the body ``on``, or of the ground (on None).
 
     What it is on is found out when its part is added to a scene; until then a name alone has neither s nor at.
     """

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from funicular.anchors import Anchor
 from funicular.cables import EXACT
+from funicular.contradictions import called, check_other_joints, check_supports, move_as_one
 from funicular.elements import built_in
 from funicular.errors import FunicularWarning, SceneError
 from funicular.frames import cable_frame, has_section
@@ -28,24 +29,25 @@ UPRIGHT = 1e-3
 def placed_joint(scene: Scene, joint: Joint) -> Joint:
     """The joint with its ends, axis and length complete, sure to be one that its ends can hold; tells of a gap."""
     a, b = (placed_end(scene, getattr(joint, name), joint.where, f"{name}: ") for name in ("a", "b"))
-    if a.on == b.on and (a.on in scene.bodies or abs(a.s - b.s) <= EXACT * scene.cables[a.on].length):
-        raise SceneError(joint.where, f'joins {_called(a)} to itself', "give it two ends")
+    if move_as_one(scene, a, b):
+        raise SceneError(joint.where, f"joins {called(a)} to itself", "give it two ends")
     joint = joint.model_copy(update={"a": a, "b": b} | _completed(scene, joint, a, b))
     _check_frames(scene, joint)
-    _check_others(scene, joint)
-    check_gap(scene, joint)
+    check_other_joints(scene, joint, EXACT * scene_size(scene, joint))
+    check_joint(scene, joint)
     gap, where = _gap(scene, joint)
-    if gap > EXACT * _size(scene, joint):
+    if gap > EXACT * scene_size(scene, joint):
         message = f"{joint.where}: {where}; they are brought together"
         scene.messages.append(message)
         warnings.warn(message, FunicularWarning, stacklevel=4)
     return joint
 
 
-def check_gap(scene: Scene, joint: Joint) -> None:
-    """The ends of a complete joint have to be where it holds them, but for what can be mended at the start."""
+def check_joint(scene: Scene, joint: Joint) -> None:
+    """The ends of a complete joint have to be where it holds them, but for a small gap, and not held there already."""
+    check_supports(scene, joint)
     gap, where = _gap(scene, joint)
-    most = MOVABLE * _size(scene, joint)
+    most = MOVABLE * scene_size(scene, joint)
     if gap > most:
         raise SceneError(joint.where, where, "let them start as the joint holds them; only a gap of less than "
                          f"{most:.3g} m is closed")
@@ -56,7 +58,7 @@ def check_drive(scene: Scene, joint: Joint) -> None:
     if not joint.is_driven:
         return
     name, start = DRIVEN[joint.pair], 0.0
-    size = 1.0 if name == "angle" else _size(scene, joint)
+    size = 1.0 if name == "angle" else scene_size(scene, joint)
     if joint.pair == "distance":
         a, b = point_of(scene, joint.a), point_of(scene, joint.b)
         start = float(np.linalg.norm(b - a))
@@ -82,7 +84,7 @@ def _completed(scene: Scene, joint: Joint, a: Anchor, b: Anchor) -> dict:
     return {"length": distance} if joint.length is None and joint.distance is None else {}
 
 
-def _size(scene: Scene, joint: Joint) -> float:
+def scene_size(scene: Scene, joint: Joint) -> float:
     """The largest extent in m of what is in the scene."""
     points = [point_of(scene, joint.a), point_of(scene, joint.b)]
     points += [body.point((0.0, 0.0, 0.0)) for body in scene.bodies.values()]
@@ -146,43 +148,3 @@ def check_up(up, tangent: np.ndarray, what: str, where: str) -> None:
     if np.linalg.norm(np.cross(tangent, up)) <= UPRIGHT * np.linalg.norm(up):
         raise SceneError(where, f"up {show(up)} is along the tangent of {what}, {show(tangent)}: the frame is lost",
                          "give a direction across it")
-
-
-def _check_others(scene: Scene, joint: Joint) -> None:
-    """No two joints between the same two ends that hold or drive the same, and nothing beside a weld."""
-    for other in scene.joints.values():
-        for a, b in ((other.a, other.b), (other.b, other.a)):
-            if _carrier(scene, joint.a) == _carrier(scene, a) and _carrier(scene, joint.b) == _carrier(scene, b):
-                if what := _clash(scene, joint, other, (a, b)):
-                    raise SceneError(joint.where, what, "leave one of them out")
-                break
-
-
-def _clash(scene: Scene, joint: Joint, other: Joint, ends: tuple[Anchor, Anchor]) -> str | None:
-    """What is wrong with two joints between the same two bodies; ``ends`` are the other's, in the order of joint's."""
-    between = f"{_called(joint.a)} and {_called(joint.b)}"
-    if "weld" in (joint.pair, other.pair):
-        verbs = ["welds" if each.pair == "weld" else f"is a {each.pair} joint between" for each in (joint, other)]
-        return f'{verbs[0]} {between}, but joint "{other.name}" {verbs[1]} them, too'
-    near = EXACT * _size(scene, joint)
-    if any(np.linalg.norm(point_of(scene, one) - point_of(scene, end)) > near
-           for one, end in zip((joint.a, joint.b), ends, strict=True)):
-        return None
-    same_axis = np.linalg.norm(np.cross(joint.axes[:, 2], other.axes[:, 2])) <= 1e-9
-    same = {joint.pair, other.pair}
-    if not (same <= set(POINTS) or same == {"distance"} or (same <= set(LINES) and same_axis)):
-        return None
-    if joint.is_driven and other.is_driven and joint.pair == other.pair and same_axis:
-        return f'drives the {DRIVEN[joint.pair]} of {between}, as joint "{other.name}" does'
-    return f'holds the same of {between} as joint "{other.name}"'
-
-
-def _carrier(scene: Scene, end: Anchor) -> tuple:
-    """What moves as one with an end: a body, the ground, or a place of a cable."""
-    return (end.on, round(end.s / (EXACT * scene.cables[end.on].length)) if end.on in scene.cables else None)
-
-
-def _called(end: Anchor) -> str:
-    if end.on is None:
-        return "the ground"
-    return f'body "{end.on}"' if end.s is None else f'cable "{end.on}" at s = {show(end.s, "m")}'

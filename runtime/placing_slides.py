@@ -24,6 +24,9 @@ MOVABLE = 1e-3
 
 def placed_slide(scene: Scene, slide: Slide) -> Slide:
     """The slide with its places and its up complete, its rider on the cable."""
+    if slide.body in scene.cables and slide.body_s is None:
+        raise SceneError(slide.where, f'cable "{slide.body}" rides and needs the arc-length of its point',
+                         f'give body=("{slide.body}", s)')
     rider = placed_end(scene, slide.rider, slide.where, "body: ")
     cable = cable_at(scene, slide.along, slide.where, slide.s)
     slide = slide.model_copy(update={"s": min(max(slide.s, 0.0), cable.length), "body_s": rider.s})

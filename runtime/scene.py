@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterator
 from contextlib import nullcontext
 from typing import TYPE_CHECKING
 
-import numpy as np
 from funicular.ends import Stop
 from funicular.errors import ConvergenceError, EndOfCableError, FunicularWarning, ResultFileError, SceneError
 from funicular.friction import Friction
@@ -31,7 +30,7 @@ from funicular.parts import (
     Spring,
 )
 from funicular.placing import check_join, check_support, placed_load, placed_spring
-from funicular.placing_joints import check_drive, check_gap, placed_joint
+from funicular.placing_joints import check_drive, check_joint, placed_joint
 from funicular.placing_slides import check_on_cable, placed_slide
 from funicular.plane import check_plane
 from funicular.progress import progress_bar
@@ -51,9 +50,9 @@ RESERVED = ("energy", "time")
 class Scene:
     """Cables, bodies, and what joins, holds and loads them.
 
-    ``gravity`` in m/s²; ``cables``, ``bodies``, ``joints``, ``slides``, ``joins``, ``loads``, ``springs``, ``events`` are dicts by
-    name; ``pins``, ``clamps`` and ``motions`` are lists; ``messages`` tells what was adjusted; ``run_settings`` and
-    ``equilibrium_settings`` hold the settings that a scene file gives.
+    ``gravity`` in m/s²; ``cables``, ``bodies``, ``joints``, ``slides``, ``joins``, ``loads``, ``springs``, ``events``
+    are dicts by name; ``pins``, ``clamps`` and ``motions`` are lists; ``messages`` tells what was adjusted;
+    ``run_settings`` and ``equilibrium_settings`` hold the settings that a scene file gives.
     """
 
     def __init__(self, gravity=(0, -9.81, 0)):
@@ -293,7 +292,7 @@ class Scene:
             raise SceneError("scene", "is empty: there is nothing to simulate", "add a cable or a rigid body")
         check_plane(self)
         for joint in self.joints.values():
-            check_gap(self, joint)
+            check_joint(self, joint)
         for slide in self.slides.values():
             check_on_cable(self, slide)
         refuse_what_the_engine_lacks(self)

@@ -49,7 +49,9 @@ class Slide(Part):
     @classmethod
     def _splits_a_point_of_a_cable(cls, data: Any) -> Any:
         body = data.get("body") if isinstance(data, dict) else None
-        return data | {"body": body[0], "body_s": body[1]} if isinstance(body, list | tuple) and len(body) == 2 else data
+        if isinstance(body, list | tuple) and len(body) == 2:
+            return data | {"body": body[0], "body_s": body[1]}
+        return data
 
     @model_validator(mode="after")
     def _is_of_one_mind(self) -> Slide:

@@ -1,5 +1,6 @@
 """Signals: their values, how smooth they are, and what is refused of them."""
 
+import itertools
 import re
 
 import numpy as np
@@ -104,14 +105,14 @@ def test_the_integral_of_a_signal(rate):
         assert_allclose(way.value(TIMES, derivative + 1), rate.value(TIMES, derivative), rtol=1e-12, atol=1e-12)
     for end in (*rate.pieces()[0], -3.3, 0.9, 2.2, 9.0):
         breaks = rate.pieces()[0]
-        inside = breaks[(breaks - 0.0) * (breaks - end) < 0]
+        inside = breaks[breaks * (breaks - end) < 0]
         places = np.sort([0.0, *inside, end])
         x, w = np.polynomial.legendre.leggauss(40)
         pieces = [(b - a) / 2 * w @ rate.value((a + b) / 2 + (b - a) / 2 * x)
-                  for a, b in zip(places[:-1], places[1:], strict=True)]
+                  for a, b in itertools.pairwise(places)]
         assert_allclose(way.value(end), 0.7 + np.sign(end) * sum(pieces), rtol=1e-12, atol=1e-12)
 
 
 def test_an_integral_is_not_integrated_again():
-    with pytest.raises(SceneError, match="^Integral: rate is an integral already"):
+    with pytest.raises(SceneError, match=r"^Integral: rate is an integral already"):
         Integral(rate=Integral(rate=EVERY[0]))
