@@ -55,16 +55,16 @@ def _clash(scene: Scene, joint: Joint, other: Joint, ends: tuple[Anchor, Anchor]
     if "weld" in (joint.pair, other.pair):
         verbs = ["welds" if each.pair == "weld" else f"is a {each.pair} joint between" for each in (joint, other)]
         return f'{verbs[0]} {between}, but joint "{other.name}" {verbs[1]} them, too'
-    if any(np.linalg.norm(point_of(scene, one) - point_of(scene, end)) > near
-           for one, end in zip((joint.a, joint.b), ends, strict=True)):
-        return None
-    same_axis = np.linalg.norm(np.cross(joint.axes[:, 2], other.axes[:, 2])) <= 1e-9
-    same = {joint.pair, other.pair}
-    if not (same <= set(POINTS) or same == {"distance"} or (same <= set(LINES) and same_axis)):
-        return None
-    if joint.is_driven and other.is_driven and joint.pair == other.pair and same_axis:
-        return f'drives the {DRIVEN[joint.pair]} of {between}, as joint "{other.name}" does'
-    return f'holds the same of {between} as joint "{other.name}"'
+    pairs = {joint.pair, other.pair}
+    parallel = np.linalg.norm(np.cross(joint.axes[:, 2], other.axes[:, 2])) <= 1e-9
+    same_points = all(np.linalg.norm(point_of(scene, one) - point_of(scene, end)) <= near
+                      for one, end in zip((joint.a, joint.b), ends, strict=True))
+    if joint.is_driven and other.is_driven and DRIVEN[joint.pair] == DRIVEN[other.pair]:
+        if (same_points and pairs == {"distance"}) or (parallel and "distance" not in pairs):
+            return f'drives the {DRIVEN[joint.pair]} of {between}, as joint "{other.name}" does'
+    if same_points and (pairs <= set(POINTS) or pairs == {"distance"} or (pairs <= set(LINES) and parallel)):
+        return f'holds the same of {between} as joint "{other.name}"'
+    return None
 
 
 def move_as_one(scene: Scene, one: Anchor, other: Anchor) -> bool:

@@ -59,6 +59,10 @@ def _check_rider(scene: Scene, slide: Slide) -> None:
             raise SceneError(slide.where, f'holds the same point of {what} on cable "{slide.along}" as slide '
                              f'"{other.name}"', "leave one of them out, or give them different points "
                              + ("at" if slide.body_s is None else "body_s"))
+        both = slide.prescribed is not None and other.prescribed is not None
+        if both and slide.body in scene.bodies and (other.body, other.along) == (slide.body, slide.along):
+            raise SceneError(slide.where, f'drives body "{slide.body}" along cable "{slide.along}", as slide '
+                             f'"{other.name}" does', "leave one of the drives out")
 
 
 def _framed(scene: Scene, slide: Slide, cable: Cable) -> Slide:

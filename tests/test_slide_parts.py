@@ -99,6 +99,13 @@ def test_drives(scene):
     assert_allclose(moved.prescribed.value([0.0, 1.0]), [0.5, 0.5 + 2 / np.pi], rtol=1e-14)
 
 
+def test_a_body_is_driven_once_along_a_cable(scene):
+    scene.slide("A", along="beam", s=0.5, velocity=1, name="front")
+    scene.slide("A", along="beam", s=0.3, at=(-0.2, 0, 0), name="back")
+    with refused('slide "t": drives body "A" along cable "beam", as slide "front" does; leave one of the drives out'):
+        scene.slide("A", along="beam", s=0.7, at=(0.2, 0, 0), velocity=1, name="t")
+
+
 def test_friction_and_ends_are_kept(scene):
     friction = Friction(coefficient=0.2, static_coefficient=0.3, viscous=1, rolling=0.01, model="stick")
     slide = scene.slide("A", along="beam", s=0.5, friction=friction, at_start=HardStop(restitution=1),
