@@ -68,6 +68,7 @@ def _function(name, int place):
     kernel.__name__ = kernel.__qualname__ = name
     kernel.__doc__ = "\n".join([f"{entry['doc']} ({entry['source']}).", "", *lines])
     kernel.__signature__ = signature
+    kernel.shapes = {a["name"]: tuple(a["shape"]) for a in entry["inputs"] + entry["outputs"]}
     return kernel
 
 

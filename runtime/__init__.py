@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from funicular.ends import Buffer, HardStop
 from funicular.errors import (
     ConvergenceError,
     EndOfCableError,
@@ -12,6 +13,7 @@ from funicular.errors import (
     SceneError,
     UnknownResultError,
 )
+from funicular.friction import Friction
 from funicular.materials import Material
 from funicular.results import Run, load_run
 from funicular.scene import Scene
@@ -20,13 +22,16 @@ from funicular.sections import Circle, General, Rectangle, Tube
 from funicular.signals import Harmonic, Pulse, Ramp, Table
 
 __all__ = [
+    "Buffer",
     "Circle",
     "ConvergenceError",
     "EndOfCableError",
     "EquilibriumError",
+    "Friction",
     "FunicularError",
     "FunicularWarning",
     "General",
+    "HardStop",
     "Harmonic",
     "Material",
     "Pulse",

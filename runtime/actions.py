@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from funicular.parts import Cable, DistributedForce, Force, Moment
+from funicular.holding import EndModel, Holder
+from funicular.parts import DistributedForce, Force, Moment
 from funicular.scene import Scene
 from funicular.signals import Constant
 
@@ -50,18 +51,6 @@ class LoadModel:
 
 
 @dataclass
-class EndModel:
-    """A point of the ground (cable and body -1), of a cable's element with shape functions N, or of a body."""
-
-    cable: int
-    body: int
-    element: int
-    u: tuple[float, float, float]
-    N: np.ndarray
-    mass: float
-
-
-@dataclass
 class SpringModel:
     """Two ends and what is between them; unknown: the place of its force."""
 
@@ -76,12 +65,11 @@ class SpringModel:
 
 
 class Actions:
-    """Translates the loads and springs of a scene; `cables` and `rigids` are the models, in the scene's order."""
+    """Translates the loads and springs of a scene."""
 
-    def __init__(self, scene: Scene, cables: list, rigids: list):
-        self.scene, self.cables, self.rigids = scene, cables, rigids
-        self.cable_index = {name: k for k, name in enumerate(scene.cables)}
-        self.body_index = {name: k for k, name in enumerate(scene.bodies)}
+    def __init__(self, scene: Scene, holder: Holder):
+        self.scene, self.holder, self.cables = scene, holder, holder.cables
+        self.cable_index, self.body_index = holder.cable_index, holder.body_index
         self.signals: list[SignalModel] = []
         self.dead: list[DeadLoad] = []
         self.turning: list[LoadModel] = []
@@ -104,7 +92,7 @@ class Actions:
         if isinstance(load, DistributedForce):
             self._distributed(load, number, value)
         elif load.on in self.cable_index:
-            points = [(*self._element(load.on, load.s), 1.0)]
+            points = [(*self.holder.element(load.on, load.s), 1.0)]
             if isinstance(load, Moment):
                 self._turning(CABLE_MOMENT, number, load.on, points, value)
             else:
@@ -113,12 +101,6 @@ class Actions:
             kind = BODY_MOMENT if isinstance(load, Moment) else BODY_FOLLOWER if load.follower else BODY_FORCE
             at = (0.0, 0.0, 0.0) if isinstance(load, Moment) else load.at
             self.turning.append(LoadModel(kind, number, self.body_index[load.on], 0, 0.0, at, tuple(value)))
-
-    def _element(self, cable: str, s: float) -> tuple[int, float]:
-        """Element that holds s, and x in it."""
-        model = self.cables[self.cable_index[cable]]
-        element = min(max(int(s // model.length), 0), model.n_elements - 1)
-        return element, s - element * model.length
 
     def _distributed(self, load: DistributedForce, number: int, value: np.ndarray) -> None:
         model = self.cables[self.cable_index[load.cable]]
@@ -153,20 +135,6 @@ class Actions:
 
     def spring(self, spring, unknown: int) -> SpringModel:
         """The model of a spring whose force is unknown number `unknown` beyond the dofs."""
-        ends = [self._end(spring.a), self._end(spring.b)]
+        ends = [self.holder.end(spring.a), self.holder.end(spring.b)]
         return SpringModel(spring.name, ends, self.scene.dim, unknown, spring.stiffness, spring.damping, spring.length,
                            max(end.mass for end in ends))
-
-    def _end(self, end) -> EndModel:
-        none = np.zeros(0)
-        if end.on is None:
-            return EndModel(-1, -1, 0, end.at, none, 0.0)
-        if end.on in self.cable_index:
-            element, x = self._element(end.on, end.s)
-            index = self.cable_index[end.on]
-            model = self.cables[index]
-            cable: Cable = self.scene.cables[end.on]
-            mass = cable.material.density * cable.section.area * model.length
-            return EndModel(index, -1, element, (0.0, 0.0, 0.0), model.kernel("on_axis")(model.length, x)[0], mass)
-        index = self.body_index[end.on]
-        return EndModel(-1, index, 0, end.at, none, self.rigids[index].mass)

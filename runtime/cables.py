@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
@@ -265,14 +266,38 @@ class Cable(Part):
         """
         if self._shape.straight:
             return self._shape.point(s * self.stretch)
-        from funicular.libraries import kernels_of
+        return self._off_axis(s, 0.0)
 
+    def slope(self, s: float) -> np.ndarray:
+        """(3,): r_x at arc-length ``s``, as the elements draw it."""
+        if self._shape.straight:
+            return self.stretch * self._shape.tangent(0.0)
+        length, x, e = self._element_at(s)
+        _, N_x = self._kernel("on_axis")(length, x)
+        return np.pad(N_x @ e, (0, 3 - self.dim))
+
+    def height(self, s: float) -> np.ndarray:
+        """(3,): along the section's height at ``s``: r_y as the elements draw it, the axis there if they have none."""
+        if self._shape.straight or not self.kind_of_element.director:
+            return self.axes_at(s)[1]
+        return self._off_axis(s, 1.0) - self._off_axis(s, 0.0)
+
+    def _off_axis(self, s: float, y: float) -> np.ndarray:
+        """(3,): the point at height ``y`` of the section at ``s``, in m."""
+        length, x, e = self._element_at(s)
+        _, r = self._kernel("position")(length, np.array([x, y, 0]), e)
+        return np.pad(r, (0, 3 - self.dim))
+
+    def _element_at(self, s: float) -> tuple[float, float, np.ndarray]:
+        """Length of the element that holds ``s``, x in it, and its nodal vectors (2 vectors, dim)."""
         length = self.length / self.elements
         element = int(np.clip(np.floor(s / length), 0, self.elements - 1))
-        e = np.concatenate(self.nodal_vectors[element : element + 2])[:, : self.dim]
-        position = getattr(kernels_of(self.library), f"{self.element}_position")
-        _, r = position(length, np.array([s - element * length, 0, 0]), e)
-        return np.pad(r, (0, 3 - self.dim))
+        return length, s - element * length, np.concatenate(self.nodal_vectors[element : element + 2])[:, : self.dim]
+
+    def _kernel(self, name: str) -> Callable:
+        from funicular.libraries import kernels_of
+
+        return getattr(kernels_of(self.library), f"{self.element}_{name}")
 
     def axes_at(self, s) -> np.ndarray:
         """(..., 3, 3): unit vectors along axis, height and width, as rows, at arc-lengths ``s`` as drawn."""

@@ -67,12 +67,12 @@ def redundant(model: Model, engine, ratio: float = SAME) -> str:
 
     Slides of different bodies never do: each acts on its own body, whose mass is not zero.
     """
-    riders = [joint.rider for joint in model.joints]
+    riders = [(joint.rider.body, joint.rider.cable) for joint in model.joints]
     shared = sorted({rider for rider in riders if riders.count(rider) > 1})
     S = engine.compliance() if shared else None
     names = []
     for rider in shared:
-        joints = [joint for joint in model.joints if joint.rider == rider]
+        joints = [joint for joint in model.joints if (joint.rider.body, joint.rider.cable) == rider]
         rows = np.concatenate([joint.multiplier + np.arange(model.dim - 1) for joint in joints])
         scale = 1 / np.sqrt(np.diag(S)[rows])
         values, vectors = np.linalg.eigh(scale[:, None] * S[np.ix_(rows, rows)] * scale)

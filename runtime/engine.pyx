@@ -77,6 +77,48 @@ cdef const fu_slide *_slide(list tables, str name) except NULL:
     raise ValueError(f"no kernels for {name}")
 
 
+cdef const fu_frame *_frame(list tables, str name) except NULL:
+    cdef int k
+    for address in tables:
+        table = <const fu_tables *><size_t>address
+        for k in range(table.n_frames):
+            if table.frames[k].name == name.encode():
+                return &table.frames[k]
+    raise ValueError(f"no kernels for {name}")
+
+
+cdef const fu_pair *_pair(list tables, str name) except NULL:
+    cdef int k
+    for address in tables:
+        table = <const fu_tables *><size_t>address
+        for k in range(table.n_pairs):
+            if table.pairs[k].name == name.encode():
+                return &table.pairs[k]
+    raise ValueError(f"no kernels for {name}")
+
+
+cdef void _end(fu_end *to, end, list tables):
+    cdef int k
+    to.cable, to.body, to.element, to.slide = end.cable, end.body, end.element, end.slide
+    to.frame = NULL
+    for k in range(len(end.u)):
+        to.u[k] = end.u[k]
+    for k in range(len(end.N)):
+        to.N[k] = end.N[k]
+    if end.axes is None:
+        return
+    if end.frame:
+        to.frame = _frame(tables, end.frame)
+    for k in range(2):
+        to.slopes[k] = end.slopes[k]
+    for k in range(3):
+        to.up[k] = end.up[k]
+    for k in range(end.S.size):
+        to.S[k] = end.S.flat[k]
+    for k in range(end.axes.size):
+        to.axes[k] = end.axes.flat[k]
+
+
 cdef double _call(void *context, int which, const fu_state *state) noexcept with gil:
     """The function of an event of the user's; what it raises waits in the engine."""
     engine = <Engine>context
@@ -98,6 +140,7 @@ cdef class Engine:
     cdef fu_cable *cables
     cdef fu_rigid *rigids
     cdef fu_joint *joints
+    cdef fu_link *links
     cdef fu_spring *springs
     cdef fu_motion *motions
     cdef fu_dead_load *dead_loads
@@ -114,17 +157,18 @@ cdef class Engine:
         self.cables = <fu_cable *>PyMem_Calloc(len(model.cables) + 1, sizeof(fu_cable))
         self.rigids = <fu_rigid *>PyMem_Calloc(len(model.rigids) + 1, sizeof(fu_rigid))
         self.joints = <fu_joint *>PyMem_Calloc(len(model.joints) + 1, sizeof(fu_joint))
+        self.links = <fu_link *>PyMem_Calloc(len(model.links) + 1, sizeof(fu_link))
         self.springs = <fu_spring *>PyMem_Calloc(len(model.springs) + 1, sizeof(fu_spring))
         self.motions = <fu_motion *>PyMem_Calloc(len(model.motions) + 1, sizeof(fu_motion))
         self.dead_loads = <fu_dead_load *>PyMem_Calloc(len(model.dead_loads) + 1, sizeof(fu_dead_load))
         self.loads = <fu_load *>PyMem_Calloc(len(model.loads) + 1, sizeof(fu_load))
         self.signals = <fu_signal *>PyMem_Calloc(len(model.signals) + 1, sizeof(fu_signal))
-        if not (self.cables and self.rigids and self.joints and self.springs and self.motions and self.dead_loads
+        if not (self.cables and self.rigids and self.joints and self.links and self.springs and self.motions and self.dead_loads
                 and self.loads and self.signals):
             raise MemoryError
 
     def __dealloc__(self):
-        for pointer in (<size_t>self.cables, <size_t>self.rigids, <size_t>self.joints, <size_t>self.springs,
+        for pointer in (<size_t>self.cables, <size_t>self.rigids, <size_t>self.joints, <size_t>self.links, <size_t>self.springs,
                         <size_t>self.motions, <size_t>self.dead_loads, <size_t>self.loads, <size_t>self.signals, <size_t>self.watches):
             PyMem_Free(<void *><size_t>pointer)
 
@@ -135,7 +179,7 @@ cdef class Engine:
         self._joints_and_springs(model, tables)
         self._loads_and_motions(model)
         m = &self.model
-        m.n_q, m.n_dof = model.n_q, model.n_dof
+        m.dim, m.n_q, m.n_dof = model.dim, model.n_q, model.n_dof
         m.n_band, m.n_border_dof = model.n_band, model.n_border_dof
         m.n_extra, m.n_multipliers = model.n_extra, model.n_multipliers
         m.place, m.weight, m.lapack = self._ints(model.place), self._doubles(model.weight), &LAPACK
@@ -176,22 +220,27 @@ cdef class Engine:
             j.kernel = _slide(tables, joint.kernel)
             if j.kernel.coordinates + 1 > FU_MAX_COORDINATES:
                 raise ValueError(f"{joint.kernel}: more coordinates than the engine's {FU_MAX_COORDINATES}")
-            j.cable, j.rider, j.mass = joint.cable, joint.rider, joint.mass
+            j.cable, j.native, j.room, j.drive = joint.cable, joint.native, joint.room, joint.drive
             j.unknown, j.multiplier, j.carries_director = joint.unknown, joint.multiplier, joint.carries_director
-            for k in range(3):
-                j.u[k] = joint.u[k]
+            j.mass = joint.mass
+            _end(&j.rider, joint.rider, tables)
+        for i, link in enumerate(model.links):
+            l = &self.links[i]
+            l.kernel = _pair(tables, link.kernel)
+            l.unknown, l.multiplier, l.signal, l.base = link.unknown, link.multiplier, link.signal, link.base
+            for k in range(link.rows):
+                l.scale[k] = link.scale[k]
+            for k in range(2):
+                _end(&l.ends[k], link.ends[k], tables)
         for i, spring in enumerate(model.springs):
             p = &self.springs[i]
             p.dim, p.unknown, p.mass = spring.dim, spring.unknown, spring.mass
             p.stiffness, p.damping, p.length = spring.stiffness, spring.damping, spring.length
-            for k, end in enumerate(spring.ends):
-                p.ends[k].cable, p.ends[k].body, p.ends[k].element = end.cable, end.body, end.element
-                for d in range(3):
-                    p.ends[k].u[d] = end.u[d]
-                for d in range(len(end.N)):
-                    p.ends[k].N[d] = end.N[d]
-        self.model.n_joints, self.model.n_springs = len(model.joints), len(model.springs)
-        self.model.joints, self.model.springs = self.joints, self.springs
+            for k in range(2):
+                _end(&p.ends[k], spring.ends[k], tables)
+        m = &self.model
+        m.n_joints, m.n_links, m.n_springs = len(model.joints), len(model.links), len(model.springs)
+        m.joints, m.links, m.springs = self.joints, self.links, self.springs
 
     def _loads_and_motions(self, model):
         cdef int i, k, at = 0
@@ -271,7 +320,10 @@ cdef class Engine:
         joints = len(model.joints)
         state.s, state.f = self._doubles([j.s for j in model.joints]), self._doubles(np.zeros(3 * joints))
         state.spring, state.t = self._doubles(np.zeros(3 * len(model.springs))), 0.0
+        state.multipliers = self._doubles(np.zeros(6 * len(model.links)))
+        state.hold = self._doubles(np.zeros(joints))
         state.element = self._ints([j.element for j in model.joints])
+        state.mode = self._ints([FU_HELD if j.drive >= 0 else FU_SLIDES for j in model.joints])
         state.director = self._doubles([j.director for j in model.joints])
 
     def _work_space(self, model):
@@ -289,7 +341,10 @@ cdef class Engine:
         run.newton.K = a.mass.K = self._zeros((3 * width + 1) * model.n_band)
         a.bodies = self._zeros(a.mass.m * a.mass.m)
         a.rhs = self._zeros(unknowns + model.n_multipliers + FU_BAND_BEYOND(width))
-        a.terms = self._doubles(np.zeros(n_joints * FU_JOINT_TERMS))
+        rows = n_joints + len(model.links)
+        a.rows = <fu_rows *>self._zeros(rows * sizeof(fu_rows) // sizeof(double) + 1)
+        a.slides = <fu_slide_state *>self._zeros(n_joints * sizeof(fu_slide_state) // sizeof(double) + 1)
+        a.multipliers = self._zeros(model.n_multipliers)
         a.joints = self._doubles(np.zeros(n_joints * FU_JOINT_OUTPUTS))
         a.force, a.work = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         a.prescribed = self._doubles(np.zeros(n_dof))
@@ -377,8 +432,9 @@ cdef class Engine:
 
     # --- statics: `next` is the state, moved by unknowns ---------------------------------------------------------
 
-    def place(self, double t=0.0, q=None, s=None, force=None, spring=None):
-        """Set the static state: time, configuration (n_q,), arc-lengths, joint and spring forces (n, 3); None: as built.
+    def place(self, double t=0.0, q=None, s=None, force=None, multipliers=None, spring=None):
+        """Set the static state: time, configuration (n_q,), arc-lengths, forces of slides (n, 3), multipliers of joints
+        (n, 6), forces of springs (n, 3); None: as built.
 
         Prescribed dofs take their values at t.
         """
@@ -399,6 +455,9 @@ cdef class Engine:
                 state.element[i] = min(max(int(state.s[i] // length), 0), n - 1)
             for k in range(3):
                 state.f[3 * i + k] = 0.0 if force is None else force[i][k]
+        for i in range(self.model.n_links):
+            for k in range(6):
+                state.multipliers[6 * i + k] = 0.0 if multipliers is None else multipliers[i][k]
         for i in range(self.model.n_springs):
             for k in range(3):
                 state.spring[3 * i + k] = 0.0 if spring is None else spring[i][k]
@@ -406,10 +465,11 @@ cdef class Engine:
     def placed(self):
         """The static state as the arguments of `place` (but t)."""
         cdef fu_state *state = &self.run.next
-        cdef int i, joints = self.model.n_joints, springs = self.model.n_springs
+        cdef int i, joints = self.model.n_joints, links = self.model.n_links, springs = self.model.n_springs
         return {"q": np.array([state.q[i] for i in range(self.model.n_q)]),
                 "s": np.array([state.s[i] for i in range(joints)]),
                 "force": np.array([state.f[i] for i in range(3 * joints)]).reshape(joints, 3),
+                "multipliers": np.array([state.multipliers[i] for i in range(6 * links)]).reshape(links, 6),
                 "spring": np.array([state.spring[i] for i in range(3 * springs)]).reshape(springs, 3)}
 
     def move(self, change):
@@ -513,6 +573,7 @@ cdef class Engine:
         r.reaction, r.external = self._named("reaction", (rows, m.n_dof)), self._named("external", rows)
         r.spring = self._named("spring", (rows, m.n_springs, 3))
         r.s, r.joint = self._named("s", (rows, m.n_joints)), self._named("joint", (rows, m.n_joints, FU_JOINT_OUTPUTS))
+        r.link = self._named("link", (rows, m.n_links, FU_LINK_OUTPUTS))
         cdef int status = fu_start(run)
         if status:
             return STATUS[status], np.zeros(m.n_dof)
@@ -578,7 +639,7 @@ cdef class Engine:
 
     def joint_row(self, joints):
         """Split joint numbers (..., FU_JOINT_OUTPUTS) by name; see fu_joint_output."""
-        sizes = (1, 1, 3, 2, 3)
+        sizes = (1, 1, 3, 3, 3)
         ends = np.cumsum(sizes)
         return {name: joints[..., end - size:end] if size > 1 else joints[..., end - 1]
                 for name, size, end in zip(JOINT_OUTPUTS, sizes, ends)}

@@ -17,6 +17,7 @@ from funicular.constants import constants
 from funicular.diagnosis import notes, redundant
 from funicular.elements import gauge
 from funicular.errors import FunicularWarning, SceneError
+from funicular.holding import EndModel, Holder, LinkModel, linked, tied
 from funicular.integrators import choose
 from funicular.libraries import kernels_of, tables_of
 from funicular.parts import Cable, RigidBody, Slide
@@ -31,6 +32,8 @@ from scipy.sparse import csr_array
 MOST_OUTPUT = 4e9  # bytes
 BODIES = {2: ("planar_rigid", 4, 3), 3: ("rigid", 7, 6)}
 """Kernels, length of the configuration and dofs of a rigid body, by dimension of the scene."""
+RIDERS = {2: "planar_point", 3: "point"}
+"""Kernels of a slide whose rider is a point of anything else."""
 
 
 @dataclass
@@ -75,16 +78,21 @@ class RigidModel:
 
 @dataclass
 class JointModel:
-    """One slide: kernels, the two bodies (indices), its unknowns, the rider's point and where it starts."""
+    """One slide: kernels, its cable and its rider, its unknowns, what drives it, and where it starts.
+
+    native: the kernels take the rider's own configuration; room: multipliers that it has; drive: a signal, or -1.
+    """
 
     name: str
     kernel: str
     cable: int
-    rider: int
+    rider: EndModel
+    native: bool
     unknown: int
     multiplier: int
+    room: int
+    drive: int
     carries_director: bool
-    u: tuple[float, float, float]
     mass: float
     s: float
     element: int
@@ -99,6 +107,7 @@ class Model:
     cables: list[CableModel]
     rigids: list[RigidModel]
     joints: list[JointModel]
+    links: list[LinkModel]
     springs: list[SpringModel]
     signals: list[SignalModel]
     motions: list[MotionModel]
@@ -132,7 +141,8 @@ class Model:
     def kernels(self) -> list[str]:
         """Names of the kernel families that the scene touches."""
         return sorted({c.element for c in self.cables} | {f"{c.element}_{c.law}" for c in self.cables}
-                      | {j.kernel for j in self.joints} | {b.kernel for b in self.rigids})
+                      | {j.kernel for j in self.joints} | {b.kernel for b in self.rigids}
+                      | {link.kernel for link in self.links})
 
 
 @dataclass
@@ -162,20 +172,29 @@ def build(scene: Scene) -> Model:
     nodes = {c.name: [Node(scene.cables[c.name].where, c.vectors,
                            c.first + k * int(np.prod(c.shape[1:])), vectors)
                       for k, vectors in enumerate(nodal[c.name])] for c in cables}
-    actions = Actions(scene, cables, rigids)
+    holder = Holder(scene, cables, rigids)
+    actions = Actions(scene, holder)
     elements = np.array([(node.first, 2 * node.vectors.size) for each in nodes.values() for node in each[:-1]],
                         dtype=int).reshape(-1, 2)
     reduction = supports(scene, nodes, actions.signal).reduce(n_flexible, elements)
     for load in scene.loads.values():
         actions.load(load)
-    bodies = list(scene.bodies)
-    joints = [_joint(slide, scene, list(scene.cables).index(slide.along), bodies.index(slide.body), k)
-              for k, slide in enumerate(scene.slides.values())]
-    used = (1 + dim) * len(joints)
+    joints = []
+    for slide in scene.slides.values():
+        joints.append(_joint(slide, scene, holder, actions.signal, len(joints), sum(joint.room for joint in joints)))
+    links, used, held = [], (1 + dim) * len(joints), sum(joint.room for joint in joints)
+    for k, part in enumerate([*scene.slides.values(), *scene.joints.values()]):
+        if k >= len(joints):
+            links.append(linked(holder, part, actions.signal, used, held))
+        elif part.frame == "point":
+            continue
+        else:
+            links.append(tied(holder, part, k, used, held))
+        used, held = used + links[-1].rows, held + links[-1].rows
     springs = [actions.spring(spring, used + dim * k) for k, spring in enumerate(scene.springs.values())]
     gravity = np.array(scene.gravity)[:dim]
     return Model(
-        dim, cables, rigids, joints, springs, actions.signals,
+        dim, cables, rigids, joints, links, springs, actions.signals,
         [MotionModel(dof, p.signal, p.base, p.linear, p.cosine, p.sine) for dof, p in reduction.prescribed],
         actions.dead, actions.turning,
         q=np.concatenate([n.ravel() for n in nodal.values()] + [_attitude(b, dim) for b in scene.bodies.values()]
@@ -190,7 +209,7 @@ def build(scene: Scene) -> Model:
         n_band=reduction.n_unknowns,
         n_border_dof=n_velocity * len(rigids),
         n_extra=used + dim * len(springs),
-        n_multipliers=(dim - 1) * len(joints),
+        n_multipliers=held,
         width=half_width(reduction, elements),
         nodes=nodes,
         tables=[tables_of(name) for name in {c.library for c in cables if c.library is not None}],
@@ -248,24 +267,29 @@ def _rigid_gravity(body: RigidModel, gravity: np.ndarray, n: int) -> np.ndarray:
     return np.concatenate([body.mass * gravity, np.zeros(n - len(gravity))])
 
 
-def _joint(slide: Slide, scene: Scene, cable: int, rider: int, number: int) -> JointModel:
-    along, body, dim = scene.cables[slide.along], scene.bodies[slide.body], scene.dim
+def _joint(slide: Slide, scene: Scene, holder: Holder, signal, number: int, multiplier: int) -> JointModel:
+    along, dim = scene.cables[slide.along], scene.dim
     axes = along.axes_at(slide.s)
     at = slide.s / along.length * along.elements
     node = along.node_at(slide.s)
-    if node is not None:  # on a node: the element that the body moves into
-        forward = np.dot(axes[0], body.velocity) >= 0
+    native = slide.body in scene.bodies
+    if node is not None:  # on a node: the element that the rider moves into
+        forward = not native or np.dot(axes[0], scene.bodies[slide.body].velocity) >= 0
         at = node if forward else node - 1
+    rider = holder.end(slide.rider)
+    driven = slide.prescribed is not None
     return JointModel(
         slide.name,
-        f"slide_{along.element}_{BODIES[dim][0]}",
-        cable,
+        f"slide_{along.element}_{BODIES[dim][0] if native else RIDERS[dim]}",
+        holder.cable_index[slide.along],
         rider,
+        native,
         (1 + dim) * number,
-        (dim - 1) * number,
+        multiplier,
+        dim - 1 + driven,
+        signal(slide.prescribed) if driven else -1,
         dim == 3 and not along.kind_of_element.director,
-        slide.at,
-        body.mass,
+        rider.mass,
         slide.s,
         int(np.clip(np.floor(at), 0, along.elements - 1)),
         axes[1],
@@ -342,11 +366,18 @@ def _check_conserves(model: Model, scene: Scene) -> None:
             raise SceneError(scene.cables[cable.name].where,
                              f'integrator "energy" has no discrete gradient of the law "{cable.law}"',
                              "take another law, or another integrator")
+    parts = [*(scene.joints[link.name] for link in model.links if link.name in scene.joints),
+             *(slide for slide, joint in zip(scene.slides.values(), model.joints, strict=True)
+               if not joint.native or joint.drive >= 0 or slide.frame != "point")]
+    for part in parts:
+        raise SceneError(part.where, 'integrator "energy" has no discrete gradient of it',
+                         "take another integrator: genalpha and radau know all joints")
+
 
 
 def _check_size(model: Model, settings: RunSettings, stream: Stream | None) -> float:
     """Bytes of a row; refuses what no memory holds or, for a stream, what does not fit on its disk."""
-    per_row = 8 * (model.n_q + 3 * model.n_dof + 11 * len(model.joints) + 3 * len(model.springs) + 6)
+    per_row = 8 * (model.n_q + 3 * model.n_dof + 12 * len(model.joints) + 7 * len(model.links) + 3 * len(model.springs) + 6)
     need = per_row * settings.duration / settings.output_step
     most, where = (MOST_OUTPUT, "") if stream is None else (stream.free, " that are free on the disk")
     if not need < most:

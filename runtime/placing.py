@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from funicular.anchors import Anchor
 from funicular.cables import EXACT, Cable
 from funicular.elements import built_in
 from funicular.errors import SceneError, near
 from funicular.loads import DistributedForce, Force, Moment
-from funicular.springs import End, Spring
+from funicular.springs import Spring
 from funicular.supports import Join, Support
 from funicular.validation import Part, show
 
@@ -117,7 +118,7 @@ def placed_load(scene: Scene, load: Force | DistributedForce | Moment) -> Part:
         load = load.model_copy(update={"start": start, "stop": stop})
     else:
         at = getattr(load, "at", None)
-        end = placed_end(scene, End(on=load.on, s=load.s, at=at), load.where)
+        end = placed_end(scene, Anchor(on=load.on, s=load.s, at=at), load.where)
         update = {"s": end.s} | ({"at": end.at} if isinstance(load, Force) else {})
         load = load.model_copy(update=update)
         cable = scene.cables.get(load.on)
@@ -143,7 +144,7 @@ def _check_without_section(load: Part, cable: Cable) -> None:
             f"possible is one along the tangent, (F, 0, 0), or take {with_axes}")
 
 
-def placed_end(scene: Scene, end: End, where: str, prefix: str = "") -> End:
+def placed_end(scene: Scene, end: Anchor, where: str, prefix: str = "") -> Anchor:
     """Where on a cable or a body something acts, complete."""
     if end.on is None:
         return end
@@ -162,7 +163,7 @@ def placed_end(scene: Scene, end: End, where: str, prefix: str = "") -> End:
     raise SceneError(where, f'{prefix}there is no cable or rigid_body "{end.on}"', near(end.on, known))
 
 
-def point_of(scene: Scene, end: End) -> np.ndarray:
+def point_of(scene: Scene, end: Anchor) -> np.ndarray:
     """(3,): where a complete end starts, in m."""
     if end.on is None:
         return np.array(end.at)

@@ -9,6 +9,7 @@ import numpy as np
 from funicular.bodies import RigidBody
 from funicular.elements import built_in
 from funicular.errors import SceneError
+from funicular.joints import LINES, Joint
 from funicular.loads import DistributedForce, Force, Moment
 from funicular.signals import Constant
 from funicular.slides import Slide
@@ -57,11 +58,25 @@ def _off(part: Part) -> Iterator[str]:
             if part.rotation is not None:
                 yield from _in_plane("rotation about", part.rotation.axis, part.rotation.axis)
         case Spring():
-            for name in ("a", "b"):
-                yield from _across(name, getattr(part, name).at, "m")
+            yield from _ends_across(part)
+        case Joint():
+            yield from _ends_across(part)
+            if part.pair == "universal":
+                yield "a universal joint"
+            elif part.pair in LINES:
+                yield from _across("axis", part.axis)
+                if part.pair == "cylindrical" and part.is_driven:
+                    yield "a turn about the axis"
+            elif part.axis is not None:
+                yield from _in_plane("axis", part.axis, part.axis)
 
 
-def _across(name: str, value, unit: str) -> Iterator[str]:
+def _ends_across(part: Spring | Joint) -> Iterator[str]:
+    for name in ("a", "b"):
+        yield from _across(name, getattr(part, name).at, "m")
+
+
+def _across(name: str, value, unit: str = "") -> Iterator[str]:
     if value is not None and value[2]:
         yield f"{name} {show(value, unit)}"
 

@@ -117,6 +117,7 @@ def named(model: Model, scene: Scene, engine) -> Rows:
     for k, joint in enumerate(model.joints):
         slides[joint.name] = {"s": rows["s"][:, k], **engine.joint_row(rows["joint"][:, k])}
         slides[joint.name]["residual"] = np.linalg.norm(slides[joint.name]["residual"], axis=-1)
+        slides[joint.name]["multiplier"] = slides[joint.name]["multiplier"][..., :2]
 
     def held(part) -> dict[str, np.ndarray]:
         return support_reaction(model, scene, part, rows["reaction"], q)

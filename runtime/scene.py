@@ -8,9 +8,11 @@ from collections.abc import Callable, Iterator
 from contextlib import nullcontext
 from typing import TYPE_CHECKING
 
-import numpy as np
-from funicular.errors import ConvergenceError, EndOfCableError, FunicularWarning, ResultFileError, SceneError, near
+from funicular.ends import Stop
+from funicular.errors import ConvergenceError, EndOfCableError, FunicularWarning, ResultFileError, SceneError
+from funicular.friction import Friction
 from funicular.materials import Material
+from funicular.not_yet import refuse_what_the_engine_lacks
 from funicular.parts import (
     EXACT,
     Cable,
@@ -19,6 +21,7 @@ from funicular.parts import (
     Event,
     Force,
     Join,
+    Joint,
     Moment,
     Motion,
     Pin,
@@ -26,7 +29,9 @@ from funicular.parts import (
     Slide,
     Spring,
 )
-from funicular.placing import cable_at, check_join, check_support, placed_load, placed_spring
+from funicular.placing import check_join, check_support, placed_load, placed_spring
+from funicular.placing_joints import check_drive, check_joint, placed_joint
+from funicular.placing_slides import check_on_cable, placed_slide
 from funicular.plane import check_plane
 from funicular.progress import progress_bar
 from funicular.results import Run
@@ -39,18 +44,15 @@ if TYPE_CHECKING:
     from funicular.modal import Modes
     from funicular.static import Equilibrium
 
-MOVABLE = 1e-3
-"""A rider nearer to its cable than this part of the cable's length is moved onto it at the start."""
-
 RESERVED = ("energy", "time")
 
 
 class Scene:
     """Cables, bodies, and what joins, holds and loads them.
 
-    ``gravity`` in m/s²; ``cables``, ``bodies``, ``slides``, ``joins``, ``loads``, ``springs``, ``events`` are dicts by
-    name; ``pins``, ``clamps`` and ``motions`` are lists; ``messages`` tells what was adjusted; ``run_settings`` and
-    ``equilibrium_settings`` hold the settings that a scene file gives.
+    ``gravity`` in m/s²; ``cables``, ``bodies``, ``joints``, ``slides``, ``joins``, ``loads``, ``springs``, ``events``
+    are dicts by name; ``pins``, ``clamps`` and ``motions`` are lists; ``messages`` tells what was adjusted;
+    ``run_settings`` and ``equilibrium_settings`` hold the settings that a scene file gives.
     """
 
     def __init__(self, gravity=(0, -9.81, 0)):
@@ -65,6 +67,7 @@ class Scene:
         self.motions: list[Motion] = []
         self.joins: dict[str, Join] = {}
         self.bodies: dict[str, RigidBody] = {}
+        self.joints: dict[str, Joint] = {}
         self.slides: dict[str, Slide] = {}
         self.loads: dict[str, Force | DistributedForce | Moment] = {}
         self.springs: dict[str, Spring] = {}
@@ -190,21 +193,53 @@ class Scene:
         return self.add(Event(quantity=quantity, value=value, function=function, direction=direction, action=action,
                               **place, **_named(name)))
 
-    def slide(
-        self, body: RigidBody | str, *, along: Cable | str, s: float, at=(0, 0, 0), name: str | None = None
-    ) -> Slide:
-        """Let the point ``at`` of ``body`` ride the cable ``along``, from ``s`` on; see `Slide`.
+    def joint(self, kind: str, a, b, *, axis=None, second_axis=None, up=None, angle=None, distance=None, velocity=None,
+              length: float | None = None, name: str | None = None) -> Joint:
+        """Join two ends, free or driven by a signal.
 
-        A body slightly off the cable is moved onto it, with a `FunicularWarning`. Raises SceneError.
+        kind: "spherical", "revolute", "universal", "prismatic", "cylindrical", "weld" or "distance"; a, b: the ends, as
+        of a spring; axis, second_axis, up: directions; angle (rad), distance (m) or velocity (rad/s, m/s): signals;
+        length in m; see `Joint`. Ends with a small gap are brought together, with a `FunicularWarning`. Raises
+        SceneError.
         """
-        return self.add(Slide(body=body, along=along, s=s, at=at, **_named(name)))
+        return self.add(Joint(kind=kind, a=a, b=b, **_given(
+            axis=axis, second_axis=second_axis, up=up, angle=angle, distance=distance, velocity=velocity, length=length,
+            name=name)))
+
+    def slide(
+        self,
+        body: RigidBody | str | tuple,
+        *,
+        along: Cable | str,
+        s: float,
+        at=(0, 0, 0),
+        frame: str = "point",
+        roll: str = "free",
+        up=None,
+        drive=None,
+        velocity=None,
+        friction: Friction | None = None,
+        at_start: str | Stop = "error",
+        at_end: str | Stop = "error",
+        name: str | None = None,
+    ) -> Slide:
+        """Let the point ``at`` of ``body``, or ("link", s) of a cable, ride the cable ``along``, from ``s`` (m) on.
+
+        frame: "point", "tangent" or "section", what the rider's orientation keeps to; roll: "free" or "held", against
+        the direction up; drive (m) or velocity (m/s): signals; friction: a `Friction`; at_start, at_end: "error",
+        "leave", a `HardStop` or a `Buffer`; see `Slide`. A body slightly off the cable is moved onto it, with a
+        `FunicularWarning`. Raises SceneError.
+        """
+        return self.add(Slide(body=body, along=along, s=s, at=at, frame=frame, roll=roll, at_start=at_start,
+                              at_end=at_end, **_given(up=up, drive=drive, velocity=velocity, friction=friction,
+                                                      name=name)))
 
     def add(self, part: Part) -> Part:
         """Add a part made elsewhere, complete it with what the scene knows; the methods above end here.
 
         Returns the part as it stands in the scene. Raises SceneError.
         """
-        if isinstance(part, Join | Force | DistributedForce | Moment | Spring | Event) and part.name is None:
+        if isinstance(part, Join | Joint | Force | DistributedForce | Moment | Spring | Event) and part.name is None:
             part = part.model_copy(update={"name": self._free_name(part.kind)})
         if hasattr(part, "name"):
             self._claim(part)
@@ -220,11 +255,10 @@ class Scene:
             case Join():
                 check_join(self, part)
                 self.joins[part.name] = part
+            case Joint():
+                self.joints[part.name] = part = placed_joint(self, part)
             case Slide():
-                cable = self._check_slide(part)
-                part = part.model_copy(update={"s": min(max(part.s, 0.0), cable.length)})
-                self._seat(part)
-                self.slides[part.name] = part
+                self.slides[part.name] = part = placed_slide(self, part)
             case Event():
                 from funicular.watching import check_event
 
@@ -248,8 +282,8 @@ class Scene:
 
     def parts(self) -> Iterator[Part]:
         """All parts, in an order in which they can be added."""
-        for group in (self.cables, self.supports, self.joins, self.bodies, self.slides, self.loads, self.springs,
-                      self.events):
+        for group in (self.cables, self.supports, self.joins, self.bodies, self.joints, self.slides, self.loads,
+                      self.springs, self.events):
             yield from group.values() if isinstance(group, dict) else group
 
     def check(self) -> None:
@@ -257,12 +291,11 @@ class Scene:
         if not self.cables and not self.bodies:
             raise SceneError("scene", "is empty: there is nothing to simulate", "add a cable or a rigid body")
         check_plane(self)
+        for joint in self.joints.values():
+            check_joint(self, joint)
         for slide in self.slides.values():
-            gap, where = self._gap(slide)
-            if gap > EXACT * self.cables[slide.along].length:
-                raise SceneError(
-                    slide.where, where, f'body "{slide.body}" rides more than one cable: it cannot be moved for each'
-                )
+            check_on_cable(self, slide)
+        refuse_what_the_engine_lacks(self)
 
     def run(
         self,
@@ -306,6 +339,8 @@ class Scene:
         self.check()
         if settings.initial == "drawn":
             self._check_motions_start_at_zero()
+            for joint in self.joints.values():
+                check_drive(self, joint)
         if resume and settings.save is None:
             raise ResultFileError("run: there is nothing to resume without a file of results; name it with save")
         from funicular.streaming import Stream
@@ -370,7 +405,7 @@ class Scene:
     @property
     def _named(self) -> dict[str, Part]:
         """Results are addressed by name, so that all named parts share one space of names."""
-        return self.cables | self.joins | self.bodies | self.slides | self.loads | self.springs
+        return self.cables | self.joins | self.bodies | self.joints | self.slides | self.loads | self.springs
 
     def _claim(self, part: Part) -> None:
         if part.name in self._named:
@@ -411,45 +446,13 @@ class Scene:
                     raise SceneError(motion.where, f"{name} is {show(value, unit)} at t = 0, but counts from the place "
                                      "drawn", 'let it start from 0, or start with initial="equilibrium"')
 
-    def _check_slide(self, slide: Slide) -> Cable:
-        if slide.body not in self.bodies:
-            raise SceneError(slide.where, f'there is no rigid_body "{slide.body}"', near(slide.body, self.bodies))
-        for other in self.slides.values():
-            if (other.body, other.along, other.at) == (slide.body, slide.along, slide.at):
-                raise SceneError(slide.where, f'holds the same point of body "{slide.body}" on cable "{slide.along}" '
-                                 f'as slide "{other.name}"', "leave one of them out, or give them different points at")
-        return cable_at(self, slide.along, slide.where, slide.s)
 
-    def _gap(self, slide: Slide) -> tuple[float, str]:
-        """The distance in m from the rider's point to its place on the cable, and a sentence on it."""
-        point = self.bodies[slide.body].point(slide.at)
-        gap = float(np.linalg.norm(point - self.cables[slide.along].point(slide.s)))
-        return gap, (
-            f'the point of body "{slide.body}" at {show(point, "m")} is {gap:.6g} m '
-            f'away from cable "{slide.along}" at s = {slide.s:.9g} m'
-        )
-
-    def _seat(self, slide: Slide) -> None:
-        """Bring the rider's point onto the cable by a small move, refuse a large one."""
-        cable, body = self.cables[slide.along], self.bodies[slide.body]
-        gap, where = self._gap(slide)
-        if gap <= EXACT * cable.length:
-            return
-        start = body.point(slide.at)
-        position = body.position + cable.point(slide.s) - start
-        if gap > MOVABLE * cable.length:
-            remedy = (
-                f"start the body at position {show(position, 'm')}, or slide from s = {cable.nearest_s(start):.6g} m"
-            )
-            raise SceneError(slide.where, where, remedy)
-        self.bodies[body.name] = body.model_copy(update={"position": tuple(position.tolist())})
-        message = f'{slide.where}: body "{body.name}" was moved by {gap:.6g} m onto cable "{cable.name}"'
-        self.messages.append(message)
-        warnings.warn(message, FunicularWarning, stacklevel=4)
+def _given(**values) -> dict:
+    return {keyword: value for keyword, value in values.items() if value is not None}
 
 
 def _named(name: str | None) -> dict:
-    return {} if name is None else {"name": name}
+    return _given(name=name)
 
 
 def _equilibrium_state(scene: Scene, state: Equilibrium) -> Equilibrium:

@@ -12,19 +12,23 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
+from funicular.anchors import Anchor
+from funicular.ends import Stop
 from funicular.errors import SceneError, near
 from funicular.parts import PARTS
 from funicular.scene import Scene
 from funicular.sections import Section
 from funicular.settings import EquilibriumSettings, RunSettings
 from funicular.signals import Constant, Signal
-from funicular.springs import End
 from funicular.supports import Rotation
 from funicular.validation import Part
 
 SCENES = Path(__file__).parent / "scenes"
 
 SETTINGS = {"run": RunSettings, "equilibrium": EquilibriumSettings}
+
+TAGS = {Section: "shape", Signal: "form", Stop: "stop"}
+"""The word in a table that says which of several parts it is."""
 
 TABLES = ("gravity", *PARTS, *SETTINGS)
 
@@ -130,13 +134,12 @@ def _data(value: Any) -> Any:
     match value:
         case Constant():
             return value.constant
-        case End():
+        case Anchor():
             return value.data()
         case Rotation():
             return [value.axis, _data(value.angle)]
         case Part():
-            tag = {"shape": value.shape} if isinstance(value, Section) else {}
-            tag = {"form": value.form} if isinstance(value, Signal) else tag
+            tag = {name: getattr(value, name) for base, name in TAGS.items() if isinstance(value, base)}
             given = {keyword: getattr(value, name) for keyword, name in value.keywords().items()}
             return tag | {keyword: _data(each) for keyword, each in given.items() if each is not None}
         case list() | tuple():

@@ -16,11 +16,12 @@ from funicular.errors import near
 from funicular.validation import Part, finite, list_of, one_of, positive, show
 from pydantic import Field, PlainValidator, model_validator
 
-DEGREE = 5
+DEGREE = 6
+"""Of the integral of a smooth rise; FU_SIGNAL_TERMS in engine.h is one more."""
 Time = Annotated[float, finite("s")]
 Value = Annotated[float, finite()]
 
-_RISE = np.array([0, 0, 0, 10, -15, 6])
+_RISE = np.array([0, 0, 0, 10, -15, 6, 0])
 """The polynomial from 0 to 1 over [0, 1] whose first and second derivatives vanish at both ends."""
 
 
@@ -32,7 +33,7 @@ class Signal(Part):
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
         """The polynomial part.
 
-        Returns breaks (n+1,) in s, increasing, and coefficients (n, 6) of ascending powers of t - breaks[k]. The first
+        Returns breaks (n+1,) in s, increasing, and coefficients (n, 7) of ascending powers of t - breaks[k]. The first
         piece holds before all breaks, too, and the last one after them.
         """
         raise NotImplementedError
@@ -202,6 +203,48 @@ class Harmonic(Signal):
     def phase(self) -> float:
         """See `Signal.phase`."""
         return self.start_phase
+
+
+class Integral(Signal):
+    """``start`` at t = 0, from there on the integral of ``rate`` over time, exact piece by piece; in code only."""
+
+    form: ClassVar[str] = "integral"
+    rate: Signal
+    start: Value = 0.0
+
+    @model_validator(mode="after")
+    def _fits(self) -> Integral:
+        if isinstance(self.rate, Integral):
+            raise ValueError("rate is an integral already, and its own would be of too high a degree")
+        return self
+
+    def pieces(self) -> tuple[np.ndarray, np.ndarray]:
+        """See `Signal.pieces`."""
+        breaks, rates = self.rate.pieces()
+        powers = np.arange(1, DEGREE + 1)
+        coefficients = np.zeros(rates.shape)
+        coefficients[:, 1:] = rates[:, :-1] / powers
+        gains = np.sum(coefficients[:, 1:] * np.diff(breaks)[:, None] ** powers, axis=1)
+        coefficients[1:, 0] = np.cumsum(gains)[:-1]
+        first = int(np.clip(np.searchsorted(breaks, 0.0, side="right") - 1, 0, len(rates) - 1))
+        at_zero = np.sum(coefficients[first] * (0.0 - breaks[first]) ** np.arange(DEGREE + 1))
+        coefficients[:, 0] += self.start - at_zero - self.amplitude * np.sin(self.phase)
+        return breaks, coefficients
+
+    @property
+    def amplitude(self) -> float:
+        """See `Signal.amplitude`."""
+        return self.rate.amplitude / self.angular_frequency if self.rate.amplitude else 0.0
+
+    @property
+    def angular_frequency(self) -> float:
+        """See `Signal.angular_frequency`."""
+        return self.rate.angular_frequency
+
+    @property
+    def phase(self) -> float:
+        """See `Signal.phase`: a quarter of a turn late."""
+        return self.rate.phase - pi / 2
 
 
 FORMS = {signal.form: signal for signal in (Table, Ramp, Harmonic, Pulse)}

@@ -102,6 +102,17 @@ def xyz(unit: str = "") -> PlainValidator:
     return PlainValidator(lambda value: vector(value, unit))
 
 
+def direction() -> PlainValidator:
+    """Check of three finite numbers that are not all zero; their length is free."""
+    def check(value: Any) -> tuple[float, ...]:
+        result = vector(value)
+        if not any(result):
+            raise ValueError("must not be zero")
+        return result
+
+    return PlainValidator(check)
+
+
 def list_of(unit: str = "", *, least: int) -> PlainValidator:
     """Check of a list of at least ``least`` finite numbers."""
     def check(value: Any) -> tuple[float, ...]:

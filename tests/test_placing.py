@@ -5,8 +5,8 @@ import re
 import numpy as np
 import pytest
 from funicular import Circle, General, Material, Ramp, Rectangle, Scene, SceneError
+from funicular.anchors import Anchor
 from funicular.signals import Constant
-from funicular.springs import End
 from numpy.testing import assert_allclose
 
 SOFT = Material(youngs_modulus=1e6, density=1000, poisson_ratio=0.3)
@@ -60,10 +60,10 @@ def test_loads_know_their_place(scene):
 
 def test_springs_know_their_ends_and_length(scene):
     spring = scene.spring(scene.bodies["A"], ("beam", 1), stiffness=5)
-    assert (spring.a, spring.b) == (End(on="A", at=(0, 0, 0)), End(on="beam", s=1))
+    assert (spring.a, spring.b) == (Anchor(on="A", at=(0, 0, 0)), Anchor(on="beam", s=1))
     assert_allclose(spring.length, np.sqrt(2), rtol=1e-15)
     assert scene.spring(("A", (0, 1, 0)), (0, 5, 0), stiffness=5, damping=1, length=0).length == 0
-    assert scene.springs["spring_2"].b == End(at=(0, 5, 0))
+    assert scene.springs["spring_2"].b == Anchor(at=(0, 5, 0))
 
 
 @pytest.mark.parametrize(("held", "complaint"), [

@@ -1,11 +1,12 @@
 """Signals: their values, how smooth they are, and what is refused of them."""
 
+import itertools
 import re
 
 import numpy as np
 import pytest
 from funicular import Harmonic, Pulse, Ramp, SceneError, Table
-from funicular.signals import Constant, signal
+from funicular.signals import Constant, Integral, signal
 from numpy.testing import assert_allclose
 
 TIMES = np.linspace(-0.5, 3.5, 801)
@@ -24,7 +25,7 @@ SMOOTH = [s for s in EVERY if not isinstance(s, Table)]
 @pytest.mark.parametrize("each", EVERY, ids=lambda s: s.form)
 def test_value_is_what_pieces_and_sine_say(each):
     breaks, coefficients = each.pieces()
-    assert breaks.shape == (len(coefficients) + 1,) and coefficients.shape[1] == 6
+    assert breaks.shape == (len(coefficients) + 1,) and coefficients.shape[1] == 7
     assert np.all(np.diff(breaks) > 0)
     for t in (*TIMES[::50], *breaks):
         k = min(max(np.searchsorted(breaks, t, side="right") - 1, 0), len(coefficients) - 1)
@@ -92,3 +93,26 @@ def test_a_table_ends_on_its_slope(interpolation):
     assert table.value(3.0) == pytest.approx(6)
     assert table.value(3.1, derivative=1) == 0
     assert table.value(3.1) == 6
+
+
+@pytest.mark.parametrize("rate", [*EVERY, Ramp(start=-2, end=-1, after=3), Table(time=[2, 3], value=[5, 7])],
+                         ids=lambda s: s.form)
+def test_the_integral_of_a_signal(rate):
+    """From t = 0 on, both ways, across all breaks and beyond them."""
+    way = Integral(rate=rate, start=0.7)
+    assert_allclose(way.value(0.0), 0.7, rtol=1e-14)
+    for derivative in (0, 1):
+        assert_allclose(way.value(TIMES, derivative + 1), rate.value(TIMES, derivative), rtol=1e-12, atol=1e-12)
+    for end in (*rate.pieces()[0], -3.3, 0.9, 2.2, 9.0):
+        breaks = rate.pieces()[0]
+        inside = breaks[breaks * (breaks - end) < 0]
+        places = np.sort([0.0, *inside, end])
+        x, w = np.polynomial.legendre.leggauss(40)
+        pieces = [(b - a) / 2 * w @ rate.value((a + b) / 2 + (b - a) / 2 * x)
+                  for a, b in itertools.pairwise(places)]
+        assert_allclose(way.value(end), 0.7 + np.sign(end) * sum(pieces), rtol=1e-12, atol=1e-12)
+
+
+def test_an_integral_is_not_integrated_again():
+    with pytest.raises(SceneError, match=r"^Integral: rate is an integral already"):
+        Integral(rate=Integral(rate=EVERY[0]))

@@ -21,7 +21,7 @@
 #define FU_END_COORDINATES 40 /* of what an end is on, s among them; model.py checks */
 #define FU_SLIDE_COORDINATES (FU_MAX_COORDINATES + FU_END_COORDINATES)
 #define FU_ROW_COORDINATES (2 * (FU_END_COORDINATES + FU_SLIDE_COORDINATES))
-#define FU_SIGNAL_TERMS 6 /* coefficients of a piece of a signal */
+#define FU_SIGNAL_TERMS 7 /* coefficients of a piece of a signal */
 
 typedef struct {
     const fu_element *kernel;

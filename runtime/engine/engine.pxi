@@ -12,12 +12,19 @@ cdef extern from "kernels.h" nogil:
         int coordinates, dim
     ctypedef struct fu_law:
         const char *name
+    ctypedef struct fu_frame:
+        const char *name
+    ctypedef struct fu_pair:
+        const char *name
+        int rows
     ctypedef struct fu_tables:
-        int n_elements, n_laws, n_bodys, n_slides
+        int n_elements, n_laws, n_bodys, n_slides, n_frames, n_pairs
         const fu_element *elements
         const fu_law *laws
         const fu_body *bodys
         const fu_slide *slides
+        const fu_frame *frames
+        const fu_pair *pairs
 
 cdef extern from "blocks.h" nogil:
     ctypedef struct fu_law_blocks:
@@ -25,7 +32,7 @@ cdef extern from "blocks.h" nogil:
     const fu_law_blocks *fu_blocks_of(const char *law)
 
 cdef extern from "engine.h" nogil:
-    int FU_JOINT_TERMS, FU_JOINT_OUTPUTS, FU_MAX_COORDINATES
+    int FU_JOINT_OUTPUTS, FU_LINK_OUTPUTS, FU_MAX_COORDINATES, FU_END_COORDINATES, FU_SLIDES, FU_HELD, FU_LEFT
     int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT, FU_UNSTABLE
     int FU_NO_FAILURE, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE
     int FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_CALL
@@ -147,14 +154,20 @@ cdef extern from "engine.h" nogil:
         int *element
         int *mode
         double *director
+    ctypedef struct fu_rows:
+        int rows
+    ctypedef struct fu_slide_state:
+        double s_rate
     ctypedef struct fu_accelerator:
         fu_system mass
         double *bodies
         double *rhs
-        double *terms
+        fu_rows *rows
+        fu_slide_state *slides
         double *force
         double *work
         double *prescribed
+        double *multipliers
         double *joints
     ctypedef struct fu_genalpha:
         double alpha_m, alpha_f, beta, gamma
@@ -204,6 +217,7 @@ cdef extern from "engine.h" nogil:
         double *reaction
         double *s
         double *joint
+        double *link
         double *kinetic
         double *elastic
         double *potential

@@ -1,0 +1,48 @@
+"""Anchors: what springs, joints and flexible riders hold on to."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from funicular.validation import Part, Vector, finite, number, vector, xyz
+from pydantic import PlainValidator
+
+
+class Anchor(Part):
+    """A place: ``s`` (m) of the cable ``on``, or the point ``at`` (m) of the body ``on``, or of the ground (on None).
+
+    What it is on is found out when its part is added to a scene; until then a name alone has neither s nor at.
+    """
+
+    on: str | None = None
+    s: Annotated[float, finite("m")] | None = None
+    at: Annotated[Vector, xyz("m")] | None = None
+
+    def data(self) -> Any:
+        """As a scene file has it: [x, y, z], "A", ["A", [x, y, z]] or ["wire", s]."""
+        place = self.s if self.s is not None else self.at
+        return place if self.on is None else self.on if place is None else [self.on, place]
+
+
+def _anchor(value: Any) -> Anchor:
+    if isinstance(value, Anchor):
+        return value
+    value = value.tolist() if hasattr(value, "tolist") else value
+    on = getattr(value, "name", value)
+    if isinstance(on, str):
+        return Anchor(on=on)
+    remedy = 'give a point (x, y, z), a body, ("body", (x, y, z)) or ("cable", s)'
+    if not isinstance(value, list | tuple) or len(value) not in (2, 3):
+        raise ValueError(f"must be an end, got {value!r}", remedy)
+    if len(value) == 3:
+        return Anchor(at=vector(value, "m"))
+    on, place = getattr(value[0], "name", value[0]), value[1]
+    if not isinstance(on, str):
+        raise ValueError(f"must be an end, got {value!r}", remedy)
+    if isinstance(place, list | tuple) or (hasattr(place, "tolist") and getattr(place, "ndim", 0)):
+        return Anchor(on=on, at=vector(place, "m"))
+    return Anchor(on=on, s=number(place, "m"))
+
+
+AnyAnchor = Annotated[Anchor, PlainValidator(_anchor)]
+"""An anchor, or what `Anchor.data` gives, with a part of the scene for its name where that is at hand."""

@@ -1,0 +1,72 @@
+"""The frames that joints and slides hold, as they start: columns are unit vectors along the ground's axes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from funicular.anchors import Anchor
+from funicular.cables import Cable
+from funicular.joints import Joint
+from funicular.rotations import rotate
+from funicular.slides import Slide
+
+if TYPE_CHECKING:
+    from funicular.scene import Scene
+
+
+class EndAxes(NamedTuple):
+    """(3, 3) each: the axes of a joint as columns, in the frames of its two ends; equal in the ground's at the start.
+
+    Frame of an end: a body's axes, the ground's, or at a cable `cable_frame`. The joint's z is its axis.
+    """
+
+    a: np.ndarray
+    b: np.ndarray
+
+
+def has_section(cable: Cable) -> bool:
+    """Whether its elements know the turn about the tangent, which in the plane there is not."""
+    return cable.dim == 2 or bool(cable.kind_of_element.director)
+
+
+def cable_frame(cable: Cable, s: float, up=None) -> np.ndarray:
+    """(3, 3): tangent, height and width at ``s`` as the elements draw them, as columns.
+
+    The tangent frame of eq 16 to 18: k square to the tangent and to r_y or, where ``up`` is given, to that (up must be
+    off the tangent); the cable's own axes where there is neither.
+    """
+    tangent, width = _unit(cable.slope(s)), np.array([0.0, 0.0, 1.0])
+    if cable.dim == 3:
+        width = _unit(np.cross(tangent, cable.height(s) if up is None else up))
+    return np.column_stack([tangent, np.cross(width, tangent), width])
+
+
+def _unit(vector: np.ndarray) -> np.ndarray:
+    return vector / np.linalg.norm(vector)
+
+
+def end_frame(scene: Scene, end: Anchor, up=None) -> np.ndarray:
+    """(3, 3): the frame of a complete end; ``up`` completes that of a cable without section axes."""
+    if end.on is None:
+        return np.eye(3)
+    if end.on in scene.bodies:
+        return rotate(scene.bodies[end.on].orientation, np.eye(3)).T
+    cable = scene.cables[end.on]
+    return cable_frame(cable, end.s, None if has_section(cable) else up)
+
+
+def joint_axes(scene: Scene, joint: Joint) -> EndAxes:
+    """The axes of a joint of the scene in the frames of its ends."""
+    return EndAxes(*(end_frame(scene, end, joint.up).T @ joint.axes for end in (joint.a, joint.b)))
+
+
+def slide_axes(scene: Scene, slide: Slide) -> EndAxes:
+    """The axes that a slide of frame "tangent" or "section" keeps together: a in the cable's frame, b in the rider's.
+
+    z along the tangent, x along the height, y along the width. With roll "held" the cable's frame is that of
+    `cable_frame` with the slide's up, at every s; with roll "free" the turn about z is free.
+    """
+    frame = cable_frame(scene.cables[slide.along], slide.s, slide.up)
+    order = np.eye(3)[:, [1, 2, 0]]
+    return EndAxes(order, end_frame(scene, slide.rider).T @ frame @ order)

@@ -1,0 +1,163 @@
+"""What springs, joints and riders hold on to, and joints between such ends, as the engine takes them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from funicular.anchors import Anchor
+from funicular.frames import has_section, joint_axes, slide_axes
+from funicular.joints import DRIVEN, Joint
+from funicular.libraries import kernels_of
+from funicular.placing import point_of
+from funicular.scene import Scene
+from funicular.slides import Slide
+
+UP, CARRIED = -1, -2
+"""What completes the frame of a tangent, as engine.h has it: a direction of the ground, or the slide's director."""
+
+FRAMES = {2: "planar_frame", 3: "frame"}
+
+
+@dataclass
+class EndModel:
+    """fu_end of engine.h: -1 for what it is not on; mass and length are scales of it, kg and m."""
+
+    cable: int
+    body: int
+    element: int
+    slide: int
+    u: tuple[float, ...]
+    N: np.ndarray
+    S: np.ndarray
+    mass: float
+    length: float
+    frame: str = ""
+    slopes: tuple[int, int] = (0, UP)
+    up: tuple[float, ...] = (0.0, 0.0, 0.0)
+    axes: np.ndarray | None = None
+
+
+@dataclass
+class LinkModel:
+    """A joint between two ends; unknown, multiplier: places of its rows; signal: that drives it, or -1."""
+
+    name: str
+    kernel: str
+    ends: tuple[EndModel, EndModel]
+    unknown: int
+    multiplier: int
+    signal: int
+    base: float
+    scale: np.ndarray
+
+    @property
+    def rows(self) -> int:
+        """Number of its equations."""
+        return len(self.scale)
+
+
+class Holder:
+    """Makes ends of anchors; `cables` and `rigids` are the models, in the scene's order."""
+
+    def __init__(self, scene: Scene, cables: list, rigids: list):
+        self.scene, self.cables, self.rigids = scene, cables, rigids
+        self.cable_index = {name: k for k, name in enumerate(scene.cables)}
+        self.body_index = {name: k for k, name in enumerate(scene.bodies)}
+
+    def element(self, cable: str, s: float) -> tuple[int, float]:
+        """Element that holds s, and x in it."""
+        model = self.cables[self.cable_index[cable]]
+        element = min(max(int(s // model.length), 0), model.n_elements - 1)
+        return element, s - element * model.length
+
+    def end(self, anchor: Anchor, axes: np.ndarray | None = None, up=None) -> EndModel:
+        """The end of a complete anchor, with axes (3, 3) in the frame of what carries it where it has some."""
+        none = np.zeros(0)
+        axes = self._axes(axes)
+        if anchor.on is None:
+            return EndModel(-1, -1, 0, -1, anchor.at, none, none, 0.0, 0.0, axes=axes)
+        if anchor.on in self.body_index:
+            body = self.rigids[self.body_index[anchor.on]]
+            length = float(np.sqrt(np.max(np.linalg.eigvalsh(body.inertia)) / body.mass))
+            return EndModel(-1, self.body_index[anchor.on], 0, -1, anchor.at, none, none, body.mass, length, axes=axes)
+        found = self._on_cable(anchor.on, axes, up)
+        found.element, x = self.element(anchor.on, anchor.s)
+        model = self.cables[found.cable]
+        found.N = model.kernel("on_axis")(model.length, x)[0]
+        if axes is not None:
+            slopes = model.kernel("slopes")(model.length, x)
+            found.S = np.array([slopes[k, 0] if k >= 0 else 0 * found.N for k in found.slopes])
+        return found
+
+    def on_slide(self, slide: Slide, number: int, axes: np.ndarray) -> EndModel:
+        """The cable's frame where a slide is."""
+        found = self._on_cable(slide.along, self._axes(axes), slide.up)
+        found.slide = number
+        if found.slopes[1] == UP and slide.roll == "free":
+            found.slopes = (0, CARRIED)
+        return found
+
+    def _on_cable(self, name: str, axes: np.ndarray | None, up) -> EndModel:
+        cable, index = self.scene.cables[name], self.cable_index[name]
+        length = self.cables[index].length
+        mass = cable.material.density * cable.section.area * length
+        director = cable.kind_of_element.director
+        slopes = (0, "xyz".index(director[-1]) if director and up is None and cable.dim == 3 else UP)
+        return EndModel(index, -1, 0, -1, (0.0,) * 3, np.zeros(0), np.zeros(0), mass, length,
+                        FRAMES[self.scene.dim], slopes, (0.0,) * 3 if up is None else up, axes)
+
+    def _axes(self, axes: np.ndarray | None) -> np.ndarray | None:
+        """In the plane x is the joint's axis if that lies in it, y square to it; see derive/joints/pair.py."""
+        if axes is None or self.scene.dim == 3:
+            return axes
+        x = axes[:2, 2] if np.linalg.norm(axes[:2, 2]) > 0.5 else axes[:2, 0]
+        return np.array([[x[0], -x[1]], [x[1], x[0]]])
+
+
+def linked(holder: Holder, joint: Joint, signal, unknown: int, multiplier: int) -> LinkModel:
+    """The model of a joint; signal(s): number of a signal."""
+    scene = holder.scene
+    at = joint_axes(scene, joint)
+    needs = joint.pair not in ("spherical", "distance")
+    ends = [holder.end(anchor, axes if needs else None, None if anchor.on not in scene.cables
+                       or has_section(scene.cables[anchor.on]) else joint.up)
+            for anchor, axes in zip((joint.a, joint.b), at, strict=True)]
+    kind, driven = joint.pair, joint.is_driven
+    if scene.dim == 2:
+        kind = {"revolute": "revolute" if driven else "spherical", "cylindrical": "prismatic"}.get(kind, kind)
+    if driven and joint.pair != "distance":
+        kind += f"_{DRIVEN[joint.pair]}"
+        if scene.dim == 2 and joint.axes[2, 2] < -0.5:  # about -z: what a sees of b is what b sees of a about z
+            ends.reverse()
+    base = 0.0
+    if joint.pair == "distance":
+        base = 0.0 if driven else joint.length
+    elif driven and DRIVEN[joint.pair] == "distance":
+        base = float(joint.axes[:, 2] @ (point_of(scene, joint.b) - point_of(scene, joint.a)))
+    return _link(joint.name, kind, scene.dim, ends, unknown, multiplier, signal(joint.prescribed) if driven else -1,
+                 base)
+
+
+def tied(holder: Holder, slide: Slide, number: int, unknown: int, multiplier: int) -> LinkModel:
+    """What keeps a rider's axes to the frame of its cable, beside slide number `number`."""
+    dim = holder.scene.dim
+    at = slide_axes(holder.scene, slide)
+    free = slide.frame == "tangent" and slide.roll == "free" and dim == 3
+    ends = [holder.on_slide(slide, number, at.a), holder.end(slide.rider, at.b)]
+    return _link(f"{slide.name}.{slide.frame}", "aligned" if free else "locked", dim, ends, unknown, multiplier, -1, 0.0)
+
+
+def _link(name: str, kind: str, dim: int, ends: list[EndModel], unknown: int, multiplier: int, signal: int,
+          base: float) -> LinkModel:
+    kernel = f"joint_{'planar_' * (dim == 2)}{kind}"
+    return LinkModel(name, kernel, tuple(ends), unknown, multiplier, signal, base, _scales(kernel, dim, ends))
+
+
+def _scales(kernel: str, dim: int, ends: list[EndModel]) -> np.ndarray:
+    """(rows,): kg, and kg m where a row is about turns alone: no displacement of the points changes it."""
+    eye, ones = np.eye(dim), np.ones(dim)
+    force = getattr(kernels_of(None), f"{kernel}_force")
+    J = force(ones, eye, eye, np.array([0.5, np.cos(0.5), np.sin(0.5)]), np.zeros(force.shapes["f"]))[1]
+    mass, length = max(end.mass for end in ends), max(end.length for end in ends)
+    return np.where(np.any(J[:, :dim] != 0, axis=1), mass, mass * length)
