@@ -14,20 +14,12 @@ if TYPE_CHECKING:
 
 def refuse_what_the_engine_lacks(scene: Scene) -> None:
     """Raise SceneError for the first such thing."""
-    for joint in ():
-        raise SceneError(joint.where, f"a {joint.pair} joint is not in the engine yet")
     for slide in scene.slides.values():
         for what in _lacking(slide):
             raise SceneError(slide.where, f"{what} is not in the engine yet")
 
 
 def _lacking(slide: Slide) -> Iterator[str]:
-    if slide.body_s is not None:
-        yield "a cable as the rider"
-    if slide.frame != "point":
-        yield f'frame "{slide.frame}"'
-    if slide.prescribed is not None:
-        yield "a driven slide"
     if slide.friction is not None:
         yield "friction"
     for name in ("at_start", "at_end"):

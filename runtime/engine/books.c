@@ -4,11 +4,36 @@
 #define MOST_GROWTH 0.5    /* of the energy exchanged, or of motion: beyond it the result is none */
 #define LEAST_MOTION 1e-3  /* of the size of the scene: less is rounding, or how a motion begins */
 
-/* power of the loads and, with the forces that the supports give, of the motions at a state */
+/* Power of what drives slides and joints: from the forces that a Newton method solves for, else from eq 38. */
+static double driving_power(const fu_run *run, const fu_state *state)
+{
+    const fu_model *model = run->model;
+    const fu_accelerator *work = &run->accelerator;
+    double power = 0.0;
+    if (!run->integrator->newton) {
+        for (int r = 0; r < model->n_joints + model->n_links; ++r)
+            for (int c = 0; c < work->rows[r].rows; ++c)
+                power += work->multipliers[work->rows[r].first + c] * work->rows[r].rate[c];
+        return power;
+    }
+    for (int j = 0; j < model->n_joints; ++j) {
+        double phi[3], g[FU_SLIDE_COORDINATES], rate, second;
+        int at[FU_SLIDE_COORDINATES + 1];
+        if (state->mode[j] != FU_HELD || model->joints[j].drive < 0) continue;
+        fu_slide_held(model, state, j, &rate, &second);
+        fu_slide_residual(model, state, j, phi, g);
+        power += g[fu_slide_coordinates(model, state, j, at)] * rate;
+    }
+    for (int k = 0; k < model->n_links; ++k)
+        if (model->links[k].signal >= 0) power += fu_link_driving(model, &model->links[k], state);
+    return power;
+}
+
+/* power of the loads, of what drives slides and joints and, with the forces that the supports give, of the motions */
 double fu_external_power(fu_run *run, const fu_state *state, const double *reaction)
 {
     const fu_model *model = run->model;
-    double power = 0.0;
+    double power = driving_power(run, state);
     if (model->n_dead_loads || model->n_loads) {
         for (int i = 0; i < model->n_dof; ++i) run->work[i] = 0.0;
         fu_loads(model, state->t, state->q, run->work);

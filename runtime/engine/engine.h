@@ -279,6 +279,7 @@ double fu_slide_step(const fu_model *model, const fu_state *state, int j, double
 /* links.c */
 int fu_link_residual(const fu_model *model, const fu_link *link, const fu_state *state, double *phi, int *at, double *J);
 int fu_link_tangent(const fu_model *model, const fu_link *link, const fu_state *state, int *at, double *J, double *K);
+double fu_link_driving(const fu_model *model, const fu_link *link, const fu_state *state);
 void fu_link_terms(const fu_model *model, const fu_link *link, const fu_state *state, const fu_slide_state *slides,
                    const fu_rows *of_slides, fu_rows *rows);
 
