@@ -85,8 +85,13 @@ cdef extern from "engine.h" nogil:
         void *zgetrs
     ctypedef struct fu_span:
         int first, end
+    ctypedef struct fu_piece:
+        int k
+        fu_span rows
     ctypedef struct fu_system:
-        int n, width, m, definite
+        int n, width, m, n_chains, definite
+        const int *chains
+        const int *half
         double *K
         double *L
         double *B
@@ -95,7 +100,8 @@ cdef extern from "engine.h" nogil:
         double *X
         fu_span *span_B
         fu_span *span_C
-        int *coupled
+        fu_piece *columns
+        fu_piece *rows
         int *pivot_band
         int *pivot_border
     ctypedef struct fu_model:
@@ -134,7 +140,7 @@ cdef extern from "engine.h" nogil:
         double *director
     ctypedef struct fu_accelerator:
         fu_system mass
-        double *bodies
+        double *corner
         double *rhs
         double *terms
         double *force
