@@ -108,6 +108,8 @@ typedef struct {
     void (*dgetrs)(char *, int *, int *, double *, int *, int *, double *, int *, int *);
 } fu_lapack;
 
+#define FU_FADED 1e-32 /* of a column's largest entry: what adds nothing to any solution */
+
 /* band.c eliminates so many columns at once (a band is one less wide at least), and touches so many numbers beyond the
  * end of a column of n. */
 #define FU_BAND_GROUP 4
@@ -190,6 +192,8 @@ void fu_band_solve(int n, int width, const double *A, int first, double *x);
 /* linear.c */
 void fu_system_clear(fu_system *system);
 void fu_system_clear_border(fu_system *system);
+fu_span fu_half(const fu_system *system, int half);
+fu_span fu_common(fu_span one, fu_span other);
 int fu_system_factor_band(fu_system *system, const fu_lapack *lapack);
 void fu_system_keep_border(fu_system *system, const fu_lapack *lapack, int columns);
 int fu_system_factor_border(fu_system *system, const fu_lapack *lapack);
@@ -293,6 +297,8 @@ typedef struct {
 typedef struct {
     void *K, *B, *C, *D, *X, *x; /* double _Complex; x: right side and solution */
     double *D_real;              /* the real system's border before it was factored */
+    int n_columns;
+    fu_piece *columns;           /* of X; those of C are the real system's */
     int *pivot_band, *pivot_border;
 } fu_complex_system;
 

@@ -172,6 +172,7 @@ cdef extern from "engine.h" nogil:
         void *X
         void *x
         double *D_real
+        fu_piece *columns
         int *pivot_band
         int *pivot_border
     ctypedef struct fu_watch:

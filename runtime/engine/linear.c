@@ -3,7 +3,6 @@
 #include "engine.h"
 
 #define SYMMETRIC 1e-10 /* of the diagonals: what rounding leaves between two halves */
-#define FADED 1e-32     /* of a column's largest entry: what adds nothing to any solution */
 
 void fu_system_clear(fu_system *s)
 {
@@ -24,6 +23,18 @@ void fu_system_clear_border(fu_system *s)
             }
         }
     for (int i = 0; i < s->m * s->m; ++i) s->D[i] = 0.0;
+}
+
+/* rows of half a chain: a column that closes a ring touches both ends of its chain */
+fu_span fu_half(const fu_system *s, int half)
+{
+    const int begin = s->chains[half / 2], end = s->chains[half / 2 + 1], middle = (begin + end) / 2;
+    return half % 2 ? (fu_span){middle, end} : (fu_span){begin, middle};
+}
+
+fu_span fu_common(fu_span one, fu_span other)
+{
+    return (fu_span){one.first > other.first ? one.first : other.first, one.end < other.end ? one.end : other.end};
 }
 
 static int size_of(const fu_system *s, int chain)
@@ -85,10 +96,9 @@ static void solve_chain(const fu_system *s, const fu_lapack *lapack, int chain, 
 static double times(const fu_system *s, const fu_piece *p, fu_span of, const double *x)
 {
     const double *row = s->C + (long)p->k * s->n;
-    const int first = p->rows.first > of.first ? p->rows.first : of.first;
-    const int end = p->rows.end < of.end ? p->rows.end : of.end;
+    const fu_span rows = fu_common(p->rows, of);
     double sum = 0.0;
-    for (int i = first; i < end; ++i) sum += row[i] * x[i];
+    for (int i = rows.first; i < rows.end; ++i) sum += row[i] * x[i];
     return sum;
 }
 
@@ -103,8 +113,8 @@ static fu_span trimmed(fu_span span, double least, const double *x)
 /* column k of X = K^-1 B in a chain, by halves; it fades away from what it touches, in the end to denormal numbers */
 static void solve_column(fu_system *s, const fu_lapack *lapack, int k, int chain)
 {
-    const int begin = s->chains[chain], end = s->chains[chain + 1], middle = (begin + end) / 2;
-    const fu_span *of = s->span_B + 2 * (k * s->n_chains + chain), halves[2] = {{begin, middle}, {middle, end}};
+    const int begin = s->chains[chain], end = s->chains[chain + 1];
+    const fu_span *of = s->span_B + 2 * (k * s->n_chains + chain);
     double *x = s->X + FU_BAND_LENGTH(s->n, s->width) * k, largest = 0.0;
     if (!of[0].end && !of[1].end) return;
     for (int i = begin; i < end + FU_BAND_BEYOND(s->width); ++i) x[i] = 0.0;
@@ -113,7 +123,7 @@ static void solve_column(fu_system *s, const fu_lapack *lapack, int k, int chain
     solve_chain(s, lapack, chain, of[of[0].end == 0].first, x);
     for (int i = begin; i < end; ++i) largest = fabs(x[i]) > largest ? fabs(x[i]) : largest;
     for (int half = 0; half < 2; ++half) {
-        const fu_span rows = trimmed(halves[half], FADED * largest, x);
+        const fu_span rows = trimmed(fu_half(s, 2 * chain + half), FU_FADED * largest, x);
         if (rows.first < rows.end) s->columns[s->n_columns++] = (fu_piece){k, rows};
     }
 }
