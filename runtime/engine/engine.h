@@ -108,8 +108,6 @@ typedef struct {
     void (*dgetrs)(char *, int *, int *, double *, int *, int *, double *, int *, int *);
 } fu_lapack;
 
-#define FU_FADED 1e-32 /* of a column's largest entry: what adds nothing to any solution */
-
 /* band.c eliminates so many columns at once (a band is one less wide at least), and touches so many numbers beyond the
  * end of a column of n. */
 #define FU_BAND_GROUP 4
@@ -192,8 +190,8 @@ void fu_band_solve(int n, int width, const double *A, int first, double *x);
 /* linear.c */
 void fu_system_clear(fu_system *system);
 void fu_system_clear_border(fu_system *system);
-fu_span fu_half(const fu_system *system, int half);
 fu_span fu_common(fu_span one, fu_span other);
+int fu_pieces(const fu_system *system, int k, int chain, const double *x, fu_piece *pieces);
 int fu_system_factor_band(fu_system *system, const fu_lapack *lapack);
 void fu_system_keep_border(fu_system *system, const fu_lapack *lapack, int columns);
 int fu_system_factor_border(fu_system *system, const fu_lapack *lapack);

@@ -3,6 +3,7 @@
 #include "engine.h"
 
 #define SYMMETRIC 1e-10 /* of the diagonals: what rounding leaves between two halves */
+#define FADED 1e-32     /* of a column's largest entry: what adds nothing to a solution */
 
 void fu_system_clear(fu_system *s)
 {
@@ -23,13 +24,6 @@ void fu_system_clear_border(fu_system *s)
             }
         }
     for (int i = 0; i < s->m * s->m; ++i) s->D[i] = 0.0;
-}
-
-/* rows of half a chain: a column that closes a ring touches both ends of its chain */
-fu_span fu_half(const fu_system *s, int half)
-{
-    const int begin = s->chains[half / 2], end = s->chains[half / 2 + 1], middle = (begin + end) / 2;
-    return half % 2 ? (fu_span){middle, end} : (fu_span){begin, middle};
 }
 
 fu_span fu_common(fu_span one, fu_span other)
@@ -102,30 +96,36 @@ static double times(const fu_system *s, const fu_piece *p, fu_span of, const dou
     return sum;
 }
 
-/* rows of x but those at both ends that are not above `least` */
-static fu_span trimmed(fu_span span, double least, const double *x)
+/* The rows that count of column k of X in a chain, by halves: it fades away from what it touches, in the end to numbers
+ * so small that the processor is slow with them. Returns how many pieces that is. */
+int fu_pieces(const fu_system *s, int k, int chain, const double *x, fu_piece *pieces)
 {
-    while (span.first < span.end && fabs(x[span.first]) <= least) ++span.first;
-    while (span.first < span.end && fabs(x[span.end - 1]) <= least) --span.end;
-    return span;
+    const int begin = s->chains[chain], end = s->chains[chain + 1], middle = (begin + end) / 2;
+    const fu_span halves[2] = {{begin, middle}, {middle, end}};
+    double largest = 0.0;
+    int n = 0;
+    for (int i = begin; i < end; ++i) largest = fabs(x[i]) > largest ? fabs(x[i]) : largest;
+    for (int half = 0; half < 2; ++half) {
+        fu_span rows = halves[half];
+        while (rows.first < rows.end && fabs(x[rows.first]) <= FADED * largest) ++rows.first;
+        while (rows.first < rows.end && fabs(x[rows.end - 1]) <= FADED * largest) --rows.end;
+        if (rows.first < rows.end) pieces[n++] = (fu_piece){k, rows};
+    }
+    return n;
 }
 
-/* column k of X = K^-1 B in a chain, by halves; it fades away from what it touches, in the end to denormal numbers */
+/* column k of X = K^-1 B in a chain */
 static void solve_column(fu_system *s, const fu_lapack *lapack, int k, int chain)
 {
     const int begin = s->chains[chain], end = s->chains[chain + 1];
     const fu_span *of = s->span_B + 2 * (k * s->n_chains + chain);
-    double *x = s->X + FU_BAND_LENGTH(s->n, s->width) * k, largest = 0.0;
+    double *x = s->X + FU_BAND_LENGTH(s->n, s->width) * k;
     if (!of[0].end && !of[1].end) return;
     for (int i = begin; i < end + FU_BAND_BEYOND(s->width); ++i) x[i] = 0.0;
     for (int half = 0; half < 2; ++half)
         for (int i = of[half].first; i < of[half].end; ++i) x[i] = s->B[(long)k * s->n + i];
     solve_chain(s, lapack, chain, of[of[0].end == 0].first, x);
-    for (int i = begin; i < end; ++i) largest = fabs(x[i]) > largest ? fabs(x[i]) : largest;
-    for (int half = 0; half < 2; ++half) {
-        const fu_span rows = trimmed(fu_half(s, 2 * chain + half), FU_FADED * largest, x);
-        if (rows.first < rows.end) s->columns[s->n_columns++] = (fu_piece){k, rows};
-    }
+    s->n_columns += fu_pieces(s, k, chain, x, s->columns + s->n_columns);
 }
 
 /* Columns of X and pieces of C, but those that stay. */

@@ -76,23 +76,21 @@ static int is_damped(const fu_model *model)
     return damped || model->n_rigids; /* a body's gyroscopic moment goes with its velocity */
 }
 
-/* column k of X, and the rows of it that count */
+/* column k of X, and the rows of it that count; not if B has none */
 static void solve_column(fu_run *run, int k)
 {
     const fu_system *s = &run->newton;
     fu_complex_system *c = &run->complex_newton;
-    int n = s->n, width = s->width, rows = 3 * width + 1, one = 1, info;
-    complex_ *x = (complex_ *)c->X + (long)k * n, *B = (complex_ *)c->B + (long)k * n;
-    double largest = 0.0;
-    memcpy(x, B, sizeof(complex_) * (size_t)n);
+    int n = s->n, width = s->width, rows = 3 * width + 1, one = 1, touched = 0, info;
+    complex_ *x = (complex_ *)c->X + (long)k * n;
+    double *size = space(run).unknowns;
+    for (int half = 0; half < 2 * s->n_chains; ++half) touched |= s->span_B[k * 2 * s->n_chains + half].end;
+    if (!touched) return;
+    memcpy(x, (complex_ *)c->B + (long)k * n, sizeof(complex_) * (size_t)n);
     run->model->lapack->zgbtrs("N", &n, &width, &width, &one, c->K, &rows, c->pivot_band, x, &n, &info);
-    for (int i = 0; i < n; ++i) largest = fmax(largest, cabs(x[i]));
-    for (int half = 0; half < 2 * s->n_chains; ++half) {
-        fu_span of = fu_half(s, half);
-        while (of.first < of.end && cabs(x[of.first]) <= FU_FADED * largest) ++of.first;
-        while (of.first < of.end && cabs(x[of.end - 1]) <= FU_FADED * largest) --of.end;
-        if (of.first < of.end) c->columns[c->n_columns++] = (fu_piece){k, of};
-    }
+    for (int i = 0; i < n; ++i) size[i] = cabs(x[i]);
+    for (int chain = 0; chain < s->n_chains; ++chain)
+        c->n_columns += fu_pieces(s, k, chain, size, c->columns + c->n_columns);
 }
 
 static int factor_complex(fu_run *run)
@@ -105,11 +103,7 @@ static int factor_complex(fu_run *run)
     if (n) lapack->zgbtrf(&n, &n, &width, &width, c->K, &rows, c->pivot_band, &info);
     if (info || !m) return info;
     c->n_columns = 0;
-    for (int k = 0; k < m; ++k) {
-        int end = 0;
-        for (int half = 0; half < 2 * s->n_chains; ++half) end |= s->span_B[k * 2 * s->n_chains + half].end;
-        if (end) solve_column(run, k);
-    }
+    for (int k = 0; k < m; ++k) solve_column(run, k);
     for (const fu_piece *p = c->columns; p < c->columns + c->n_columns; ++p)
         for (const fu_piece *r = s->rows; r < s->rows + s->n_rows; ++r) {
             const fu_span of = fu_common(p->rows, r->rows);
