@@ -305,13 +305,19 @@ cdef class Engine:
             self.arrays[name] = np.zeros(shape)
         return pointer
 
-    cdef void _system(self, fu_system *system, int n, int width, int m):
-        system.n, system.width, system.m = n, width, m
-        system.D, system.L = self._zeros(m * m), self._zeros((width + 1) * (n + FU_BAND_GROUP))
+    cdef void _system(self, fu_system *system, model, int width, int m):
+        cdef int n = model.n_band, chains = len(model.chains) - 1
+        system.n, system.width, system.m, system.n_chains = n, width, m, chains
+        system.chains = self._ints(model.chains)
+        middles = (model.chains[:-1] + model.chains[1:]) // 2
+        system.half = self._ints(np.searchsorted(np.sort([*model.chains[:-1], *middles]), np.arange(n), "right") - 1)
+        system.D, system.L = self._zeros(m * m), self._zeros((width + 1) * (n + FU_BAND_GROUP * chains))
         system.B, system.C = self._zeros(n * m), self._zeros(n * m)
         system.X = self._zeros(FU_BAND_LENGTH(n, width) * m)
-        system.span_B, system.span_C = <fu_span *>self._ints(np.zeros(2 * m)), <fu_span *>self._ints(np.zeros(2 * m))
-        system.coupled = self._ints(np.zeros(m))
+        system.span_B = <fu_span *>self._ints(np.zeros(2 * 2 * m * chains))
+        system.span_C = <fu_span *>self._ints(np.zeros(2 * 2 * m * chains))
+        system.columns = <fu_piece *>self._ints(np.zeros(3 * 2 * m * chains))
+        system.rows = <fu_piece *>self._ints(np.zeros(3 * 2 * m * chains))
         system.pivot_band, system.pivot_border = self._ints(np.zeros(n)), self._ints(np.zeros(m))
 
     cdef void _state(self, fu_state *state, model):
@@ -334,12 +340,12 @@ cdef class Engine:
         self._state(&run.now, model)
         self._state(&run.next, model)
         width = max(model.width, FU_BAND_GROUP - 1)
-        self._system(&run.newton, model.n_band, width, model.n_border_dof + model.n_extra)
+        self._system(&run.newton, model, width, model.n_border_dof + model.n_extra)
         a = &run.accelerator
-        self._system(&a.mass, model.n_band, width, model.n_border_dof + model.n_multipliers)
+        self._system(&a.mass, model, width, model.n_border_dof + model.n_multipliers)
         # that of the mass is factored elsewhere, before the first of Newton is made
         run.newton.K = a.mass.K = self._zeros((3 * width + 1) * model.n_band)
-        a.bodies = self._zeros(a.mass.m * a.mass.m)
+        a.corner = self._zeros(a.mass.m * a.mass.m)
         a.rhs = self._zeros(unknowns + model.n_multipliers + FU_BAND_BEYOND(width))
         rows = n_joints + len(model.links)
         a.rows = <fu_rows *>self._zeros(rows * sizeof(fu_rows) // sizeof(double) + 1)
@@ -374,6 +380,7 @@ cdef class Engine:
         c = &self.run.complex_newton
         c.K, c.D, c.x = self._zeros(2 * rows * n), self._zeros(2 * m * m), self._zeros(2 * (n + m))
         c.B, c.C, c.X = self._zeros(2 * n * m), self._zeros(2 * n * m), self._zeros(2 * n * m)
+        c.columns = <fu_piece *>self._ints(np.zeros(3 * 2 * m * system.n_chains))
         c.D_real, c.pivot_band, c.pivot_border = self._zeros(m * m), self._ints(np.zeros(n)), self._ints(np.zeros(m))
         self.run.scratch = self._zeros(12 * self.model.n_dof + 3 * self.model.n_q + 7 + n + m)
 

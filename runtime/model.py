@@ -22,7 +22,7 @@ from funicular.integrators import choose
 from funicular.libraries import kernels_of, tables_of
 from funicular.parts import Cable, RigidBody, Slide
 from funicular.recording import Recording, named, recorded
-from funicular.reduction import Node, half_width, supports
+from funicular.reduction import Node, supports
 from funicular.scene import Scene
 from funicular.settings import RunSettings
 from funicular.streaming import Stream, pauses
@@ -124,6 +124,7 @@ class Model:
     n_extra: int
     n_multipliers: int
     width: int
+    chains: np.ndarray
     nodes: dict[str, list[Node]]
     tables: list[int] = field(default_factory=list)
 
@@ -206,11 +207,12 @@ def build(scene: Scene) -> Model:
                                + [_rigid_gravity(b, gravity, n_velocity) for b in rigids] + [[]]),
         place=np.concatenate([reduction.place, reduction.n_unknowns + np.arange(n_velocity * len(rigids))]).astype(int),
         combinations=reduction.combinations,
-        n_band=reduction.n_unknowns,
-        n_border_dof=n_velocity * len(rigids),
+        n_band=reduction.numbering.n_band,
+        n_border_dof=reduction.n_unknowns - reduction.numbering.n_band + n_velocity * len(rigids),
         n_extra=used + dim * len(springs),
         n_multipliers=held,
-        width=half_width(reduction, elements),
+        width=reduction.numbering.width,
+        chains=reduction.numbering.chains,
         nodes=nodes,
         tables=[tables_of(name) for name in {c.library for c in cables if c.library is not None}],
     )

@@ -14,11 +14,14 @@ from dataclasses import dataclass, field
 import numpy as np
 from funicular.errors import SceneError
 from funicular.scene import Scene
-from scipy.sparse import coo_array, csr_array
+from scipy.sparse import coo_array, csr_array, triu
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 PARALLEL = 1e-9
 """Tangents whose cross product is smaller than this are parallel."""
+
+SOLVES = 30
+"""That a factored matrix serves, about: ten, whose numbers come from memory and take three times as long each."""
 
 
 @dataclass
@@ -45,12 +48,27 @@ class Row:
 
 
 @dataclass
+class Numbering:
+    """number[unknown]: first the band, in which unknowns of one element are at most `width` apart, then the border.
+
+    chains: where rows of the band begin that nothing but the border ties to the rows before; and the end.
+    """
+
+    number: np.ndarray
+    n_band: int
+    width: int
+    chains: np.ndarray
+    operations: float
+
+
+@dataclass
 class Reduction:
     """place[dof]: its unknown, -1 held, -2 - k the k-th row of `combinations`; the prescribed parts by dof."""
 
     place: np.ndarray
     combinations: csr_array
     n_unknowns: int
+    numbering: Numbering
     prescribed: list[tuple[int, Prescribed]]
 
 
@@ -147,17 +165,24 @@ class Supports:
     def reduce(self, n_dof: int, elements: np.ndarray) -> Reduction:
         """Number the unknowns; elements (n, 2): first dof and number of dofs of each.
 
-        Where combinations tie distant nodes, the order is that of reverse Cuthill and McKee if that is narrower.
+        Where joins tie distant nodes, in the order that takes the fewest operations.
         """
         unknown = np.ones(n_dof, dtype=bool)
         unknown[list(self.rows)] = False
-        number = np.cumsum(unknown) - 1
+        drawn = np.cumsum(unknown) - 1
+        n = int(unknown.sum())
         combined = {dof: row for dof, row in self.rows.items() if row.free}
         if any(row.prescribed for row in combined.values()):
             raise SceneError("scene", "a join ties a node that moves as prescribed to one that is partly free",
                              "prescribe displacement and rotation there, or join with rotation = \"free\"")
+        made_of = [(dof, drawn[of]) for dof, row in combined.items() for of in row.free]
+        touches = _touches(elements, np.concatenate([np.stack([np.flatnonzero(unknown), np.arange(n)], axis=1),
+                                                     np.array(made_of, dtype=int).reshape(-1, 2)]), (n_dof, n))
+        numbering = _counted(touches, np.arange(n), n)
         if combined:
-            number = _narrow(number, unknown, combined, elements)
+            others = (_counted(touches, *_near(touches)), _counted(touches, *_strung(touches)))
+            numbering = min(numbering, *others, key=lambda one: one.operations)
+        number = numbering.number[drawn.clip(0)] if n else drawn
         place = np.where(unknown, number, -1)
         rows, columns, values, count = [], [], [], 0
         for dof, row in sorted(combined.items()):
@@ -169,10 +194,9 @@ class Supports:
             columns += [int(number[of]) for of in row.free]
             values += list(row.free.values())
             count += 1
-        n = int(unknown.sum())
         combinations = csr_array((values, (rows, columns)), shape=(count, max(n, 1)))
         prescribed = [(dof, part) for dof, row in self.rows.items() for part in row.prescribed]
-        return Reduction(place.astype(int), combinations, n, prescribed)
+        return Reduction(place.astype(int), combinations, n, numbering, prescribed)
 
 
 def _slope(master: Node, slave: Node, name: str) -> list[dict[int, float]]:
@@ -196,45 +220,79 @@ def _slope(master: Node, slave: Node, name: str) -> list[dict[int, float]]:
     return [{at[d]: ratio} for d in range(3)]
 
 
-def _narrow(number: np.ndarray, unknown: np.ndarray, combined: dict[int, Row], elements: np.ndarray) -> np.ndarray:
-    """The numbering whose band is narrower: as it stands, or Cuthill and McKee's."""
-    rows, columns = [], []
-    for first, n in elements:
-        touched: set[int] = set()
-        for dof in range(first, first + n):
-            if unknown[dof]:
-                touched.add(int(number[dof]))
-            elif dof in combined:
-                touched.update(int(number[of]) for of in combined[dof].free)
-        for k in touched:
-            rows += [k] * len(touched)
-            columns += list(touched)
-    n = int(unknown.sum())
-    pattern = coo_array((np.ones(len(rows)), (rows, columns)), shape=(n, n)).tocsr()
-    order = reverse_cuthill_mckee(pattern, symmetric_mode=True)
-    new = np.empty(n, dtype=int)
-    new[order] = np.arange(n)
-    r, c = pattern.nonzero()
-    if np.max(np.abs(new[r] - new[c]), initial=0) >= np.max(np.abs(r - c), initial=0):
-        return number
-    return np.where(unknown, new[np.clip(number, 0, n - 1)], number)
+def _touches(elements: np.ndarray, made_of: np.ndarray, shape: tuple[int, int]) -> csr_array:
+    """(elements, unknowns): 1 where an element has a share of an unknown; made_of (k, 2): a dof, an unknown of it."""
+    counts = elements[:, 1]
+    dofs = np.repeat(elements[:, 0] - np.cumsum(counts) + counts, counts) + np.arange(counts.sum())
+    has = csr_array((np.ones(len(dofs)), dofs, np.append(0, np.cumsum(counts))), shape=(len(elements), shape[0]))
+    touches = has @ coo_array((np.ones(len(made_of)), (made_of[:, 0], made_of[:, 1])), shape=shape).tocsr()
+    touches.data[:] = 1.0
+    return touches
 
 
-def half_width(reduction: Reduction, elements: np.ndarray) -> int:
-    """The largest distance between two unknowns of one element; elements as in `Supports.reduce`."""
-    place = reduction.place
-    low, high = np.where(place >= 0, place, np.iinfo(int).max), place.copy()
-    start, columns = reduction.combinations.indptr, reduction.combinations.indices
-    for dof in np.flatnonzero(place < -1):
-        k = -2 - place[dof]
-        of = columns[start[k] : start[k + 1]]
-        low[dof], high[dof] = of.min(), of.max()
-    widest = 0
-    for n in np.unique(elements[:, 1]) if len(elements) else ():
-        dofs = elements[elements[:, 1] == n, 0][:, None] + np.arange(n)
-        top, bottom = high[dofs].max(axis=1), low[dofs].min(axis=1)
-        widest = max(widest, int(np.max(np.where(top >= 0, top - bottom, 0))))
-    return widest
+def _near(touches: csr_array) -> tuple[np.ndarray, int]:
+    """Number of each unknown and size of the band: all in the band, by reverse Cuthill and McKee."""
+    order = reverse_cuthill_mckee((touches.T @ touches).tocsr(), symmetric_mode=True)
+    return np.argsort(order), len(order)
+
+
+def _strung(touches: csr_array) -> tuple[np.ndarray, int]:
+    """Number of each unknown and size of the band: elements strung to chains, those first that share most unknowns.
+
+    Unknowns that are shared by others than two that follow each other in a chain are the border: nodes where more than
+    two ends meet, and one of each ring.
+    """
+    n_elements, n = touches.shape
+    shared = triu(touches @ touches.T, 1).tocoo()
+    beside, chain = [[] for _ in range(n_elements)], list(range(n_elements))
+
+    def root(e: int) -> int:
+        while chain[e] != e:
+            chain[e] = e = chain[chain[e]]
+        return e
+
+    for k in np.lexsort((shared.col, shared.row, -shared.data)):
+        a, b = int(shared.row[k]), int(shared.col[k])
+        if len(beside[a]) < 2 and len(beside[b]) < 2 and root(a) != root(b):
+            beside[a].append(b)
+            beside[b].append(a)
+            chain[root(a)] = root(b)
+    string, at = [], np.full(n_elements, -1)
+    for end in (e for e in range(n_elements) if len(beside[e]) < 2):
+        following = [end] if at[end] < 0 else []
+        while following:
+            at[following[0]] = len(string)
+            string.append(following[0])
+            following = [e for e in beside[string[-1]] if at[e] < 0]
+    entry = touches.tocoo()
+    first, last = np.full(n, n_elements), np.full(n, -1)
+    np.minimum.at(first, entry.col, at[entry.row])
+    np.maximum.at(last, entry.col, at[entry.row])
+    follows = np.array([b in beside[a] for a, b in zip(string, string[1:] + string[:1], strict=True)])
+    border = (last > first + 1) | (last > first) & ~follows[first]
+    return np.argsort(np.lexsort((np.arange(n), first, last, border))), n - int(border.sum())
+
+
+def _counted(touches: csr_array, number: np.ndarray, n_band: int) -> Numbering:
+    """What is to be known of a numbering: see linear.c for the operations, of one factorisation and its solves."""
+    entry = touches.tocoo()
+    element, at = entry.row, number[entry.col]
+    inside = at < n_band
+    low, high = np.full(touches.shape[0], n_band), np.full(touches.shape[0], -1)
+    np.minimum.at(low, element[inside], at[inside])
+    np.maximum.at(high, element[inside], at[inside])
+    banded = high >= 0
+    ties = np.zeros(n_band + 1, dtype=int)  # elements that tie a row to the one before
+    np.add.at(ties, low[banded] + 1, 1)
+    np.add.at(ties, high[banded] + 1, -1)
+    chains = np.append(np.flatnonzero(np.cumsum(ties[:-1]) == 0), n_band)
+    width = int(np.max(high[banded] - low[banded], initial=0))
+    of = np.searchsorted(chains, low, "right") - 1
+    outside = ~inside & banded[element]
+    columns = np.unique(np.stack([at[outside], of[element[outside]]]), axis=1)  # of the border, in the chains they touch
+    coupled, m = float(np.diff(chains)[columns[1]].sum()), len(number) - n_band
+    factor = n_band * width**2 / 2 + 2 * width * coupled + m**3 / 3
+    return Numbering(number, n_band, width, chains, factor + SOLVES * (2 * width * n_band + coupled + m**2))
 
 
 def supports(scene: Scene, nodes: dict[str, list[Node]], signal) -> Supports:

@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from funicular import Circle, Material, Scene
+from funicular import Circle, Material, Scene, reduction
 from funicular.engine import Engine
 from funicular.integrators import GeneralisedAlpha
 from funicular.model import build
-from linear_cost import SCENES, scene
+from linear_cost import SCENES, ladder, scene
 from test_newton_matrix import SCENES as DIFFICULT
 
 
@@ -58,6 +58,30 @@ def test_band_is_factored_as_it_allows(made, size, definite):
     error, found = solution_error(started(made), 1e-3, size)
     assert found is definite
     assert error < 1e-9
+
+
+@pytest.mark.parametrize(("name", "shared"), [("three cables", 3), ("ring", 3), ("ladder", 9)])
+def test_joins_leave_the_band_as_narrow_as_one_cable(name, shared):
+    """Only positions where more than two elements meet are in the border, and of a ring one."""
+    joined, alone = build(scene(name, 120)), build(scene("pendulum", 40))
+    assert joined.width == alone.width == 11
+    assert joined.n_border_dof - 6 * len(joined.rigids) == shared
+
+
+def test_many_joins_widen_the_band_where_that_is_cheaper():
+    assert build(ladder(120, rungs=30)).n_border_dof == 0
+
+
+@pytest.mark.parametrize("integrator", ["genalpha", "energy", "radau", "explicit"])
+@pytest.mark.parametrize("name", ["three cables", "ring", "ladder"])
+def test_a_border_changes_nothing_but_rounding(name, integrator, monkeypatch):
+    def motion() -> np.ndarray:
+        run = scene(name, 12).run(duration=0.01, output_step=0.01, step=2e-4, integrator=integrator)
+        return np.concatenate([run[f"{cable}.nodal_vectors"][-1] for cable in run.scene.cables])
+
+    with_border = motion()
+    monkeypatch.setattr(reduction, "_strung", lambda touches: (np.arange(touches.shape[1]), touches.shape[1]))
+    np.testing.assert_allclose(motion(), with_border, rtol=0, atol=1e-13)
 
 
 @pytest.mark.parametrize("name", SCENES)

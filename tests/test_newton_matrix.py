@@ -74,7 +74,23 @@ def frame() -> Scene:
     return scene
 
 
-SCENES = {f.__name__: f for f in (rider, loaded, planar, frame)}
+def star() -> Scene:
+    """Three damped cables that meet, two of them rigidly, in directions of their own; a rider, and a spring there."""
+    scene = Scene()
+    steel = Material(youngs_modulus=1e8, poisson_ratio=0.3, density=4200, damping_time=1e-4)
+    square = Rectangle(height=0.05, width=0.05)
+    for name, start, element in (("a", (0, 0, 0), "beam24"), ("b", (2, 1, 0), "beam24"), ("c", (1.5, -1, 1), "cable12")):
+        scene.cable(name, start=start, end=(1, 0, 0), elements=3, element=element, section=square, material=steel)
+        scene.pin(name, s=0.0)
+    scene.join("a", s=1.0, to="b", at=scene.cables["b"].length)
+    scene.join("a", s=1.0, to="c", at=scene.cables["c"].length, rotation="free")
+    scene.rigid_body("A", mass=1.0, inertia=(0.02, 0.03, 0.04), position=(0.9, -0.1, 0.05), velocity=(1, 0.2, 0.1))
+    scene.slide("A", along="a", s=0.9, at=(0, 0.1, -0.05))
+    scene.spring(("a", 1.0), (1.0, 1.0, 0.1), stiffness=300.0, damping=2.0)
+    return scene
+
+
+SCENES = {f.__name__: f for f in (rider, loaded, planar, frame, star)}
 
 
 @pytest.fixture(params=list(SCENES))

@@ -28,24 +28,27 @@ static void evaluate(const fu_model *model, const fu_state *state, fu_accelerato
     }
 }
 
-/* The band of M factored, once: it is constant, and so is the bodies' part, by body axes. */
+/* M is constant, that of the bodies by body axes: its band is factored once, and its border's columns are solved. */
 int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
 {
-    fu_system_clear(&work->mass);
-    fu_dynamic_matrix(model, model->zero, model->zero, 1.0, 0.0, 0.0, &work->mass);
-    memcpy(work->bodies, work->mass.D, sizeof(double) * (size_t)(work->mass.m * work->mass.m));
-    if (fu_system_factor_band(&work->mass, model->lapack)) return 1;
-    return !work->mass.definite; /* else it would be in K, which the Newton matrix takes */
+    fu_system *s = &work->mass;
+    s->constant = s->constant_columns = s->constant_rows = 0;
+    fu_system_clear(s);
+    fu_dynamic_matrix(model, model->zero, model->zero, 1.0, 0.0, 0.0, s);
+    memcpy(work->corner, s->D, sizeof(double) * (size_t)(s->m * s->m));
+    if (fu_system_factor_band(s, model->lapack)) return 1;
+    fu_system_keep_border(s, model->lapack, model->n_border_dof);
+    return !s->definite; /* else it would be in K, which the Newton matrix takes */
 }
 
-/* The border of M: that of the bodies. */
+/* The border of M. */
 static void border(const fu_model *model, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
     const int n = model->n_border_dof, whole = n + model->n_multipliers;
     fu_system_clear_border(s);
     for (int k = 0; k < n; ++k)
-        memcpy(s->D + (long)k * s->m, work->bodies + (long)k * whole, sizeof(double) * (size_t)n);
+        memcpy(s->D + (long)k * s->m, work->corner + (long)k * whole, sizeof(double) * (size_t)n);
 }
 
 /* Border of [M H'; H 0] at a state whose terms are evaluated. */

@@ -188,9 +188,9 @@ static void add_mass(const fu_cable *cable, double mass, double *K)
 static void add_matrix(const fu_model *model, int first, int n, const double *K, fu_system *system)
 {
     const int rows = 3 * system->width + 1, diagonal = 2 * system->width, *place = model->place + first;
-    int combined = 0;
-    for (int j = 0; j < n; ++j) combined |= place[j] < -1;
-    if (combined) {
+    int elsewhere = 0;
+    for (int j = 0; j < n; ++j) elsewhere |= place[j] < -1 || place[j] >= system->n;
+    if (elsewhere) {
         for (int i = 0; i < n; ++i)
             for (int j = 0; j < n; ++j) fu_add(model, system, first + i, first + j, K[i * n + j]);
         return;

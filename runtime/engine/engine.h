@@ -4,8 +4,8 @@
  * attitude (unit quaternion; in the plane unit complex number). v, accelerations and increments have one entry a degree
  * of freedom (dof): the cables' as in q, then the bodies' (translation; rotation about body axes).
  *
- * Unknowns of a linear system: the free coordinates of the cables ("band"), then the border: those of the bodies, then
- * what each joint and spring adds. Supports make dofs linear in the unknowns, dofs = T unknowns + what motions prescribe;
+ * Unknowns of a linear system: the free coordinates of the cables ("band"), then the border: those where cables meet, if
+ * that is cheaper (reduction.py), those of the bodies, then what each joint and spring adds. Supports make dofs linear in the unknowns, dofs = T unknowns + what motions prescribe;
  * place[dof] is the place of the unknown that the dof is, -1 where it is held or prescribed, -2 - k where it is the k-th
  * combination of unknowns (reduce.c).
  *
@@ -145,25 +145,36 @@ typedef struct {
 #define FU_BAND_BEYOND(width) ((width) + FU_BAND_GROUP)
 #define FU_BAND_LENGTH(n, width) ((long)(n) + FU_BAND_BEYOND(width))
 
-/* rows [first, end) of a column: the others are zero */
+/* rows [first, end) of a column */
 typedef struct {
     int first, end;
 } fu_span;
 
-/* A banded matrix with a border: [K B; C D]. Only K is large. */
+/* What column k of X, or row k of C, has in half a chain. */
+typedef struct {
+    int k;
+    fu_span rows;
+} fu_piece;
+
+/* A banded matrix with a border: [K B; C D]. Only K is large. It falls into chains, which the border alone ties. */
 typedef struct {
     int n, width;      /* band part: size, half bandwidth */
     int m;             /* border */
+    int n_chains;
+    int constant, constant_columns, constant_rows; /* of the border, from the first on, that stay; pieces of those */
     int definite;      /* the band is factored in L (band.c), else in K (dgbtrf) */
-    int n_coupled;     /* columns of B that are not zero */
+    int n_columns, n_rows;
+    const int *chains; /* n_chains + 1: the first row of each, and n */
+    const int *half;   /* of each row of the band: 2 chain, and 1 more from the middle on */
     double *K;         /* LAPACK band storage, (3 width + 1) x n; of all systems of a run the same */
-    double *L;         /* (width + 1) x n, and a group more */
+    double *L;         /* (width + 1) x n, and a group more for each chain */
     double *B;         /* n x m, column by column */
     double *C;         /* the border's rows, transposed: n x m */
     double *D;         /* m x m, column by column */
-    double *X;         /* K^-1 B, its n_coupled columns, FU_BAND_LENGTH each */
-    fu_span *span_B, *span_C;
-    int *coupled, *pivot_band, *pivot_border;
+    double *X;         /* K^-1 B in the chains that B touches, FU_BAND_LENGTH a column */
+    fu_span *span_B, *span_C; /* 2 n_chains x m: by halves, since what closes a ring touches both ends of a chain */
+    fu_piece *columns, *rows; /* of X and C */
+    int *pivot_band, *pivot_border;
 } fu_system;
 
 typedef struct {
@@ -214,7 +225,10 @@ void fu_band_solve(int n, int width, const double *A, int first, double *x);
 /* linear.c */
 void fu_system_clear(fu_system *system);
 void fu_system_clear_border(fu_system *system);
+fu_span fu_common(fu_span one, fu_span other);
+int fu_pieces(const fu_system *system, int k, int chain, const double *x, fu_piece *pieces);
 int fu_system_factor_band(fu_system *system, const fu_lapack *lapack);
+void fu_system_keep_border(fu_system *system, const fu_lapack *lapack, int columns);
 int fu_system_factor_border(fu_system *system, const fu_lapack *lapack);
 void fu_system_solve(const fu_system *system, const fu_lapack *lapack, double *x);
 
@@ -310,7 +324,7 @@ void fu_turn_columns(const fu_body *kernel, double *rows, int n_rows, int n_colu
 /* acceleration.c: eq 38 and what comes out of it */
 typedef struct {
     fu_system mass;   /* [M H'; H 0], its band factored once */
-    double *bodies;   /* m x m: the bodies' part of the border */
+    double *corner;   /* m x m: D of M, before joints are added and it is factored */
     double *rhs;      /* unknowns, and FU_BAND_BEYOND */
     fu_rows *rows;    /* of the slides, then of the links */
     fu_slide_state *slides;
@@ -355,6 +369,8 @@ typedef struct {
 typedef struct {
     void *K, *B, *C, *D, *X, *x; /* double _Complex; x: right side and solution */
     double *D_real;              /* the real system's border before it was factored */
+    int n_columns;
+    fu_piece *columns;           /* of X; those of C are the real system's */
     int *pivot_band, *pivot_border;
 } fu_complex_system;
 

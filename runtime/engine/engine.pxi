@@ -103,8 +103,13 @@ cdef extern from "engine.h" nogil:
         void *zgetrs
     ctypedef struct fu_span:
         int first, end
+    ctypedef struct fu_piece:
+        int k
+        fu_span rows
     ctypedef struct fu_system:
-        int n, width, m, definite
+        int n, width, m, n_chains, definite
+        const int *chains
+        const int *half
         double *K
         double *L
         double *B
@@ -113,7 +118,8 @@ cdef extern from "engine.h" nogil:
         double *X
         fu_span *span_B
         fu_span *span_C
-        int *coupled
+        fu_piece *columns
+        fu_piece *rows
         int *pivot_band
         int *pivot_border
     ctypedef struct fu_model:
@@ -160,7 +166,7 @@ cdef extern from "engine.h" nogil:
         double s_rate
     ctypedef struct fu_accelerator:
         fu_system mass
-        double *bodies
+        double *corner
         double *rhs
         fu_rows *rows
         fu_slide_state *slides
@@ -194,6 +200,7 @@ cdef extern from "engine.h" nogil:
         void *X
         void *x
         double *D_real
+        fu_piece *columns
         int *pivot_band
         int *pivot_border
     ctypedef struct fu_watch:

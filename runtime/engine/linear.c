@@ -1,7 +1,9 @@
-/* Bordered band systems: the chain of a cable's nodes is banded, riders and joints are the border. */
+/* Bordered band systems: the chain of a cable's nodes is banded; riders, joints, and nodes where more than two cables
+ * meet, are the border. A column of it has a solution in the chains that it touches and nowhere else. */
 #include "engine.h"
 
 #define SYMMETRIC 1e-10 /* of the diagonals: what rounding leaves between two halves */
+#define FADED 1e-32     /* of a column's largest entry: what adds nothing to a solution */
 
 void fu_system_clear(fu_system *s)
 {
@@ -12,25 +14,42 @@ void fu_system_clear(fu_system *s)
 
 void fu_system_clear_border(fu_system *s)
 {
-    for (int k = 0; k < s->m; ++k) {
-        fu_span *of[2] = {&s->span_B[k], &s->span_C[k]};
-        double *column[2] = {s->B + (long)k * s->n, s->C + (long)k * s->n};
-        for (int side = 0; side < 2; ++side) {
-            for (int i = of[side]->first; i < of[side]->end; ++i) column[side][i] = 0.0;
-            *of[side] = (fu_span){s->n, 0};
+    for (int k = s->constant; k < s->m; ++k)
+        for (int half = 0; half < 2 * s->n_chains; ++half) {
+            fu_span *of[2] = {&s->span_B[k * 2 * s->n_chains + half], &s->span_C[k * 2 * s->n_chains + half]};
+            double *column[2] = {s->B + (long)k * s->n, s->C + (long)k * s->n};
+            for (int side = 0; side < 2; ++side) {
+                for (int i = of[side]->first; i < of[side]->end; ++i) column[side][i] = 0.0;
+                *of[side] = (fu_span){s->n, 0};
+            }
         }
-    }
     for (int i = 0; i < s->m * s->m; ++i) s->D[i] = 0.0;
 }
 
-/* The lower half of K as band.c wants it; zero where K is not symmetric or its diagonal not positive. */
-static int pack(fu_system *s)
+fu_span fu_common(fu_span one, fu_span other)
 {
-    const int width = s->width, rows = 3 * width + 1, stride = width + 1;
-    for (int j = 0; j < s->n; ++j) {
-        const double *below = s->K + (long)j * rows + 2 * width, diagonal = below[0];
-        const int most = s->n - 1 - j < width ? s->n - 1 - j : width;
-        double *column = s->L + (long)j * stride;
+    return (fu_span){one.first > other.first ? one.first : other.first, one.end < other.end ? one.end : other.end};
+}
+
+static int size_of(const fu_system *s, int chain)
+{
+    return s->chains[chain + 1] - s->chains[chain];
+}
+
+/* a chain's columns of L */
+static double *factor_of(const fu_system *s, int chain)
+{
+    return s->L + (s->width + 1) * ((long)s->chains[chain] + FU_BAND_GROUP * chain);
+}
+
+/* The lower half of a chain's K as band.c wants it; zero where K is not symmetric or its diagonal not positive. */
+static int pack(fu_system *s, int chain)
+{
+    const int n = size_of(s, chain), width = s->width, rows = 3 * width + 1, stride = width + 1;
+    for (int j = 0; j < n; ++j) {
+        const double *below = s->K + (long)(s->chains[chain] + j) * rows + 2 * width, diagonal = below[0];
+        const int most = n - 1 - j < width ? n - 1 - j : width;
+        double *column = factor_of(s, chain) + (long)j * stride;
         column[0] = diagonal;
         for (int i = 1; i <= most; ++i) {
             const double *beside = below + (long)i * (rows - 1); /* row j of column j + i */
@@ -45,48 +64,102 @@ static int pack(fu_system *s)
 
 int fu_system_factor_band(fu_system *s, const fu_lapack *lapack)
 {
-    int n = s->n, width = s->width, rows = 3 * width + 1, info = 0;
-    s->definite = pack(s) && !fu_band_factor(lapack, n, width, s->L);
-    if (n && !s->definite) lapack->dgbtrf(&n, &n, &width, &width, s->K, &rows, s->pivot_band, &info);
-    return info;
+    int width = s->width, rows = 3 * width + 1, info = 0;
+    s->definite = 1;
+    for (int c = 0; c < s->n_chains && s->definite; ++c)
+        s->definite = pack(s, c) && !fu_band_factor(lapack, size_of(s, c), width, factor_of(s, c));
+    for (int c = 0; c < s->n_chains && !s->definite; ++c) {
+        int n = size_of(s, c), first = s->chains[c];
+        lapack->dgbtrf(&n, &n, &width, &width, s->K + (long)first * rows, &rows, s->pivot_band + first, &info);
+        if (info) return first + info;
+    }
+    return 0;
 }
 
-/* x <- K^-1 x, zero before `first` */
-static void solve_band(const fu_system *s, const fu_lapack *lapack, int first, double *x)
+/* x <- K^-1 x in a chain, where x is zero before the row `first` */
+static void solve_chain(const fu_system *s, const fu_lapack *lapack, int chain, int first, double *x)
 {
-    int n = s->n, width = s->width, rows = 3 * width + 1, one = 1, info;
-    if (s->definite) fu_band_solve(n, width, s->L, first, x);
-    else if (n) lapack->dgbtrs("N", &n, &width, &width, &one, s->K, &rows, s->pivot_band, x, &n, &info);
+    int n = size_of(s, chain), start = s->chains[chain], width = s->width, rows = 3 * width + 1, one = 1, info;
+    if (s->definite) fu_band_solve(n, width, factor_of(s, chain), first - start, x + start);
+    else
+        lapack->dgbtrs("N", &n, &width, &width, &one, s->K + (long)start * rows, &rows, s->pivot_band + start, x + start,
+                       &n, &info);
 }
 
-/* row k of C, times a column of the band */
-static double times_row(const fu_system *s, int k, const double *x)
+/* piece of a row of C, times the rows `of` a column */
+static double times(const fu_system *s, const fu_piece *p, fu_span of, const double *x)
 {
-    const double *row = s->C + (long)k * s->n;
+    const double *row = s->C + (long)p->k * s->n;
+    const fu_span rows = fu_common(p->rows, of);
     double sum = 0.0;
-    for (int i = s->span_C[k].first; i < s->span_C[k].end; ++i) sum += row[i] * x[i];
+    for (int i = rows.first; i < rows.end; ++i) sum += row[i] * x[i];
     return sum;
 }
 
-/* Schur complement of the factored band: D <- D - C K^-1 B, factored. Most columns of B are zero: a body touches a
- * cable through its joint only. */
+/* The rows that count of column k of X in a chain, by halves: it fades away from what it touches, in the end to numbers
+ * so small that the processor is slow with them. Returns how many pieces that is. */
+int fu_pieces(const fu_system *s, int k, int chain, const double *x, fu_piece *pieces)
+{
+    const int begin = s->chains[chain], end = s->chains[chain + 1], middle = (begin + end) / 2;
+    const fu_span halves[2] = {{begin, middle}, {middle, end}};
+    double largest = 0.0;
+    int n = 0;
+    for (int i = begin; i < end; ++i) largest = fabs(x[i]) > largest ? fabs(x[i]) : largest;
+    for (int half = 0; half < 2; ++half) {
+        fu_span rows = halves[half];
+        while (rows.first < rows.end && fabs(x[rows.first]) <= FADED * largest) ++rows.first;
+        while (rows.first < rows.end && fabs(x[rows.end - 1]) <= FADED * largest) --rows.end;
+        if (rows.first < rows.end) pieces[n++] = (fu_piece){k, rows};
+    }
+    return n;
+}
+
+/* column k of X = K^-1 B in a chain */
+static void solve_column(fu_system *s, const fu_lapack *lapack, int k, int chain)
+{
+    const int begin = s->chains[chain], end = s->chains[chain + 1];
+    const fu_span *of = s->span_B + 2 * (k * s->n_chains + chain);
+    double *x = s->X + FU_BAND_LENGTH(s->n, s->width) * k;
+    if (!of[0].end && !of[1].end) return;
+    for (int i = begin; i < end + FU_BAND_BEYOND(s->width); ++i) x[i] = 0.0;
+    for (int half = 0; half < 2; ++half)
+        for (int i = of[half].first; i < of[half].end; ++i) x[i] = s->B[(long)k * s->n + i];
+    solve_chain(s, lapack, chain, of[of[0].end == 0].first, x);
+    s->n_columns += fu_pieces(s, k, chain, x, s->columns + s->n_columns);
+}
+
+/* Columns of X and pieces of C, but those that stay. */
+static void couple(fu_system *s, const fu_lapack *lapack)
+{
+    s->n_columns = s->constant_columns;
+    s->n_rows = s->constant_rows;
+    for (int k = s->constant; k < s->m; ++k)
+        for (int c = 0; c < s->n_chains; ++c) {
+            const fu_span *of = s->span_C + 2 * (k * s->n_chains + c);
+            for (int half = 0; half < 2; ++half)
+                if (of[half].end) s->rows[s->n_rows++] = (fu_piece){k, of[half]};
+            solve_column(s, lapack, k, c);
+        }
+}
+
+/* Let the first columns and rows of the border stay as they are, beside the band, which is factored. */
+void fu_system_keep_border(fu_system *s, const fu_lapack *lapack, int columns)
+{
+    couple(s, lapack);
+    s->constant = columns;
+    s->constant_columns = s->n_columns;
+    s->constant_rows = s->n_rows;
+}
+
+/* Schur complement of the factored band: D <- D - C K^-1 B, factored. */
 int fu_system_factor_border(fu_system *s, const fu_lapack *lapack)
 {
-    int n = s->n, m = s->m, info = 0;
-    const long stride = FU_BAND_LENGTH(n, s->width);
+    int m = s->m, info = 0;
     if (!m) return 0;
-    s->n_coupled = 0;
-    for (int k = 0; k < m; ++k) {
-        const fu_span span = s->span_B[k];
-        if (span.first >= span.end) continue;
-        double *x = s->X + stride * s->n_coupled;
-        for (int i = 0; i < span.first; ++i) x[i] = 0.0;
-        for (int i = span.first; i < span.end; ++i) x[i] = s->B[(long)k * n + i];
-        for (int i = span.end; i < stride; ++i) x[i] = 0.0;
-        solve_band(s, lapack, span.first, x);
-        for (int i = 0; i < m; ++i) s->D[(long)k * m + i] -= times_row(s, i, x);
-        s->coupled[s->n_coupled++] = k;
-    }
+    couple(s, lapack);
+    for (const fu_piece *p = s->columns; p < s->columns + s->n_columns; ++p)
+        for (const fu_piece *r = s->rows; r < s->rows + s->n_rows; ++r)
+            s->D[(long)p->k * m + r->k] -= times(s, r, p->rows, s->X + FU_BAND_LENGTH(s->n, s->width) * p->k);
     lapack->dgetrf(&m, &m, s->D, &m, s->pivot_border, &info);
     return info;
 }
@@ -94,14 +167,14 @@ int fu_system_factor_border(fu_system *s, const fu_lapack *lapack)
 /* In place: right-hand side to solution; x goes on FU_BAND_BEYOND beyond the unknowns, all zero. */
 void fu_system_solve(const fu_system *s, const fu_lapack *lapack, double *x)
 {
-    int n = s->n, m = s->m, one = 1, info;
-    double *y = x + n;
-    solve_band(s, lapack, 0, x);
+    int m = s->m, one = 1, info;
+    double *y = x + s->n;
+    for (int c = 0; c < s->n_chains; ++c) solve_chain(s, lapack, c, s->chains[c], x);
     if (!m) return;
-    for (int k = 0; k < m; ++k) y[k] -= times_row(s, k, x);
+    for (const fu_piece *r = s->rows; r < s->rows + s->n_rows; ++r) y[r->k] -= times(s, r, r->rows, x);
     lapack->dgetrs("N", &m, &one, s->D, &m, s->pivot_border, y, &m, &info);
-    for (int c = 0; c < s->n_coupled; ++c) {
-        const double *column = s->X + FU_BAND_LENGTH(n, s->width) * c, scale = y[s->coupled[c]];
-        for (int i = 0; i < n; ++i) x[i] -= scale * column[i];
+    for (const fu_piece *p = s->columns; p < s->columns + s->n_columns; ++p) {
+        const double *column = s->X + FU_BAND_LENGTH(s->n, s->width) * p->k, scale = y[p->k];
+        for (int i = p->rows.first; i < p->rows.end; ++i) x[i] -= scale * column[i];
     }
 }

@@ -55,11 +55,16 @@ static void accumulate(fu_run *run, complex_ factor)
 {
     const fu_system *s = &run->newton;
     const fu_complex_system *c = &run->complex_newton;
-    const long band = (long)(3 * s->width + 1) * s->n, side = (long)s->n * s->m, corner = (long)s->m * s->m;
-    complex_ *K = c->K, *B = c->B, *C = c->C, *D = c->D;
+    const long band = (long)(3 * s->width + 1) * s->n, corner = (long)s->m * s->m;
+    complex_ *K = c->K, *D = c->D;
     for (long i = 0; i < band; ++i) K[i] += factor * s->K[i];
-    for (long i = 0; i < side; ++i) B[i] += factor * s->B[i];
-    for (long i = 0; i < side; ++i) C[i] += factor * s->C[i];
+    for (int k = 0; k < s->m; ++k)
+        for (int half = 0; half < 2 * s->n_chains; ++half) {
+            const fu_span right = s->span_B[k * 2 * s->n_chains + half], below = s->span_C[k * 2 * s->n_chains + half];
+            complex_ *B = (complex_ *)c->B + (long)k * s->n, *C = (complex_ *)c->C + (long)k * s->n;
+            for (int i = right.first; i < right.end; ++i) B[i] += factor * s->B[(long)k * s->n + i];
+            for (int i = below.first; i < below.end; ++i) C[i] += factor * s->C[(long)k * s->n + i];
+        }
     for (long i = 0; i < corner; ++i) D[i] += factor * s->D[i];
 }
 
@@ -71,20 +76,40 @@ static int is_damped(const fu_model *model)
     return damped || model->n_rigids; /* a body's gyroscopic moment goes with its velocity */
 }
 
+/* column k of X, and the rows of it that count; not if B has none */
+static void solve_column(fu_run *run, int k)
+{
+    const fu_system *s = &run->newton;
+    fu_complex_system *c = &run->complex_newton;
+    int n = s->n, width = s->width, rows = 3 * width + 1, one = 1, touched = 0, info;
+    complex_ *x = (complex_ *)c->X + (long)k * n;
+    double *size = space(run).unknowns;
+    for (int half = 0; half < 2 * s->n_chains; ++half) touched |= s->span_B[k * 2 * s->n_chains + half].end;
+    if (!touched) return;
+    memcpy(x, (complex_ *)c->B + (long)k * n, sizeof(complex_) * (size_t)n);
+    run->model->lapack->zgbtrs("N", &n, &width, &width, &one, c->K, &rows, c->pivot_band, x, &n, &info);
+    for (int i = 0; i < n; ++i) size[i] = cabs(x[i]);
+    for (int chain = 0; chain < s->n_chains; ++chain)
+        c->n_columns += fu_pieces(s, k, chain, size, c->columns + c->n_columns);
+}
+
 static int factor_complex(fu_run *run)
 {
     const fu_system *s = &run->newton;
-    const fu_complex_system *c = &run->complex_newton;
+    fu_complex_system *c = &run->complex_newton;
     const fu_lapack *lapack = run->model->lapack;
     int n = s->n, m = s->m, width = s->width, rows = 3 * width + 1, info = 0;
-    complex_ *B = c->B, *C = c->C, *D = c->D, *X = c->X;
+    complex_ *C = c->C, *D = c->D, *X = c->X;
     if (n) lapack->zgbtrf(&n, &n, &width, &width, c->K, &rows, c->pivot_band, &info);
     if (info || !m) return info;
-    for (long i = 0; i < (long)n * m; ++i) X[i] = B[i];
-    if (n) lapack->zgbtrs("N", &n, &width, &width, &m, c->K, &rows, c->pivot_band, X, &n, &info);
-    for (int k = 0; k < m; ++k)
-        for (int r = 0; r < m; ++r)
-            for (int i = 0; i < n; ++i) D[(long)k * m + r] -= C[(long)r * n + i] * X[(long)k * n + i];
+    c->n_columns = 0;
+    for (int k = 0; k < m; ++k) solve_column(run, k);
+    for (const fu_piece *p = c->columns; p < c->columns + c->n_columns; ++p)
+        for (const fu_piece *r = s->rows; r < s->rows + s->n_rows; ++r) {
+            const fu_span of = fu_common(p->rows, r->rows);
+            for (int i = of.first; i < of.end; ++i)
+                D[(long)p->k * m + r->k] -= C[(long)r->k * n + i] * X[(long)p->k * n + i];
+        }
     lapack->zgetrf(&m, &m, D, &m, c->pivot_border, &info);
     return info;
 }
@@ -98,11 +123,11 @@ static void solve_complex(fu_run *run)
     complex_ *x = c->x, *y = x + n, *C = c->C, *X = c->X;
     if (n) lapack->zgbtrs("N", &n, &width, &width, &one, c->K, &rows, c->pivot_band, x, &n, &info);
     if (!m) return;
-    for (int r = 0; r < m; ++r)
-        for (int i = 0; i < n; ++i) y[r] -= C[(long)r * n + i] * x[i];
+    for (const fu_piece *r = s->rows; r < s->rows + s->n_rows; ++r)
+        for (int i = r->rows.first; i < r->rows.end; ++i) y[r->k] -= C[(long)r->k * n + i] * x[i];
     lapack->zgetrs("N", &m, &one, c->D, &m, c->pivot_border, y, &m, &info);
-    for (int k = 0; k < m; ++k)
-        for (int i = 0; i < n; ++i) x[i] -= y[k] * X[(long)k * n + i];
+    for (const fu_piece *p = c->columns; p < c->columns + c->n_columns; ++p)
+        for (int i = p->rows.first; i < p->rows.end; ++i) x[i] -= y[p->k] * X[(long)p->k * n + i];
 }
 
 /* The real and the complex matrix at `now`. Both are made of M + J, K and D, which systems of other weights differ by. */
@@ -147,7 +172,8 @@ static void keep_row(fu_run *run, int first, int rows, const double *unknowns)
     for (int row = model->n_border_dof + first; rows-- > 0; ++row) {
         const double *along = s->C + (long)row * s->n;
         double sum = 0.0;
-        for (int i = 0; i < s->n; ++i) sum += along[i] * unknowns[i];
+        for (const fu_piece *p = s->rows; p < s->rows + s->n_rows; ++p)
+            for (int i = p->rows.first; i < p->rows.end && p->k == row; ++i) sum += along[i] * unknowns[i];
         for (int i = 0; i < model->n_border_dof; ++i)
             sum += run->complex_newton.D_real[(long)i * s->m + row] * unknowns[s->n + i];
         run->rhs[s->n + row] = sum;

@@ -16,7 +16,7 @@ static row row_of(const fu_model *model, const int *place)
     return (row){start[1] - start[0], model->combination_place + start[0], model->combination_value + start[0]};
 }
 
-/* x = T' force, over the band and the bodies */
+/* x = T' force, over the band and the border's dofs */
 void fu_gather(const fu_model *model, const double *force, double *x)
 {
     for (int i = 0; i < model->n_band + model->n_border_dof; ++i) x[i] = 0.0;
@@ -64,10 +64,10 @@ static void add(fu_system *s, int row, int column, double value)
         s->K[(long)column * (3 * s->width + 1) + 2 * s->width + row - column] += value;
     else if (row < n) {
         s->B[(long)(column - n) * n + row] += value;
-        touch(&s->span_B[column - n], row);
+        touch(&s->span_B[(column - n) * 2 * s->n_chains + s->half[row]], row);
     } else if (column < n) {
         s->C[(long)(row - n) * n + column] += value;
-        touch(&s->span_C[row - n], column);
+        touch(&s->span_C[(row - n) * 2 * s->n_chains + s->half[column]], column);
     } else
         s->D[(long)(column - n) * s->m + row - n] += value;
 }

@@ -4,7 +4,8 @@
 
 Steps of 20 µs of generalised-alpha, one thread, on cable12 with E = 2 MPa: short enough for the finest mesh's waves,
 so that every mesh takes as many iterations a step. A pendulum of 1.5 m let go level; the same held at both ends with
-one and with three riders; three cables joined at a node, with a rider. Microseconds of CPU a step and an element: the
+one and with three riders; three cables joined at a node, with a rider; three joined to a ring; a ladder, two cables side
+by side joined at four nodes. Microseconds of CPU a step and an element: the
 least of repetitions that take turns. Memory: of the engine's arrays, without what it records.
 
 Last, what a substitution takes in the engine and by LAPACK's dpbtrs, both on a band of the pendulum's 501 elements.
@@ -71,8 +72,31 @@ def joined(elements: int) -> Scene:
     return made
 
 
+def ring(elements: int) -> Scene:
+    """Three cables of a third of the elements each, joined to a triangle that a spring holds at a corner."""
+    made = Scene()
+    corners = ((0, 0, 0), (LENGTH, 0, 0), (0.7, 0, 1.2))
+    for k, name in enumerate("abc"):
+        cable(made, name, corners[k], corners[(k + 1) % 3], elements // 3)
+    for name, to in ("ab", "bc", "ca"):
+        made.join(name, s=made.cables[name].length, to=to, at=0.0, rotation="free")
+    made.spring(("a", 0.0), (0, 0.1, 0), stiffness=50.0)
+    return made
+
+
+def ladder(elements: int, rungs: int = 4) -> Scene:
+    """Two cables of half the elements each, held at one end, joined at so many nodes up to the other."""
+    made, each = Scene(), elements // 2
+    for name in "ab":
+        cable(made, name, (0, 0, 0), (LENGTH, 0, 0), each)
+        made.pin(name, s=0.0)
+    for node in sorted({(k + 1) * each // rungs for k in range(rungs)} - {0}):
+        made.join("a", s=LENGTH * node / each, to="b", at=LENGTH * node / each, rotation="free")
+    return made
+
+
 SCENES = {"pendulum": lambda n: pendulum(n), "one rider": lambda n: pendulum(n, 1),
-          "three riders": lambda n: pendulum(n, 3), "three cables": joined}
+          "three riders": lambda n: pendulum(n, 3), "three cables": joined, "ring": ring, "ladder": ladder}
 
 
 def scene(name: str, elements: int) -> Scene:
