@@ -66,6 +66,8 @@ static const fu_element elements[] = {
 
 static const fu_law laws[] = {
     {"beam24_continuum",
+     28,
+     0,
      beam24_continuum_energy,
      beam24_continuum_elastic_force,
      beam24_continuum_elastic_tangent,
@@ -73,9 +75,12 @@ static const fu_law laws[] = {
      beam24_continuum_step_stiffness,
      beam24_continuum_damping_force,
      beam24_continuum_damping_tangent,
-     beam24_continuum_dissipation
+     beam24_continuum_dissipation,
+     beam24_continuum_algorithmic_force
     },
     {"beam24_continuum_curved",
+     28,
+     0,
      beam24_continuum_curved_energy,
      beam24_continuum_curved_elastic_force,
      beam24_continuum_curved_elastic_tangent,
@@ -83,9 +88,12 @@ static const fu_law laws[] = {
      beam24_continuum_curved_step_stiffness,
      beam24_continuum_damping_force,
      beam24_continuum_damping_tangent,
-     beam24_continuum_dissipation
+     beam24_continuum_dissipation,
+     beam24_continuum_algorithmic_force
     },
     {"beam24_structural",
+     0,
+     0,
      beam24_structural_energy,
      beam24_structural_elastic_force,
      beam24_structural_elastic_tangent,
@@ -93,9 +101,12 @@ static const fu_law laws[] = {
      0,
      beam24_structural_damping_force,
      beam24_structural_damping_tangent,
-     beam24_structural_dissipation
+     beam24_structural_dissipation,
+     0
     },
     {"cable12_green_exact",
+     9,
+     1,
      cable12_green_exact_energy,
      cable12_green_exact_elastic_force,
      cable12_green_exact_elastic_tangent,
@@ -103,9 +114,12 @@ static const fu_law laws[] = {
      cable12_green_exact_step_stiffness,
      cable12_green_exact_damping_force,
      cable12_green_exact_damping_tangent,
-     cable12_green_exact_dissipation
+     cable12_green_exact_dissipation,
+     cable12_green_exact_algorithmic_force
     },
     {"cable12_green_linear",
+     9,
+     1,
      cable12_green_linear_energy,
      cable12_green_linear_elastic_force,
      cable12_green_linear_elastic_tangent,
@@ -113,9 +127,12 @@ static const fu_law laws[] = {
      cable12_green_linear_step_stiffness,
      cable12_green_exact_damping_force,
      cable12_green_exact_damping_tangent,
-     cable12_green_exact_dissipation
+     cable12_green_exact_dissipation,
+     cable12_green_exact_algorithmic_force
     },
     {"cable12_engineering_exact",
+     9,
+     1,
      cable12_engineering_exact_energy,
      cable12_engineering_exact_elastic_force,
      cable12_engineering_exact_elastic_tangent,
@@ -123,9 +140,12 @@ static const fu_law laws[] = {
      cable12_engineering_exact_step_stiffness,
      cable12_engineering_exact_damping_force,
      cable12_engineering_exact_damping_tangent,
-     cable12_engineering_exact_dissipation
+     cable12_engineering_exact_dissipation,
+     cable12_engineering_exact_algorithmic_force
     },
     {"cable12_engineering_linear",
+     9,
+     1,
      cable12_engineering_linear_energy,
      cable12_engineering_linear_elastic_force,
      cable12_engineering_linear_elastic_tangent,
@@ -133,9 +153,12 @@ static const fu_law laws[] = {
      cable12_engineering_linear_step_stiffness,
      cable12_engineering_exact_damping_force,
      cable12_engineering_exact_damping_tangent,
-     cable12_engineering_exact_dissipation
+     cable12_engineering_exact_dissipation,
+     cable12_engineering_exact_algorithmic_force
     },
     {"cable12_green_exact_curved",
+     9,
+     1,
      cable12_green_exact_curved_energy,
      cable12_green_exact_curved_elastic_force,
      cable12_green_exact_curved_elastic_tangent,
@@ -143,9 +166,12 @@ static const fu_law laws[] = {
      cable12_green_exact_curved_step_stiffness,
      cable12_green_exact_damping_force,
      cable12_green_exact_damping_tangent,
-     cable12_green_exact_dissipation
+     cable12_green_exact_dissipation,
+     cable12_green_exact_algorithmic_force
     },
     {"cable12_engineering_exact_curved",
+     9,
+     1,
      cable12_engineering_exact_curved_energy,
      cable12_engineering_exact_curved_elastic_force,
      cable12_engineering_exact_curved_elastic_tangent,
@@ -153,9 +179,12 @@ static const fu_law laws[] = {
      cable12_engineering_exact_curved_step_stiffness,
      cable12_engineering_exact_damping_force,
      cable12_engineering_exact_damping_tangent,
-     cable12_engineering_exact_dissipation
+     cable12_engineering_exact_dissipation,
+     cable12_engineering_exact_algorithmic_force
     },
     {"cable18_green_exact",
+     17,
+     1,
      cable18_green_exact_energy,
      cable18_green_exact_elastic_force,
      cable18_green_exact_elastic_tangent,
@@ -163,9 +192,12 @@ static const fu_law laws[] = {
      cable18_green_exact_step_stiffness,
      cable18_green_exact_damping_force,
      cable18_green_exact_damping_tangent,
-     cable18_green_exact_dissipation
+     cable18_green_exact_dissipation,
+     cable18_green_exact_algorithmic_force
     },
     {"cable18_engineering_exact",
+     17,
+     1,
      cable18_engineering_exact_energy,
      cable18_engineering_exact_elastic_force,
      cable18_engineering_exact_elastic_tangent,
@@ -173,9 +205,12 @@ static const fu_law laws[] = {
      cable18_engineering_exact_step_stiffness,
      cable18_engineering_exact_damping_force,
      cable18_engineering_exact_damping_tangent,
-     cable18_engineering_exact_dissipation
+     cable18_engineering_exact_dissipation,
+     cable18_engineering_exact_algorithmic_force
     },
     {"beam12p_continuum",
+     15,
+     0,
      beam12p_continuum_energy,
      beam12p_continuum_elastic_force,
      beam12p_continuum_elastic_tangent,
@@ -183,9 +218,12 @@ static const fu_law laws[] = {
      beam12p_continuum_step_stiffness,
      beam12p_continuum_damping_force,
      beam12p_continuum_damping_tangent,
-     beam12p_continuum_dissipation
+     beam12p_continuum_dissipation,
+     beam12p_continuum_algorithmic_force
     },
     {"beam12p_continuum_curved",
+     15,
+     0,
      beam12p_continuum_curved_energy,
      beam12p_continuum_curved_elastic_force,
      beam12p_continuum_curved_elastic_tangent,
@@ -193,9 +231,12 @@ static const fu_law laws[] = {
      beam12p_continuum_curved_step_stiffness,
      beam12p_continuum_damping_force,
      beam12p_continuum_damping_tangent,
-     beam12p_continuum_dissipation
+     beam12p_continuum_dissipation,
+     beam12p_continuum_algorithmic_force
     },
     {"beam12p_structural",
+     0,
+     0,
      beam12p_structural_energy,
      beam12p_structural_elastic_force,
      beam12p_structural_elastic_tangent,
@@ -203,9 +244,12 @@ static const fu_law laws[] = {
      0,
      beam12p_structural_damping_force,
      beam12p_structural_damping_tangent,
-     beam12p_structural_dissipation
+     beam12p_structural_dissipation,
+     0
     },
     {"cable8p_green_exact",
+     7,
+     0,
      cable8p_green_exact_energy,
      cable8p_green_exact_elastic_force,
      cable8p_green_exact_elastic_tangent,
@@ -213,9 +257,12 @@ static const fu_law laws[] = {
      cable8p_green_exact_step_stiffness,
      cable8p_green_exact_damping_force,
      cable8p_green_exact_damping_tangent,
-     cable8p_green_exact_dissipation
+     cable8p_green_exact_dissipation,
+     cable8p_green_exact_algorithmic_force
     },
     {"cable8p_green_linear",
+     7,
+     0,
      cable8p_green_linear_energy,
      cable8p_green_linear_elastic_force,
      cable8p_green_linear_elastic_tangent,
@@ -223,9 +270,12 @@ static const fu_law laws[] = {
      cable8p_green_linear_step_stiffness,
      cable8p_green_exact_damping_force,
      cable8p_green_exact_damping_tangent,
-     cable8p_green_exact_dissipation
+     cable8p_green_exact_dissipation,
+     cable8p_green_exact_algorithmic_force
     },
     {"cable8p_engineering_exact",
+     7,
+     0,
      cable8p_engineering_exact_energy,
      cable8p_engineering_exact_elastic_force,
      cable8p_engineering_exact_elastic_tangent,
@@ -233,9 +283,12 @@ static const fu_law laws[] = {
      cable8p_engineering_exact_step_stiffness,
      cable8p_engineering_exact_damping_force,
      cable8p_engineering_exact_damping_tangent,
-     cable8p_engineering_exact_dissipation
+     cable8p_engineering_exact_dissipation,
+     cable8p_engineering_exact_algorithmic_force
     },
     {"cable8p_engineering_linear",
+     7,
+     0,
      cable8p_engineering_linear_energy,
      cable8p_engineering_linear_elastic_force,
      cable8p_engineering_linear_elastic_tangent,
@@ -243,7 +296,8 @@ static const fu_law laws[] = {
      cable8p_engineering_linear_step_stiffness,
      cable8p_engineering_exact_damping_force,
      cable8p_engineering_exact_damping_tangent,
-     cable8p_engineering_exact_dissipation
+     cable8p_engineering_exact_dissipation,
+     cable8p_engineering_exact_algorithmic_force
     }
 };
 
@@ -496,6 +550,10 @@ static void call_beam24_continuum_dissipation(const fu_real *const *a, fu_real *
 {
     beam24_continuum_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
 }
+static void call_beam24_continuum_algorithmic_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_algorithmic_force(*a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]);
+}
 static void call_beam24_continuum_section_forces(const fu_real *const *a, fu_real *const *out)
 {
     beam24_continuum_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
@@ -596,6 +654,10 @@ static void call_cable12_green_exact_dissipation(const fu_real *const *a, fu_rea
 {
     cable12_green_exact_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
 }
+static void call_cable12_green_exact_algorithmic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_algorithmic_force(*a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]);
+}
 static void call_cable12_green_exact_section_forces(const fu_real *const *a, fu_real *const *out)
 {
     cable12_green_exact_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
@@ -663,6 +725,10 @@ static void call_cable12_engineering_exact_damping_tangent(const fu_real *const 
 static void call_cable12_engineering_exact_dissipation(const fu_real *const *a, fu_real *const *out)
 {
     cable12_engineering_exact_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable12_engineering_exact_algorithmic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_algorithmic_force(*a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]);
 }
 static void call_cable12_engineering_exact_section_forces(const fu_real *const *a, fu_real *const *out)
 {
@@ -788,6 +854,10 @@ static void call_cable18_green_exact_dissipation(const fu_real *const *a, fu_rea
 {
     cable18_green_exact_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
 }
+static void call_cable18_green_exact_algorithmic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_green_exact_algorithmic_force(*a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]);
+}
 static void call_cable18_green_exact_section_forces(const fu_real *const *a, fu_real *const *out)
 {
     cable18_green_exact_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
@@ -828,6 +898,10 @@ static void call_cable18_engineering_exact_dissipation(const fu_real *const *a, 
 {
     cable18_engineering_exact_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
 }
+static void call_cable18_engineering_exact_algorithmic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_engineering_exact_algorithmic_force(*a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]);
+}
 static void call_cable18_engineering_exact_section_forces(const fu_real *const *a, fu_real *const *out)
 {
     cable18_engineering_exact_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
@@ -867,6 +941,10 @@ static void call_beam12p_continuum_damping_tangent(const fu_real *const *a, fu_r
 static void call_beam12p_continuum_dissipation(const fu_real *const *a, fu_real *const *out)
 {
     beam12p_continuum_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_beam12p_continuum_algorithmic_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_algorithmic_force(*a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]);
 }
 static void call_beam12p_continuum_section_forces(const fu_real *const *a, fu_real *const *out)
 {
@@ -968,6 +1046,10 @@ static void call_cable8p_green_exact_dissipation(const fu_real *const *a, fu_rea
 {
     cable8p_green_exact_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
 }
+static void call_cable8p_green_exact_algorithmic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_exact_algorithmic_force(*a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]);
+}
 static void call_cable8p_green_exact_section_forces(const fu_real *const *a, fu_real *const *out)
 {
     cable8p_green_exact_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
@@ -1035,6 +1117,10 @@ static void call_cable8p_engineering_exact_damping_tangent(const fu_real *const 
 static void call_cable8p_engineering_exact_dissipation(const fu_real *const *a, fu_real *const *out)
 {
     cable8p_engineering_exact_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable8p_engineering_exact_algorithmic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_exact_algorithmic_force(*a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]);
 }
 static void call_cable8p_engineering_exact_section_forces(const fu_real *const *a, fu_real *const *out)
 {
@@ -1262,6 +1348,7 @@ const fu_kernel fu_kernels[] = {
     {"beam24_continuum_damping_force", call_beam24_continuum_damping_force},
     {"beam24_continuum_damping_tangent", call_beam24_continuum_damping_tangent},
     {"beam24_continuum_dissipation", call_beam24_continuum_dissipation},
+    {"beam24_continuum_algorithmic_force", call_beam24_continuum_algorithmic_force},
     {"beam24_continuum_section_forces", call_beam24_continuum_section_forces},
     {"beam24_continuum_curved_stiffness_at", call_beam24_continuum_curved_stiffness_at},
     {"beam24_continuum_curved_energy", call_beam24_continuum_curved_energy},
@@ -1287,6 +1374,7 @@ const fu_kernel fu_kernels[] = {
     {"cable12_green_exact_damping_force", call_cable12_green_exact_damping_force},
     {"cable12_green_exact_damping_tangent", call_cable12_green_exact_damping_tangent},
     {"cable12_green_exact_dissipation", call_cable12_green_exact_dissipation},
+    {"cable12_green_exact_algorithmic_force", call_cable12_green_exact_algorithmic_force},
     {"cable12_green_exact_section_forces", call_cable12_green_exact_section_forces},
     {"cable12_green_linear_stiffness", call_cable12_green_linear_stiffness},
     {"cable12_green_linear_energy", call_cable12_green_linear_energy},
@@ -1304,6 +1392,7 @@ const fu_kernel fu_kernels[] = {
     {"cable12_engineering_exact_damping_force", call_cable12_engineering_exact_damping_force},
     {"cable12_engineering_exact_damping_tangent", call_cable12_engineering_exact_damping_tangent},
     {"cable12_engineering_exact_dissipation", call_cable12_engineering_exact_dissipation},
+    {"cable12_engineering_exact_algorithmic_force", call_cable12_engineering_exact_algorithmic_force},
     {"cable12_engineering_exact_section_forces", call_cable12_engineering_exact_section_forces},
     {"cable12_engineering_linear_stiffness", call_cable12_engineering_linear_stiffness},
     {"cable12_engineering_linear_energy", call_cable12_engineering_linear_energy},
@@ -1335,6 +1424,7 @@ const fu_kernel fu_kernels[] = {
     {"cable18_green_exact_damping_force", call_cable18_green_exact_damping_force},
     {"cable18_green_exact_damping_tangent", call_cable18_green_exact_damping_tangent},
     {"cable18_green_exact_dissipation", call_cable18_green_exact_dissipation},
+    {"cable18_green_exact_algorithmic_force", call_cable18_green_exact_algorithmic_force},
     {"cable18_green_exact_section_forces", call_cable18_green_exact_section_forces},
     {"cable18_engineering_exact_stiffness", call_cable18_engineering_exact_stiffness},
     {"cable18_engineering_exact_energy", call_cable18_engineering_exact_energy},
@@ -1345,6 +1435,7 @@ const fu_kernel fu_kernels[] = {
     {"cable18_engineering_exact_damping_force", call_cable18_engineering_exact_damping_force},
     {"cable18_engineering_exact_damping_tangent", call_cable18_engineering_exact_damping_tangent},
     {"cable18_engineering_exact_dissipation", call_cable18_engineering_exact_dissipation},
+    {"cable18_engineering_exact_algorithmic_force", call_cable18_engineering_exact_algorithmic_force},
     {"cable18_engineering_exact_section_forces", call_cable18_engineering_exact_section_forces},
     {"beam12p_continuum_stiffness", call_beam12p_continuum_stiffness},
     {"beam12p_continuum_energy", call_beam12p_continuum_energy},
@@ -1355,6 +1446,7 @@ const fu_kernel fu_kernels[] = {
     {"beam12p_continuum_damping_force", call_beam12p_continuum_damping_force},
     {"beam12p_continuum_damping_tangent", call_beam12p_continuum_damping_tangent},
     {"beam12p_continuum_dissipation", call_beam12p_continuum_dissipation},
+    {"beam12p_continuum_algorithmic_force", call_beam12p_continuum_algorithmic_force},
     {"beam12p_continuum_section_forces", call_beam12p_continuum_section_forces},
     {"beam12p_continuum_curved_stiffness_at", call_beam12p_continuum_curved_stiffness_at},
     {"beam12p_continuum_curved_energy", call_beam12p_continuum_curved_energy},
@@ -1380,6 +1472,7 @@ const fu_kernel fu_kernels[] = {
     {"cable8p_green_exact_damping_force", call_cable8p_green_exact_damping_force},
     {"cable8p_green_exact_damping_tangent", call_cable8p_green_exact_damping_tangent},
     {"cable8p_green_exact_dissipation", call_cable8p_green_exact_dissipation},
+    {"cable8p_green_exact_algorithmic_force", call_cable8p_green_exact_algorithmic_force},
     {"cable8p_green_exact_section_forces", call_cable8p_green_exact_section_forces},
     {"cable8p_green_linear_stiffness", call_cable8p_green_linear_stiffness},
     {"cable8p_green_linear_energy", call_cable8p_green_linear_energy},
@@ -1397,6 +1490,7 @@ const fu_kernel fu_kernels[] = {
     {"cable8p_engineering_exact_damping_force", call_cable8p_engineering_exact_damping_force},
     {"cable8p_engineering_exact_damping_tangent", call_cable8p_engineering_exact_damping_tangent},
     {"cable8p_engineering_exact_dissipation", call_cable8p_engineering_exact_dissipation},
+    {"cable8p_engineering_exact_algorithmic_force", call_cable8p_engineering_exact_algorithmic_force},
     {"cable8p_engineering_exact_section_forces", call_cable8p_engineering_exact_section_forces},
     {"cable8p_engineering_linear_stiffness", call_cable8p_engineering_linear_stiffness},
     {"cable8p_engineering_linear_energy", call_cable8p_engineering_linear_energy},

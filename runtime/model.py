@@ -299,7 +299,7 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
         messages.append(f"threads = {settings.threads} came to 1: the compiler that built this had no OpenMP")
     method, reason = choose(settings, scene, model, engine)
     if method.name == "energy":
-        _check_conserves(model, scene)
+        _check_conserves(model, scene, engine, method)
     set_up, cpu = time.perf_counter() - begin, time.process_time()
     status, change = engine.start(
         duration=settings.duration,
@@ -335,13 +335,18 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
     return recording
 
 
-def _check_conserves(model: Model, scene: Scene) -> None:
-    """Raise SceneError for a cable whose law has no discrete gradient."""
+def _check_conserves(model: Model, scene: Scene, engine, method) -> None:
+    """Raise SceneError for a cable whose law has no discrete gradient, or no algorithmic dissipation that is asked for."""
     for cable in model.cables:
         if not hasattr(kernels_of(cable.library), f"{cable.element}_{cable.law}_discrete_force"):
             raise SceneError(scene.cables[cable.name].where,
                              f'integrator "energy" has no discrete gradient of the law "{cable.law}"',
                              "take another law, or another integrator")
+    if method.spectral_radius < 1:
+        for cable in [model.cables[i] for i in engine.without_algorithmic_force()]:
+            raise SceneError(scene.cables[cable.name].where,
+                             f'integrator "energy" has no algorithmic dissipation of the law "{cable.law}"',
+                             "take spectral_radius = 1, another law, or another integrator")
 
 
 def _check_size(model: Model, settings: RunSettings, stream: Stream | None) -> float:

@@ -18,6 +18,7 @@
 #include "kernels.h"
 
 #define FU_MAX_COORDINATES 32                        /* of one element or one joint; model.py checks */
+#define FU_MAX_RATES 128                             /* of strain, of one element; engine.pyx checks */
 #define FU_JOINT_TERMS (13 + 6 * FU_MAX_COORDINATES) /* numbers of one joint in fu_accelerator.terms */
 #define FU_SIGNAL_TERMS 6                            /* coefficients of a piece of a signal */
 
@@ -35,6 +36,7 @@ typedef struct {
     const double *m;  /* mass matrix of an element over nodal vectors */
     const double *A;  /* constants of the law, of the first element */
     int A_stride;     /* from one element's to the next's: zero where they are equal */
+    int memory;       /* first number in the memory of algorithmic dissipation: law->rates + 1 an element */
 } fu_cable;
 
 typedef struct {
@@ -146,6 +148,7 @@ typedef struct {
     const fu_load *loads;
     const fu_signal *signals;
     int n_q, n_dof, n_band, n_border_dof;
+    int n_memory; /* zero without algorithmic dissipation */
     int n_extra, n_multipliers; /* unknowns of joints and springs in a Newton system, of joints in eq 38 */
     const int *place;
     const int *combination_start, *combination_place; /* combinations, row by row */
@@ -170,6 +173,7 @@ typedef struct {
     double *spring;  /* per spring: force on its first end, 3 */
     int *element;    /* per joint: element that holds s */
     double *director; /* per joint: unit vector across the tangent, carried along with the slide */
+    double *memory;  /* of algorithmic dissipation */
 } fu_state;
 
 /* band.c */
@@ -263,6 +267,12 @@ void fu_carry_directors(const fu_model *model, fu_state *state);
 typedef struct {
     double alpha_m, alpha_f, beta, gamma;
 } fu_genalpha;
+
+/* Of the energy-momentum method, algorithmic.c; weight: of a change of strain in the stress, zero: there is none. */
+typedef struct {
+    double lag, viscosity, inertia, weight;
+    double *expected; /* like the memory: what the velocities at the start of the step would change, and its energy */
+} fu_algorithmic;
 
 /* Explicit Runge-Kutta method with two embedded error estimates. */
 typedef struct {
@@ -359,6 +369,7 @@ struct fu_run {
     const fu_integrator *integrator;
     int order;           /* of the error in positions as controlled */
     fu_genalpha scheme;
+    fu_algorithmic algorithmic;
     fu_tableau tableau;
     fu_collocation collocation;
     fu_complex_system complex_newton;
@@ -417,6 +428,11 @@ double fu_spread_size(fu_run *run);
 double fu_filtered_size(fu_run *run);
 double fu_row_unit(double inertia, double mass);
 void fu_joint_coordinates(const fu_model *model, const fu_state *state, int j, int *at);
+
+/* algorithmic.c */
+void fu_algorithmic_start(fu_run *run, double h);
+void fu_algorithmic_forces(fu_run *run, const double *q, double *force);
+double fu_algorithmic_book(fu_run *run, const double *q);
 
 /* projection.c */
 int fu_find_slides(fu_run *run);
