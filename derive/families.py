@@ -27,7 +27,8 @@ def _element(element: Element) -> Family:
 def _law(element: Element, law: str | type) -> Family:
     name = law_name(law)
     twin = DAMPED_LIKE.get(name)
-    shared = {kernel: f"{element.name}_{twin}" for kernel in law_kernels.DAMPING if twin in element.laws}
+    shared = {kernel: f"{element.name}_{twin}" for kernel in (*law_kernels.DAMPING, *law_kernels.ALGORITHMIC)
+              if twin in element.laws}
     if name == structural.NAME:
         builder, build = structural_kernels, partial(structural_kernels.build, element, law)
     else:
@@ -35,7 +36,7 @@ def _law(element: Element, law: str | type) -> Family:
     return Family(f"{element.name}_{name}", f"elastic law {name} on {element.name}", build,
                   (f"elements.{element.name}", builder.__name__.split(".")[-1]), role="law",
                   own=("stiffness", "stiffness_at", "section_forces"), shared=shared,
-                  lacks=() if law_kernels.has_discrete(law) else law_kernels.DISCRETE, element=element, law=name,
+                  lacks=law_kernels.lacks(law), facts=law_kernels.facts(element, law), element=element, law=name,
                   like=law_like(law))
 
 

@@ -18,20 +18,34 @@ from funicular.derive.stages import Program
 
 DAMPING = ("damping_force", "damping_tangent", "dissipation")
 DISCRETE = ("discrete_force", "step_stiffness")
+ALGORITHMIC = ("algorithmic_force",)
+RETARDATION = ("tau", (), "s", "retardation time of the Kelvin-Voigt law")
 
 
-def has_discrete(law: str | type) -> bool:
-    """Whether a law gives a discrete gradient of its energy."""
+def lacks(law: str | type) -> tuple[str, ...]:
+    """Kernels that a law does not give: a discrete gradient of its energy, a measure of strain for a step."""
+    return tuple(kernel for kernels, method in ((DISCRETE, "discrete_forces"), (ALGORITHMIC, "algorithmic_forces"))
+                 for kernel in kernels if not hasattr(_class(law), method))
+
+
+def facts(element: Element, law: str | type) -> dict[str, int]:
+    """What the engine needs to know of a law's rates of strain."""
+    return {"rates": 0, "spins": 0} if lacks(law) else _class(law).rates(element)
+
+
+def _class(law: str | type) -> type | None:
     found = LAWS.get(law) if isinstance(law, str) else law
-    return hasattr(getattr(found, "func", found), "discrete_forces")
+    return getattr(found, "func", found)
 
 
 def build(element: Element, law: str | type, damping: bool = True) -> list[Program]:
     """Every kernel of a law on an element; those of damping where it does not take another law's."""
+    missing = lacks(law)
+    discrete, damped = ([kernel for kernel in kernels if kernel not in missing]
+                        for kernels in (DISCRETE, (*DAMPING, *ALGORITHMIC) if damping else ()))
     kernels = Kernels(element, law)
     return [kernels.set_up(), kernels.energy(), kernels.elastic_force(), kernels.elastic_tangent(),
-            *(getattr(kernels, kernel)() for kernel in DISCRETE if has_discrete(law)),
-            *(getattr(kernels, kernel)() for kernel in DAMPING if damping), kernels.section_forces()]
+            *(getattr(kernels, kernel)() for kernel in (*discrete, *damped)), kernels.section_forces()]
 
 
 class Kernels:
@@ -67,16 +81,16 @@ class Kernels:
              for vectors, state in zip((e, e_next), STATES, strict=True)]
         return w, A, *c
 
-    def _rates(self, program: Program) -> tuple:
-        """Inputs l, e, v, A, tau and the stages up to the rates of the strain vectors."""
+    def _rates(self, program: Program, *factors: tuple[str, tuple, str, str]) -> tuple:
+        """Inputs l, e, v, A, factors and the stages up to the rates of the strain vectors."""
         length = program.input("l", (), "m", "length of the element")
         e = self._coordinates(program)
         v = self._coordinates(program, "v", "m/s, 1/s", "rates of the nodal vectors")
         A = self.law.constants(program)
-        tau = program.input("tau", (), "s", "retardation time of the Kelvin-Voigt law")
+        given = [program.input(*factor) for factor in factors or [RETARDATION]]
         program.stage("strain vectors and their rates")
         w = program.define("w", 1 / length)
-        return w, A, tau, self.gram.differences(program, e, w), self.gram.differences(program, v, w, "d")
+        return w, A, *given, self.gram.differences(program, e, w), self.gram.differences(program, v, w, "d")
 
     def set_up(self) -> Program:
         """The law's constants."""
@@ -145,6 +159,18 @@ class Kernels:
         p = self._program("dissipation", "power dissipated by the damping force", "v . Q_d of eq 9")
         w, A, tau, c, dc = self._rates(p)
         p.output("P", [sp.sympify(self.law.dissipation(p, A, tau, c, dc, w))], "W", "dissipated power, never negative")
+        return p
+
+    def algorithmic_force(self) -> Program:
+        """Of a step with algorithmic dissipation: of stresses that its integrator makes of changes of strain."""
+        p = self._program("algorithmic_force", "force of the stress D (weight dE - known), dE the strain that v makes",
+                          "D of Q_d of eq 9")
+        w, A, weight, known, c, dc = self._rates(
+            p, ("weight", (), "1", "of the strains that v makes"),
+            ("known", (self.law.rates(self.element)["rates"],), "1, 1/m", "strains, taken off"))
+        f, dE = self.law.algorithmic_forces(p, A, weight, known, c, dc, w)
+        p.output("f", self._nodal(p, f, w), "N, N m", "force; its power with v is that of the stress with dE")
+        p.output("dE", dE, "1, 1/m", "strains: one a point and component, or over Gram pairs")
         return p
 
     def section_forces(self) -> Program:

@@ -181,6 +181,12 @@ def _damping(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
             yield "rigid velocity is not damped", max(relative(f_rigid, scale), relative(P, scale)), 64 * EPS
     if not twisted:
         yield "damping: no net moment", relative(_moment(s["e"], f, positions), scale_f), 64 * EPS
+    if "algorithmic_force" not in family.lacks:
+        pull = k("algorithmic_force", s)["f"]
+        scale = max(_stiffness(family, s) / s["l"], np.max(np.abs(pull)))
+        yield "algorithmic dissipation: no net force", relative(positions @ pull, scale), 64 * EPS
+        if not twisted:
+            yield "algorithmic dissipation: no net moment", relative(_moment(s["e"], pull, positions), scale), 64 * EPS
     P = float(k("dissipation", s)["P"][0])
     mismatch = abs(P - np.sum(s["v"] * f)) / P if P > 0 else np.inf
     yield "damping takes energy out: P = v . f > 0", mismatch, 32 * EPS

@@ -83,6 +83,14 @@ def law(family: Family) -> list[Relation]:
         section = [(output, "as derived, at 50 digits", from_kernel("section_forces", output))
                    for output in verify_sections.TEXTS]
     force_by_both = from_kernel("damping_force", "f", e=entry("e"), v=lambda s, j: s["rate"] * unit(s["v"], j))
+
+    def damped(k, s, t, j):
+        return k("damping_force", s, v=s["v"] - s["vdot"], tau=s["weight"])["f"]
+
+    def known_of_vdot(k, s):
+        dE = k("algorithmic_force", s, v=s["vdot"])["dE"]
+        return k("algorithmic_force", s, known=s["weight"] * dE)["f"]
+
     stiffness = [
         Relation("stiffness", "A", "the law's constants at 50 digits", 0, from_kernel("stiffness", "A")),
         Relation("stiffness", "A", "energy from A against its integral by quadrature", 0, energy,
@@ -102,6 +110,9 @@ def law(family: Family) -> list[Relation]:
         Relation("damping_force", "f", "d(P/2)/dv", 1, _half(from_kernel("dissipation", "P", v=entry("v"))), n),
         Relation("damping_tangent", "K", "df/de + rate df/dv", 1, force_by_both, n),
         Relation("dissipation", "P", "the law's integral by quadrature", 0, power),
+        Relation("algorithmic_force", "f", "damping force at v - vdot where vdot's strain is known", 0, damped,
+                 of=known_of_vdot),
+        Relation("algorithmic_force", "dE", "as derived, at 50 digits", 0, from_kernel("algorithmic_force", "dE")),
         *(Relation("section_forces", output, text, 0, path) for output, text, path in section),
     ]
     return [relation for relation in every if relation.kernel not in family.elsewhere]

@@ -164,6 +164,9 @@ def _constants(family: Family, exact: Numbers, state: dict, random: np.random.Ge
     made = {"a": random.normal(size=(family.element.n_vectors, dim))}
     if family.role == "law":
         made |= section_stiffness(family.like, dim, state["section"], random)
+        if "algorithmic_force" in exact.programs:
+            strains = exact.programs["algorithmic_force"].outputs[1].size
+            made |= {"weight": np.float64(0.6), "known": random.spawn(1)[0].normal(size=strains)}
     return made | _from_kernels(family, exact, state | made)
 
 

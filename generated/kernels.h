@@ -92,6 +92,7 @@ void beam24_continuum_step_stiffness(fu_real l, const fu_real *e, const fu_real 
 void beam24_continuum_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void beam24_continuum_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void beam24_continuum_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+void beam24_continuum_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
 void beam24_continuum_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* beam24_continuum_curved: elastic law continuum_curved on beam24 */
@@ -123,6 +124,7 @@ void cable12_green_exact_step_stiffness(fu_real l, const fu_real *e, const fu_re
 void cable12_green_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable12_green_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable12_green_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+void cable12_green_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
 void cable12_green_exact_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable12_green_linear: elastic law green_linear on cable12 */
@@ -144,6 +146,7 @@ void cable12_engineering_exact_step_stiffness(fu_real l, const fu_real *e, const
 void cable12_engineering_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable12_engineering_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable12_engineering_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+void cable12_engineering_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
 void cable12_engineering_exact_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable12_engineering_linear: elastic law engineering_linear on cable12 */
@@ -183,6 +186,7 @@ void cable18_green_exact_step_stiffness(fu_real l, const fu_real *e, const fu_re
 void cable18_green_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable18_green_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable18_green_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+void cable18_green_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
 void cable18_green_exact_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable18_engineering_exact: elastic law engineering_exact on cable18 */
@@ -195,6 +199,7 @@ void cable18_engineering_exact_step_stiffness(fu_real l, const fu_real *e, const
 void cable18_engineering_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable18_engineering_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable18_engineering_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+void cable18_engineering_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
 void cable18_engineering_exact_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* beam12p_continuum: elastic law continuum on beam12p */
@@ -207,6 +212,7 @@ void beam12p_continuum_step_stiffness(fu_real l, const fu_real *e, const fu_real
 void beam12p_continuum_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void beam12p_continuum_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void beam12p_continuum_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+void beam12p_continuum_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
 void beam12p_continuum_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* beam12p_continuum_curved: elastic law continuum_curved on beam12p */
@@ -238,6 +244,7 @@ void cable8p_green_exact_step_stiffness(fu_real l, const fu_real *e, const fu_re
 void cable8p_green_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable8p_green_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable8p_green_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+void cable8p_green_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
 void cable8p_green_exact_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable8p_green_linear: elastic law green_linear on cable8p */
@@ -259,6 +266,7 @@ void cable8p_engineering_exact_step_stiffness(fu_real l, const fu_real *e, const
 void cable8p_engineering_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable8p_engineering_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable8p_engineering_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+void cable8p_engineering_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
 void cable8p_engineering_exact_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable8p_engineering_linear: elastic law engineering_linear on cable8p */
@@ -467,6 +475,8 @@ typedef struct {
 /* What the engine needs of a law. */
 typedef struct {
     const char *name;
+    int rates;
+    int spins;
     void (*energy)(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
     void (*elastic_force)(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
     void (*elastic_tangent)(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
@@ -475,6 +485,7 @@ typedef struct {
     void (*damping_force)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
     void (*damping_tangent)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
     void (*dissipation)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
+    void (*algorithmic_force)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
 } fu_law;
 
 /* What the engine needs of a body. */

@@ -71,6 +71,8 @@ static const fu_element elements[] = {
 
 static const fu_law laws[] = {
     {"beam24_continuum",
+     28,
+     0,
      beam24_continuum_energy,
      beam24_continuum_elastic_force,
      beam24_continuum_elastic_tangent,
@@ -78,9 +80,12 @@ static const fu_law laws[] = {
      beam24_continuum_step_stiffness,
      beam24_continuum_damping_force,
      beam24_continuum_damping_tangent,
-     beam24_continuum_dissipation
+     beam24_continuum_dissipation,
+     beam24_continuum_algorithmic_force
     },
     {"beam24_continuum_curved",
+     28,
+     0,
      beam24_continuum_curved_energy,
      beam24_continuum_curved_elastic_force,
      beam24_continuum_curved_elastic_tangent,
@@ -88,9 +93,12 @@ static const fu_law laws[] = {
      beam24_continuum_curved_step_stiffness,
      beam24_continuum_damping_force,
      beam24_continuum_damping_tangent,
-     beam24_continuum_dissipation
+     beam24_continuum_dissipation,
+     beam24_continuum_algorithmic_force
     },
     {"beam24_structural",
+     0,
+     0,
      beam24_structural_energy,
      beam24_structural_elastic_force,
      beam24_structural_elastic_tangent,
@@ -98,9 +106,12 @@ static const fu_law laws[] = {
      0,
      beam24_structural_damping_force,
      beam24_structural_damping_tangent,
-     beam24_structural_dissipation
+     beam24_structural_dissipation,
+     0
     },
     {"cable12_green_exact",
+     9,
+     1,
      cable12_green_exact_energy,
      cable12_green_exact_elastic_force,
      cable12_green_exact_elastic_tangent,
@@ -108,9 +119,12 @@ static const fu_law laws[] = {
      cable12_green_exact_step_stiffness,
      cable12_green_exact_damping_force,
      cable12_green_exact_damping_tangent,
-     cable12_green_exact_dissipation
+     cable12_green_exact_dissipation,
+     cable12_green_exact_algorithmic_force
     },
     {"cable12_green_linear",
+     9,
+     1,
      cable12_green_linear_energy,
      cable12_green_linear_elastic_force,
      cable12_green_linear_elastic_tangent,
@@ -118,9 +132,12 @@ static const fu_law laws[] = {
      cable12_green_linear_step_stiffness,
      cable12_green_exact_damping_force,
      cable12_green_exact_damping_tangent,
-     cable12_green_exact_dissipation
+     cable12_green_exact_dissipation,
+     cable12_green_exact_algorithmic_force
     },
     {"cable12_engineering_exact",
+     9,
+     1,
      cable12_engineering_exact_energy,
      cable12_engineering_exact_elastic_force,
      cable12_engineering_exact_elastic_tangent,
@@ -128,9 +145,12 @@ static const fu_law laws[] = {
      cable12_engineering_exact_step_stiffness,
      cable12_engineering_exact_damping_force,
      cable12_engineering_exact_damping_tangent,
-     cable12_engineering_exact_dissipation
+     cable12_engineering_exact_dissipation,
+     cable12_engineering_exact_algorithmic_force
     },
     {"cable12_engineering_linear",
+     9,
+     1,
      cable12_engineering_linear_energy,
      cable12_engineering_linear_elastic_force,
      cable12_engineering_linear_elastic_tangent,
@@ -138,9 +158,12 @@ static const fu_law laws[] = {
      cable12_engineering_linear_step_stiffness,
      cable12_engineering_exact_damping_force,
      cable12_engineering_exact_damping_tangent,
-     cable12_engineering_exact_dissipation
+     cable12_engineering_exact_dissipation,
+     cable12_engineering_exact_algorithmic_force
     },
     {"cable12_green_exact_curved",
+     9,
+     1,
      cable12_green_exact_curved_energy,
      cable12_green_exact_curved_elastic_force,
      cable12_green_exact_curved_elastic_tangent,
@@ -148,9 +171,12 @@ static const fu_law laws[] = {
      cable12_green_exact_curved_step_stiffness,
      cable12_green_exact_damping_force,
      cable12_green_exact_damping_tangent,
-     cable12_green_exact_dissipation
+     cable12_green_exact_dissipation,
+     cable12_green_exact_algorithmic_force
     },
     {"cable12_engineering_exact_curved",
+     9,
+     1,
      cable12_engineering_exact_curved_energy,
      cable12_engineering_exact_curved_elastic_force,
      cable12_engineering_exact_curved_elastic_tangent,
@@ -158,9 +184,12 @@ static const fu_law laws[] = {
      cable12_engineering_exact_curved_step_stiffness,
      cable12_engineering_exact_damping_force,
      cable12_engineering_exact_damping_tangent,
-     cable12_engineering_exact_dissipation
+     cable12_engineering_exact_dissipation,
+     cable12_engineering_exact_algorithmic_force
     },
     {"cable18_green_exact",
+     17,
+     1,
      cable18_green_exact_energy,
      cable18_green_exact_elastic_force,
      cable18_green_exact_elastic_tangent,
@@ -168,9 +197,12 @@ static const fu_law laws[] = {
      cable18_green_exact_step_stiffness,
      cable18_green_exact_damping_force,
      cable18_green_exact_damping_tangent,
-     cable18_green_exact_dissipation
+     cable18_green_exact_dissipation,
+     cable18_green_exact_algorithmic_force
     },
     {"cable18_engineering_exact",
+     17,
+     1,
      cable18_engineering_exact_energy,
      cable18_engineering_exact_elastic_force,
      cable18_engineering_exact_elastic_tangent,
@@ -178,9 +210,12 @@ static const fu_law laws[] = {
      cable18_engineering_exact_step_stiffness,
      cable18_engineering_exact_damping_force,
      cable18_engineering_exact_damping_tangent,
-     cable18_engineering_exact_dissipation
+     cable18_engineering_exact_dissipation,
+     cable18_engineering_exact_algorithmic_force
     },
     {"beam12p_continuum",
+     15,
+     0,
      beam12p_continuum_energy,
      beam12p_continuum_elastic_force,
      beam12p_continuum_elastic_tangent,
@@ -188,9 +223,12 @@ static const fu_law laws[] = {
      beam12p_continuum_step_stiffness,
      beam12p_continuum_damping_force,
      beam12p_continuum_damping_tangent,
-     beam12p_continuum_dissipation
+     beam12p_continuum_dissipation,
+     beam12p_continuum_algorithmic_force
     },
     {"beam12p_continuum_curved",
+     15,
+     0,
      beam12p_continuum_curved_energy,
      beam12p_continuum_curved_elastic_force,
      beam12p_continuum_curved_elastic_tangent,
@@ -198,9 +236,12 @@ static const fu_law laws[] = {
      beam12p_continuum_curved_step_stiffness,
      beam12p_continuum_damping_force,
      beam12p_continuum_damping_tangent,
-     beam12p_continuum_dissipation
+     beam12p_continuum_dissipation,
+     beam12p_continuum_algorithmic_force
     },
     {"beam12p_structural",
+     0,
+     0,
      beam12p_structural_energy,
      beam12p_structural_elastic_force,
      beam12p_structural_elastic_tangent,
@@ -208,9 +249,12 @@ static const fu_law laws[] = {
      0,
      beam12p_structural_damping_force,
      beam12p_structural_damping_tangent,
-     beam12p_structural_dissipation
+     beam12p_structural_dissipation,
+     0
     },
     {"cable8p_green_exact",
+     7,
+     0,
      cable8p_green_exact_energy,
      cable8p_green_exact_elastic_force,
      cable8p_green_exact_elastic_tangent,
@@ -218,9 +262,12 @@ static const fu_law laws[] = {
      cable8p_green_exact_step_stiffness,
      cable8p_green_exact_damping_force,
      cable8p_green_exact_damping_tangent,
-     cable8p_green_exact_dissipation
+     cable8p_green_exact_dissipation,
+     cable8p_green_exact_algorithmic_force
     },
     {"cable8p_green_linear",
+     7,
+     0,
      cable8p_green_linear_energy,
      cable8p_green_linear_elastic_force,
      cable8p_green_linear_elastic_tangent,
@@ -228,9 +275,12 @@ static const fu_law laws[] = {
      cable8p_green_linear_step_stiffness,
      cable8p_green_exact_damping_force,
      cable8p_green_exact_damping_tangent,
-     cable8p_green_exact_dissipation
+     cable8p_green_exact_dissipation,
+     cable8p_green_exact_algorithmic_force
     },
     {"cable8p_engineering_exact",
+     7,
+     0,
      cable8p_engineering_exact_energy,
      cable8p_engineering_exact_elastic_force,
      cable8p_engineering_exact_elastic_tangent,
@@ -238,9 +288,12 @@ static const fu_law laws[] = {
      cable8p_engineering_exact_step_stiffness,
      cable8p_engineering_exact_damping_force,
      cable8p_engineering_exact_damping_tangent,
-     cable8p_engineering_exact_dissipation
+     cable8p_engineering_exact_dissipation,
+     cable8p_engineering_exact_algorithmic_force
     },
     {"cable8p_engineering_linear",
+     7,
+     0,
      cable8p_engineering_linear_energy,
      cable8p_engineering_linear_elastic_force,
      cable8p_engineering_linear_elastic_tangent,
@@ -248,7 +301,8 @@ static const fu_law laws[] = {
      cable8p_engineering_linear_step_stiffness,
      cable8p_engineering_exact_damping_force,
      cable8p_engineering_exact_damping_tangent,
-     cable8p_engineering_exact_dissipation
+     cable8p_engineering_exact_dissipation,
+     cable8p_engineering_exact_algorithmic_force
     }
 };
 
@@ -706,6 +760,10 @@ static void call_beam24_continuum_dissipation(const fu_real *const *a, fu_real *
 {
     beam24_continuum_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
 }
+static void call_beam24_continuum_algorithmic_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam24_continuum_algorithmic_force(*a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]);
+}
 static void call_beam24_continuum_section_forces(const fu_real *const *a, fu_real *const *out)
 {
     beam24_continuum_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
@@ -806,6 +864,10 @@ static void call_cable12_green_exact_dissipation(const fu_real *const *a, fu_rea
 {
     cable12_green_exact_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
 }
+static void call_cable12_green_exact_algorithmic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_algorithmic_force(*a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]);
+}
 static void call_cable12_green_exact_section_forces(const fu_real *const *a, fu_real *const *out)
 {
     cable12_green_exact_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
@@ -873,6 +935,10 @@ static void call_cable12_engineering_exact_damping_tangent(const fu_real *const 
 static void call_cable12_engineering_exact_dissipation(const fu_real *const *a, fu_real *const *out)
 {
     cable12_engineering_exact_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable12_engineering_exact_algorithmic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_algorithmic_force(*a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]);
 }
 static void call_cable12_engineering_exact_section_forces(const fu_real *const *a, fu_real *const *out)
 {
@@ -998,6 +1064,10 @@ static void call_cable18_green_exact_dissipation(const fu_real *const *a, fu_rea
 {
     cable18_green_exact_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
 }
+static void call_cable18_green_exact_algorithmic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_green_exact_algorithmic_force(*a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]);
+}
 static void call_cable18_green_exact_section_forces(const fu_real *const *a, fu_real *const *out)
 {
     cable18_green_exact_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
@@ -1038,6 +1108,10 @@ static void call_cable18_engineering_exact_dissipation(const fu_real *const *a, 
 {
     cable18_engineering_exact_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
 }
+static void call_cable18_engineering_exact_algorithmic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_engineering_exact_algorithmic_force(*a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]);
+}
 static void call_cable18_engineering_exact_section_forces(const fu_real *const *a, fu_real *const *out)
 {
     cable18_engineering_exact_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
@@ -1077,6 +1151,10 @@ static void call_beam12p_continuum_damping_tangent(const fu_real *const *a, fu_r
 static void call_beam12p_continuum_dissipation(const fu_real *const *a, fu_real *const *out)
 {
     beam12p_continuum_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_beam12p_continuum_algorithmic_force(const fu_real *const *a, fu_real *const *out)
+{
+    beam12p_continuum_algorithmic_force(*a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]);
 }
 static void call_beam12p_continuum_section_forces(const fu_real *const *a, fu_real *const *out)
 {
@@ -1178,6 +1256,10 @@ static void call_cable8p_green_exact_dissipation(const fu_real *const *a, fu_rea
 {
     cable8p_green_exact_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
 }
+static void call_cable8p_green_exact_algorithmic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_exact_algorithmic_force(*a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]);
+}
 static void call_cable8p_green_exact_section_forces(const fu_real *const *a, fu_real *const *out)
 {
     cable8p_green_exact_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
@@ -1245,6 +1327,10 @@ static void call_cable8p_engineering_exact_damping_tangent(const fu_real *const 
 static void call_cable8p_engineering_exact_dissipation(const fu_real *const *a, fu_real *const *out)
 {
     cable8p_engineering_exact_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
+}
+static void call_cable8p_engineering_exact_algorithmic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_exact_algorithmic_force(*a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]);
 }
 static void call_cable8p_engineering_exact_section_forces(const fu_real *const *a, fu_real *const *out)
 {
@@ -1769,6 +1855,7 @@ const fu_kernel fu_kernels[] = {
     {"beam24_continuum_damping_force", call_beam24_continuum_damping_force},
     {"beam24_continuum_damping_tangent", call_beam24_continuum_damping_tangent},
     {"beam24_continuum_dissipation", call_beam24_continuum_dissipation},
+    {"beam24_continuum_algorithmic_force", call_beam24_continuum_algorithmic_force},
     {"beam24_continuum_section_forces", call_beam24_continuum_section_forces},
     {"beam24_continuum_curved_stiffness_at", call_beam24_continuum_curved_stiffness_at},
     {"beam24_continuum_curved_energy", call_beam24_continuum_curved_energy},
@@ -1794,6 +1881,7 @@ const fu_kernel fu_kernels[] = {
     {"cable12_green_exact_damping_force", call_cable12_green_exact_damping_force},
     {"cable12_green_exact_damping_tangent", call_cable12_green_exact_damping_tangent},
     {"cable12_green_exact_dissipation", call_cable12_green_exact_dissipation},
+    {"cable12_green_exact_algorithmic_force", call_cable12_green_exact_algorithmic_force},
     {"cable12_green_exact_section_forces", call_cable12_green_exact_section_forces},
     {"cable12_green_linear_stiffness", call_cable12_green_linear_stiffness},
     {"cable12_green_linear_energy", call_cable12_green_linear_energy},
@@ -1811,6 +1899,7 @@ const fu_kernel fu_kernels[] = {
     {"cable12_engineering_exact_damping_force", call_cable12_engineering_exact_damping_force},
     {"cable12_engineering_exact_damping_tangent", call_cable12_engineering_exact_damping_tangent},
     {"cable12_engineering_exact_dissipation", call_cable12_engineering_exact_dissipation},
+    {"cable12_engineering_exact_algorithmic_force", call_cable12_engineering_exact_algorithmic_force},
     {"cable12_engineering_exact_section_forces", call_cable12_engineering_exact_section_forces},
     {"cable12_engineering_linear_stiffness", call_cable12_engineering_linear_stiffness},
     {"cable12_engineering_linear_energy", call_cable12_engineering_linear_energy},
@@ -1842,6 +1931,7 @@ const fu_kernel fu_kernels[] = {
     {"cable18_green_exact_damping_force", call_cable18_green_exact_damping_force},
     {"cable18_green_exact_damping_tangent", call_cable18_green_exact_damping_tangent},
     {"cable18_green_exact_dissipation", call_cable18_green_exact_dissipation},
+    {"cable18_green_exact_algorithmic_force", call_cable18_green_exact_algorithmic_force},
     {"cable18_green_exact_section_forces", call_cable18_green_exact_section_forces},
     {"cable18_engineering_exact_stiffness", call_cable18_engineering_exact_stiffness},
     {"cable18_engineering_exact_energy", call_cable18_engineering_exact_energy},
@@ -1852,6 +1942,7 @@ const fu_kernel fu_kernels[] = {
     {"cable18_engineering_exact_damping_force", call_cable18_engineering_exact_damping_force},
     {"cable18_engineering_exact_damping_tangent", call_cable18_engineering_exact_damping_tangent},
     {"cable18_engineering_exact_dissipation", call_cable18_engineering_exact_dissipation},
+    {"cable18_engineering_exact_algorithmic_force", call_cable18_engineering_exact_algorithmic_force},
     {"cable18_engineering_exact_section_forces", call_cable18_engineering_exact_section_forces},
     {"beam12p_continuum_stiffness", call_beam12p_continuum_stiffness},
     {"beam12p_continuum_energy", call_beam12p_continuum_energy},
@@ -1862,6 +1953,7 @@ const fu_kernel fu_kernels[] = {
     {"beam12p_continuum_damping_force", call_beam12p_continuum_damping_force},
     {"beam12p_continuum_damping_tangent", call_beam12p_continuum_damping_tangent},
     {"beam12p_continuum_dissipation", call_beam12p_continuum_dissipation},
+    {"beam12p_continuum_algorithmic_force", call_beam12p_continuum_algorithmic_force},
     {"beam12p_continuum_section_forces", call_beam12p_continuum_section_forces},
     {"beam12p_continuum_curved_stiffness_at", call_beam12p_continuum_curved_stiffness_at},
     {"beam12p_continuum_curved_energy", call_beam12p_continuum_curved_energy},
@@ -1887,6 +1979,7 @@ const fu_kernel fu_kernels[] = {
     {"cable8p_green_exact_damping_force", call_cable8p_green_exact_damping_force},
     {"cable8p_green_exact_damping_tangent", call_cable8p_green_exact_damping_tangent},
     {"cable8p_green_exact_dissipation", call_cable8p_green_exact_dissipation},
+    {"cable8p_green_exact_algorithmic_force", call_cable8p_green_exact_algorithmic_force},
     {"cable8p_green_exact_section_forces", call_cable8p_green_exact_section_forces},
     {"cable8p_green_linear_stiffness", call_cable8p_green_linear_stiffness},
     {"cable8p_green_linear_energy", call_cable8p_green_linear_energy},
@@ -1904,6 +1997,7 @@ const fu_kernel fu_kernels[] = {
     {"cable8p_engineering_exact_damping_force", call_cable8p_engineering_exact_damping_force},
     {"cable8p_engineering_exact_damping_tangent", call_cable8p_engineering_exact_damping_tangent},
     {"cable8p_engineering_exact_dissipation", call_cable8p_engineering_exact_dissipation},
+    {"cable8p_engineering_exact_algorithmic_force", call_cable8p_engineering_exact_algorithmic_force},
     {"cable8p_engineering_exact_section_forces", call_cable8p_engineering_exact_section_forces},
     {"cable8p_engineering_linear_stiffness", call_cable8p_engineering_linear_stiffness},
     {"cable8p_engineering_linear_energy", call_cable8p_engineering_linear_energy},

@@ -61,6 +61,10 @@ def run(
     duration: Annotated[float | None, typer.Option(help="s, instead of the scene's")] = None,
     tol: Annotated[float | None, typer.Option(help="error aimed at, instead of the scene's")] = None,
     step: Annotated[float | None, typer.Option(help="fixed step in s, instead of the scene's")] = None,
+    integrator: Annotated[str | None, typer.Option(help="instead of the scene's")] = None,
+    spectral_radius: Annotated[
+        float | None, typer.Option(help="of genalpha and energy, instead of the scene's: 1 keeps all vibrations")
+    ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="go on with a run that was killed or interrupted")] = False,
 ) -> None:
     """Simulate a scene and write its results, as the run goes.
@@ -80,7 +84,8 @@ def run(
             check_writable(_existing(pictures) / "picture.png")
         stopped = None
         try:
-            result = described.run(duration, tol=tol, step=step, save=path, resume=resume)
+            result = described.run(duration, tol=tol, step=step, integrator=integrator, spectral_radius=spectral_radius,
+                                   save=path, resume=resume)
         except (EndOfCableError, ConvergenceError) as error:
             result, stopped = error.run, error
         _report(result, path, pictures, forces)

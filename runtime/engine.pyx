@@ -191,7 +191,7 @@ cdef class Engine:
         self._work_space(model)
 
     def _bodies_and_cables(self, model, list tables, blocks):
-        cdef int i, k
+        cdef int i, k, memory = 0
         for i, cable in enumerate(model.cables):
             c = &self.cables[i]
             c.kernel, c.law = _element(tables, cable.element), _law(tables, f"{cable.element}_{cable.law}")
@@ -204,6 +204,9 @@ cdef class Engine:
                 raise ValueError(f"{cable.element}: more coordinates than the engine's {FU_MAX_COORDINATES}")
             c.m, c.A = self._doubles(cable.m), self._doubles(cable.A)
             c.A_stride = cable.A.shape[1] if len(cable.A) > 1 else 0
+            if c.law.rates > FU_MAX_RATES:
+                raise ValueError(f"{cable.element}: more rates of strain than the engine's {FU_MAX_RATES}")
+            c.memory, memory = memory, memory + c.n_elements * (c.law.rates + 1)
         for i, body in enumerate(model.rigids):
             r = &self.rigids[i]
             r.kernel = _body(tables, body.kernel)
@@ -331,6 +334,7 @@ cdef class Engine:
         state.element = self._ints([j.element for j in model.joints])
         state.mode = self._ints([FU_HELD if j.drive >= 0 else FU_SLIDES for j in model.joints])
         state.director = self._doubles([j.director for j in model.joints])
+        state.memory = self._zeros(0)
 
     def _work_space(self, model):
         n_joints, n_dof = len(model.joints), model.n_dof
@@ -358,6 +362,28 @@ cdef class Engine:
         run.psi, run.force = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         run.work, run.before = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         run.first, run.s_slope = self._doubles(np.zeros(model.n_q)), self._doubles(np.zeros(n_joints))
+
+    def _algorithmic(self, method):
+        cdef int i
+        a = &self.run.algorithmic
+        a.lag, a.viscosity, a.inertia, a.weight = method.parameters
+        if a.weight:
+            self.model.n_memory = sum([self.cables[i].n_elements * (self.cables[i].law.rates + 1)
+                                       for i in range(self.model.n_cables)])
+        self.run.now.memory, self.run.next.memory = self._zeros(self.model.n_memory), self._zeros(self.model.n_memory)
+        a.expected = self._zeros(self.model.n_memory)
+
+    def held_strains(self):
+        """Per cable (elements, rates + 1): g and the energy of r of algorithmic dissipation (engine/algorithmic.c)."""
+        cdef const double[::1] memory = <double[:max(1, self.model.n_memory)]>self.run.now.memory
+        numbers, ends = np.array(memory), np.cumsum([self.cables[i].n_elements * (self.cables[i].law.rates + 1)
+                                                     for i in range(self.model.n_cables)])
+        return [part.reshape(self.cables[i].n_elements, -1)
+                for i, part in enumerate(np.split(numbers[:self.model.n_memory], ends[:-1]))]
+
+    def without_algorithmic_force(self):
+        """Numbers of the cables whose law has no kernel for algorithmic dissipation."""
+        return [i for i in range(self.model.n_cables) if self.cables[i].law.algorithmic_force == NULL]
 
     def _tableau(self, method):
         t = &self.run.tableau
@@ -567,6 +593,7 @@ cdef class Engine:
         elif method.name == "energy":
             run.integrator = &fu_energy_method
             run.scratch = self._zeros(self.model.n_q + 2 * self.model.n_dof)
+            self._algorithmic(method)
         else:
             run.integrator = &fu_genalpha_method
             run.scheme.alpha_m, run.scheme.alpha_f, run.scheme.beta, run.scheme.gamma = method.parameters

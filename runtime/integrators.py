@@ -43,9 +43,24 @@ class GeneralisedAlpha:
 
 @dataclass(frozen=True)
 class EnergyMomentum:
-    """Keeps energy and momenta to rounding (Simo & Tarnow 1992; Gonzalez 1996)."""
+    """Keeps energy and momenta to rounding (Simo & Tarnow 1992; Gonzalez 1996); with a spectral radius below 1 at
+    infinite frequency momenta alone, while algorithmic dissipation takes energy from the fast vibrations of cables
+    (engine/algorithmic.c).
+    """
 
+    spectral_radius: float = 1.0
     name, order, slack, caution = "energy", 2, 1.0, 0.0
+
+    @property
+    def parameters(self) -> tuple[float, float, float, float]:
+        """As fu_algorithmic has them: lag in steps, viscosity, inertia, and the weight that follows from them.
+
+        The modulus 1 + inertia p^2 + viscosity p lag p/(1 + lag p) of elasticity and algorithmic stress is to be
+        (1 + p/a)^3/(1 + lag p), with p = -a where (1 + p/2)/(1 - p/2) is minus the spectral radius.
+        """
+        a = 2 * (1 + self.spectral_radius) / (1 - self.spectral_radius) if self.spectral_radius < 1 else np.inf
+        lag, inertia, viscosity = 3 / a, 1 / (3 * a**2), 8 / (9 * a)
+        return lag, viscosity, inertia, 2 * viscosity * lag / (2 * lag + 1) + 2 * inertia
 
 
 class Explicit:
@@ -102,7 +117,7 @@ def choose(settings: RunSettings, scene: Scene, model: Model,
     implicit: Integrator = GeneralisedAlpha(settings.spectral_radius)
     if settings.integrator != "auto":
         made = {"genalpha": lambda: implicit, "explicit": Explicit, "radau": Radau,
-                "energy": EnergyMomentum}[settings.integrator]()
+                "energy": lambda: EnergyMomentum(settings.spectral_radius)}[settings.integrator]()
         return made, "as asked for"
     if settings.step is not None:
         return implicit, "the step is fixed: genalpha holds at any"

@@ -325,7 +325,7 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
         messages.append(f"threads = {settings.threads} came to 1: the compiler that built this had no OpenMP")
     method, reason = choose(settings, scene, model, engine)
     if method.name == "energy":
-        _check_conserves(model, scene)
+        _check_conserves(model, scene, engine, method)
     set_up, cpu = time.perf_counter() - begin, time.process_time()
     status, change = engine.start(
         duration=settings.duration,
@@ -361,13 +361,18 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
     return recording
 
 
-def _check_conserves(model: Model, scene: Scene) -> None:
-    """Raise SceneError for a cable whose law has no discrete gradient."""
+def _check_conserves(model: Model, scene: Scene, engine, method) -> None:
+    """Raise SceneError for a cable whose law has no discrete gradient, or no algorithmic dissipation that is asked for."""
     for cable in model.cables:
         if not hasattr(kernels_of(cable.library), f"{cable.element}_{cable.law}_discrete_force"):
             raise SceneError(scene.cables[cable.name].where,
                              f'integrator "energy" has no discrete gradient of the law "{cable.law}"',
                              "take another law, or another integrator")
+    if method.spectral_radius < 1:
+        for cable in [model.cables[i] for i in engine.without_algorithmic_force()]:
+            raise SceneError(scene.cables[cable.name].where,
+                             f'integrator "energy" has no algorithmic dissipation of the law "{cable.law}"',
+                             "take spectral_radius = 1, another law, or another integrator")
     parts = [*(scene.joints[link.name] for link in model.links if link.name in scene.joints),
              *(slide for slide, joint in zip(scene.slides.values(), model.joints, strict=True)
                if not joint.native or joint.drive >= 0 or slide.frame != "point")]
@@ -376,10 +381,10 @@ def _check_conserves(model: Model, scene: Scene) -> None:
                          "take another integrator: genalpha and radau know all joints")
 
 
-
 def _check_size(model: Model, settings: RunSettings, stream: Stream | None) -> float:
     """Bytes of a row; refuses what no memory holds or, for a stream, what does not fit on its disk."""
-    per_row = 8 * (model.n_q + 3 * model.n_dof + 12 * len(model.joints) + 7 * len(model.links) + 3 * len(model.springs) + 6)
+    per_row = 8 * (model.n_q + 3 * model.n_dof + 12 * len(model.joints) + 7 * len(model.links)
+                   + 3 * len(model.springs) + 6)
     need = per_row * settings.duration / settings.output_step
     most, where = (MOST_OUTPUT, "") if stream is None else (stream.free, " that are free on the disk")
     if not need < most:

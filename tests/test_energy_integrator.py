@@ -181,9 +181,3 @@ def test_a_law_without_a_discrete_gradient_is_named():
     wire(scene, element="beam24", law="structural")
     with pytest.raises(SceneError, match='cable "wire": integrator "energy" has no discrete gradient of the law "str'):
         scene.run(duration=0.1, integrator="energy")
-
-
-def test_vibrations_are_not_damped_on_request():
-    scene = free(**CABLES["green"])
-    with pytest.raises(SceneError, match=r'keeps all vibrations, its spectral_radius is 1, got 0.5: .* "genalpha"'):
-        scene.run(duration=0.1, integrator="energy", spectral_radius=0.5)

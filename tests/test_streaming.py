@@ -149,10 +149,12 @@ def test_dying_in_the_middle_of_a_write(uninterrupted, tmp_path, monkeypatch, wr
 
 
 @pytest.mark.filterwarnings("ignore:initial velocities broke a joint")
-@pytest.mark.parametrize("integrator", [name for name in INTEGRATORS if name != "auto"])
-def test_every_integrator_goes_on_exactly(tmp_path, monkeypatch, integrator):
+@pytest.mark.parametrize("method", [*({"integrator": name} for name in INTEGRATORS if name != "auto"),
+                                    {"integrator": "energy", "spectral_radius": 0.5}],
+                         ids=lambda method: "-".join(map(str, method.values())))
+def test_every_integrator_goes_on_exactly(tmp_path, monkeypatch, method):
     """With a motion, a spring, a follower, damping and a hinge as well; stopped twice."""
-    settings = {"duration": 0.05, "output_step": 0.001, "tol": 1e-4, "integrator": integrator}
+    settings = {"duration": 0.05, "output_step": 0.001, "tol": 1e-4, **method}
     everything().run(**settings, save=tmp_path / "whole.nc")
     monkeypatch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
     for writes, resume in ((40, False), (50, True)):

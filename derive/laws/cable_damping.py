@@ -8,16 +8,23 @@ Damping need not be integrated exactly: as many points as the degree.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 import sympy as sp
 from funicular.derive.laws.cable_blocks import named_blocks, spread
+from funicular.derive.spec import Element, x
 from funicular.derive.stages import Derivation, Program, jacobian
 
 
 class Damping:
     """Of a cable with a Green or an engineering strain; any curvature is damped alike."""
+
+    @staticmethod
+    def rates(element: Element) -> dict[str, int]:
+        """How many rates of strain the damping of an element has, and whether a spin about the tangent is among them."""
+        degree = sum(sp.sympify(monomial).free_symbols <= {x} for monomial in element.basis) - 1
+        return {"rates": degree + (degree - 1) * element.dim, "spins": int(element.dim == 3)}
 
     def _rates(self, program: Program, A, tau, c, dc, w) -> Iterator[tuple]:
         """At every point: factors of the strain vectors in r' and (l/2) r'', weight times viscosity, positions and
@@ -50,19 +57,37 @@ class Damping:
                                     sum(series[k] * v[m] for k, m in enumerate(self.axis_indices)))
                      for name, v in (("r", c), ("d", dc)))
 
-    def _damping_points(self, program, A, tau, c, dc, w) -> Iterator[tuple]:
-        """At every point: factors, positions, rates, forces on r' (and (l/2) r'')."""
+    def _damping_points(self, program, A, tau, c, dc, w, strain: Callable = list) -> Iterator[tuple]:
+        """At every point: factors, positions, rates, forces on r' (and (l/2) r''); strain: of the rates there, what the
+        stress follows.
+        """
         for factors, viscosity, still, moving, rates in list(self._rates(program, A, tau, c, dc, w)):
             by_rate = jacobian(program, np.array(rates), list(moving))
-            force = [program.define(f"F_{s.name}", viscosity * sum(e * d for e, d in zip(rates, column, strict=True)))
+            stress = strain(rates)
+            force = [program.define(f"F_{s.name}", viscosity * sum(e * d for e, d in zip(stress, column, strict=True)))
                      for s, column in zip(moving, by_rate.T, strict=True)]
             yield factors, still, moving, np.array(force)
 
     def damping_forces(self, program, A, tau, c, dc, w) -> np.ndarray:
         """Forces on strain vectors."""
+        return self._summed(program, list(self._damping_points(program, A, tau, c, dc, w)))
+
+    def algorithmic_forces(self, program, A, weight, known, c, dc, w) -> tuple[np.ndarray, Sequence[sp.Expr]]:
+        """Forces on strain vectors of the stiffnesses times weight dE - known, and dE: the rates that dc makes."""
+        dE: list[sp.Expr] = []
+
+        def strain(rates):
+            dE.extend(rates)
+            return [program.define(f"excess_{s.name}", weight * s - known[k])
+                    for k, s in enumerate(rates, len(dE) - len(rates))]
+
+        return self._summed(program, list(self._damping_points(program, A, sp.S.One, c, dc, w, strain))), dE
+
+    def _summed(self, program: Program, points: list[tuple]) -> np.ndarray:
+        """Stage: forces on strain vectors from those at the points."""
         dim = self.gram.element.dim
         f = np.zeros((len(self.gram.names), dim), dtype=object)
-        for factors, _, _, force in list(self._damping_points(program, A, tau, c, dc, w)):
+        for factors, _, _, force in points:
             for k, m in enumerate(self.axis_indices):
                 f[m] = f[m] + sum(x[k] * force[i * dim:(i + 1) * dim] for i, x in enumerate(factors))
         program.stage("forces on strain vectors")

@@ -15,6 +15,7 @@ from funicular.derive import moments
 from funicular.derive.gram import Gram
 from funicular.derive.gram_tangent import blocks
 from funicular.derive.laws.continuum_section import Resultants
+from funicular.derive.spec import Element
 from funicular.derive.stages import Program
 
 NAME = "continuum"
@@ -190,6 +191,21 @@ class Continuum:
         u, _ = self._viscous(program, A, tau, c, dc)
         program.stage("forces on strain vectors")
         return self.gram.vector_forces(program, c, u)
+
+    @staticmethod
+    def rates(element: Element) -> dict[str, int]:
+        """How many rates of strain the damping of an element has, and whether a spin about the tangent is among them."""
+        return {"rates": element.n_vectors * (element.n_vectors - 1) // 2, "spins": 0}
+
+    def algorithmic_forces(self, program, A, weight, known, c, dc, w) -> tuple[np.ndarray, Sequence[sp.Expr]]:
+        """Forces on strain vectors of the stiffnesses times weight dE - known, and dE: the rates that dc makes."""
+        program.stage("change of the Gram products")
+        dG = self.gram.gram_rate(program, c, dc)
+        program.stage("u = A (weight dG - known)")
+        excess = [program.define(f"excess_{self.gram.pair(p)}", weight * d - known[p]) for p, d in enumerate(dG)]
+        u = self._times(program, self._viscous_moduli(A), excess)
+        program.stage("forces on strain vectors")
+        return self.gram.vector_forces(program, c, u), dG
 
     def damping_blocks(self, program, A, tau, c, dc, rate, w) -> np.ndarray:
         """df/dc + rate df/d(dc) over strain vectors."""

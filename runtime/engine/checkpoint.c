@@ -36,6 +36,7 @@ static void copy_state(copier *c, const fu_model *model, fu_state *state)
     copy(c, state->element, sizeof(int) * joints);
     copy(c, state->mode, sizeof(int) * joints);
     copy(c, state->director, 3 * sizeof(double) * joints);
+    copy(c, state->memory, sizeof(double) * (size_t)model->n_memory);
 }
 
 /* The list of it. Factored matrices are not in it: fu_pause drops the Newton matrix, and fu_start makes that of eq 38. */

@@ -11,6 +11,7 @@
  *
  * Unknowns as in genalpha.c with sigma = h^2/2. The Newton matrix takes elasticity at the middle, which leaves the
  * change of curvature of the energy over a step out: Newton converges linearly, by a factor that falls as h^2 or faster.
+ * Algorithmic dissipation (algorithmic.c) stands in it as so much more stiffness, which it is but for turns and tension.
  */
 #include "engine.h"
 
@@ -75,6 +76,7 @@ static void residual(fu_run *run, double h)
     double *extra = run->rhs + model->n_band + model->n_border_dof;
     fu_mass_times(model, next->acceleration, run->force);
     fu_discrete_forces(model, now->q, next->q, run->force);
+    fu_algorithmic_forces(run, m.q, run->force);
     fu_rate_forces(model, m.q, m.v, run->force);
     fu_external_forces(model, now->t + 0.5 * h, m.q, run->force);
     for (int j = 0; j < model->n_joints; ++j) {
@@ -167,7 +169,7 @@ static void matrix(fu_run *run, double h)
     const double rate = 2.0 / h, stiffness = 0.5 * sigma(h); /* the middle moves by half of psi */
     const fu_state state = {.q = m.q, .v = m.v, .spring = run->next.spring};
     fu_system_clear(&run->newton);
-    fu_dynamic_matrix(model, m.q, m.v, 1.0, rate, stiffness, &run->newton);
+    fu_dynamic_matrix(model, m.q, m.v, 1.0, rate, stiffness * (1.0 + 2.0 * run->algorithmic.weight), &run->newton);
     mean_stress(run, stiffness);
     fu_loads_matrix(model, run->now.t + 0.5 * h, m.q, 0, stiffness, &run->newton);
     for (int j = 0; j < model->n_joints; ++j) joint_matrix(run, j, stiffness);
@@ -196,6 +198,7 @@ static int step(fu_run *run, double h)
 {
     /* what Newton leaves does work on the step: it is measured by psi and not by positions */
     run->newton_tolerance = 1e-17 * h * fu_size(run->model, run->now.v);
+    fu_algorithmic_start(run, h);
     return fu_newton_step(run, &newton, h);
 }
 
@@ -220,6 +223,7 @@ static void book(fu_run *run, double h)
     fu_rate_forces(model, m.q, m.v, m.force);
     const int n_flexible = model->n_rigids ? model->rigids[0].dof : model->n_dof; /* gyroscopic moments do no work */
     for (int i = 0; i < n_flexible; ++i) run->dissipated += m.force[i] * run->psi[i];
+    run->dissipated += fu_algorithmic_book(run, m.q);
     for (int k = 0; k < model->n_springs; ++k)
         run->dissipated += h * fu_discrete_spring(model, &model->springs[k], now->q, next->q, h, force);
     for (int i = 0; i < model->n_dof; ++i) m.force[i] = 0.0;

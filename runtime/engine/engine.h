@@ -21,6 +21,7 @@
 #define FU_END_COORDINATES 40 /* of what an end is on, s among them; model.py checks */
 #define FU_SLIDE_COORDINATES (FU_MAX_COORDINATES + FU_END_COORDINATES)
 #define FU_ROW_COORDINATES (2 * (FU_END_COORDINATES + FU_SLIDE_COORDINATES))
+#define FU_MAX_RATES 128 /* of strain, of one element; engine.pyx checks */
 #define FU_SIGNAL_TERMS 7 /* coefficients of a piece of a signal */
 
 typedef struct {
@@ -37,6 +38,7 @@ typedef struct {
     const double *m;  /* mass matrix of an element over nodal vectors */
     const double *A;  /* constants of the law, of the first element */
     int A_stride;     /* from one element's to the next's: zero where they are equal */
+    int memory;       /* first number in the memory of algorithmic dissipation: law->rates + 1 an element */
 } fu_cable;
 
 typedef struct {
@@ -189,6 +191,7 @@ typedef struct {
     const fu_load *loads;
     const fu_signal *signals;
     int n_q, n_dof, n_band, n_border_dof;
+    int n_memory; /* zero without algorithmic dissipation */
     int n_extra, n_multipliers; /* unknowns of slides, joints and springs in a Newton system, of the former in eq 38 */
     const int *place;
     const int *combination_start, *combination_place; /* combinations, row by row */
@@ -216,6 +219,7 @@ typedef struct {
     int *element;    /* per joint: element that holds s */
     int *mode;       /* per joint: FU_SLIDES and so on */
     double *director; /* per joint: unit vector across the tangent, carried along with the slide */
+    double *memory;  /* of algorithmic dissipation */
 } fu_state;
 
 /* band.c */
@@ -352,6 +356,12 @@ typedef struct {
     double alpha_m, alpha_f, beta, gamma;
 } fu_genalpha;
 
+/* Of the energy-momentum method, algorithmic.c; weight: of a change of strain in the stress, zero: there is none. */
+typedef struct {
+    double lag, viscosity, inertia, weight;
+    double *expected; /* like the memory: what the velocities at the start of the step would change, and its energy */
+} fu_algorithmic;
+
 /* Explicit Runge-Kutta method with two embedded error estimates. */
 typedef struct {
     int stages;
@@ -450,6 +460,7 @@ struct fu_run {
     const fu_integrator *integrator;
     int order;           /* of the error in positions as controlled */
     fu_genalpha scheme;
+    fu_algorithmic algorithmic;
     fu_tableau tableau;
     fu_collocation collocation;
     fu_complex_system complex_newton;
@@ -508,6 +519,11 @@ double fu_spread_size(fu_run *run);
 double fu_filtered_size(fu_run *run);
 double fu_row_unit(double inertia, double mass);
 void fu_joint_coordinates(const fu_model *model, const fu_state *state, int j, int *at);
+
+/* algorithmic.c */
+void fu_algorithmic_start(fu_run *run, double h);
+void fu_algorithmic_forces(fu_run *run, const double *q, double *force);
+double fu_algorithmic_book(fu_run *run, const double *q);
 
 /* projection.c */
 int fu_find_slides(fu_run *run);

@@ -12,6 +12,8 @@ cdef extern from "kernels.h" nogil:
         int coordinates, dim
     ctypedef struct fu_law:
         const char *name
+        int rates
+        void *algorithmic_force
     ctypedef struct fu_frame:
         const char *name
     ctypedef struct fu_pair:
@@ -32,7 +34,7 @@ cdef extern from "blocks.h" nogil:
     const fu_law_blocks *fu_blocks_of(const char *law)
 
 cdef extern from "engine.h" nogil:
-    int FU_JOINT_OUTPUTS, FU_LINK_OUTPUTS, FU_MAX_COORDINATES, FU_END_COORDINATES, FU_SLIDES, FU_HELD, FU_LEFT
+    int FU_JOINT_OUTPUTS, FU_LINK_OUTPUTS, FU_MAX_COORDINATES, FU_MAX_RATES, FU_END_COORDINATES, FU_SLIDES, FU_HELD, FU_LEFT
     int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT, FU_UNSTABLE
     int FU_NO_FAILURE, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE
     int FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_CALL
@@ -43,7 +45,7 @@ cdef extern from "engine.h" nogil:
         const fu_element *kernel
         const fu_law *law
         const fu_law_blocks *blocks
-        int n_elements, first, coordinates, per_node, A_stride
+        int n_elements, first, coordinates, per_node, A_stride, memory
         double length, tau, mass_damping
         const double *m
         const double *A
@@ -133,7 +135,7 @@ cdef extern from "engine.h" nogil:
         const fu_dead_load *dead_loads
         const fu_load *loads
         const fu_signal *signals
-        int n_q, n_dof, n_band, n_border_dof, n_extra, n_multipliers
+        int n_q, n_dof, n_band, n_border_dof, n_memory, n_extra, n_multipliers
         const int *place
         const int *combination_start
         const int *combination_place
@@ -160,6 +162,7 @@ cdef extern from "engine.h" nogil:
         int *element
         int *mode
         double *director
+        double *memory
     ctypedef struct fu_rows:
         int rows
     ctypedef struct fu_slide_state:
@@ -177,6 +180,9 @@ cdef extern from "engine.h" nogil:
         double *joints
     ctypedef struct fu_genalpha:
         double alpha_m, alpha_f, beta, gamma
+    ctypedef struct fu_algorithmic:
+        double lag, viscosity, inertia, weight
+        double *expected
     ctypedef struct fu_tableau:
         int stages
         const double *A
@@ -241,6 +247,7 @@ cdef extern from "engine.h" nogil:
         const fu_integrator *integrator
         int order
         fu_genalpha scheme
+        fu_algorithmic algorithmic
         fu_tableau tableau
         fu_collocation collocation
         fu_complex_system complex_newton

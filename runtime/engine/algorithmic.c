@@ -1,0 +1,218 @@
+/* Algorithmic dissipation of the energy-momentum method: stresses that fast vibrations meet and slow motion does not.
+ *
+ * Over a step a strain changes by dE = B psi, B the rates of strain in the middle that damping_force has. To its stress
+ *
+ *   S = D (viscosity (g_1 - g_0) + inertia (r_1 - r_0)),   g_1 - g_0 = dE - (g_0 + g_1)/(2 lag),   r_0 + r_1 = 2 dE
+ *
+ * is added, D the stiffness: the first part is a Maxwell element between the strain and what follows it within `lag` steps,
+ * g how far that is behind; the second is inertia against strain, r the change that the velocities at an end of the step
+ * would make in one. What S takes out over the step, S dE, is
+ *
+ *   viscosity D (g_1 - g_0)^2   and what goes into   viscosity/(2 lag) D g^2 + inertia/2 D r^2
+ *
+ * which comes back or is lost: energy is never above its start. r_0 = h B v_0 at the start of the step; where it would hold
+ * more than r_1 of the step before has left, it is shortened to that. S is of the order of h^2 in slow motion, and none in
+ * rigid motion. The aim is that of Armero & Romero (Comput. Methods Appl. Mech. Eng. 190 (2001) 6783-6824); the form is
+ * linear: an oscillator of stiffness D has p^2 (1 + lag p) + (h omega)^2 (1 + p/a)^3 = 0 for its eigenvalues
+ * (1 + p/2)/(1 - p/2), with the three numbers of integrators.py, and all three reach the spectral radius as h omega grows.
+ *
+ * B of a spatial cable sees a turn about the tangent where it is bent (cable_damping.py), which would cost momentum. A turn
+ * of the cable as a whole is taken off, v - omega x r, the one that leaves its forces without a moment.
+ *
+ * g of a bent cable has directions in space, and stays there while the cable turns: that changes S by the order of h^2.
+ */
+#include "engine.h"
+
+#include <string.h>
+
+#define LEAST_PIVOT 1e-14 /* of the largest: a turn that bends nothing */
+
+static const double none[FU_MAX_RATES];
+
+/* A cable in motion, and the turn that is taken off it. */
+typedef struct {
+    const fu_cable *cable;
+    const double *q, *v;
+    double weight, omega[3];
+} moving;
+
+/* Numbers of a cable's k-th element in `memory`: g, and the energy of r. */
+static double *memory_of(const fu_cable *cable, double *memory, int k)
+{
+    return memory + cable->memory + (long)k * (cable->law->rates + 1);
+}
+
+static int entry_of(const fu_cable *cable, int k)
+{
+    return cable->first + k * cable->per_node;
+}
+
+/* turned += omega x r over an element's vectors, r from the cable's first node */
+static void turn(const moving *m, int k, const double omega[3], double *turned)
+{
+    const fu_cable *cable = m->cable;
+    const double *e = m->q + entry_of(cable, k), *origin = m->q + cable->first;
+    for (int i = 0; i < cable->coordinates; i += 3) {
+        double r[3];
+        for (int d = 0; d < 3; ++d) r[d] = e[i + d] - (i % cable->per_node ? 0.0 : origin[d]);
+        for (int d = 0; d < 3; ++d)
+            turned[i + d] += omega[(d + 1) % 3] * r[(d + 2) % 3] - omega[(d + 2) % 3] * r[(d + 1) % 3];
+    }
+}
+
+static double dot(int n, const double *a, const double *b)
+{
+    double sum = 0.0;
+    for (int i = 0; i < n; ++i) sum += a[i] * b[i];
+    return sum;
+}
+
+/* f of D (weight dE - known), and dE; returns the work of the one with the other */
+static double element_force(const moving *m, int k, const double *known, double *f, double *dE)
+{
+    const fu_cable *cable = m->cable;
+    const double back[3] = {-m->omega[0], -m->omega[1], -m->omega[2]};
+    double v[FU_MAX_COORDINATES];
+    memcpy(v, m->v + entry_of(cable, k), sizeof(double) * (size_t)cable->coordinates);
+    if (cable->law->spins) turn(m, k, back, v);
+    cable->law->algorithmic_force(cable->length, m->q + entry_of(cable, k), v, cable->A + (long)k * cable->A_stride,
+                                  m->weight, known, f, dE);
+    return dot(cable->coordinates, f, v);
+}
+
+/* N x = b, N symmetric and not negative; x is zero where N is */
+static void solve(double N[9], double b[3], double x[3])
+{
+    const double least = LEAST_PIVOT * fmax(N[0], fmax(N[4], N[8]));
+    int order[3], n = 0, left[3] = {1, 1, 1};
+    for (; n < 3; ++n) {
+        int i = left[0] ? 0 : left[1] ? 1 : 2;
+        for (int k = 0; k < 3; ++k)
+            if (left[k] && N[4 * k] > N[4 * i]) i = k;
+        if (!(N[4 * i] > least)) break;
+        left[i] = 0;
+        order[n] = i;
+        for (int k = 0; k < 3; ++k) {
+            if (!left[k]) continue;
+            const double factor = N[3 * k + i] / N[4 * i];
+            for (int j = 0; j < 3; ++j) N[3 * k + j] -= factor * N[3 * i + j];
+            b[k] -= factor * b[i];
+        }
+    }
+    x[0] = x[1] = x[2] = 0.0;
+    while (n--) {
+        const int i = order[n];
+        x[i] = (b[i] - dot(3, N + 3 * i, x)) / N[4 * i];
+    }
+}
+
+typedef void (*stress_of)(const fu_run *run, const fu_cable *cable, int k, double *known);
+
+/* `known` of the whole stress, of its second part, of none */
+static void of_both(const fu_run *run, const fu_cable *cable, int k, double *known)
+{
+    const fu_algorithmic *a = &run->algorithmic;
+    const double *g = memory_of(cable, run->now.memory, k), *r = memory_of(cable, a->expected, k);
+    const double maxwell = 2.0 * a->viscosity / (2.0 * a->lag + 1.0);
+    for (int i = 0; i < cable->law->rates; ++i) known[i] = maxwell * g[i] + 2.0 * a->inertia * r[i];
+}
+
+static void of_inertia(const fu_run *run, const fu_cable *cable, int k, double *known)
+{
+    const double *r = memory_of(cable, run->algorithmic.expected, k);
+    for (int i = 0; i < cable->law->rates; ++i) known[i] = 2.0 * run->algorithmic.inertia * r[i];
+}
+
+static void of_none(const fu_run *run, const fu_cable *cable, int k, double *known)
+{
+    (void)run, (void)k;
+    memset(known, 0, sizeof(double) * (size_t)cable->law->rates);
+}
+
+/* the cable, with the turn that leaves the forces of D (weight dE - known) without a moment */
+static moving without_turn(const fu_run *run, const fu_cable *cable, const double *q, const double *v, double weight,
+                           stress_of stress)
+{
+    moving m = {cable, q, v, weight, {0.0, 0.0, 0.0}};
+    double N[9] = {0.0}, M[3] = {0.0};
+    if (!cable->law->spins) return m;
+    for (int k = 0; k < cable->n_elements; ++k) {
+        double f[FU_MAX_COORDINATES], turns[3][FU_MAX_COORDINATES] = {{0.0}}, known[FU_MAX_RATES], dE[FU_MAX_RATES];
+        stress(run, cable, k, known);
+        element_force(&m, k, known, f, dE);
+        for (int d = 0; d < 3; ++d) {
+            const double axis[3] = {d == 0, d == 1, d == 2};
+            turn(&m, k, axis, turns[d]);
+            M[d] += dot(cable->coordinates, f, turns[d]);
+        }
+        for (int d = 0; d < 3; ++d) {
+            cable->law->algorithmic_force(cable->length, q + entry_of(cable, k), turns[d],
+                                          cable->A + (long)k * cable->A_stride, weight, none, f, dE);
+            for (int i = 0; i < 3; ++i) N[3 * d + i] += dot(cable->coordinates, f, turns[i]);
+        }
+    }
+    solve(N, M, m.omega);
+    return m;
+}
+
+/* r_0 of a step of h from `now` */
+void fu_algorithmic_start(fu_run *run, double h)
+{
+    const fu_algorithmic *a = &run->algorithmic;
+    for (int c = 0; a->weight > 0.0 && c < run->model->n_cables; ++c) {
+        const fu_cable *cable = &run->model->cables[c];
+        const int n = cable->law->rates;
+        const moving m = without_turn(run, cable, run->now.q, run->now.v, 1.0, of_none);
+        for (int k = 0; k < cable->n_elements; ++k) {
+            double f[FU_MAX_COORDINATES], *r = memory_of(cable, a->expected, k);
+            const double left = memory_of(cable, run->now.memory, k)[n];
+            const double holds = 0.5 * a->inertia * h * h * element_force(&m, k, none, f, r);
+            const double part = holds > left ? sqrt(left / holds) : 1.0;
+            for (int i = 0; i < n; ++i) r[i] *= h * part;
+            r[n] = part * part * holds;
+        }
+    }
+}
+
+/* force += those of the step from `now` by psi, q its middle */
+void fu_algorithmic_forces(fu_run *run, const double *q, double *force)
+{
+    const double weight = run->algorithmic.weight;
+    for (int c = 0; weight > 0.0 && c < run->model->n_cables; ++c) {
+        const fu_cable *cable = &run->model->cables[c];
+        const moving m = without_turn(run, cable, q, run->psi, weight, of_both);
+        for (int k = 0; k < cable->n_elements; ++k) {
+            double f[FU_MAX_COORDINATES], known[FU_MAX_RATES], dE[FU_MAX_RATES];
+            of_both(run, cable, k, known);
+            element_force(&m, k, known, f, dE);
+            for (int i = 0; i < cable->coordinates; ++i) force[entry_of(cable, k) + i] += f[i];
+        }
+    }
+}
+
+/* The step is taken: the memory at its end. Returns the work of the stresses, J. */
+double fu_algorithmic_book(fu_run *run, const double *q)
+{
+    const fu_algorithmic *a = &run->algorithmic;
+    double work = 0.0;
+    for (int c = 0; a->weight > 0.0 && c < run->model->n_cables; ++c) {
+        const fu_cable *cable = &run->model->cables[c];
+        const int n = cable->law->rates;
+        const moving m = without_turn(run, cable, q, run->psi, a->weight, of_both);
+        moving second = m;
+        second.weight = 2.0 * a->inertia;
+        for (int k = 0; k < cable->n_elements; ++k) {
+            const double *psi = run->psi + entry_of(cable, k), *now = memory_of(cable, run->now.memory, k);
+            double *next = memory_of(cable, run->next.memory, k);
+            double f[FU_MAX_COORDINATES], known[FU_MAX_RATES], dE[FU_MAX_RATES];
+            of_both(run, cable, k, known);
+            element_force(&m, k, known, f, dE);
+            work += dot(cable->coordinates, f, psi);
+            for (int i = 0; i < n; ++i) next[i] = now[i] + 2.0 * (a->lag * dE[i] - now[i]) / (2.0 * a->lag + 1.0);
+            of_inertia(run, cable, k, known);
+            const double gained = element_force(&second, k, known, f, dE);
+            next[n] = fmax(0.0, memory_of(cable, a->expected, k)[n] + gained);
+        }
+    }
+    return work;
+}
