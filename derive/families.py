@@ -51,7 +51,8 @@ def _slide(element: Element, rider: ModuleType | Point) -> Family:
     return Family(f"slide_{element.name}_{rider.NAME}",
                   f"sliding joint of a {rider.NAME} rider on a {element.name} cable",
                   partial(slide.build, element, rider),
-                  ("joints.slide", f"elements.{element.name}", "bodies.point" if isinstance(rider, Point) else f"bodies.{rider.NAME}"),
+                  ("joints.slide", f"elements.{element.name}",
+                   "bodies.point" if isinstance(rider, Point) else f"bodies.{rider.NAME}"),
                   role="slide",
                   facts={"coordinates": element.n_coordinates + rider.N_VELOCITY, "dim": element.dim},
                   element=element, rider=rider.NAME)

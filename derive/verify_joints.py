@@ -114,7 +114,8 @@ def joint_relations(family: Family) -> list[Relation]:
 
     return [
         Relation("force", "phi", "at 50 digits; see what the joint lets pass", 0, from_kernel("force", "phi")),
-        Relation("force", "J", "dphi by gap and turns", 1, lambda k, s, t, j: phi(k, s, **by_coordinate(k, s, t, j)), n),
+        Relation("force", "J", "dphi by gap and turns", 1,
+                 lambda k, s, t, j: phi(k, s, **by_coordinate(k, s, t, j)), n),
         Relation("force", "K", "d(J' f) by gap and turns", 1,
                  lambda k, s, t, j: k("force", s, **by_coordinate(k, s, t, j))["J"].T.dot(s["f"]), n),
         Relation("motion", "phi_t", "dphi/dt at rest", 1, lambda k, s, t, j: phi(k, s, **driven(k, s, t))),
@@ -151,7 +152,8 @@ def frame_invariances(family: Family, k: Numbers, s: State) -> Iterator[tuple[st
     """Orthonormal, right-handed; a turn of both vectors turns the frame; length does not matter."""
     out = k("axes", s)
     A, T = out["A"], out["T"]
-    yield "A' A = I, right-handed", max(float(np.abs(A.T @ A - np.eye(len(A))).max()), abs(np.linalg.det(A) - 1)), 8 * EPS
+    off = np.abs(A.T @ A - np.eye(len(A))).max()
+    yield "A' A = I, right-handed", max(float(off), abs(np.linalg.det(A) - 1)), 8 * EPS
     for theta in np.eye(len(T)):
         both = np.concatenate([swung_axes(theta, s[name][:, None])[:, 0] for name in "ab"])
         yield "turned vectors turn the frame", float(np.abs(T @ both - theta).max()), 64 * EPS

@@ -41,7 +41,7 @@ def loads(spec: Element) -> list[Relation]:
         Relation("on_axis", "N", "nodal conditions solved at 50 digits", 0, root(shape)),
         Relation("on_axis", "N_x", "their derivative by x", 0, root(lambda s: shape(s, "x"))),
         Relation("slopes", "S", "derivatives of the shape functions at 50 digits", 0,
-                 root(lambda s: np.array([[shape(s, letter + order) for order in ("", "x", "xx")] for letter in "xyz"]))),
+                 root(lambda s: np.array([[shape(s, a + order) for order in ("", "x", "xx")] for a in "xyz"]))),
         Relation("follower_force", "f", "N' times the force in the frame by Gram-Schmidt", 0, follower),
         Relation("follower_force", "K", "df/de", 1, from_kernel("follower_force", "f", e=entry("e")), n),
         Relation("moment", "f", "M . ω, ω the best fit to the rates of the slopes", 0, root(moment)),

@@ -34,7 +34,7 @@ STATUS = {FU_DONE: "completed", FU_END_OF_CABLE: "end_of_cable", FU_NO_CONVERGEN
           FU_UNSTABLE: "unstable"}
 CAUSES = {FU_NO_FAILURE: None, FU_ITERATION: "iteration", FU_MATRIX: "matrix", FU_ERROR: "error",
           FU_LOST_RIDER: "lost_rider", FU_NOT_FINITE: "not_finite"}
-JOINT_OUTPUTS = ("s_rate", "s_acceleration", "force", "multiplier", "residual")
+JOINT_OUTPUTS = ("s_rate", "s_acceleration", "force", "multiplier", "traction", "residual")
 
 
 cdef const fu_element *_element(list tables, str name) except NULL:
@@ -673,7 +673,7 @@ cdef class Engine:
 
     def joint_row(self, joints):
         """Split joint numbers (..., FU_JOINT_OUTPUTS) by name; see fu_joint_output."""
-        sizes = (1, 1, 3, 3, 3)
+        sizes = (1, 1, 3, 2, 1, 3)
         ends = np.cumsum(sizes)
         return {name: joints[..., end - size:end] if size > 1 else joints[..., end - 1]
                 for name, size, end in zip(JOINT_OUTPUTS, sizes, ends)}

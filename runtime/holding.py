@@ -40,7 +40,10 @@ class EndModel:
 
 @dataclass
 class LinkModel:
-    """A joint between two ends; unknown, multiplier: places of its rows; signal: that drives it, or -1."""
+    """A joint between two ends; unknown, multiplier: places of its rows; signal: that drives it, or -1.
+
+    slide: the one beside which it ties a rider's axes to the cable.
+    """
 
     name: str
     kernel: str
@@ -50,6 +53,7 @@ class LinkModel:
     signal: int
     base: float
     scale: np.ndarray
+    slide: str | None = None
 
     @property
     def rows(self) -> int:
@@ -145,7 +149,9 @@ def tied(holder: Holder, slide: Slide, number: int, unknown: int, multiplier: in
     at = slide_axes(holder.scene, slide)
     free = slide.frame == "tangent" and slide.roll == "free" and dim == 3
     ends = [holder.on_slide(slide, number, at.a), holder.end(slide.rider, at.b)]
-    return _link(f"{slide.name}.{slide.frame}", "aligned" if free else "locked", dim, ends, unknown, multiplier, -1, 0.0)
+    link = _link(slide.name, "aligned" if free else "locked", dim, ends, unknown, multiplier, -1, 0.0)
+    link.slide = slide.name
+    return link
 
 
 def _link(name: str, kind: str, dim: int, ends: list[EndModel], unknown: int, multiplier: int, signal: int,

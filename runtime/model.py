@@ -362,7 +362,7 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
 
 
 def _check_conserves(model: Model, scene: Scene, engine, method) -> None:
-    """Raise SceneError for a cable whose law has no discrete gradient, or no algorithmic dissipation that is asked for."""
+    """Raise SceneError for what has no discrete gradient, or lacks the algorithmic dissipation that is asked for."""
     for cable in model.cables:
         if not hasattr(kernels_of(cable.library), f"{cable.element}_{cable.law}_discrete_force"):
             raise SceneError(scene.cables[cable.name].where,
@@ -373,7 +373,7 @@ def _check_conserves(model: Model, scene: Scene, engine, method) -> None:
             raise SceneError(scene.cables[cable.name].where,
                              f'integrator "energy" has no algorithmic dissipation of the law "{cable.law}"',
                              "take spectral_radius = 1, another law, or another integrator")
-    parts = [*(scene.joints[link.name] for link in model.links if link.name in scene.joints),
+    parts = [*(scene.joints[link.name] for link in model.links if link.slide is None),
              *(slide for slide, joint in zip(scene.slides.values(), model.joints, strict=True)
                if not joint.native or joint.drive >= 0 or slide.frame != "point")]
     for part in parts:

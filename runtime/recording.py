@@ -29,6 +29,7 @@ class Rows:
     clamps: dict[str, dict]
     motions: dict[str, dict]
     joins: dict[str, dict]
+    joints: dict[str, dict]
     springs: dict[str, dict]
     energy: dict[str, np.ndarray]
 
@@ -117,7 +118,10 @@ def named(model: Model, scene: Scene, engine) -> Rows:
     for k, joint in enumerate(model.joints):
         slides[joint.name] = {"s": rows["s"][:, k], **engine.joint_row(rows["joint"][:, k])}
         slides[joint.name]["residual"] = np.linalg.norm(slides[joint.name]["residual"], axis=-1)
-        slides[joint.name]["multiplier"] = slides[joint.name]["multiplier"][..., :2]
+
+    for k, link in enumerate(model.links):
+        if link.slide is not None:
+            slides[link.slide]["moment"] = _joint_state(rows["link"][:, k])["moment"]
 
     def held(part) -> dict[str, np.ndarray]:
         return support_reaction(model, scene, part, rows["reaction"], q)
@@ -131,6 +135,8 @@ def named(model: Model, scene: Scene, engine) -> Rows:
         clamps={clamp.label: held(clamp) for clamp in scene.clamps},
         motions={motion.label: held(motion) for motion in scene.motions},
         joins={name: join_force(model, scene, join, rows["reaction"], q) for name, join in scene.joins.items()},
+        joints={link.name: _joint_state(rows["link"][:, k])
+                for k, link in enumerate(model.links) if link.slide is None},
         springs={spring.name: spring_state(model, spring, rows["spring"][:, k], q)
                  for k, spring in enumerate(model.springs)},
         energy={name: rows[name] for name in ("kinetic", "elastic", "potential", "dissipated", "external")},
@@ -161,6 +167,11 @@ def recorded(model: Model, scene: Scene, engine, settings: RunSettings, status: 
         message=_message(model, engine, status, settings, watcher),
         report=report,
     )
+
+
+def _joint_state(numbers: np.ndarray) -> dict[str, np.ndarray]:
+    """From the engine's numbers (time, FU_LINK_OUTPUTS) of a joint."""
+    return {"force": numbers[:, :3], "moment": numbers[:, 3:6], "residual": numbers[:, 6]}
 
 
 def _turning(rates: np.ndarray) -> np.ndarray:

@@ -289,7 +289,7 @@ def _counted(touches: csr_array, number: np.ndarray, n_band: int) -> Numbering:
     width = int(np.max(high[banded] - low[banded], initial=0))
     of = np.searchsorted(chains, low, "right") - 1
     outside = ~inside & banded[element]
-    columns = np.unique(np.stack([at[outside], of[element[outside]]]), axis=1)  # of the border, in the chains they touch
+    columns = np.unique(np.stack([at[outside], of[element[outside]]]), axis=1)  # of the border, by chain
     coupled, m = float(np.diff(chains)[columns[1]].sum()), len(number) - n_band
     factor = n_band * width**2 / 2 + 2 * width * coupled + m**3 / 3
     return Numbering(number, n_band, width, chains, factor + SOLVES * (2 * width * n_band + coupled + m**2))

@@ -79,7 +79,8 @@ def star() -> Scene:
     scene = Scene()
     steel = Material(youngs_modulus=1e8, poisson_ratio=0.3, density=4200, damping_time=1e-4)
     square = Rectangle(height=0.05, width=0.05)
-    for name, start, element in (("a", (0, 0, 0), "beam24"), ("b", (2, 1, 0), "beam24"), ("c", (1.5, -1, 1), "cable12")):
+    legs = (("a", (0, 0, 0), "beam24"), ("b", (2, 1, 0), "beam24"), ("c", (1.5, -1, 1), "cable12"))
+    for name, start, element in legs:
         scene.cable(name, start=start, end=(1, 0, 0), elements=3, element=element, section=square, material=steel)
         scene.pin(name, s=0.0)
     scene.join("a", s=1.0, to="b", at=scene.cables["b"].length)

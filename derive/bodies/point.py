@@ -19,16 +19,8 @@ class Point:
 
     NAME: str
     DIM: int
-
-    @property
-    def N_CONFIGURATION(self) -> int:
-        """Length of b."""
-        return self.DIM
-
-    @property
-    def N_VELOCITY(self) -> int:
-        """Length of w."""
-        return self.DIM
+    N_CONFIGURATION: int
+    N_VELOCITY: int
 
     def configuration(self, program: Program) -> np.ndarray:
         """Input b: where the arm starts."""
@@ -67,4 +59,4 @@ class Point:
         return np.zeros(3 if self.DIM == 3 else 1, dtype=int), np.zeros((self.DIM, 0), dtype=int)
 
 
-POINTS = {point.NAME: point for point in (Point("point", 3), Point("planar_point", 2))}
+POINTS = {point.NAME: point for point in (Point("point", 3, 3, 3), Point("planar_point", 2, 2, 2))}

@@ -110,7 +110,7 @@ def build(dim: int, name: str) -> list[Program]:
 
 def force(dim: int, name: str) -> Program:
     """phi, its Jacobian J, and the derivative of J' f."""
-    p = Program(f"joint_{name}_force", "equations, their derivatives, and the derivative of the force J' f", "eq 19, 28")
+    p = Program(f"joint_{name}_force", "equations, their derivatives, and those of the force J' f", "eq 19, 28")
     pair = Pair(p, dim)
     phi = _equations(pair, name)
     f = p.input("f", len(phi), "N, N m", "multipliers, held fixed")

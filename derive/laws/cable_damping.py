@@ -22,7 +22,7 @@ class Damping:
 
     @staticmethod
     def rates(element: Element) -> dict[str, int]:
-        """How many rates of strain the damping of an element has, and whether a spin about the tangent is among them."""
+        """Number of strain rates that the damping of an element has, and whether a spin about the tangent is one."""
         degree = sum(sp.sympify(monomial).free_symbols <= {x} for monomial in element.basis) - 1
         return {"rates": degree + (degree - 1) * element.dim, "spins": int(element.dim == 3)}
 

@@ -194,7 +194,7 @@ class Continuum:
 
     @staticmethod
     def rates(element: Element) -> dict[str, int]:
-        """How many rates of strain the damping of an element has, and whether a spin about the tangent is among them."""
+        """Number of strain rates that the damping of an element has, and whether a spin about the tangent is one."""
         return {"rates": element.n_vectors * (element.n_vectors - 1) // 2, "spins": 0}
 
     def algorithmic_forces(self, program, A, weight, known, c, dc, w) -> tuple[np.ndarray, Sequence[sp.Expr]]:

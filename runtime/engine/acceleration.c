@@ -151,12 +151,17 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
             out->s_rate = slide->s_rate;
             out->s_acceleration = slide->s_bias;
             for (int k = 0; k < rows->n; ++k) out->s_acceleration += slide->G[k] * acceleration[rows->at[k]];
-            for (int c = 0; c < rows->rows; ++c) out->multiplier[c] = lambda[rows->first + c];
+            for (int c = 0; c < dim - 1 && c < rows->rows; ++c) out->multiplier[c] = lambda[rows->first + c];
+            double along = 0.0, square = 0.0;
             for (int d = 0; d < dim; ++d) {
+                const double G = slide->by_point[(dim - 1) * dim + d]; /* along the tangent */
                 out->residual[d] = slide->C[d];
                 for (int c = 0; c < rows->rows; ++c)
-                    out->force[d] -= slide->by_point[c * dim + d] * out->multiplier[c];
+                    out->force[d] -= slide->by_point[c * dim + d] * lambda[rows->first + c];
+                along += G * out->force[d];
+                square += G * G;
             }
+            out->traction = along / sqrt(square);
         }
     if (reaction) {
         fu_mass_times(model, acceleration, work->work);

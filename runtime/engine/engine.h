@@ -337,7 +337,7 @@ typedef struct {
     double *joints;       /* FU_JOINT_OUTPUTS a joint */
 } fu_accelerator;
 typedef struct {
-    double s_rate, s_acceleration, force[3], multiplier[3], residual[3];
+    double s_rate, s_acceleration, force[3], multiplier[2], traction, residual[3]; /* traction: force along the cable */
 } fu_joint_output;
 typedef struct {
     double force[3], moment[3], residual; /* on the second end's carrier, at its point; the largest of phi */

@@ -4,9 +4,9 @@
 
 Steps of 20 µs of generalised-alpha, one thread, on cable12 with E = 2 MPa: short enough for the finest mesh's waves,
 so that every mesh takes as many iterations a step. A pendulum of 1.5 m let go level; the same held at both ends with
-one and with three riders; three cables joined at a node, with a rider; three joined to a ring; a ladder, two cables side
-by side joined at four nodes. Microseconds of CPU a step and an element: the
-least of repetitions that take turns. Memory: of the engine's arrays, without what it records.
+one and with three riders; three cables joined at a node, with a rider; three joined to a ring; a ladder, two cables
+side by side joined at four nodes. Microseconds of CPU a step and an element: the least of repetitions that take turns.
+Memory: of the engine's arrays, without what it records.
 
 Last, what a substitution takes in the engine and by LAPACK's dpbtrs, both on a band of the pendulum's 501 elements.
 
