@@ -4,10 +4,10 @@
  * attitude (unit quaternion; in the plane unit complex number). v, accelerations and increments have one entry a degree
  * of freedom (dof): the cables' as in q, then the bodies' (translation; rotation about body axes).
  *
- * Unknowns of a linear system: the free coordinates of the cables ("band"), then the border: those where cables meet, if
- * that is cheaper (reduction.py), those of the bodies, then what each joint and spring adds. Supports make dofs linear in the unknowns, dofs = T unknowns + what motions prescribe;
- * place[dof] is the place of the unknown that the dof is, -1 where it is held or prescribed, -2 - k where it is the k-th
- * combination of unknowns (reduce.c).
+ * Unknowns of a linear system: the free coordinates of the cables ("band"), then the border: those of nodes where cables
+ * meet, if that is cheaper (reduction.py), those of the bodies, then what each joint and spring adds. Supports make dofs
+ * linear in the unknowns, dofs = T unknowns + what motions prescribe; place[dof] is the place of the unknown that the dof
+ * is, -1 where it is held or prescribed, -2 - k where it is the k-th combination of unknowns (reduce.c).
  *
  * Every array belongs to the caller; nothing here allocates.
  */
@@ -152,7 +152,7 @@ typedef struct {
     int first, end;
 } fu_span;
 
-/* What column k of X, or row k of C, has in half a chain. */
+/* What column k of X, or row k of C, has in half a chain: of what closes a ring, both ends count and not the middle. */
 typedef struct {
     int k;
     fu_span rows;
@@ -163,9 +163,9 @@ typedef struct {
     int n, width;      /* band part: size, half bandwidth */
     int m;             /* border */
     int n_chains;
-    int constant, constant_columns, constant_rows; /* of the border, from the first on, that stay; pieces of those */
+    int constant, constant_columns, constant_rows; /* of the border, from the first on, that stay; their pieces */
     int definite;      /* the band is factored in L (band.c), else in K (dgbtrf) */
-    int n_columns, n_rows;
+    int n_columns, n_rows; /* pieces */
     const int *chains; /* n_chains + 1: the first row of each, and n */
     const int *half;   /* of each row of the band: 2 chain, and 1 more from the middle on */
     double *K;         /* LAPACK band storage, (3 width + 1) x n; of all systems of a run the same */
@@ -174,7 +174,7 @@ typedef struct {
     double *C;         /* the border's rows, transposed: n x m */
     double *D;         /* m x m, column by column */
     double *X;         /* K^-1 B in the chains that B touches, FU_BAND_LENGTH a column */
-    fu_span *span_B, *span_C; /* 2 n_chains x m: by halves, since what closes a ring touches both ends of a chain */
+    fu_span *span_B, *span_C; /* 2 n_chains x m: rows of each half that are not zero; end 0 where none is */
     fu_piece *columns, *rows; /* of X and C */
     int *pivot_band, *pivot_border;
 } fu_system;
