@@ -22,7 +22,7 @@ from funicular.integrators import choose
 from funicular.libraries import kernels_of, tables_of
 from funicular.parts import Cable, RigidBody, Slide
 from funicular.recording import Recording, named, recorded
-from funicular.reduction import Node, supports
+from funicular.reduction import Node, Reduction, supports
 from funicular.scene import Scene
 from funicular.settings import RunSettings
 from funicular.streaming import Stream, pauses
@@ -200,7 +200,7 @@ def build(scene: Scene) -> Model:
         actions.dead, actions.turning,
         q=np.concatenate([n.ravel() for n in nodal.values()] + [_attitude(b, dim) for b in scene.bodies.values()]
                          + [[]]),
-        v=np.concatenate([np.zeros(n_flexible)] + [_velocity(b, dim) for b in scene.bodies.values()]),
+        v=np.concatenate([_moving(scene, reduction)] + [_velocity(b, dim) for b in scene.bodies.values()]),
         weight=np.concatenate([_cable_weights(c) for c in scene.cables.values()]
                               + [_rigid_weights(b, dim) for b in scene.bodies.values()] + [[]]),
         gravity=np.concatenate([_gravity(m, c, gravity) for m, c in zip(cables, scene.cables.values(), strict=True)]
@@ -236,6 +236,17 @@ def _gravity(model: CableModel, cable: Cable, gravity: np.ndarray) -> np.ndarray
     weight[:-1] += first
     weight[1:] += second
     return weight.ravel()
+
+
+def _moving(scene: Scene, reduction: Reduction) -> np.ndarray:
+    """Rates of the cables' nodal vectors at the start, but for what supports hold."""
+    asked = np.concatenate([*(cable.nodal_rates[..., : scene.dim].ravel() for cable in scene.cables.values()), []])
+    unknowns, free, tied = np.zeros(reduction.combinations.shape[1]), reduction.place >= 0, reduction.place < -1
+    unknowns[reduction.place[free]] = asked[free]
+    given = np.zeros(len(asked))
+    given[free] = unknowns[reduction.place[free]]
+    given[tied] = (reduction.combinations @ unknowns)[-2 - reduction.place[tied]]
+    return given
 
 
 def _cable_weights(cable: Cable) -> np.ndarray:

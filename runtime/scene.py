@@ -95,6 +95,8 @@ class Scene:
         up=(0, 1, 0),
         rest: str = "drawn",
         rest_length: float | None = None,
+        velocity=(0, 0, 0),
+        angular_velocity=(0, 0, 0),
     ) -> Cable:
         """Add a cable of equal elements: straight, through points, or along a curve; see `Cable`. Raises SceneError."""
         shape = {"start": start, "end": end, "points": points, "curve": curve, "law": law, "strain": strain,
@@ -109,6 +111,8 @@ class Scene:
                 material=material,
                 up=up,
                 rest=rest,
+                velocity=velocity,
+                angular_velocity=angular_velocity,
                 **{keyword: value for keyword, value in shape.items() if value is not None},
             )
         )
