@@ -25,18 +25,28 @@ static int joint_dof(const fu_model *model, const fu_joint *joint, int element, 
                                   : model->rigids[joint->rider].dof + k - cable->coordinates;
 }
 
+static void evaluate_joint(const fu_model *model, const fu_state *state, int j, fu_accelerator *work)
+{
+    const fu_joint *joint = &model->joints[j];
+    const fu_cable *cable = &model->cables[joint->cable];
+    const fu_rigid *rider = &model->rigids[joint->rider];
+    const int element = state->element[j], at = cable->first + element * cable->per_node;
+    const terms_view t = view(work, j);
+    joint->kernel->terms(cable->length, state->s[j] - fu_element_start(model, j, element), state->q + at,
+                         state->q + rider->configuration, joint->u, state->v + at, state->v + rider->dof,
+                         state->director + 3 * j, t.C, t.C_q, t.C_s, t.G, t.s_rate, t.Q_d, t.H, t.W, t.s_bias);
+}
+
 static void evaluate(const fu_model *model, const fu_state *state, fu_accelerator *work)
 {
-    for (int j = 0; j < model->n_joints; ++j) {
-        const fu_joint *joint = &model->joints[j];
-        const fu_cable *cable = &model->cables[joint->cable];
-        const fu_rigid *rider = &model->rigids[joint->rider];
-        const int element = state->element[j], at = cable->first + element * cable->per_node;
-        const terms_view t = view(work, j);
-        joint->kernel->terms(cable->length, state->s[j] - fu_element_start(model, j, element), state->q + at,
-                             state->q + rider->configuration, joint->u, state->v + at, state->v + rider->dof,
-                             state->director + 3 * j, t.C, t.C_q, t.C_s, t.G, t.s_rate, t.Q_d, t.H, t.W, t.s_bias);
-    }
+    for (int j = 0; j < model->n_joints; ++j) evaluate_joint(model, state, j, work);
+}
+
+/* ds/dt of one slide */
+double fu_slide_rate(const fu_model *model, const fu_state *state, int j, fu_accelerator *work)
+{
+    evaluate_joint(model, state, j, work);
+    return view(work, j).s_rate[0];
 }
 
 /* The band of M factored, once: it is constant, and so is the bodies' part, by body axes. */
