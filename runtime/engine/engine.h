@@ -440,6 +440,7 @@ int fu_fail_at(fu_run *run, int cause, int unknown);
 fu_event fu_find_event(const fu_run *run, fu_event known);
 fu_event fu_late_event(fu_run *run);
 double fu_time_to_boundary(fu_run *run);
+double fu_time_of_turn(fu_run *run, double h);
 void fu_seat_slides(fu_run *run);
 int fu_count_changes(const fu_run *run);
 void fu_keep_elements(fu_run *run);

@@ -65,6 +65,23 @@ double fu_time_to_boundary(fu_run *run)
     return least;
 }
 
+/* How long after `now` a slide turns, by the parabola through both ends of the step, that is back at `next` from beyond a
+ * boundary, or beyond one that it stood on and has left inwards; 0 where none does. */
+double fu_time_of_turn(fu_run *run, double h)
+{
+    for (int j = 0; j < run->model->n_joints; ++j) {
+        const double rise = h * fu_slide_rate(run->model, &run->now, j, &run->accelerator), way = fabs(rise);
+        const double at = 0.5 * rise / (rise - (run->next.s[j] - run->now.s[j])), close = boundary_tolerance(run, j);
+        const int up = rise > 0.0, element = run->now.element[j];
+        const double ahead = fabs(fu_element_start(run->model, j, element + up) - run->now.s[j]);
+        const double behind = fabs(fu_element_start(run->model, j, element + !up) - run->now.s[j]);
+        const double gone = (up ? 1.0 : -1.0) * (run->next.s[j] - run->now.s[j]);
+        if (at > 0.0 && at < 1.0 && ((0.5 * way * at > ahead + close && gone < ahead) ||
+                                     (behind <= close && gone < -behind - close))) return at * h;
+    }
+    return 0.0;
+}
+
 /* what an event of the user's watches, positive where it has happened when `side` is 1 */
 static double watched(const fu_run *run, const fu_state *state, int k)
 {

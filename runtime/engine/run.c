@@ -271,6 +271,11 @@ static int step_towards(fu_run *run, double target)
             fu_keep_elements(run);
             event = fu_find_event(run, none);
         }
+        const double turn = run->holds ? fu_time_of_turn(run, h) : 0.0;
+        if (turn > smallest && run->turned < MOST_TURNS) {
+            want = turn;
+            continue;
+        }
         if (event.kind == FU_CROSSING && run->turned >= MOST_TURNS) event = none;
         if (fu_stands_on_boundary(run, event)) {
             ++run->turned;

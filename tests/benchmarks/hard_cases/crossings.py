@@ -82,7 +82,6 @@ def turning(speed: float):
     return measure
 
 
-# An excursion beyond the node that is over within one step goes unseen: its force is wrong by r_xx ds/dt², third order.
 for difference in (0, 1e-14, -1e-14, 1e-9, -1e-9, 1e-3):
     HERE.case(f"a rider that turns round on a node, {difference:g} m/s too fast", error=1e-11, balance=1e-10,
               residual=1e-12, gap=1e-12, force=1e-9, end=(1.2, 1.2),
