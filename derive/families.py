@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from functools import partial
 from types import ModuleType
 
-from funicular.derive import body_kernels, element_kernels, law_kernels, structural_kernels
-from funicular.derive.bodies import BODIES
+from funicular.derive import body_kernels, element_kernels, law_kernels, modal_kernels, structural_kernels
+from funicular.derive.bodies import BODIES, modal
 from funicular.derive.elements import ELEMENTS
 from funicular.derive.joints import slide
 from funicular.derive.laws import DAMPED_LIKE, law_like, law_name, structural
@@ -45,6 +45,14 @@ def _body(body: ModuleType) -> Family:
                   rider=body.NAME)
 
 
+def _modal(name: str, frame: ModuleType) -> Family:
+    return Family(name, f"modal body on a {frame.NAME} frame", partial(modal_kernels.build, name, frame),
+                  ("bodies.modal", f"bodies.{frame.NAME}", "modal_kernels"),
+                  role="modal",
+                  facts={"dim": frame.DIM},
+                  rider=frame.NAME)
+
+
 def _slide(element: Element, rider: ModuleType) -> Family:
     return Family(f"slide_{element.name}_{rider.NAME}",
                   f"sliding joint of a {rider.NAME} rider on a {element.name} cable",
@@ -67,7 +75,8 @@ def families() -> dict[str, Family]:
     for element in ELEMENTS.values():
         for family in of_element(element):
             of_role[family.role].append(family)
-    every = [*of_role["element"], *of_role["law"], *map(_body, BODIES.values()), *of_role["slide"]]
+    every = [*of_role["element"], *of_role["law"], *map(_body, BODIES.values()),
+             *(_modal(name, frame) for name, frame in modal.FRAMES.items()), *of_role["slide"]]
     return {f.name: f for f in every}
 
 

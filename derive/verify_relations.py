@@ -15,10 +15,11 @@ from funicular.derive.verify_motion import RIDERS, cross, exponential, spin, tur
 
 def relations(family: Family) -> list[Relation]:
     """The relations of a family's kernels."""
+    from funicular.derive.verify_modal import modal
     from funicular.derive.verify_slide import slide
 
     table: dict[str, Callable[[Family], list[Relation]]] = {"element": element, "law": law, "slide": slide,
-                                                               "body": body}
+                                                               "body": body, "modal": modal}
     return table[family.role](family)
 
 
