@@ -111,7 +111,7 @@ class Actions:
                 self._along_cable(load.on, number, points, value, load.follower)
         else:
             kind = BODY_MOMENT if isinstance(load, Moment) else BODY_FOLLOWER if load.follower else BODY_FORCE
-            at = (0.0, 0.0, 0.0) if isinstance(load, Moment) else load.at
+            at = (0.0, 0.0, 0.0) if isinstance(load, Moment) else self.scene.bodies[load.on].arm(load.at)
             self.turning.append(LoadModel(kind, number, self.body_index[load.on], 0, 0.0, at, tuple(value)))
 
     def _element(self, cable: str, s: float) -> tuple[int, float]:
@@ -169,4 +169,4 @@ class Actions:
             mass = cable.material.density * cable.section.area * model.length
             return EndModel(index, -1, element, (0.0, 0.0, 0.0), model.kernel("on_axis")(model.length, x)[0], mass)
         index = self.body_index[end.on]
-        return EndModel(-1, index, 0, end.at, none, self.rigids[index].mass)
+        return EndModel(-1, index, 0, self.scene.bodies[end.on].arm(end.at), none, self.rigids[index].mass)

@@ -67,6 +67,16 @@ cdef const fu_body *_body(list tables, str name) except NULL:
     raise ValueError(f"no kernels for body {name}")
 
 
+cdef const fu_modal *_modal(list tables, str name) except NULL:
+    cdef int k
+    for address in tables:
+        table = <const fu_tables *><size_t>address
+        for k in range(table.n_modals):
+            if table.modals[k].name == name.encode():
+                return &table.modals[k]
+    raise ValueError(f"no kernels for {name}")
+
+
 cdef const fu_slide *_slide(list tables, str name) except NULL:
     cdef int k
     for address in tables:
@@ -97,6 +107,7 @@ cdef class Engine:
 
     cdef fu_cable *cables
     cdef fu_rigid *rigids
+    cdef fu_shape *shapes
     cdef fu_joint *joints
     cdef fu_spring *springs
     cdef fu_motion *motions
@@ -113,18 +124,19 @@ cdef class Engine:
     def __cinit__(self, model, blocks=True):
         self.cables = <fu_cable *>PyMem_Calloc(len(model.cables) + 1, sizeof(fu_cable))
         self.rigids = <fu_rigid *>PyMem_Calloc(len(model.rigids) + 1, sizeof(fu_rigid))
+        self.shapes = <fu_shape *>PyMem_Calloc(len(model.rigids) + 1, sizeof(fu_shape))
         self.joints = <fu_joint *>PyMem_Calloc(len(model.joints) + 1, sizeof(fu_joint))
         self.springs = <fu_spring *>PyMem_Calloc(len(model.springs) + 1, sizeof(fu_spring))
         self.motions = <fu_motion *>PyMem_Calloc(len(model.motions) + 1, sizeof(fu_motion))
         self.dead_loads = <fu_dead_load *>PyMem_Calloc(len(model.dead_loads) + 1, sizeof(fu_dead_load))
         self.loads = <fu_load *>PyMem_Calloc(len(model.loads) + 1, sizeof(fu_load))
         self.signals = <fu_signal *>PyMem_Calloc(len(model.signals) + 1, sizeof(fu_signal))
-        if not (self.cables and self.rigids and self.joints and self.springs and self.motions and self.dead_loads
+        if not (self.cables and self.rigids and self.shapes and self.joints and self.springs and self.motions and self.dead_loads
                 and self.loads and self.signals):
             raise MemoryError
 
     def __dealloc__(self):
-        for pointer in (<size_t>self.cables, <size_t>self.rigids, <size_t>self.joints, <size_t>self.springs,
+        for pointer in (<size_t>self.cables, <size_t>self.rigids, <size_t>self.shapes, <size_t>self.joints, <size_t>self.springs,
                         <size_t>self.motions, <size_t>self.dead_loads, <size_t>self.loads, <size_t>self.signals, <size_t>self.watches):
             PyMem_Free(<void *><size_t>pointer)
 
@@ -164,10 +176,46 @@ cdef class Engine:
             r = &self.rigids[i]
             r.kernel = _body(tables, body.kernel)
             r.configuration, r.dof, r.mass = body.configuration, body.dof, body.mass
+            r.matter, r.modes, r.shape = &fu_rigid_matter, 0, NULL
             for k in range(9):
                 r.J[k] = body.inertia.flat[k]
+            if body.shape is not None:
+                self._shape(r, &self.shapes[i], body, tables)
         self.model.n_cables, self.model.n_rigids = len(model.cables), len(model.rigids)
         self.model.cables, self.model.rigids = self.cables, self.rigids
+
+    cdef int _shape(self, fu_rigid *r, fu_shape *h, body, list tables) except -1:
+        shape, n = body.shape, body.modes
+        cdef int k
+        r.matter, r.modes, r.shape = &fu_modal_matter, n, h
+        h.kernel = _modal(tables, body.modal_kernel)
+        h.S, h.X = self._doubles(shape.S), self._doubles(shape.X)
+        h.stiffness, h.damping = self._doubles(shape.stiffness), self._doubles(shape.damping)
+        dofs = r.kernel.velocity + n
+        h.zero, h.matrices = self._doubles(np.zeros(dofs)), self._doubles(np.zeros(3 * dofs * dofs))
+        h.sums = self._doubles(np.zeros(3 * (n + 1) * r.kernel.dim * r.kernel.dim))
+        for k in range(len(shape.gravity)):
+            h.g[k] = shape.gravity[k]
+        return 0
+
+    def anchor(self, int index, x, phi, psi, b, w, f, m):
+        """A point of modal body `index` with its axes, as engine/modal.c has it; for tests.
+
+        x (dim,), phi (modes, dim), psi (modes, turns); b, w: the body's entries of q and v. Returns what `fu_modal_point`
+        holds, P, T, and K for a force f and a moment m on the point.
+        """
+        cdef fu_rigid *r = &self.rigids[index]
+        cdef fu_place place
+        cdef fu_modal_point out
+        cdef int n = fu_body_dofs(r), dim = r.kernel.dim, turns = r.kernel.velocity - r.kernel.dim
+        place.x, place.phi, place.psi = self._doubles(x), self._doubles(phi), self._doubles(psi)
+        P, T, K = np.zeros((dim, n)), np.zeros((turns, n)), np.zeros((n, n))
+        cdef double[:, ::1] P_view = P, T_view = T, K_view = K
+        fu_modal_anchor(r, &place, self._doubles(b), self._doubles(w), &out, &P_view[0, 0], &T_view[0, 0])
+        fu_modal_anchor_force(r, &place, self._doubles(b), self._doubles(f), self._doubles(m), &K_view[0, 0])
+        return {"p": np.array(out.p)[:dim], "axes": np.array(out.axes)[:dim * dim].reshape(dim, dim), "P": P, "T": T, "K": K,
+                "velocity": np.array(out.velocity)[:dim], "omega": np.array(out.omega)[:turns],
+                "bias": np.array(out.bias)[:dim], "omega_bias": np.array(out.omega_bias)[:turns]}
 
     def _joints_and_springs(self, model, list tables):
         cdef int i, k

@@ -4,14 +4,15 @@ from funicular.bodies import RigidBody
 from funicular.cables import EXACT, Cable
 from funicular.events import Event
 from funicular.loads import DistributedForce, Force, Moment
+from funicular.modal_bodies import ModalBody
 from funicular.slides import Slide
 from funicular.springs import Spring
 from funicular.supports import Clamp, Join, Motion, Pin
 
-KINDS = (Cable, Pin, Clamp, Motion, Join, RigidBody, Slide, Force, DistributedForce, Moment, Spring, Event)
+KINDS = (Cable, Pin, Clamp, Motion, Join, RigidBody, ModalBody, Slide, Force, DistributedForce, Moment, Spring, Event)
 
 PARTS = {part.kind: part for part in KINDS}
 """The kinds of parts by their names in scene files and in messages."""
 
-__all__ = ["EXACT", "PARTS", "Cable", "Clamp", "DistributedForce", "Event", "Force", "Join", "Moment", "Motion",
-           "Pin", "RigidBody", "Slide", "Spring"]
+__all__ = ["EXACT", "PARTS", "Cable", "Clamp", "DistributedForce", "Event", "Force", "Join", "ModalBody", "Moment",
+           "Motion", "Pin", "RigidBody", "Slide", "Spring"]

@@ -9,6 +9,7 @@ from funicular.cables import EXACT, Cable
 from funicular.elements import built_in
 from funicular.errors import SceneError, near
 from funicular.loads import DistributedForce, Force, Moment
+from funicular.modal_bodies import ModalBody
 from funicular.springs import End, Spring
 from funicular.supports import Join, Support
 from funicular.validation import Part, show
@@ -154,9 +155,12 @@ def placed_end(scene: Scene, end: End, where: str, prefix: str = "") -> End:
         cable = cable_at(scene, end.on, where, end.s, f"{prefix}s")
         return end.model_copy(update={"s": min(max(end.s, 0.0), cable.length)})
     if end.on in scene.bodies:
+        if isinstance(scene.bodies[end.on], ModalBody):
+            raise SceneError(where, f'{prefix}"{end.on}" is a modal_body, which cannot be held here yet',
+                             "take a rigid_body")
         if end.s is not None:
             raise SceneError(where, f'{prefix}acts on body "{end.on}" and takes no arc-length s',
-                             "give a point in body axes, or nothing for its centre of mass")
+                             "give a point in body axes, or nothing for its origin")
         return end.model_copy(update={"at": end.at or (0.0, 0.0, 0.0)})
     known = [*scene.cables, *scene.bodies]
     raise SceneError(where, f'{prefix}there is no cable or rigid_body "{end.on}"', near(end.on, known))

@@ -19,6 +19,7 @@ from funicular.parts import (
     Event,
     Force,
     Join,
+    ModalBody,
     Moment,
     Motion,
     Pin,
@@ -64,7 +65,7 @@ class Scene:
         self.clamps: list[Clamp] = []
         self.motions: list[Motion] = []
         self.joins: dict[str, Join] = {}
-        self.bodies: dict[str, RigidBody] = {}
+        self.bodies: dict[str, RigidBody | ModalBody] = {}
         self.slides: dict[str, Slide] = {}
         self.loads: dict[str, Force | DistributedForce | Moment] = {}
         self.springs: dict[str, Spring] = {}
@@ -118,6 +119,7 @@ class Scene:
         inertia,
         position,
         orientation=(1, 0, 0, 0),
+        centre=(0, 0, 0),
         velocity=(0, 0, 0),
         angular_velocity=(0, 0, 0),
     ) -> RigidBody:
@@ -130,9 +132,40 @@ class Scene:
                 position=position,
                 velocity=velocity,
                 orientation=orientation,
+                centre=centre,
                 angular_velocity=angular_velocity,
             )
         )
+
+    def modal_body(
+        self,
+        name: str,
+        *,
+        start=None,
+        end=None,
+        section: Section | None = None,
+        material: Material | None = None,
+        up=(0, 1, 0),
+        elements: int = 10,
+        element: str = "beam24",
+        law: str | None = None,
+        modes: int = 5,
+        boundary: str = "free",
+        data: str | os.PathLike | None = None,
+        orthogonal: bool = True,
+        position=None,
+        orientation=(1, 0, 0, 0),
+        damping_ratio: float = 0.0,
+        velocity=(0, 0, 0),
+        angular_velocity=(0, 0, 0),
+    ) -> ModalBody:
+        """Add a body that deforms in a few modes: a beam, or what a file describes; see `ModalBody`. Raises SceneError."""
+        described = {"start": start, "end": end, "section": section, "material": material, "law": law, "data": data,
+                     "position": position}
+        return self.add(ModalBody(
+            name=name, up=up, elements=elements, element=element, modes=modes, boundary=boundary, orthogonal=orthogonal,
+            orientation=orientation, damping_ratio=damping_ratio, velocity=velocity, angular_velocity=angular_velocity,
+            **{keyword: value for keyword, value in described.items() if value is not None}))
 
     def pin(self, cable: Cable | str, *, s: float) -> Pin:
         """Hold the node of ``cable`` at arc-length ``s`` (m) in its place. Raises SceneError."""
@@ -212,7 +245,7 @@ class Scene:
         match part:
             case Cable():
                 self._add_cable(part)
-            case RigidBody():
+            case RigidBody() | ModalBody():
                 self.bodies[part.name] = part
             case Pin() | Clamp() | Motion():
                 check_support(self, part)
@@ -257,6 +290,10 @@ class Scene:
         if not self.cables and not self.bodies:
             raise SceneError("scene", "is empty: there is nothing to simulate", "add a cable or a rigid body")
         check_plane(self)
+        for body in self.bodies.values():
+            if isinstance(body, ModalBody) and (idle := body.shape.indefinite(self.dim)):
+                raise SceneError(body.where, f"its mass matrix is not positive definite: {idle}",
+                                 "leave such a mode out, or give masses off the line that the others are on")
         for slide in self.slides.values():
             gap, where = self._gap(slide)
             if gap > EXACT * self.cables[slide.along].length:
@@ -414,6 +451,7 @@ class Scene:
     def _check_slide(self, slide: Slide) -> Cable:
         if slide.body not in self.bodies:
             raise SceneError(slide.where, f'there is no rigid_body "{slide.body}"', near(slide.body, self.bodies))
+        _is_rigid(self.bodies[slide.body], slide.where)
         for other in self.slides.values():
             if (other.body, other.along, other.at) == (slide.body, slide.along, slide.at):
                 raise SceneError(slide.where, f'holds the same point of body "{slide.body}" on cable "{slide.along}" '
@@ -446,6 +484,11 @@ class Scene:
         message = f'{slide.where}: body "{body.name}" was moved by {gap:.6g} m onto cable "{cable.name}"'
         self.messages.append(message)
         warnings.warn(message, FunicularWarning, stacklevel=4)
+
+
+def _is_rigid(body: RigidBody | ModalBody, where: str) -> None:
+    if isinstance(body, ModalBody):
+        raise SceneError(where, f'"{body.name}" is a modal_body, which cannot be held here yet', "take a rigid_body")
 
 
 def _named(name: str | None) -> dict:

@@ -39,31 +39,33 @@ static void evaluate(const fu_model *model, const fu_state *state, fu_accelerato
     }
 }
 
-/* The band of M factored, once: it is constant, and so is the bodies' part, by body axes. */
+/* The band of M factored, once: it is constant, and so is the part of rigid bodies, by body axes. */
 int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
 {
     fu_system_clear(&work->mass);
     fu_dynamic_matrix(model, model->zero, model->zero, 1.0, 0.0, 0.0, &work->mass);
+    fu_bodies_mass(model, model->zero, 1, &work->mass);
     memcpy(work->bodies, work->mass.D, sizeof(double) * (size_t)(work->mass.m * work->mass.m));
     if (fu_system_factor_band(&work->mass, model->lapack)) return 1;
     return !work->mass.definite; /* else it would be in K, which the Newton matrix takes */
 }
 
 /* The border of M: that of the bodies. */
-static void border(const fu_model *model, fu_accelerator *work)
+static void border(const fu_model *model, const double *q, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
     const int n = model->n_border_dof, whole = n + model->n_multipliers;
     fu_system_clear_border(s);
     for (int k = 0; k < n; ++k)
         memcpy(s->D + (long)k * s->m, work->bodies + (long)k * whole, sizeof(double) * (size_t)n);
+    fu_bodies_mass(model, q, 0, s);
 }
 
 /* Border of [M H'; H 0] at a state whose terms are evaluated. */
 static int factor_border(const fu_model *model, const fu_state *state, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
-    border(model, work);
+    border(model, state->q, work);
     for (int j = 0; j < model->n_joints; ++j) {
         const fu_joint *joint = &model->joints[j];
         const terms_view t = view(work, j);
@@ -113,7 +115,7 @@ int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *
     const int n = model->n_multipliers, whole = s->m;
     evaluate(model, state, work);
     s->m = model->n_border_dof; /* M alone */
-    border(model, work);
+    border(model, state->q, work);
     const int info = fu_system_factor_border(s, model->lapack);
     for (int j = 0; j < model->n_joints && !info; ++j) {
         const fu_joint *joint = &model->joints[j];
@@ -149,7 +151,7 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
     fu_external_forces(model, state->t, state->q, work->force);
     for (int k = 0; k < model->n_motions; ++k)
         prescribed[model->motions[k].dof] = state->acceleration[model->motions[k].dof];
-    if (model->n_motions) fu_mass_times(model, prescribed, work->work);
+    if (model->n_motions) fu_mass_times(model, state->q, prescribed, work->work);
     for (int i = 0; i < model->n_dof; ++i) work->work[i] = -work->force[i] - work->work[i];
     for (int j = 0; j < model->n_joints; ++j)
         for (int c = 0; c < model->joints[j].kernel->dim - 1; ++c)
@@ -176,7 +178,7 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
             }
         }
     if (reaction) {
-        fu_mass_times(model, acceleration, work->work);
+        fu_mass_times(model, state->q, acceleration, work->work);
         for (int i = 0; i < model->n_dof; ++i) reaction[i] = work->work[i] + work->force[i];
         for (int j = 0; j < model->n_joints; ++j) {
             const fu_joint *joint = &model->joints[j];

@@ -7,16 +7,19 @@ cdef extern from "kernels.h" nogil:
     ctypedef struct fu_body:
         const char *name
         int dim, configuration, velocity
+    ctypedef struct fu_modal:
+        const char *name
     ctypedef struct fu_slide:
         const char *name
         int coordinates, dim
     ctypedef struct fu_law:
         const char *name
     ctypedef struct fu_tables:
-        int n_elements, n_laws, n_bodys, n_slides
+        int n_elements, n_laws, n_bodys, n_modals, n_slides
         const fu_element *elements
         const fu_law *laws
         const fu_body *bodys
+        const fu_modal *modals
         const fu_slide *slides
 
 cdef extern from "blocks.h" nogil:
@@ -40,11 +43,42 @@ cdef extern from "engine.h" nogil:
         double length, tau, mass_damping
         const double *m
         const double *A
+    ctypedef struct fu_matter:
+        pass
+    const fu_matter fu_rigid_matter, fu_modal_matter
+    ctypedef struct fu_shape:
+        const fu_modal *kernel
+        const double *S
+        const double *X
+        const double *stiffness
+        const double *damping
+        const double *zero
+        double *sums
+        double *matrices
+        double g[3]
     ctypedef struct fu_rigid:
         const fu_body *kernel
-        int configuration, dof
+        const fu_matter *matter
+        int configuration, dof, modes
         double mass
         double J[9]
+        const fu_shape *shape
+    ctypedef struct fu_place:
+        const double *x
+        const double *phi
+        const double *psi
+    ctypedef struct fu_modal_point:
+        double p[3]
+        double axes[9]
+        double velocity[3]
+        double omega[3]
+        double bias[3]
+        double omega_bias[3]
+    int fu_body_dofs(const fu_rigid *body)
+    void fu_modal_anchor(const fu_rigid *body, const fu_place *place, const double *b, const double *w,
+                         fu_modal_point *out, double *P, double *T)
+    void fu_modal_anchor_force(const fu_rigid *body, const fu_place *place, const double *b, const double *f,
+                               const double *m, double *K)
     ctypedef struct fu_joint:
         const fu_slide *kernel
         int cable, rider, unknown, multiplier, carries_director
