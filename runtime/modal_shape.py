@@ -161,7 +161,10 @@ def of_file(path: str, orthogonal: bool) -> Shape:
 
 
 def of_mesh(body: ModalBody) -> Shape:
-    """The lowest modes of a straight mesh in the body's axes; integrals exact, by the elements' mass matrices."""
+    """The lowest modes of a straight mesh in the body's axes; integrals exact, by the elements' mass matrices.
+
+    A unit of each mode moves the mass by 1 m in the mean square.
+    """
     from funicular.model import build
     from funicular.scene import Scene
 
@@ -174,7 +177,9 @@ def of_mesh(body: ModalBody) -> Shape:
         still = 3 if cable.dim == 2 else 6 if cable.kind_of_element.director else 5
     found = scene.modes(body.modes + still)
     model = build(scene).cables[0]
+    mass = cable.material.density * cable.section.area * cable.length
     vectors = found[f"{cable.name}.nodal_vectors"][still:]
+    vectors = vectors * np.sqrt(mass / np.einsum("kkii->k", _integrals(model, vectors)[1]))[:, None, None, None]
     undeformed = cable.nodal_vectors - body.offset * np.array([v == "r" for v in model.vectors])[:, None] * [1.0, 0, 0]
     fields = np.concatenate([undeformed[None], vectors])
     S, X = _integrals(model, fields)
@@ -182,12 +187,10 @@ def of_mesh(body: ModalBody) -> Shape:
     for axis, value in zip("yz", rotary, strict=True):
         if f"r_{axis}" not in model.vectors:  # inertia that the element leaves out: of the frame's turns alone
             X[0, 0, "xyz".index(axis), "xyz".index(axis)] += value
-    squares = found.angular_frequency[still:] ** 2
-    modal_mass = np.einsum("kkii->k", X)[1:]
+    stiffness = mass * np.diag(found.angular_frequency[still:] ** 2)
     at = model.vectors.index("r")
-    mass = cable.material.density * cable.section.area * cable.length
     return Shape(undeformed[:, at], vectors[:, :, at], _section_turns(model.vectors, vectors),
-                 np.diag(squares * modal_mass), mass, S, X)
+                 stiffness, mass, S, X)
 
 
 def _integrals(model, fields: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

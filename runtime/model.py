@@ -300,10 +300,10 @@ def _velocity(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
 
 
 def _body_weights(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
-    """1 for the origin, the largest radius of gyration for rotations, the largest displacement by a unit of a mode."""
+    """1 for the origin, the largest radius of gyration for rotations, the root mean square of displacement for modes."""
     inertia = np.array(body.inertia)
     largest = inertia[2, 2] if dim == 2 else np.max(np.linalg.eigvalsh(inertia))
-    modes = np.abs(body.shape.modes).max(axis=(1, 2)) if isinstance(body, ModalBody) else np.zeros(0)
+    modes = np.sqrt(np.diag(body.shape.modal_mass) / body.mass) if isinstance(body, ModalBody) else np.zeros(0)
     return np.concatenate([np.ones(dim), np.full(1 if dim == 2 else 3, np.sqrt(largest / body.mass)), modes])
 
 

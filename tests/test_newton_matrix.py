@@ -77,21 +77,21 @@ def frame() -> Scene:
 def modal() -> Scene:
     """Two bodies that spin fast and vibrate, one damped, beside a rider."""
     scene = rider()
-    rubber = Material(youngs_modulus=2e4, poisson_ratio=0.3, density=1100)
-    scene.modal_body("link", start=(0, 1, 0), end=(0.3, 1.4, 0.2), section=Rectangle(height=0.03, width=0.02),
+    rubber = Material(youngs_modulus=2e5, poisson_ratio=0.3, density=1100)
+    scene.modal_body("link", start=(0, 1, 0), end=(0.3, 1.4, 0.2), section=Rectangle(height=0.1, width=0.08),
                      material=rubber, elements=4, modes=4, damping_ratio=0.05, velocity=(1, 2, 3),
-                     angular_velocity=(10, -30, 20))
-    scene.modal_body("arm", start=(1, 1, 0), end=(1.5, 1, 0), section=Rectangle(height=0.03, width=0.02), elements=4,
-                     material=rubber, modes=3, boundary="attached", velocity=(-1, 0, 1), angular_velocity=(5, 25, -10))
+                     angular_velocity=(5, -15, 10))
+    scene.modal_body("arm", start=(1, 1, 0), end=(1.5, 1, 0), section=Rectangle(height=0.1, width=0.08), elements=4,
+                     material=rubber, modes=3, boundary="attached", velocity=(-1, 0, 1), angular_velocity=(1, 2, -2))
     return scene
 
 
 def modal_in_the_plane() -> Scene:
     """A modal body beside planar parts."""
     scene = planar()
-    scene.modal_body("arm", start=(1, 1, 0), end=(1.5, 1, 0), section=Rectangle(height=0.03, width=0.02), elements=4,
-                     element="beam12p", material=Material(youngs_modulus=2e4, poisson_ratio=0.3, density=1100), modes=3,
-                     boundary="attached", velocity=(-1, 0, 0), angular_velocity=(0, 0, 20))
+    scene.modal_body("arm", start=(1, 1, 0), end=(1.5, 1, 0), section=Rectangle(height=0.1, width=0.08), elements=4,
+                     element="beam12p", material=Material(youngs_modulus=2e5, poisson_ratio=0.3, density=1100), modes=3,
+                     velocity=(-1, 0, 0), angular_velocity=(0, 0, 15))
     return scene
 
 
