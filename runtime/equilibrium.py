@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from funicular.errors import SceneError, UnknownResultError, near
-from funicular.recording import body_state, join_force, spatial, spring_state, support_reaction
+from funicular.recording import body_state, join_force, modal_state, spatial, spring_state, support_reaction
 
 if TYPE_CHECKING:
     import xarray
@@ -96,7 +96,9 @@ class Equilibrium:
             found[f"{cable.name}.nodal_vectors"] = vectors
             found[f"{cable.name}.position"] = vectors[:, cable.vectors.index("r")]
         for body in model.rigids:
-            found |= {f"{body.name}.{name}": value[0] for name, value in body_state(model, body, q).items()}
+            state = body_state(model, body, q)
+            state |= modal_state(model, body, state, q) if body.modes else {}
+            found |= {f"{body.name}.{name}": value[0] for name, value in state.items()}
         for k, joint in enumerate(model.joints):
             found[f"{joint.name}.s"] = self.placed["s"][k]
             found[f"{joint.name}.force"] = self.placed["force"][k]

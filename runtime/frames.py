@@ -8,7 +8,6 @@ import numpy as np
 from funicular.anchors import Anchor
 from funicular.cables import Cable
 from funicular.joints import Joint
-from funicular.rotations import rotate
 from funicular.slides import Slide
 
 if TYPE_CHECKING:
@@ -51,7 +50,7 @@ def end_frame(scene: Scene, end: Anchor, up=None) -> np.ndarray:
     if end.on is None:
         return np.eye(3)
     if end.on in scene.bodies:
-        return rotate(scene.bodies[end.on].orientation, np.eye(3)).T
+        return scene.bodies[end.on].axes
     cable = scene.cables[end.on]
     return cable_frame(cable, end.s, None if has_section(cable) else up)
 

@@ -9,6 +9,7 @@ from funicular.anchors import Anchor
 from funicular.frames import has_section, joint_axes, slide_axes
 from funicular.joints import DRIVEN, Joint
 from funicular.libraries import kernels_of
+from funicular.modal_bodies import ModalBody
 from funicular.placing import point_of
 from funicular.scene import Scene
 from funicular.slides import Slide
@@ -21,7 +22,10 @@ FRAMES = {2: "planar_frame", 3: "frame"}
 
 @dataclass
 class EndModel:
-    """fu_end of engine.h: -1 for what it is not on; mass and length are scales of it, kg and m."""
+    """fu_end of engine.h: -1 for what it is not on; mass and length are scales of it, kg and m.
+
+    spot: of a modal body's node, where it is undeformed, and its displacements and turns by modes.
+    """
 
     cable: int
     body: int
@@ -36,6 +40,7 @@ class EndModel:
     slopes: tuple[int, int] = (0, UP)
     up: tuple[float, ...] = (0.0, 0.0, 0.0)
     axes: np.ndarray | None = None
+    spot: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
 
 
 @dataclass
@@ -84,7 +89,12 @@ class Holder:
         if anchor.on in self.body_index:
             body = self.rigids[self.body_index[anchor.on]]
             length = float(np.sqrt(np.max(np.linalg.eigvalsh(body.inertia)) / body.mass))
-            return EndModel(-1, self.body_index[anchor.on], 0, -1, anchor.at, none, none, body.mass, length, axes=axes)
+            part = self.scene.bodies[anchor.on]
+            if isinstance(part, ModalBody):
+                return EndModel(-1, self.body_index[anchor.on], 0, -1, (0.0,) * 3, none, none, body.mass, length,
+                                axes=axes, spot=self._spot(part.shape, part.node(anchor.at)))
+            return EndModel(-1, self.body_index[anchor.on], 0, -1, part.arm(anchor.at), none, none, body.mass, length,
+                            axes=axes)
         found = self._on_cable(anchor.on, axes, up)
         found.element, x = self.element(anchor.on, anchor.s)
         model = self.cables[found.cable]
@@ -110,6 +120,11 @@ class Holder:
         slopes = (0, "xyz".index(director[-1]) if director and up is None and cable.dim == 3 else UP)
         return EndModel(index, -1, 0, -1, (0.0,) * 3, np.zeros(0), np.zeros(0), mass, length,
                         FRAMES[self.scene.dim], slopes, (0.0,) * 3 if up is None else up, axes)
+
+    def _spot(self, shape, node: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        dim = self.scene.dim
+        return (shape.nodes[node, :dim], shape.modes[:, node, :dim],
+                shape.rotations[:, node, 2:] if dim == 2 else shape.rotations[:, node])
 
     def _axes(self, axes: np.ndarray | None) -> np.ndarray | None:
         """In the plane x is the joint's axis if that lies in it, y square to it; see derive/joints/pair.py."""

@@ -6,6 +6,7 @@ import warnings
 from typing import TYPE_CHECKING
 
 import numpy as np
+from funicular.bodies import RigidBody
 from funicular.cables import EXACT, Cable
 from funicular.ends import Buffer
 from funicular.errors import FunicularWarning, SceneError
@@ -115,6 +116,7 @@ def _seat(scene: Scene, slide: Slide, cable: Cable) -> None:
         return
     start = point_of(scene, slide.rider)
     body, onto = scene.bodies.get(slide.body), cable.point(slide.s) - start
+    body = body if isinstance(body, RigidBody) else None
     if gap > MOVABLE * cable.length:
         remedy = f"slide from s = {cable.nearest_s(start):.6g} m"
         if body is not None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from funicular.errors import ResultFileError
+from funicular.modal_bodies import ModalBody
 from funicular.results import ENERGIES
 from funicular.rotations import rotate
 from funicular.section_forces import PLACES, section_forces
@@ -121,7 +122,10 @@ def anchor_path(run: Run, anchor: Anchor) -> np.ndarray:
     """(time, 3): where an anchor was, in m."""
     if anchor.on is None:
         return np.broadcast_to(anchor.at, (len(run.time), 3))
-    if anchor.on in run.scene.bodies:
+    body = run.scene.bodies.get(anchor.on)
+    if isinstance(body, ModalBody):
+        return run[f"{anchor.on}.nodes"][:, body.node(anchor.at)]
+    if body is not None:
         return run[f"{anchor.on}.position"] + rotate(run[f"{anchor.on}.orientation"], anchor.at)
     points = centreline(run[f"{anchor.on}.nodal_vectors"], run.coords[f"{anchor.on}.node"].values)
     return points[:, round(anchor.s / run.scene.cables[anchor.on].length * (points.shape[1] - 1))]

@@ -22,6 +22,7 @@ from funicular.parts import (
     Force,
     Join,
     Joint,
+    ModalBody,
     Moment,
     Motion,
     Pin,
@@ -66,7 +67,7 @@ class Scene:
         self.clamps: list[Clamp] = []
         self.motions: list[Motion] = []
         self.joins: dict[str, Join] = {}
-        self.bodies: dict[str, RigidBody] = {}
+        self.bodies: dict[str, RigidBody | ModalBody] = {}
         self.joints: dict[str, Joint] = {}
         self.slides: dict[str, Slide] = {}
         self.loads: dict[str, Force | DistributedForce | Moment] = {}
@@ -125,6 +126,7 @@ class Scene:
         inertia,
         position,
         orientation=(1, 0, 0, 0),
+        centre=(0, 0, 0),
         velocity=(0, 0, 0),
         angular_velocity=(0, 0, 0),
     ) -> RigidBody:
@@ -137,9 +139,40 @@ class Scene:
                 position=position,
                 velocity=velocity,
                 orientation=orientation,
+                centre=centre,
                 angular_velocity=angular_velocity,
             )
         )
+
+    def modal_body(
+        self,
+        name: str,
+        *,
+        start=None,
+        end=None,
+        section: Section | None = None,
+        material: Material | None = None,
+        up=(0, 1, 0),
+        elements: int = 10,
+        element: str = "beam24",
+        law: str | None = None,
+        modes: int = 5,
+        boundary: str = "free",
+        data: str | os.PathLike | None = None,
+        orthogonal: bool = True,
+        position=None,
+        orientation=(1, 0, 0, 0),
+        damping_ratio: float = 0.0,
+        velocity=(0, 0, 0),
+        angular_velocity=(0, 0, 0),
+    ) -> ModalBody:
+        """Add a body that deforms in a few modes: a beam, or what a file describes; see `ModalBody`. Raises SceneError."""
+        described = {"start": start, "end": end, "section": section, "material": material, "law": law, "data": data,
+                     "position": position}
+        return self.add(ModalBody(
+            name=name, up=up, elements=elements, element=element, modes=modes, boundary=boundary, orthogonal=orthogonal,
+            orientation=orientation, damping_ratio=damping_ratio, velocity=velocity, angular_velocity=angular_velocity,
+            **{keyword: value for keyword, value in described.items() if value is not None}))
 
     def pin(self, cable: Cable | str, *, s: float) -> Pin:
         """Hold the node of ``cable`` at arc-length ``s`` (m) in its place. Raises SceneError."""
@@ -251,7 +284,7 @@ class Scene:
         match part:
             case Cable():
                 self._add_cable(part)
-            case RigidBody():
+            case RigidBody() | ModalBody():
                 self.bodies[part.name] = part
             case Pin() | Clamp() | Motion():
                 check_support(self, part)
@@ -297,6 +330,10 @@ class Scene:
         check_plane(self)
         for joint in self.joints.values():
             check_joint(self, joint)
+        for body in self.bodies.values():
+            if isinstance(body, ModalBody) and (idle := body.shape.indefinite(self.dim)):
+                raise SceneError(body.where, f"its mass matrix is not positive definite: {idle}",
+                                 "leave such a mode out, or give masses off the line that the others are on")
         for slide in self.slides.values():
             check_on_cable(self, slide)
         refuse_what_the_engine_lacks(self)

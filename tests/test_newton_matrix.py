@@ -91,7 +91,28 @@ def star() -> Scene:
     return scene
 
 
-SCENES = {f.__name__: f for f in (rider, loaded, planar, frame, star)}
+def modal() -> Scene:
+    """Two bodies that spin fast and vibrate, one damped, beside a rider."""
+    scene = rider()
+    rubber = Material(youngs_modulus=2e5, poisson_ratio=0.3, density=1100)
+    scene.modal_body("link", start=(0, 1, 0), end=(0.3, 1.4, 0.2), section=Rectangle(height=0.1, width=0.08),
+                     material=rubber, elements=4, modes=4, damping_ratio=0.05, velocity=(1, 2, 3),
+                     angular_velocity=(5, -15, 10))
+    scene.modal_body("arm", start=(1, 1, 0), end=(1.5, 1, 0), section=Rectangle(height=0.1, width=0.08), elements=4,
+                     material=rubber, modes=3, boundary="attached", velocity=(-1, 0, 1), angular_velocity=(1, 2, -2))
+    return scene
+
+
+def modal_in_the_plane() -> Scene:
+    """A modal body beside planar parts."""
+    scene = planar()
+    scene.modal_body("arm", start=(1, 1, 0), end=(1.5, 1, 0), section=Rectangle(height=0.1, width=0.08), elements=4,
+                     element="beam12p", material=Material(youngs_modulus=2e5, poisson_ratio=0.3, density=1100), modes=3,
+                     velocity=(-1, 0, 0), angular_velocity=(0, 0, 15))
+    return scene
+
+
+SCENES = {f.__name__: f for f in (rider, loaded, planar, frame, star, modal, modal_in_the_plane)}
 
 
 @pytest.fixture(params=list(SCENES))
@@ -123,7 +144,7 @@ def test_conditioning_does_not_depend_on_the_step(engine):
     n = engine.unknowns
     numbers = [np.linalg.cond(engine.linearise(h, np.zeros(n))[1]) for h in (1e-2, 1e-5, 1e-6, 1e-7)]
     assert max(numbers[1:]) < 1.5 * min(numbers[1:])  # measured: 1.1 at most
-    assert numbers[0] < 7 * numbers[-1]  # measured: 5.9
+    assert numbers[0] < 8 * numbers[-1]  # measured: 6.2 where a slender body turns far in the step, else 3.6
 
 
 def test_static_matrix_is_the_derivative_of_the_static_residual(engine):

@@ -1,8 +1,8 @@
 /* The engine: what is integrated, and the work space of integrating it.
  *
  * Coordinates. q is the configuration: for each cable its nodal vectors node by node, then for each body position and
- * attitude (unit quaternion; in the plane unit complex number). v, accelerations and increments have one entry a degree
- * of freedom (dof): the cables' as in q, then the bodies' (translation; rotation about body axes).
+ * attitude (unit quaternion; in the plane unit complex number) and, of a modal one, the coordinates of its modes. v, accelerations and increments have one entry a degree
+ * of freedom (dof): the cables' as in q, then the bodies' (translation; rotation about body axes; modes).
  *
  * Unknowns of a linear system: the free coordinates of the cables ("band"), then the border: those of nodes where cables
  * meet, if that is cheaper (reduction.py), those of the bodies, then what each joint and spring adds. Supports make dofs
@@ -41,13 +41,54 @@ typedef struct {
     int memory;       /* first number in the memory of algorithmic dissipation: law->rates + 1 an element */
 } fu_cable;
 
+/* A body as seen at an instant: its part of q, of v, of the accelerations. */
 typedef struct {
-    const fu_body *kernel;
-    int configuration; /* first entry in q */
-    int dof;           /* first dof */
+    const double *b, *w, *a;
+} fu_instant;
+
+/* What bodies are made of: bodies.c, modal.c. b, w, a and f begin with the body's own entries. */
+typedef struct fu_rigid fu_rigid;
+typedef struct {
+    int constant; /* its M is, in body axes, and it has no K */
+    void (*mass_times)(const fu_rigid *body, const double *b, const double *a, double *f); /* f = M a */
+    void (*forces)(const fu_rigid *body, const double *b, const double *w, double *f); /* f += what is left without a */
+    void (*tangent)(const fu_rigid *body, const fu_instant *at, double *M, double *D, double *K);
+    double (*kinetic_energy)(const fu_rigid *body, const double *b, const double *w);
+    double (*elastic_energy)(const fu_rigid *body, const double *b);
+    double (*potential_energy)(const fu_rigid *body, const double *b); /* less what model->gravity gives */
+    double (*dissipation)(const fu_rigid *body, const double *b, const double *w);
+} fu_matter;
+extern const fu_matter fu_rigid_matter, fu_modal_matter;
+
+/* Modes of a body; index 0 of S and X is the undeformed place (derive/bodies/modal.py). */
+typedef struct {
+    const fu_modal *kernel;
+    const double *S, *X;               /* (n + 1) x dim; (n + 1) x (n + 1) x dim x dim */
+    const double *stiffness, *damping; /* n x n */
+    const double *zero;                /* as many as it has dofs */
+    double *sums, *matrices;           /* work space: 3 (n + 1) dim^2; 3 dofs^2 */
+    double g[3];
+} fu_shape;
+
+/* A body with a frame: rigid, or modal with so many modes. */
+struct fu_rigid {
+    const fu_body *kernel; /* of its frame */
+    const fu_matter *matter;
+    int configuration; /* first entry in q: the frame's, then the modes' */
+    int dof;           /* first dof: likewise */
+    int modes;
     double mass;
     double J[9];
-} fu_rigid;
+    const fu_shape *shape; /* of the modes; null without */
+};
+
+/* A point of a modal body: where it is undeformed, and the modes' displacements and turns there. */
+typedef struct {
+    const double *x, *phi, *psi; /* dim; modes x dim; modes x turns */
+} fu_spot;
+typedef struct {
+    double p[3], axes[9], velocity[3], omega[3], bias[3], omega_bias[3];
+} fu_modal_point;
 
 /* One end of a spring or a joint: a point with axes of the ground (cable and body -1), of a cable's element, of a body; or
  * axes alone, of the cable where a slide is. */
@@ -61,6 +102,7 @@ typedef struct {
     double S[2 * FU_MAX_COORDINATES]; /* derivatives of the shape functions for both, unless on a slide */
     double up[3];
     double axes[9]; /* in those of what carries it, by columns */
+    fu_spot spot;   /* the point of a modal body, instead of u */
 } fu_end;
 
 /* Where an end stands and how it moves with its own n coordinates (numbers for fu_add in `at`): dp = P dq, and axes turn
@@ -245,18 +287,40 @@ double fu_size(const fu_model *model, const double *dofs);
 
 /* assembly.c */
 int fu_has_threads(void);
-void fu_mass_times(const fu_model *model, const double *a, double *f);
+void fu_mass_times(const fu_model *model, const double *q, const double *a, double *f);
 void fu_internal_forces(const fu_model *model, const double *q, const double *v, double *f);
 void fu_rate_forces(const fu_model *model, const double *q, const double *v, double *f);
 void fu_discrete_forces(const fu_model *model, const double *q, const double *q_next, double *f);
 void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, double inertia, double rate,
                        double stiffness, fu_system *system);
-double fu_kinetic_energy(const fu_model *model, const double *v);
+double fu_kinetic_energy(const fu_model *model, const double *q, const double *v);
 double fu_elastic_energy(const fu_model *model, const double *q);
 double fu_potential_energy(const fu_model *model, const double *q);
 double fu_dissipation(const fu_model *model, const double *q, const double *v);
 double fu_length(const fu_model *model, int joint);
 double fu_element_start(const fu_model *model, int joint, int element);
+
+/* Newton matrix = inertia M + stiffness (K + rate D); statics has no inertia */
+typedef struct {
+    double inertia, rate, stiffness;
+} fu_weights;
+
+/* bodies.c: rigid and modal */
+int fu_body_dofs(const fu_rigid *body);
+void fu_bodies_mass_times(const fu_model *model, const double *q, const double *a, double *f);
+void fu_bodies_forces(const fu_model *model, const double *q, const double *v, double *f);
+void fu_bodies_matrix(const fu_model *model, const fu_state *at, const double *psi, fu_weights weights, fu_system *system);
+void fu_bodies_mass(const fu_model *model, const double *q, int constant, fu_system *system);
+double fu_bodies_kinetic_energy(const fu_model *model, const double *q, const double *v);
+double fu_bodies_elastic_energy(const fu_model *model, const double *q);
+double fu_bodies_potential_energy(const fu_model *model, const double *q);
+double fu_bodies_dissipation(const fu_model *model, const double *q, const double *v);
+
+/* modal.c: points */
+void fu_modal_anchor(const fu_rigid *body, const fu_spot *spot, const double *b, const double *w, fu_modal_point *out,
+                     double *P, double *T);
+void fu_modal_anchor_force(const fu_rigid *body, const fu_spot *spot, const double *b, const double *f, const double *m,
+                           double *K);
 
 /* motions.c */
 double fu_signal_at(const fu_signal *signal, double t, double *rate, double *second);
@@ -504,10 +568,6 @@ struct fu_run {
     int rest_start; /* for order.py only: start the scheme from zero accelerations */
 };
 
-/* Newton matrix = inertia M + stiffness (K + rate D); statics has no inertia */
-typedef struct {
-    double inertia, rate, stiffness;
-} fu_weights;
 void fu_linearise(fu_run *run, double h, const double *change);
 void fu_static_move(fu_run *run, const double *change);
 void fu_static_residual(fu_run *run);

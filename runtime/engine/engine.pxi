@@ -7,6 +7,8 @@ cdef extern from "kernels.h" nogil:
     ctypedef struct fu_body:
         const char *name
         int dim, configuration, velocity
+    ctypedef struct fu_modal:
+        const char *name
     ctypedef struct fu_slide:
         const char *name
         int coordinates, dim
@@ -20,10 +22,11 @@ cdef extern from "kernels.h" nogil:
         const char *name
         int rows
     ctypedef struct fu_tables:
-        int n_elements, n_laws, n_bodys, n_slides, n_frames, n_pairs
+        int n_elements, n_laws, n_bodys, n_modals, n_slides, n_frames, n_pairs
         const fu_element *elements
         const fu_law *laws
         const fu_body *bodys
+        const fu_modal *modals
         const fu_slide *slides
         const fu_frame *frames
         const fu_pair *pairs
@@ -49,11 +52,30 @@ cdef extern from "engine.h" nogil:
         double length, tau, mass_damping
         const double *m
         const double *A
+    ctypedef struct fu_matter:
+        pass
+    const fu_matter fu_rigid_matter, fu_modal_matter
+    ctypedef struct fu_shape:
+        const fu_modal *kernel
+        const double *S
+        const double *X
+        const double *stiffness
+        const double *damping
+        const double *zero
+        double *sums
+        double *matrices
+        double g[3]
     ctypedef struct fu_rigid:
         const fu_body *kernel
-        int configuration, dof
+        const fu_matter *matter
+        int configuration, dof, modes
         double mass
         double J[9]
+        const fu_shape *shape
+    ctypedef struct fu_spot:
+        const double *x
+        const double *phi
+        const double *psi
     ctypedef struct fu_end:
         int cable, body, element, slide
         double u[3]
@@ -63,6 +85,19 @@ cdef extern from "engine.h" nogil:
         double S[64]
         double up[3]
         double axes[9]
+        fu_spot spot
+    ctypedef struct fu_modal_point:
+        double p[3]
+        double axes[9]
+        double velocity[3]
+        double omega[3]
+        double bias[3]
+        double omega_bias[3]
+    int fu_body_dofs(const fu_rigid *body)
+    void fu_modal_anchor(const fu_rigid *body, const fu_spot *spot, const double *b, const double *w,
+                         fu_modal_point *out, double *P, double *T)
+    void fu_modal_anchor_force(const fu_rigid *body, const fu_spot *spot, const double *b, const double *f,
+                               const double *m, double *K)
     ctypedef struct fu_joint:
         const fu_slide *kernel
         int cable, native, unknown, multiplier, room, drive, carries_director

@@ -60,7 +60,7 @@ static void residual(fu_run *run, double inertia, double scale)
     const fu_state *next = &run->next;
     double phi[3], g[FU_SLIDE_COORDINATES], *extra = run->rhs + model->n_band + model->n_border_dof;
     int at[2 * FU_SLIDE_COORDINATES];
-    if (inertia != 0.0) fu_mass_times(model, next->acceleration, run->force);
+    if (inertia != 0.0) fu_mass_times(model, next->q, next->acceleration, run->force);
     else
         for (int i = 0; i < model->n_dof; ++i) run->force[i] = 0.0;
     fu_internal_forces(model, next->q, next->v, run->force);
@@ -124,6 +124,7 @@ static void matrix(fu_run *run, fu_weights w, const double *psi)
     int at[2 * FU_SLIDE_COORDINATES];
     fu_system_clear(system);
     fu_dynamic_matrix(model, next->q, next->v, w.inertia, w.rate, w.stiffness, system);
+    fu_bodies_matrix(model, next, psi, w, system);
     if (w.stiffness == 0.0) return;
     fu_loads_matrix(model, next->t, next->q, psi, w.stiffness, system);
     for (int j = 0; j < model->n_joints; ++j) {

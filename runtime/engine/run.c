@@ -66,7 +66,7 @@ static int record_row(fu_run *run)
     memcpy(r->s + row * model->n_joints, now->s, sizeof(double) * (size_t)model->n_joints);
     const int info = fu_accelerations(model, now, &run->accelerator, r->acceleration + row * model->n_dof, joints,
                                       r->reaction + row * model->n_dof);
-    r->kinetic[row] = fu_kinetic_energy(model, now->v);
+    r->kinetic[row] = fu_kinetic_energy(model, now->q, now->v);
     r->elastic[row] = fu_elastic_energy(model, now->q);
     r->potential[row] = fu_potential_energy(model, now->q);
     r->dissipated[row] = run->dissipated;
