@@ -169,7 +169,8 @@ static void matrix(fu_run *run, double h)
     const double rate = 2.0 / h, stiffness = 0.5 * sigma(h); /* the middle moves by half of psi */
     const fu_state state = {.q = m.q, .v = m.v, .spring = run->next.spring};
     fu_system_clear(&run->newton);
-    fu_dynamic_matrix(model, m.q, m.v, 1.0, rate, stiffness * (1.0 + 2.0 * run->algorithmic.weight), &run->newton);
+    const double stiffer = 1.0 + 2.0 * run->algorithmic.weight;
+    fu_dynamic_matrix(model, m.q, m.v, 1.0, rate / stiffer, stiffness * stiffer, &run->newton);
     fu_bodies_matrix(model, &state, 0, (fu_weights){1.0, rate, stiffness}, &run->newton);
     mean_stress(run, stiffness);
     fu_loads_matrix(model, run->now.t + 0.5 * h, m.q, 0, stiffness, &run->newton);
