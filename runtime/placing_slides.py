@@ -30,7 +30,8 @@ def placed_slide(scene: Scene, slide: Slide) -> Slide:
                          f'give body=("{slide.body}", s)')
     rider = placed_end(scene, slide.rider, slide.where, "body: ")
     cable = cable_at(scene, slide.along, slide.where, slide.s)
-    slide = slide.model_copy(update={"s": min(max(slide.s, 0.0), cable.length), "body_s": rider.s})
+    place = {"body_s": rider.s} if rider.at is None else {"body_s": None, "at": rider.at}
+    slide = slide.model_copy(update={"s": min(max(slide.s, 0.0), cable.length)} | place)
     _check_rider(scene, slide)
     slide = _framed(scene, slide, cable)
     _check_drive(slide, cable)
