@@ -2,8 +2,8 @@
 
 The crank turns at a constant rate, so that the rod's frame is carried by its end; the rod's far end slides along x and
 carries the slider. Unknown are the rod's angle and four modal coordinates: two sines across, and the displacements along
-the axis in the middle and at the end of a quadratic. Boundary terms that the published code leaves out of the mass of the
-latter two (it has 8, 1, 2 where the integrals are 8/15, 1/15, 2/15) can be put back by `axial_mass`.
+the axis in the middle and at the end of a quadratic. The published code has 8, 1, 2 where the integrals of the latter two
+are 8/15, 1/15, 2/15: its axial modes are 15 times too heavy, and so are they here to meet its numbers.
 """
 
 from __future__ import annotations
