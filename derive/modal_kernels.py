@@ -27,7 +27,7 @@ from funicular.derive.stages import Derivation, Program
 def build(name: str, frame: ModuleType) -> list[Program]:
     """Every kernel of a modal body on a frame."""
     return [make(name, frame) for make in (
-        inertia_force, inertia_tangent, mode_force_, mode_tangent, pair_tangent, kinetic_energy, potential_energy,
+        inertia_force, mass_matrix, inertia_tangent, mode_force_, mode_mass, mode_tangent, pair_tangent, kinetic_energy, potential_energy,
         anchor, anchor_mode, anchor_force, anchor_mode_force, anchor_pair_force)]
 
 
@@ -40,13 +40,28 @@ def inertia_force(name: str, frame: ModuleType) -> Program:
     return p
 
 
+def mass_matrix(name: str, frame: ModuleType) -> Program:
+    """M_rr, undeformed or not."""
+    p = Program(f"{name}_mass_matrix", "M_rr: the frame's part of the mass matrix", "paper eq 12")
+    dim = frame.DIM
+    b, of = frame.configuration(p), Moments.given(p, dim, rates=1)
+    p.stage("axes")
+    A = frame.axes(p, b)
+    S, X = of.first[0], of.second[0]
+    spins = [skew(e) for e in np.eye(frame.N_VELOCITY - dim, dtype=int)]
+    coupling = np.stack([A.dot(spin.dot(S)) for spin in spins], axis=1)
+    turning = np.stack([axial(X.dot(spin.T)) for spin in spins], axis=1)
+    p.output("M", np.block([[of.mass * np.eye(dim, dtype=int), coupling], [coupling.T, turning]]), "kg, kg m, kg m^2",
+             "by translation and rotation about body axes")
+    return p
+
+
 def inertia_tangent(name: str, frame: ModuleType) -> Program:
     """Their derivatives by the frame."""
     p = Program(f"{name}_inertia_tangent", "derivatives of inertia_force by the frame's motion", SOURCE)
     motion = Motion(p, frame)
     force = body_force(motion, Moments.given(p, frame.DIM))
     p.stage("derivatives")
-    p.output("M", motion.by_acceleration(force), "kg, kg m, kg m^2", "by a")
     p.output("D", motion.by_velocity(force), "kg/s", "by w")
     p.output("K", motion.by_configuration(force), "N/m, N", "by translation and rotation about body axes")
     return p
@@ -60,6 +75,18 @@ def mode_force_(name: str, frame: ModuleType) -> Program:
     return p
 
 
+def mode_mass(name: str, frame: ModuleType) -> Program:
+    """A column of M_rf."""
+    p = Program(f"{name}_mode_mass", "column of a mode in M_rf: what couples its acceleration with the frame's",
+                "paper eq 12")
+    dim = frame.DIM
+    b = frame.configuration(p)
+    s, Y = p.input("s", dim, "kg m", "int rho phi of the mode"), p.input("Y", (dim, dim), "kg m^2", "int rho phi u^T")
+    p.stage("axes")
+    p.output("M", np.concatenate([frame.axes(p, b).dot(s), axial(Y.T)]), "kg, kg m", "by eta''")
+    return p
+
+
 def mode_tangent(name: str, frame: ModuleType) -> Program:
     """What couples a mode with the frame."""
     p = Program(f"{name}_mode_tangent", "derivatives of a mode's force by the frame's motion, and the other way round",
@@ -68,7 +95,6 @@ def mode_tangent(name: str, frame: ModuleType) -> Program:
     mode = ModeMoments.given(p, frame.DIM)
     force = np.array([mode_force(motion, mode)])
     p.stage("derivatives")
-    p.output("M", motion.by_acceleration(force)[0], "kg, kg m", "of the mode's force by a, and the other way round")
     p.output("D", motion.by_velocity(force)[0], "kg/s", "of the mode's force by w")
     p.output("K", motion.by_configuration(force)[0], "N/m, N", "of the mode's force by translation and rotation")
     p.output("D_frame", body_force(motion, mode.of_body(1)), "kg/s", "of the frame's force by the mode's eta'")
@@ -82,7 +108,6 @@ def pair_tangent(name: str, frame: ModuleType) -> Program:
     motion = Motion(p, frame)
     dim = frame.DIM
     X = p.input("X_kl", (dim, dim), "kg m^2", "int rho phi_k phi_l^T")
-    p.output("M", X.trace(), "kg", "by eta''")
     p.output("D", 2 * contraction(motion.spin, X), "kg/s", "by eta'")
     p.output("K", contraction(motion.W, X), "N/m", "by eta")
     return p

@@ -178,17 +178,16 @@ def modal(family: Family) -> list[Relation]:
     return [
         Relation("inertia_force", "f", "Σ m (p'' - g) over mass points, along the frame's motions", 2, p.work),
         Relation("inertia_force", "f", "all power is the rate of the kinetic energy", 1, energy, of=power),
-        Relation("inertia_tangent", "M", "df/da", 1, along("inertia_force", "a"), n),
+        Relation("mass_matrix", "M", "df/da", 1, along("inertia_force", "a"), n),
         Relation("inertia_tangent", "D", "df/dw", 1, along("inertia_force", "w"), n),
         Relation("inertia_tangent", "K", "df by translation and rotation", 1, frame_moved("inertia_force", "f"), n),
         Relation("mode_force", "f", "Σ m phi.(p'' - g) over mass points", 2, p.work_of_mode),
-        Relation("mode_tangent", "M", "df/da", 1, along("mode_force", "a"), n),
-        Relation("mode_tangent", "M", "df of the frame by eta''", 1, mode_moved("inertia_force", "eta2")),
+        Relation("mode_mass", "M", "df/da of the mode", 1, along("mode_force", "a"), n),
+        Relation("mode_mass", "M", "df of the frame by eta''", 1, mode_moved("inertia_force", "eta2")),
         Relation("mode_tangent", "D", "df/dw", 1, along("mode_force", "w"), n),
         Relation("mode_tangent", "K", "df by translation and rotation", 1, frame_moved("mode_force", "f"), n),
         Relation("mode_tangent", "D_frame", "df of the frame by eta'", 1, mode_moved("inertia_force", "eta1")),
         Relation("mode_tangent", "K_frame", "df of the frame by eta", 1, mode_moved("inertia_force", "eta")),
-        Relation("pair_tangent", "M", "df by eta'' of the other", 1, mode_moved("mode_force", "eta2", 1)),
         Relation("pair_tangent", "D", "df by eta' of the other", 1, mode_moved("mode_force", "eta1", 1)),
         Relation("pair_tangent", "K", "df by eta of the other", 1, mode_moved("mode_force", "eta", 1)),
         Relation("kinetic_energy", "T", "Σ ½ m v² of mass points", 0, kinetic),
@@ -220,7 +219,7 @@ def _swung(theta: np.ndarray, axes: np.ndarray) -> np.ndarray:
 def invariances(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
     """Symmetry, momentum, digits."""
     p = Paths(family)
-    M = k("inertia_tangent", s)["M"]
+    M = k("mass_matrix", s)["M"]
     yield "M symmetric", relative(M - M.T, M), 8 * EPS
     least = float(np.linalg.eigvalsh((M + M.T) / 2)[0]) if np.isfinite(M).all() else -np.inf
     yield "M positive definite (least eigenvalue below zero)", max(-least, 0.0), 0.0

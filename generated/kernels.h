@@ -298,10 +298,12 @@ void planar_rigid_discrete_point(const fu_real *b, const fu_real *u, const fu_re
 
 /* modal: modal body on a rigid frame */
 void modal_inertia_force(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *S2, const fu_real *X, const fu_real *X1, const fu_real *X2, fu_real *f);
-void modal_inertia_tangent(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *S2, const fu_real *X, const fu_real *X1, const fu_real *X2, fu_real *M, fu_real *D, fu_real *K);
+void modal_mass_matrix(const fu_real *b, fu_real mass, const fu_real *S, const fu_real *X, fu_real *M);
+void modal_inertia_tangent(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *S2, const fu_real *X, const fu_real *X1, const fu_real *X2, fu_real *D, fu_real *K);
 void modal_mode_force(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *s, const fu_real *Y, const fu_real *Y1, const fu_real *Y2, fu_real *f);
-void modal_mode_tangent(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *s, const fu_real *Y, const fu_real *Y1, const fu_real *Y2, fu_real *M, fu_real *D, fu_real *K, fu_real *D_frame, fu_real *K_frame);
-void modal_pair_tangent(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *X_kl, fu_real *M, fu_real *D, fu_real *K);
+void modal_mode_mass(const fu_real *b, const fu_real *s, const fu_real *Y, fu_real *M);
+void modal_mode_tangent(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *s, const fu_real *Y, const fu_real *Y1, const fu_real *Y2, fu_real *D, fu_real *K, fu_real *D_frame, fu_real *K_frame);
+void modal_pair_tangent(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *X_kl, fu_real *D, fu_real *K);
 void modal_kinetic_energy(const fu_real *b, const fu_real *w, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *X, const fu_real *X1, fu_real X11, fu_real *T);
 void modal_potential_energy(const fu_real *b, const fu_real *g, fu_real mass, const fu_real *S, fu_real *V);
 void modal_anchor(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *w, const fu_real *u1, const fu_real *theta1, fu_real *p, fu_real *axes, fu_real *P, fu_real *T, fu_real *velocity, fu_real *omega, fu_real *bias, fu_real *omega_bias);
@@ -312,10 +314,12 @@ void modal_anchor_pair_force(const fu_real *b, const fu_real *u, const fu_real *
 
 /* planar_modal: modal body on a planar_rigid frame */
 void planar_modal_inertia_force(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *S2, const fu_real *X, const fu_real *X1, const fu_real *X2, fu_real *f);
-void planar_modal_inertia_tangent(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *S2, const fu_real *X, const fu_real *X1, const fu_real *X2, fu_real *M, fu_real *D, fu_real *K);
+void planar_modal_mass_matrix(const fu_real *b, fu_real mass, const fu_real *S, const fu_real *X, fu_real *M);
+void planar_modal_inertia_tangent(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *S2, const fu_real *X, const fu_real *X1, const fu_real *X2, fu_real *D, fu_real *K);
 void planar_modal_mode_force(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *s, const fu_real *Y, const fu_real *Y1, const fu_real *Y2, fu_real *f);
-void planar_modal_mode_tangent(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *s, const fu_real *Y, const fu_real *Y1, const fu_real *Y2, fu_real *M, fu_real *D, fu_real *K, fu_real *D_frame, fu_real *K_frame);
-void planar_modal_pair_tangent(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *X_kl, fu_real *M, fu_real *D, fu_real *K);
+void planar_modal_mode_mass(const fu_real *b, const fu_real *s, const fu_real *Y, fu_real *M);
+void planar_modal_mode_tangent(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *s, const fu_real *Y, const fu_real *Y1, const fu_real *Y2, fu_real *D, fu_real *K, fu_real *D_frame, fu_real *K_frame);
+void planar_modal_pair_tangent(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *X_kl, fu_real *D, fu_real *K);
 void planar_modal_kinetic_energy(const fu_real *b, const fu_real *w, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *X, const fu_real *X1, fu_real X11, fu_real *T);
 void planar_modal_potential_energy(const fu_real *b, const fu_real *g, fu_real mass, const fu_real *S, fu_real *V);
 void planar_modal_anchor(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *w, const fu_real *u1, const fu_real *theta1, fu_real *p, fu_real *axes, fu_real *P, fu_real *T, fu_real *velocity, fu_real *omega, fu_real *bias, fu_real *omega_bias);
@@ -536,10 +540,12 @@ typedef struct {
     const char *name;
     int dim;
     void (*inertia_force)(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *S2, const fu_real *X, const fu_real *X1, const fu_real *X2, fu_real *f);
-    void (*inertia_tangent)(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *S2, const fu_real *X, const fu_real *X1, const fu_real *X2, fu_real *M, fu_real *D, fu_real *K);
+    void (*mass_matrix)(const fu_real *b, fu_real mass, const fu_real *S, const fu_real *X, fu_real *M);
+    void (*inertia_tangent)(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *S2, const fu_real *X, const fu_real *X1, const fu_real *X2, fu_real *D, fu_real *K);
     void (*mode_force)(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *s, const fu_real *Y, const fu_real *Y1, const fu_real *Y2, fu_real *f);
-    void (*mode_tangent)(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *s, const fu_real *Y, const fu_real *Y1, const fu_real *Y2, fu_real *M, fu_real *D, fu_real *K, fu_real *D_frame, fu_real *K_frame);
-    void (*pair_tangent)(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *X_kl, fu_real *M, fu_real *D, fu_real *K);
+    void (*mode_mass)(const fu_real *b, const fu_real *s, const fu_real *Y, fu_real *M);
+    void (*mode_tangent)(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *s, const fu_real *Y, const fu_real *Y1, const fu_real *Y2, fu_real *D, fu_real *K, fu_real *D_frame, fu_real *K_frame);
+    void (*pair_tangent)(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *X_kl, fu_real *D, fu_real *K);
     void (*kinetic_energy)(const fu_real *b, const fu_real *w, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *X, const fu_real *X1, fu_real X11, fu_real *T);
     void (*potential_energy)(const fu_real *b, const fu_real *g, fu_real mass, const fu_real *S, fu_real *V);
     void (*anchor)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *w, const fu_real *u1, const fu_real *theta1, fu_real *p, fu_real *axes, fu_real *P, fu_real *T, fu_real *velocity, fu_real *omega, fu_real *bias, fu_real *omega_bias);

@@ -337,8 +337,10 @@ static const fu_modal modals[] = {
     {"modal",
      3,
      modal_inertia_force,
+     modal_mass_matrix,
      modal_inertia_tangent,
      modal_mode_force,
+     modal_mode_mass,
      modal_mode_tangent,
      modal_pair_tangent,
      modal_kinetic_energy,
@@ -352,8 +354,10 @@ static const fu_modal modals[] = {
     {"planar_modal",
      2,
      planar_modal_inertia_force,
+     planar_modal_mass_matrix,
      planar_modal_inertia_tangent,
      planar_modal_mode_force,
+     planar_modal_mode_mass,
      planar_modal_mode_tangent,
      planar_modal_pair_tangent,
      planar_modal_kinetic_energy,
@@ -1457,21 +1461,29 @@ static void call_modal_inertia_force(const fu_real *const *a, fu_real *const *ou
 {
     modal_inertia_force(a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0]);
 }
+static void call_modal_mass_matrix(const fu_real *const *a, fu_real *const *out)
+{
+    modal_mass_matrix(a[0], *a[1], a[2], a[3], out[0]);
+}
 static void call_modal_inertia_tangent(const fu_real *const *a, fu_real *const *out)
 {
-    modal_inertia_tangent(a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0], out[1], out[2]);
+    modal_inertia_tangent(a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0], out[1]);
 }
 static void call_modal_mode_force(const fu_real *const *a, fu_real *const *out)
 {
     modal_mode_force(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0]);
 }
+static void call_modal_mode_mass(const fu_real *const *a, fu_real *const *out)
+{
+    modal_mode_mass(a[0], a[1], a[2], out[0]);
+}
 static void call_modal_mode_tangent(const fu_real *const *a, fu_real *const *out)
 {
-    modal_mode_tangent(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4]);
+    modal_mode_tangent(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3]);
 }
 static void call_modal_pair_tangent(const fu_real *const *a, fu_real *const *out)
 {
-    modal_pair_tangent(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
+    modal_pair_tangent(a[0], a[1], a[2], a[3], a[4], out[0], out[1]);
 }
 static void call_modal_kinetic_energy(const fu_real *const *a, fu_real *const *out)
 {
@@ -1505,21 +1517,29 @@ static void call_planar_modal_inertia_force(const fu_real *const *a, fu_real *co
 {
     planar_modal_inertia_force(a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0]);
 }
+static void call_planar_modal_mass_matrix(const fu_real *const *a, fu_real *const *out)
+{
+    planar_modal_mass_matrix(a[0], *a[1], a[2], a[3], out[0]);
+}
 static void call_planar_modal_inertia_tangent(const fu_real *const *a, fu_real *const *out)
 {
-    planar_modal_inertia_tangent(a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0], out[1], out[2]);
+    planar_modal_inertia_tangent(a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0], out[1]);
 }
 static void call_planar_modal_mode_force(const fu_real *const *a, fu_real *const *out)
 {
     planar_modal_mode_force(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0]);
 }
+static void call_planar_modal_mode_mass(const fu_real *const *a, fu_real *const *out)
+{
+    planar_modal_mode_mass(a[0], a[1], a[2], out[0]);
+}
 static void call_planar_modal_mode_tangent(const fu_real *const *a, fu_real *const *out)
 {
-    planar_modal_mode_tangent(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4]);
+    planar_modal_mode_tangent(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3]);
 }
 static void call_planar_modal_pair_tangent(const fu_real *const *a, fu_real *const *out)
 {
-    planar_modal_pair_tangent(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
+    planar_modal_pair_tangent(a[0], a[1], a[2], a[3], a[4], out[0], out[1]);
 }
 static void call_planar_modal_kinetic_energy(const fu_real *const *a, fu_real *const *out)
 {
@@ -2150,8 +2170,10 @@ const fu_kernel fu_kernels[] = {
     {"planar_rigid_kinetic_energy", call_planar_rigid_kinetic_energy},
     {"planar_rigid_discrete_point", call_planar_rigid_discrete_point},
     {"modal_inertia_force", call_modal_inertia_force},
+    {"modal_mass_matrix", call_modal_mass_matrix},
     {"modal_inertia_tangent", call_modal_inertia_tangent},
     {"modal_mode_force", call_modal_mode_force},
+    {"modal_mode_mass", call_modal_mode_mass},
     {"modal_mode_tangent", call_modal_mode_tangent},
     {"modal_pair_tangent", call_modal_pair_tangent},
     {"modal_kinetic_energy", call_modal_kinetic_energy},
@@ -2162,8 +2184,10 @@ const fu_kernel fu_kernels[] = {
     {"modal_anchor_mode_force", call_modal_anchor_mode_force},
     {"modal_anchor_pair_force", call_modal_anchor_pair_force},
     {"planar_modal_inertia_force", call_planar_modal_inertia_force},
+    {"planar_modal_mass_matrix", call_planar_modal_mass_matrix},
     {"planar_modal_inertia_tangent", call_planar_modal_inertia_tangent},
     {"planar_modal_mode_force", call_planar_modal_mode_force},
+    {"planar_modal_mode_mass", call_planar_modal_mode_mass},
     {"planar_modal_mode_tangent", call_planar_modal_mode_tangent},
     {"planar_modal_pair_tangent", call_planar_modal_pair_tangent},
     {"planar_modal_kinetic_energy", call_planar_modal_kinetic_energy},

@@ -217,6 +217,7 @@ cdef class Engine:
         r.matter, r.modes, r.shape = &fu_modal_matter, n, h
         h.kernel = _modal(tables, body.modal_kernel)
         h.S, h.X = self._doubles(shape.S), self._doubles(shape.X)
+        h.mass = self._doubles(np.einsum("klii->kl", shape.X)[1:, 1:])
         h.stiffness, h.damping = self._doubles(shape.stiffness), self._doubles(shape.damping)
         dofs = r.kernel.velocity + n
         h.zero, h.matrices = self._doubles(np.zeros(dofs)), self._doubles(np.zeros(3 * dofs * dofs))

@@ -105,7 +105,7 @@ class ModalBody(Part):
         """Its modes and inertia."""
         return of_mesh(self) if self.data is None else of_file(self.data, self.orthogonal)
 
-    @cached_property
+    @property
     def frame(self) -> tuple[np.ndarray, np.ndarray]:
         """Where the frame's origin starts, (3,) in m, and its attitude, (4,) unit quaternion."""
         if self.data is not None:

@@ -19,7 +19,7 @@ SYMMETRIC, ORTHOGONAL, DEFINITE = 1e-9, 1e-6, 1e-10
 """Parts of the largest entry, or cosines, up to which a matrix is what it should be."""
 
 
-@dataclass
+@dataclass(eq=False)  # a body is the same by what describes it
 class Shape:
     """n modes of a body in its own axes, on N nodes.
 

@@ -85,7 +85,7 @@ class ModeMoments:
                            for k, field in enumerate(("u", "u'", "u''"))])
 
     def of_body(self, rate: int) -> Moments:
-        """What the body's moments grow by as c_k, c_k' or c_k'' of the mode grows by one."""
+        """What the body's moments grow by as eta (rate 0) or eta' (rate 1) of the mode grows by one."""
         none, with_u = np.zeros_like(self.first), self.second[0].T
         first, second = [none] * 3, [np.zeros_like(with_u)] * 3
         first[rate], second[rate] = self.first, with_u
@@ -111,21 +111,14 @@ class Motion:
         W = skew(self.a[dim:]) + self.spin.dot(self.spin)
         self.W = np.array([p.vector(f"W{i + 1}", row) for i, row in enumerate(W)])
 
-    def by_acceleration(self, values: np.ndarray) -> np.ndarray:
-        """Derivatives by a."""
-        return self._by(self.a, "a", values)
-
     def by_velocity(self, values: np.ndarray) -> np.ndarray:
         """Derivatives by w."""
-        return self._by(self.w, "w", values)
+        return np.stack([Derivation(self.program, f"d_w{k}", {symbol: 1}).array(values)
+                         for k, symbol in enumerate(self.w)], axis=-1)
 
     def by_configuration(self, values: np.ndarray) -> np.ndarray:
         """Derivatives by translation and rotation."""
         return np.stack([d.array(values) for d in self.frame.tangents(self.program, self.b, self.A)], axis=-1)
-
-    def _by(self, symbols: np.ndarray, name: str, values: np.ndarray) -> np.ndarray:
-        return np.stack([Derivation(self.program, f"d_{name}{k}", {symbol: 1}).array(values)
-                         for k, symbol in enumerate(symbols)], axis=-1)
 
 
 def body_force(motion: Motion, of: Moments) -> np.ndarray:

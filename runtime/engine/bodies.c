@@ -20,10 +20,19 @@ static void of_rigid_forces(const fu_rigid *body, const double *b, const double 
     for (int i = body->kernel->dim; i < body->kernel->velocity; ++i) f[i] += part[i];
 }
 
-static void of_rigid_tangent(const fu_rigid *body, const fu_instant *at, double *M, double *D, double *K)
+static void of_rigid_mass(const fu_rigid *body, const double *b, double *M)
 {
+    const double rest[RIGID_DOFS] = {0};
+    double unused[RIGID_DOFS * RIGID_DOFS];
+    (void)b;
+    body->kernel->inertia_tangent(body->mass, body->J, rest, M, unused);
+}
+
+static void of_rigid_tangent(const fu_rigid *body, const fu_instant *at, double *D, double *K)
+{
+    double unused[RIGID_DOFS * RIGID_DOFS];
     (void)K; /* none: in body axes it does not depend on the attitude */
-    body->kernel->inertia_tangent(body->mass, body->J, at->w, M, D);
+    body->kernel->inertia_tangent(body->mass, body->J, at->w, unused, D);
 }
 
 static double of_rigid_kinetic_energy(const fu_rigid *body, const double *b, const double *w)
@@ -46,8 +55,8 @@ static double none_along(const fu_rigid *body, const double *b, const double *w)
     return 0.0;
 }
 
-const fu_matter fu_rigid_matter = {1,         of_rigid_mass_times, of_rigid_forces, of_rigid_tangent, of_rigid_kinetic_energy,
-                                   none_at, none_at,          none_along};
+const fu_matter fu_rigid_matter = {1,       of_rigid_mass_times,     of_rigid_forces, of_rigid_mass, of_rigid_tangent,
+                                   of_rigid_kinetic_energy, none_at, none_at,         none_along};
 
 int fu_body_dofs(const fu_rigid *body)
 {
@@ -82,11 +91,14 @@ static void add_body(const fu_model *model, const fu_rigid *body, const fu_state
     double *M = body->modes ? body->shape->matrices : few, *D = M + n * n, *K = D + n * n;
     const double *a = at->acceleration ? at->acceleration : model->zero;
     const fu_instant instant = {at->q + body->configuration, at->v + body->dof, a + body->dof};
-    body->matter->tangent(body, &instant, M, D, K);
+    if (weights.inertia != 0.0) body->matter->mass(body, instant.b, M);
+    if (weights.stiffness != 0.0) body->matter->tangent(body, &instant, D, K);
     if (turns && psi) fu_turn_columns(body->kernel, K, n, n, 0, psi + body->dof);
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j) {
-            double value = weights.inertia * M[n * i + j] + weights.stiffness * weights.rate * D[n * i + j];
+            double value = 0.0;
+            if (weights.inertia != 0.0) value += weights.inertia * M[n * i + j];
+            if (weights.stiffness != 0.0) value += weights.stiffness * weights.rate * D[n * i + j];
             if (turns) value += weights.stiffness * K[n * i + j];
             fu_add(model, system, body->dof + i, body->dof + j, value);
         }

@@ -52,7 +52,8 @@ typedef struct {
     int constant; /* its M is, in body axes, and it has no K */
     void (*mass_times)(const fu_rigid *body, const double *b, const double *a, double *f); /* f = M a */
     void (*forces)(const fu_rigid *body, const double *b, const double *w, double *f); /* f += what is left without a */
-    void (*tangent)(const fu_rigid *body, const fu_instant *at, double *M, double *D, double *K);
+    void (*mass)(const fu_rigid *body, const double *b, double *M);
+    void (*tangent)(const fu_rigid *body, const fu_instant *at, double *D, double *K);
     double (*kinetic_energy)(const fu_rigid *body, const double *b, const double *w);
     double (*elastic_energy)(const fu_rigid *body, const double *b);
     double (*potential_energy)(const fu_rigid *body, const double *b); /* less what model->gravity gives */
@@ -64,9 +65,9 @@ extern const fu_matter fu_rigid_matter, fu_modal_matter;
 typedef struct {
     const fu_modal *kernel;
     const double *S, *X;               /* (n + 1) x dim; (n + 1) x (n + 1) x dim x dim */
-    const double *stiffness, *damping; /* n x n */
+    const double *mass, *stiffness, *damping; /* n x n */
     const double *zero;                /* as many as it has dofs */
-    double *sums, *matrices;           /* work space: 3 (n + 1) dim^2; 3 dofs^2 */
+    double *sums, *matrices;           /* work space: 3 (n + 1) dim^2; 3 dofs^2 (mass_times takes the first) */
     double g[3];
 } fu_shape;
 

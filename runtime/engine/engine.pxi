@@ -59,6 +59,7 @@ cdef extern from "engine.h" nogil:
         const fu_modal *kernel
         const double *S
         const double *X
+        const double *mass
         const double *stiffness
         const double *damping
         const double *zero

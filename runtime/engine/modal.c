@@ -23,7 +23,8 @@ static moments sum_of(const fu_rigid *body, const double *eta, const double *rat
         const double *c = coefficients[r];
         m.Y[r] = shape->sums + r * n * square;
         memset(m.Y[r], 0, sizeof(double) * (size_t)(n * square));
-        for (int l = r ? 1 : 0; l < n && (c || l == 0); ++l) {
+        if (!c) continue;
+        for (int l = r ? 1 : 0; l < n; ++l) {
             const double c_l = l ? c[l - 1] : 1.0;
             for (int d = 0; d < dim; ++d) m.S[r][d] += c_l * shape->S[l * dim + d];
             for (int k = 0; k < n; ++k)
@@ -54,67 +55,88 @@ static void add_elasticity(const fu_rigid *body, const double *eta, const double
             f[k] += body->shape->stiffness[k * n + l] * eta[l] + body->shape->damping[k * n + l] * rate[l];
 }
 
-/* f += inertia less weight */
-static void add_inertia(const fu_rigid *body, const fu_instant *at, const double *g, const double *a_modes, double *f)
+/* f += inertia without accelerations, less weight */
+static void add_inertia(const fu_rigid *body, const double *b, const double *w, double *f)
 {
     const fu_modal *kernel = body->shape->kernel;
     const int dim = body->kernel->dim, frame = body->kernel->velocity;
-    const moments m = sum_of(body, eta_of(body, at->b), rate_of(body, at->w), a_modes);
+    const moments m = sum_of(body, eta_of(body, b), rate_of(body, w), 0);
+    const double *a = body->shape->zero, *g = body->shape->g;
     double part[6];
-    kernel->inertia_force(at->b, at->w, at->a, g, body->mass, m.S[0], m.S[1], m.S[2], m.X[0], m.X[1], m.X[2], part);
+    kernel->inertia_force(b, w, a, g, body->mass, m.S[0], m.S[1], m.S[2], m.X[0], m.X[1], m.X[2], part);
     for (int i = 0; i < frame; ++i) f[i] += part[i];
     for (int k = 1; k <= body->modes; ++k) {
         const int of = k * dim * dim;
-        kernel->mode_force(at->b, at->w, at->a, g, body->shape->S + k * dim, m.Y[0] + of, m.Y[1] + of, m.Y[2] + of, part);
+        kernel->mode_force(b, w, a, g, body->shape->S + k * dim, m.Y[0] + of, m.Y[1] + of, m.Y[2] + of, part);
         f[frame + k - 1] += part[0];
+    }
+}
+
+/* M of eq 12 */
+static void mass(const fu_rigid *body, const double *b, double *M)
+{
+    const fu_shape *shape = body->shape;
+    const int dim = body->kernel->dim, frame = body->kernel->velocity, modes = body->modes, n = frame + modes;
+    const moments m = sum_of(body, eta_of(body, b), 0, 0);
+    double of_frame[36], column[6];
+    shape->kernel->mass_matrix(b, body->mass, m.S[0], m.X[0], of_frame);
+    for (int i = 0; i < frame; ++i)
+        for (int j = 0; j < frame; ++j) M[i * n + j] = of_frame[i * frame + j];
+    for (int k = 0; k < modes; ++k) {
+        shape->kernel->mode_mass(b, shape->S + (k + 1) * dim, m.Y[0] + (k + 1) * dim * dim, column);
+        for (int i = 0; i < frame; ++i) M[i * n + frame + k] = M[(frame + k) * n + i] = column[i];
+        for (int l = 0; l < modes; ++l) M[(frame + k) * n + frame + l] = shape->mass[k * modes + l];
     }
 }
 
 static void mass_times(const fu_rigid *body, const double *b, const double *a, double *f)
 {
-    const double none[3] = {0};
-    for (int i = 0; i < fu_body_dofs(body); ++i) f[i] = 0.0;
-    const fu_instant at = {b, body->shape->zero, a};
-    add_inertia(body, &at, none, rate_of(body, a), f);
+    const int n = fu_body_dofs(body);
+    double *M = body->shape->matrices;
+    mass(body, b, M);
+    for (int i = 0; i < n; ++i) {
+        f[i] = 0.0;
+        for (int j = 0; j < n; ++j) f[i] += M[i * n + j] * a[j];
+    }
 }
 
 static void forces(const fu_rigid *body, const double *b, const double *w, double *f)
 {
-    const fu_instant at = {b, w, body->shape->zero};
-    add_inertia(body, &at, body->shape->g, 0, f);
+    add_inertia(body, b, w, f);
     add_elasticity(body, eta_of(body, b), rate_of(body, w), f + body->kernel->velocity);
 }
 
-static void tangent(const fu_rigid *body, const fu_instant *at, double *M, double *D, double *K)
+static void tangent(const fu_rigid *body, const fu_instant *at, double *D, double *K)
 {
     const fu_shape *shape = body->shape;
     const fu_modal *kernel = shape->kernel;
     const int dim = body->kernel->dim, square = dim * dim, frame = body->kernel->velocity;
     const int modes = body->modes, n = frame + modes;
     const moments m = sum_of(body, eta_of(body, at->b), rate_of(body, at->w), rate_of(body, at->a));
-    double *out[3] = {M, D, K}, of_frame[3][36], of_mode[3][6], frame_by_mode[2][6], pair[3];
+    double D_frame[36], K_frame[36], D_of[6], K_of[6], D_by[6], K_by[6];
     kernel->inertia_tangent(at->b, at->w, at->a, shape->g, body->mass, m.S[0], m.S[1], m.S[2], m.X[0], m.X[1], m.X[2],
-                            of_frame[0], of_frame[1], of_frame[2]);
-    for (int p = 0; p < 3; ++p)
-        for (int i = 0; i < frame; ++i)
-            for (int j = 0; j < frame; ++j) out[p][i * n + j] = of_frame[p][i * frame + j];
+                            D_frame, K_frame);
+    for (int i = 0; i < frame; ++i)
+        for (int j = 0; j < frame; ++j) {
+            D[i * n + j] = D_frame[i * frame + j];
+            K[i * n + j] = K_frame[i * frame + j];
+        }
     for (int k = 1; k <= modes; ++k) {
         const int of = k * square, row = frame + k - 1;
         kernel->mode_tangent(at->b, at->w, at->a, shape->g, shape->S + k * dim, m.Y[0] + of, m.Y[1] + of, m.Y[2] + of,
-                             of_mode[0], of_mode[1], of_mode[2], frame_by_mode[0], frame_by_mode[1]);
+                             D_of, K_of, D_by, K_by);
         for (int i = 0; i < frame; ++i) {
-            for (int p = 0; p < 3; ++p) out[p][row * n + i] = of_mode[p][i];
-            M[i * n + row] = of_mode[0][i];
-            D[i * n + row] = frame_by_mode[0][i];
-            K[i * n + row] = frame_by_mode[1][i];
+            D[row * n + i] = D_of[i];
+            K[row * n + i] = K_of[i];
+            D[i * n + row] = D_by[i];
+            K[i * n + row] = K_by[i];
         }
         for (int l = 1; l <= modes; ++l) {
-            const int at_kl = (k - 1) * modes + l - 1;
-            kernel->pair_tangent(at->b, at->w, at->a, shape->g, shape->X + (k * (modes + 1) + l) * square, &pair[0],
-                                 &pair[1], &pair[2]);
-            M[row * n + frame + l - 1] = pair[0];
-            D[row * n + frame + l - 1] = pair[1] + shape->damping[at_kl];
-            K[row * n + frame + l - 1] = pair[2] + shape->stiffness[at_kl];
+            const int at_kl = (k - 1) * modes + l - 1, place = row * n + frame + l - 1;
+            kernel->pair_tangent(at->b, at->w, at->a, shape->g, shape->X + (k * (modes + 1) + l) * square, D + place,
+                                 K + place);
+            D[place] += shape->damping[at_kl];
+            K[place] += shape->stiffness[at_kl];
         }
     }
 }
@@ -161,8 +183,8 @@ static double dissipation(const fu_rigid *body, const double *b, const double *w
     return total;
 }
 
-const fu_matter fu_modal_matter = {0,        mass_times, forces, tangent, kinetic_energy, elastic_energy, potential_energy,
-                                   dissipation};
+const fu_matter fu_modal_matter = {0,       mass_times,     forces,         mass,             tangent,
+                                   kinetic_energy, elastic_energy, potential_energy, dissipation};
 
 /* Place, turn and their rates of a point, from its modes. */
 static void point_of(const fu_rigid *body, const fu_spot *spot, const double *c, int is_rate, double u[3], double theta[3])
