@@ -5,23 +5,23 @@ on purpose.
 CEILINGS = {
     "beam24": {
         "mass": 58, "gravity": 26, "inertia_force": 120, "position": 70,
-        "on_axis": 35, "follower_force": 620, "moment": 1161
+        "on_axis": 35, "follower_force": 620, "moment": 1161, "slopes": 43
     },
     "cable12": {
         "mass": 40, "gravity": 26, "inertia_force": 84, "position": 40,
-        "on_axis": 35, "follower_force": 330, "moment": 305
+        "on_axis": 35, "follower_force": 330, "moment": 305, "slopes": 41
     },
     "cable18": {
         "mass": 105, "gravity": 42, "inertia_force": 198, "position": 85,
-        "on_axis": 95, "follower_force": 636, "moment": 548
+        "on_axis": 95, "follower_force": 636, "moment": 548, "slopes": 117
     },
     "beam12p": {
         "mass": 49, "gravity": 22, "inertia_force": 68, "position": 44,
-        "on_axis": 35, "follower_force": 170, "moment": 63
+        "on_axis": 35, "follower_force": 170, "moment": 63, "slopes": 42
     },
     "cable8p": {
         "mass": 40, "gravity": 22, "inertia_force": 56, "position": 33,
-        "on_axis": 35, "follower_force": 170, "moment": 143
+        "on_axis": 35, "follower_force": 170, "moment": 143, "slopes": 41
     },
     "beam24_continuum": {
         "stiffness": 217, "energy": 486, "elastic_force": 757, "elastic_tangent": 5125, "damping_force": 992,
@@ -105,21 +105,21 @@ CEILINGS = {
     },
     "rigid": {
         "point": 207, "point_force": 183, "inertia_force": 45, "inertia_tangent": 48, "kinetic_energy": 31,
-        "discrete_point": 230
+        "discrete_point": 230, "frame": 78
     },
     "planar_rigid": {
         "point": 40, "point_force": 23, "inertia_force": 3, "inertia_tangent": 0, "kinetic_energy": 9,
-        "discrete_point": 18
+        "discrete_point": 18, "frame": 0
     },
     "modal": {
         "inertia_force": 312, "inertia_tangent": 732, "mode_force": 137, "mode_tangent": 477,
         "pair_tangent": 57, "kinetic_energy": 135, "potential_energy": 74, "anchor": 836, "anchor_mode": 151,
-        "anchor_force": 183, "anchor_mode_force": 310, "anchor_pair_force": 164
+        "anchor_force": 183, "anchor_mode_force": 310, "anchor_pair_force": 164, "mass_matrix": 105, "mode_mass": 66
     },
     "planar_modal": {
         "inertia_force": 71, "inertia_tangent": 93, "mode_force": 31, "mode_tangent": 101, "pair_tangent": 15,
         "kinetic_energy": 32, "potential_energy": 13, "anchor": 107, "anchor_mode": 11, "anchor_force": 9,
-        "anchor_mode_force": 18, "anchor_pair_force": 10
+        "anchor_mode_force": 18, "anchor_pair_force": 10, "mass_matrix": 13, "mode_mass": 7
     },
     "slide_beam24_rigid": {"constraint": 599, "terms": 1646, "residual": 209, "tangent": 286, "discrete_gradient": 397},
     "slide_cable12_rigid": {
@@ -138,4 +138,41 @@ CEILINGS = {
         "constraint": 156, "terms": 569, "residual": 97, "tangent": 113,
         "discrete_gradient": 193
     },
+    "slide_beam24_point": {
+        "constraint": 536, "terms": 1373, "residual": 104, "tangent": 121, "discrete_gradient": 152
+    },
+    "slide_cable12_point": {
+        "constraint": 409, "terms": 1156, "residual": 104, "tangent": 121, "discrete_gradient": 152
+    },
+    "slide_cable18_point": {
+        "constraint": 635, "terms": 1925, "residual": 227, "tangent": 347, "discrete_gradient": 422
+    },
+    "slide_beam12p_planar_point": {
+        "constraint": 150, "terms": 518, "residual": 82, "tangent": 98, "discrete_gradient": 136
+    },
+    "slide_cable8p_planar_point": {
+        "constraint": 150, "terms": 518, "residual": 82, "tangent": 98, "discrete_gradient": 136
+    },
+    "frame": {"axes": 98, "motion": 458, "moment": 1238},
+    "planar_frame": {"axes": 13, "motion": 50, "moment": 55},
+    "joint_spherical": {"force": 0, "motion": 0},
+    "joint_revolute": {"force": 274, "motion": 142},
+    "joint_revolute_angle": {"force": 647, "motion": 447},
+    "joint_universal": {"force": 119, "motion": 71},
+    "joint_cylindrical": {"force": 404, "motion": 224},
+    "joint_cylindrical_angle": {"force": 777, "motion": 529},
+    "joint_cylindrical_distance": {"force": 476, "motion": 266},
+    "joint_prismatic": {"force": 559, "motion": 295},
+    "joint_prismatic_distance": {"force": 631, "motion": 337},
+    "joint_weld": {"force": 429, "motion": 213},
+    "joint_distance": {"force": 52, "motion": 30},
+    "joint_aligned": {"force": 274, "motion": 142},
+    "joint_locked": {"force": 429, "motion": 213},
+    "joint_planar_spherical": {"force": 0, "motion": 0},
+    "joint_planar_revolute_angle": {"force": 73, "motion": 141},
+    "joint_planar_prismatic": {"force": 40, "motion": 38},
+    "joint_planar_prismatic_distance": {"force": 60, "motion": 54},
+    "joint_planar_weld": {"force": 25, "motion": 23},
+    "joint_planar_distance": {"force": 27, "motion": 21},
+    "joint_planar_locked": {"force": 25, "motion": 23},
 }
