@@ -28,12 +28,13 @@ class ModalBody(Part):
     A straight beam: from ``start`` to ``end`` (m), ``section`` and ``material`` as of a cable, ``up`` the direction of
     the section's height; its ``modes`` lowest modes on a mesh of ``elements`` of kind ``element`` (and ``law``). Body
     axes are along the beam, the height and the width. ``boundary`` "free": free-free modes, the frame at the mass
-    centre, where they move it least (the coupling M_rf vanishes undeformed): for a body that flies, or is held at points
-    that its modes move. "attached": the frame fixed to the section at ``start``, modes of the cantilever: for a body that
-    is held there. Cables' elements have no torsion: their modes bend and stretch, and the frame alone turns them.
+    centre (the coupling M_rf vanishes undeformed), for a body that flies, or is held at points that its modes move.
+    "attached": the frame fixed to the section at ``start``, modes of the cantilever, for a body that is held there.
+    What tension stiffens is not in the modes' stiffness: they are no model of a beam that spins about as fast as it
+    vibrates. Cables' elements have no torsion: their modes bend and stretch, and the frame alone turns them.
 
-    Or ``data``, an .npz or netCDF file of arrays in SI units, in body axes, with ``position`` and ``orientation`` of the
-    frame: ``nodes`` (N, 3) where they are undeformed, ``modes`` (n, N, 3) displacements by a unit of each mode,
+    Or ``data``, an .npz or netCDF file of arrays in SI units, in body axes, with ``position`` and ``orientation`` of
+    the frame: ``nodes`` (N, 3) where they are undeformed, ``modes`` (n, N, 3) displacements by a unit of each mode,
     ``masses`` (N,), ``stiffness`` (n, n), and where a joint holds a section ``rotations`` (n, N, 3), turns in rad by a
     unit of each mode. Modes must be orthogonal in the mass, unless ``orthogonal`` is false: then their full mass matrix
     is used as it is.
