@@ -206,14 +206,14 @@ cdef class Engine:
         holds, P, T, and K for a force f and a moment m on the point.
         """
         cdef fu_rigid *r = &self.rigids[index]
-        cdef fu_place place
+        cdef fu_spot spot
         cdef fu_modal_point out
         cdef int n = fu_body_dofs(r), dim = r.kernel.dim, turns = r.kernel.velocity - r.kernel.dim
-        place.x, place.phi, place.psi = self._doubles(x), self._doubles(phi), self._doubles(psi)
+        spot.x, spot.phi, spot.psi = self._doubles(x), self._doubles(phi), self._doubles(psi)
         P, T, K = np.zeros((dim, n)), np.zeros((turns, n)), np.zeros((n, n))
         cdef double[:, ::1] P_view = P, T_view = T, K_view = K
-        fu_modal_anchor(r, &place, self._doubles(b), self._doubles(w), &out, &P_view[0, 0], &T_view[0, 0])
-        fu_modal_anchor_force(r, &place, self._doubles(b), self._doubles(f), self._doubles(m), &K_view[0, 0])
+        fu_modal_anchor(r, &spot, self._doubles(b), self._doubles(w), &out, &P_view[0, 0], &T_view[0, 0])
+        fu_modal_anchor_force(r, &spot, self._doubles(b), self._doubles(f), self._doubles(m), &K_view[0, 0])
         return {"p": np.array(out.p)[:dim], "axes": np.array(out.axes)[:dim * dim].reshape(dim, dim), "P": P, "T": T, "K": K,
                 "velocity": np.array(out.velocity)[:dim], "omega": np.array(out.omega)[:turns],
                 "bias": np.array(out.bias)[:dim], "omega_bias": np.array(out.omega_bias)[:turns]}

@@ -8,11 +8,12 @@ from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from funicular.bodies import Quaternion, unit_quaternion
-from funicular.cables import Cable
+from funicular.cables import EXACT, Cable
 from funicular.materials import Material
 from funicular.modal_shape import Shape, of_file, of_mesh
+from funicular.rotations import rotate
 from funicular.sections import AnySection
-from funicular.validation import Count, Flag, Name, Part, Vector, not_negative, one_of, xyz
+from funicular.validation import Count, Flag, Name, Part, Vector, not_negative, one_of, show, xyz
 from pydantic import PlainValidator, model_validator
 
 
@@ -109,6 +110,27 @@ class ModalBody(Part):
             return np.array(self.position), np.array(self.orientation)
         axes = self._drawn.axes.T
         return np.array(self.start) + self.offset * axes[:, 0], quaternion(axes)
+
+    def spot(self, at: Vector) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """The point ``at`` (m, body axes) as the engine knows it: undeformed (3,), and there modes and turns (n, 3).
+
+        It is a node, or goes with a node's section, where sections turn: of a beam any point across its axis there.
+        Raises ValueError(cause, remedy).
+        """
+        shape, at = self.shape, np.array(at, dtype=float)
+        distance = np.linalg.norm(shape.nodes - at, axis=1)
+        node, size = int(np.argmin(distance)), max(float(np.ptp(shape.nodes, axis=0).max()), 1.0)
+        arm = at - shape.nodes[node]
+        along = abs(arm[0]) if self.data is None else 0.0 if shape.rotations.any() else distance[node]
+        if along > EXACT * size:
+            raise ValueError(f"{show(at, 'm')} is no node of the body",
+                             f"the nearest is at {show(shape.nodes[node], 'm')}")
+        return at, shape.modes[:, node] + np.cross(shape.rotations[:, node], arm), shape.rotations[:, node]
+
+    def point(self, at: Vector) -> np.ndarray:
+        """(3,): where the body's point ``at`` (m, body axes) starts, in m."""
+        position, orientation = self.frame
+        return position + rotate(orientation, at)
 
     @property
     def mass(self) -> float:

@@ -82,7 +82,7 @@ struct fu_rigid {
 /* A point of a modal body: where it is undeformed, and the modes' displacements and turns there. */
 typedef struct {
     const double *x, *phi, *psi; /* dim; modes x dim; modes x turns */
-} fu_place;
+} fu_spot;
 typedef struct {
     double p[3], axes[9], velocity[3], omega[3], bias[3], omega_bias[3];
 } fu_modal_point;
@@ -264,9 +264,9 @@ double fu_bodies_potential_energy(const fu_model *model, const double *q);
 double fu_bodies_dissipation(const fu_model *model, const double *q, const double *v);
 
 /* modal.c: points */
-void fu_modal_anchor(const fu_rigid *body, const fu_place *place, const double *b, const double *w, fu_modal_point *out,
+void fu_modal_anchor(const fu_rigid *body, const fu_spot *spot, const double *b, const double *w, fu_modal_point *out,
                      double *P, double *T);
-void fu_modal_anchor_force(const fu_rigid *body, const fu_place *place, const double *b, const double *f, const double *m,
+void fu_modal_anchor_force(const fu_rigid *body, const fu_spot *spot, const double *b, const double *f, const double *m,
                            double *K);
 
 /* motions.c */

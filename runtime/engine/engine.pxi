@@ -64,7 +64,7 @@ cdef extern from "engine.h" nogil:
         double mass
         double J[9]
         const fu_shape *shape
-    ctypedef struct fu_place:
+    ctypedef struct fu_spot:
         const double *x
         const double *phi
         const double *psi
@@ -76,9 +76,9 @@ cdef extern from "engine.h" nogil:
         double bias[3]
         double omega_bias[3]
     int fu_body_dofs(const fu_rigid *body)
-    void fu_modal_anchor(const fu_rigid *body, const fu_place *place, const double *b, const double *w,
+    void fu_modal_anchor(const fu_rigid *body, const fu_spot *spot, const double *b, const double *w,
                          fu_modal_point *out, double *P, double *T)
-    void fu_modal_anchor_force(const fu_rigid *body, const fu_place *place, const double *b, const double *f,
+    void fu_modal_anchor_force(const fu_rigid *body, const fu_spot *spot, const double *b, const double *f,
                                const double *m, double *K)
     ctypedef struct fu_joint:
         const fu_slide *kernel
