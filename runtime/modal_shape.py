@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from funicular.errors import near
-from scipy.linalg import eigh
 
 if TYPE_CHECKING:
     from funicular.modal_bodies import ModalBody
@@ -49,6 +48,8 @@ class Shape:
     @cached_property
     def vibrations(self) -> tuple[np.ndarray, np.ndarray]:
         """Squares of angular frequencies with the frame held (n,), in rad²/s², and their shapes by columns (n, n)."""
+        from scipy.linalg import eigh
+
         return eigh(self.stiffness, self.modal_mass)
 
     def damping(self, ratio: float) -> np.ndarray:
