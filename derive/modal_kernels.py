@@ -1,4 +1,4 @@
-"""The kernels of a modal body: inertia of its frame's rows, of a mode's, of a pair of modes; energies; points with axes.
+"""The kernels of a modal body: inertia of its frame's rows, of a mode's, of two modes; energies; points with axes.
 
 The number of modes is known at run time: the engine sums moments over modes (bodies/modal.py says which) and calls the
 kernels of a mode for each, those of a pair for each pair.
@@ -27,13 +27,14 @@ from funicular.derive.stages import Derivation, Program
 def build(name: str, frame: ModuleType) -> list[Program]:
     """Every kernel of a modal body on a frame."""
     return [make(name, frame) for make in (
-        inertia_force, mass_matrix, inertia_tangent, mode_force_, mode_mass, mode_tangent, pair_tangent, kinetic_energy, potential_energy,
-        anchor, anchor_mode, anchor_force, anchor_mode_force, anchor_pair_force)]
+        inertia_force, mass_matrix, inertia_tangent, mode_force_, mode_mass, mode_tangent, pair_tangent,
+        kinetic_energy, potential_energy, anchor, anchor_mode, anchor_force, anchor_mode_force, anchor_pair_force)]
 
 
 def inertia_force(name: str, frame: ModuleType) -> Program:
     """The frame's rows."""
-    p = Program(f"{name}_inertia_force", "inertia and weight of a modal body: force, and moment about its origin", SOURCE)
+    p = Program(f"{name}_inertia_force", "inertia and weight of a modal body: force, moment about its origin",
+                SOURCE)
     motion = Motion(p, frame)
     force = body_force(motion, Moments.given(p, frame.DIM))
     p.output("f", force, "N, N m", "inertia force less weight")
@@ -71,7 +72,8 @@ def mode_force_(name: str, frame: ModuleType) -> Program:
     """The row of a mode."""
     p = Program(f"{name}_mode_force", "inertia and weight of a mode", SOURCE)
     motion = Motion(p, frame)
-    p.output("f", mode_force(motion, ModeMoments.given(p, frame.DIM)), "N", "inertia force less weight, of a unit of eta")
+    force = mode_force(motion, ModeMoments.given(p, frame.DIM))
+    p.output("f", force, "N", "inertia force less weight, of a unit of eta")
     return p
 
 
@@ -147,8 +149,8 @@ def potential_energy(name: str, frame: ModuleType) -> Program:
 class Point:
     """Inputs b, u, theta; stages: place and axes of a point with its section, turned by twice arctan(theta/2).
 
-    theta = sum_k eta_k psi_k is the linear theory's rotation; taken as a Cayley vector it makes axes that are orthonormal
-    without a root or a limit: C = 1 + (theta~ + theta~ theta~/2)/(1 + theta^2/4).
+    theta = sum_k eta_k psi_k is the linear theory's rotation; taken as a Cayley vector it makes axes that are
+    orthonormal without a root or a limit: C = 1 + (theta~ + theta~ theta~/2)/(1 + theta^2/4).
     """
 
     def __init__(self, p: Program, frame: ModuleType):

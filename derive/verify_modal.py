@@ -41,9 +41,11 @@ def integrals(s: State, **moved: np.ndarray) -> dict[str, np.ndarray]:
     def second(a, b):
         return (rho[:, None] * a).T.dot(b)
 
-    made = {"mass": rho.sum(), "s": rho.dot(mode), "X_kl": second(mode, other), "X11": second(fields[1], fields[1]).trace()}
+    made = {"mass": rho.sum(), "s": rho.dot(mode), "X_kl": second(mode, other),
+            "X11": second(fields[1], fields[1]).trace()}
     for k, field in enumerate(fields):
-        made |= {f"S{k or ''}": rho.dot(field), f"X{k or ''}": second(fields[0], field), f"Y{k or ''}": second(mode, field)}
+        made |= {f"S{k or ''}": rho.dot(field), f"X{k or ''}": second(fields[0], field),
+                 f"Y{k or ''}": second(mode, field)}
     theta = [s[name].dot(s["psis"]) for name in RATES[:2]]
     return made | {"u": s["place"] + s["eta"].dot(s["phis"]), "u1": s["eta1"].dot(s["phis"]), "theta": theta[0],
                    "theta1": theta[1], "phi": s["phis"][0], "psi": s["psis"][0], "phi_l": s["phis"][1],
@@ -107,7 +109,7 @@ class Paths:
 def modal(family: Family) -> list[Relation]:
     """Every output of a modal body's kernels."""
     p = Paths(family)
-    rider, dim, n, zero = p.rider, p.dim, p.n, np.zeros(MODES, dtype=int)
+    rider, n, zero = p.rider, p.n, np.zeros(MODES, dtype=int)
 
     def frame_moved(kernel: str, output: str) -> Relation:
         return lambda k, s, t, j: k(kernel, s, b=rider.moved(k, s["b"], t * unit(n, j)))[output]
@@ -201,12 +203,14 @@ def modal(family: Family) -> list[Relation]:
         Relation("anchor", "bias", "d²p/dt² at constant velocities", 2, point(0, "time")),
         Relation("anchor", "omega_bias", "d² axes/dt² at constant velocities", 2, point(1, "time"), of=second),
         Relation("anchor_mode", "P", "dp by eta", 1, point(0, "mode")),
-        Relation("anchor_mode", "T", "d axes by eta", 1, point(1, "mode"), of=turning("anchor_mode", "T", columns=False)),
+        Relation("anchor_mode", "T", "d axes by eta", 1, point(1, "mode"),
+                 of=turning("anchor_mode", "T", columns=False)),
         Relation("anchor_force", "K", "d(P' f + T' m) by translation and rotation", 1, by_frame(pulled), n),
         Relation("anchor_mode_force", "K", "d(P' f + T' m) of the mode by translation and rotation", 1,
                  by_frame(mode_pulled), n),
         Relation("anchor_mode_force", "K_frame", "d(P' f + T' m) of the frame by eta", 1, by_mode(pulled, 0)),
-        Relation("anchor_pair_force", "K", "d(P' f + T' m) of the mode by eta of the other", 1, by_mode(mode_pulled, 1)),
+        Relation("anchor_pair_force", "K", "d(P' f + T' m) of the mode by eta of the other", 1,
+                 by_mode(mode_pulled, 1)),
     ]
 
 

@@ -8,7 +8,8 @@ import numpy as np
 from funicular.equilibrium import Equilibrium
 from funicular.errors import SceneError
 from funicular.model import build
-from funicular.recording import spatial
+from funicular.recording import body_state, spatial
+from funicular.rotations import rotate
 from funicular.scene import Scene
 from scipy.linalg import eig, eigh, null_space
 from scipy.sparse import csc_array
@@ -28,7 +29,8 @@ class Modes:
 
     angular_frequency (n,) in rad/s, 0 where the state is not stable; frequency (n,) in Hz; growth_rate (n,) in 1/s, of
     what grows instead, 0 where it is stable. Shapes by name, largest displacement 1 m: ``modes["wire.nodal_vectors"]``
-    (n, node, vector, 3), ``modes["A.displacement"]``, ``modes["A.rotation"]`` (n, 3), about body axes.
+    (n, node, vector, 3), ``modes["A.displacement"]``, ``modes["A.rotation"]`` (n, 3), about body axes; of a modal body
+    these are the frame's, and ``modes["link.nodes"]`` (n, node, 3) what its nodes move by.
     """
 
     angular_frequency: np.ndarray
@@ -125,9 +127,11 @@ def _solve(K: csc_array, M: csc_array, constraints: csc_array, n: int) -> tuple[
 def _named(model, squares: np.ndarray, dofs: np.ndarray) -> Modes:
     roots = np.sqrt(squares.astype(complex))
     shapes = {}
+    modal = [body for body in model.rigids if body.modes]
     for k, mode in enumerate(dofs):
         largest = max([np.abs(mode[list(node.dofs("r"))]).max() for nodes in model.nodes.values() for node in nodes]
-                      + [np.abs(mode[b.dof : b.dof + model.dim]).max() for b in model.rigids])
+                      + [np.abs(mode[b.dof : b.dof + model.dim]).max() for b in model.rigids]
+                      + [np.abs(_nodes(model, body, mode[None])).max() for body in modal])
         dofs[k] = mode / (largest or np.abs(mode).max() or 1.0)
     for cable in model.cables:
         vectors = spatial(dofs[:, cable.coordinates].reshape(len(dofs), *cable.shape))
@@ -137,4 +141,17 @@ def _named(model, squares: np.ndarray, dofs: np.ndarray) -> Modes:
         turn = dofs[:, body.dof + model.dim : body.dof + (6 if model.dim == 3 else 3)]
         shapes[f"{body.name}.displacement"] = spatial(dofs[:, body.dof : body.dof + model.dim])
         shapes[f"{body.name}.rotation"] = turn if model.dim == 3 else np.pad(turn, ((0, 0), (2, 0)))
+    for body in modal:
+        shapes[f"{body.name}.nodes"] = _nodes(model, body, dofs)
     return Modes(np.abs(roots.real), np.abs(roots.imag), shapes)
+
+
+def _nodes(model, body, dofs: np.ndarray) -> np.ndarray:
+    """(n, node, 3): what the nodes of a modal body are moved by."""
+    at = body.dof + model.dim
+    turn = dofs[:, at : at + 3] if model.dim == 3 else np.pad(dofs[:, at : at + 1], ((0, 0), (2, 0)))
+    at += 3 if model.dim == 3 else 1
+    fields, orientation = body.shape.fields, body_state(model, body, model.q[None])["orientation"][0]
+    strained = np.einsum("tk,kni->tni", dofs[:, at : at + body.modes], fields.modes)
+    frame = spatial(dofs[:, None, body.dof : body.dof + model.dim])
+    return frame + rotate(orientation, np.cross(turn[:, None], fields.nodes) + strained)

@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from funicular.bodies import Quaternion, unit_quaternion
-from funicular.cables import Cable
+from funicular.cables import EXACT, Cable
 from funicular.materials import Material
 from funicular.modal_shape import Shape, of_file, of_mesh
 from funicular.rotations import rotate
@@ -32,12 +32,13 @@ class ModalBody(Part):
     A straight beam: from ``start`` to ``end`` (m), ``section`` and ``material`` as of a cable, ``up`` the direction of
     the section's height; its ``modes`` lowest modes on a mesh of ``elements`` of kind ``element`` (and ``law``). Body
     axes are along the beam, the height and the width. ``boundary`` "free": free-free modes, the frame at the mass
-    centre, where they move it least (the coupling M_rf vanishes undeformed): for a body that flies, or is held at points
-    that its modes move. "attached": the frame fixed to the section at ``start``, modes of the cantilever: for a body that
-    is held there. Cables' elements have no torsion: their modes bend and stretch, and the frame alone turns them.
+    centre (the coupling M_rf vanishes undeformed), for a body that flies, or is held at points that its modes move.
+    "attached": the frame fixed to the section at ``start``, modes of the cantilever, for a body that is held there.
+    What tension stiffens is not in the modes' stiffness: they are no model of a beam that spins about as fast as it
+    vibrates. Cables' elements have no torsion: their modes bend and stretch, and the frame alone turns them.
 
-    Or ``data``, an .npz or netCDF file of arrays in SI units, in body axes, with ``position`` and ``orientation`` of the
-    frame: ``nodes`` (N, 3) where they are undeformed, ``modes`` (n, N, 3) displacements by a unit of each mode,
+    Or ``data``, an .npz or netCDF file of arrays in SI units, in body axes, with ``position`` and ``orientation`` of
+    the frame: ``nodes`` (N, 3) where they are undeformed, ``modes`` (n, N, 3) displacements by a unit of each mode,
     ``masses`` (N,), ``stiffness`` (n, n), and where a joint holds a section ``rotations`` (n, N, 3), turns in rad by a
     unit of each mode. Modes must be orthogonal in the mass, unless ``orthogonal`` is false: then their full mass matrix
     is used as it is.
@@ -112,6 +113,27 @@ class ModalBody(Part):
             return np.array(self.position), np.array(self.orientation)
         axes = self._drawn.axes.T
         return np.array(self.start) + self.offset * axes[:, 0], quaternion(axes)
+
+    def spot(self, at: Vector) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """The point ``at`` (m, body axes) as the engine knows it: undeformed (3,), and there modes and turns (n, 3).
+
+        It is a node, or goes with a node's section, where sections turn: of a beam any point across its axis there.
+        Raises ValueError(cause, remedy).
+        """
+        shape, at = self.shape, np.array(at, dtype=float)
+        distance = np.linalg.norm(shape.nodes - at, axis=1)
+        node, size = int(np.argmin(distance)), max(float(np.ptp(shape.nodes, axis=0).max()), 1.0)
+        arm = at - shape.nodes[node]
+        along = abs(arm[0]) if self.data is None else 0.0 if shape.rotations.any() else distance[node]
+        if along > EXACT * size:
+            raise ValueError(f"{show(at, 'm')} is no node of the body",
+                             f"the nearest is at {show(shape.nodes[node], 'm')}")
+        return at, shape.modes[:, node] + np.cross(shape.rotations[:, node], arm), shape.rotations[:, node]
+
+    def point(self, at: Vector) -> np.ndarray:
+        """(3,): where the body's point ``at`` (m, body axes) starts, in m."""
+        position, orientation = self.frame
+        return position + rotate(orientation, at)
 
     @property
     def axes(self) -> np.ndarray:

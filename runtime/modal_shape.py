@@ -62,12 +62,11 @@ class Shape:
         """(6 + n, 6 + n), in the plane (3 + n, 3 + n): M of eq 12 undeformed, in body axes."""
         S, X = self.S[:, :dim], self.X[:, :, :dim, :dim]
         pairs = [(0, 1)] if dim == 2 else [(1, 2), (2, 0), (0, 1)]
-        fields = [*np.eye(dim), *(_turn(i, j, dim) for i, j in pairs)]  # each a matrix B: velocity of x is B x, or constant
-        constant, linear = np.array(fields[:dim]), np.array(fields[dim:])
-        rigid = np.block([
-            [self.mass * np.eye(dim), np.einsum("dj,tjk,k->dt", constant, linear, S[0])],
-            [np.einsum("dj,tjk,k->td", constant, linear, S[0]), np.einsum("tij,uik,jk->tu", linear, linear, X[0, 0])]])
-        coupling = np.concatenate([S[1:].T, np.einsum("tij,kij->tk", linear, X[1:, 0])])
+        turns = np.array([_turn(i, j, dim) for i, j in pairs])  # each a matrix B: x moves by B x
+        moved = (turns @ S[0]).T
+        rigid = np.block([[self.mass * np.eye(dim), moved],
+                          [moved.T, np.einsum("tij,uik,jk->tu", turns, turns, X[0, 0])]])
+        coupling = np.concatenate([S[1:].T, np.einsum("tij,kij->tk", turns, X[1:, 0])])
         return np.block([[rigid, coupling], [coupling.T, np.einsum("klii->kl", X)[1:, 1:]]])
 
     def indefinite(self, dim: int) -> str:
@@ -108,11 +107,12 @@ def of_points(nodes, modes, masses, stiffness, rotations=None, orthogonal: bool 
         if not np.isfinite(array).all():
             raise ValueError(f"array {name} must be finite")
     if not (len(masses) and masses.min() >= 0 and masses.sum() > 0):
-        raise ValueError(f"array masses must not be negative, and not all zero, got {masses.min(initial=0):.6g} kg at least")
+        raise ValueError("array masses must not be negative, and not all zero, got "
+                         f"{masses.min(initial=0):.6g} kg at least")
     if np.abs(stiffness - stiffness.T).max(initial=0) > SYMMETRIC * np.abs(stiffness).max(initial=0):
         i, j = np.unravel_index(np.argmax(np.abs(stiffness - stiffness.T)), stiffness.shape)
-        raise ValueError(f"array stiffness must be symmetric, got {stiffness[i, j]:.9g} and {stiffness[j, i]:.9g} N/m for "
-                         f"modes {i + 1} and {j + 1}")
+        raise ValueError(f"array stiffness must be symmetric, got {stiffness[i, j]:.9g} and {stiffness[j, i]:.9g} N/m "
+                         f"for modes {i + 1} and {j + 1}")
     lowest = np.linalg.eigvalsh(stiffness).min(initial=0)
     if lowest < -SYMMETRIC * np.abs(stiffness).max(initial=0):
         raise ValueError(f"array stiffness must not be negative, got the eigenvalue {lowest:.6g} N/m")
@@ -136,7 +136,7 @@ def _is_orthogonal(M: np.ndarray) -> None:
     if len(M) > 1 and cosine.max() > ORTHOGONAL:
         i, j = np.unravel_index(np.argmax(cosine), cosine.shape)
         raise ValueError(f"modes {i + 1} and {j + 1} are not orthogonal in the mass: the cosine between them is "
-                         f"{cosine[i, j]:.3g}", "mend them, or take orthogonal=False: their full mass matrix is used then")
+                         f"{cosine[i, j]:.3g}", "mend them, or take orthogonal=False: their full mass matrix is used")
 
 
 def of_file(path: str, orthogonal: bool) -> Shape:
@@ -209,7 +209,7 @@ def _integrals(model, fields: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def _section_turns(names: tuple[str, ...], vectors: np.ndarray) -> np.ndarray:
     """(n, N, 3): small turns of the sections; of cables those of the tangent, about which they say nothing."""
     by = {name: vectors[:, :, k] for k, name in enumerate(names)}
-    turns = np.zeros(vectors.shape[:2] + (3,))
+    turns = np.zeros((*vectors.shape[:2], 3))
     if "r_y" in by:
         turns[..., 2] = -by["r_y"][..., 0]
     else:

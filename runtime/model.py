@@ -332,7 +332,7 @@ def _velocity(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
 
 
 def _body_weights(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
-    """1 for the origin, the largest radius of gyration for rotations, the root mean square of displacement for modes."""
+    """1 for the origin, the largest radius of gyration for turns, the root mean square of displacement for modes."""
     inertia = np.array(body.inertia)
     largest = inertia[2, 2] if dim == 2 else np.max(np.linalg.eigvalsh(inertia))
     modes = np.sqrt(np.diag(body.shape.modal_mass) / body.mass) if isinstance(body, ModalBody) else np.zeros(0)

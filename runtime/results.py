@@ -274,8 +274,8 @@ def labelled(rows) -> tuple[dict[str, Variable], dict[str, Variable]]:
         coords[mode] = Variable((mode,), np.arange(1, eta.shape[1] + 1), "1", "mode")
         coords[node] = Variable((node,), np.arange(places.shape[1]), "1", "node")
         variables[f"{name}.modal_coordinates"] = Variable(("time", mode), eta, "as the modes are", "modal coordinates")
-        variables[f"{name}.modal_velocities"] = Variable(("time", mode), body["modal_velocities"], "as the modes are, 1/s",
-                                                         "rates of the modal coordinates")
+        variables[f"{name}.modal_velocities"] = Variable(("time", mode), body["modal_velocities"],
+                                                         "as the modes are, 1/s", "rates of the modal coordinates")
         variables[f"{name}.nodes"] = Variable(("time", node, "xyz"), places, "m", "places of the deformed body's nodes")
     for group, quantities in QUANTITIES.items():
         for name, arrays in getattr(rows, group, {}).items():

@@ -166,7 +166,7 @@ class Scene:
         velocity=(0, 0, 0),
         angular_velocity=(0, 0, 0),
     ) -> ModalBody:
-        """Add a body that deforms in a few modes: a beam, or what a file describes; see `ModalBody`. Raises SceneError."""
+        """Add a body that deforms in a few modes: a beam, or what a file says; see `ModalBody`. Raises SceneError."""
         described = {"start": start, "end": end, "section": section, "material": material, "law": law, "data": data,
                      "position": position}
         return self.add(ModalBody(

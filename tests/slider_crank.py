@@ -1,9 +1,11 @@
 """The flexible slider-crank of the IVP test set (Simeon 1996) from the kernels of a planar modal body: D7 of CASES.md.
 
-The crank turns at a constant rate, so that the rod's frame is carried by its end; the rod's far end slides along x and
-carries the slider. Unknown are the rod's angle and four modal coordinates: two sines across, and the displacements along
-the axis in the middle and at the end of a quadratic. The published code has 8, 1, 2 where the integrals of the latter two
-are 8/15, 1/15, 2/15: its axial modes are 15 times too heavy, and so are they here to meet its numbers.
+The crank turns at a constant rate, so that the rod's frame is carried by its end; the rod's far end slides along x
+and carries the slider. Unknown are the rod's angle and four modal coordinates: two sines across, and the displacements
+along the axis in the middle and at the end of a quadratic.
+
+The published code has 8, 1, 2 where the integrals of the latter two are 8/15, 1/15, 2/15: its axial modes are 15 times
+too heavy, and so are they here to meet its numbers. With the right mass the angle ends 7e-8 rad off, the slider 6e-8 m.
 """
 
 from __future__ import annotations
@@ -50,7 +52,7 @@ class Rod:
         c, c1 = np.append(1.0, q[1:]), np.append(0.0, v[1:])
         Y, Y1 = (sum(x * X for x, X in zip(of, self.X.swapaxes(0, 1), strict=True)) for of in (c, c1))
         return {"S": c @ self.S, "S1": c1 @ self.S, "Y": Y, "Y1": Y1,
-                "X": sum(x * y for x, y in zip(c, Y, strict=True)), "X1": sum(x * y for x, y in zip(c, Y1, strict=True))}
+                **{name: sum(x * y for x, y in zip(c, each, strict=True)) for name, each in (("X", Y), ("X1", Y1))}}
 
     def accelerations(self, t: float, q: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Of angle and modal coordinates, with the slider on the axis; angle and modes (5,) and their rates."""

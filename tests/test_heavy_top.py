@@ -1,4 +1,4 @@
-"""A rigid body whose centre of mass is off its origin: a fast heavy top in steady precession, and equal to a body moved.
+"""A rigid body whose centre of mass is off its origin: a fast heavy top in steady precession, and other origins.
 
 The top's foot is tied to the origin by a stiff spring of no length, which stands still in steady precession: with the
 foot at -F/k the motion is a closed form all the same.

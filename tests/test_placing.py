@@ -133,7 +133,7 @@ def test_joins_that_hold_what_is_held(scene):
     (lambda s: s.force("beam", s=1, at=(0, 1, 0), value=UP),
      'force "force_1": acts on cable "beam" and needs the arc-length s there, not a point at'),
     (lambda s: s.force("A", s=1, value=UP), 'force "force_1": acts on body "A" and takes no arc-length s; '
-     "give a point in body axes, or nothing for its centre of mass"),
+     "give a point in body axes, or nothing for its origin"),
     (lambda s: s.force("A", value=(0, np.nan, 0)), "force: value must be finite, got (0, nan, 0) N"),
     (lambda s: s.force("A", value=UP, scale="sin(t)"),
      "force: scale must be a number or a signal such as Ramp(start=0, end=1), got 'sin(t)'"),
