@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from funicular.anchors import Anchor
@@ -42,7 +42,7 @@ class EndModel:
 class LinkModel:
     """A joint between two ends; unknown, multiplier: places of its rows; signal: that drives it, or -1.
 
-    slide: the one beside which it ties a rider's axes to the cable.
+    slide: the one beside which it ties a rider's axes to the cable; idle: rows that other joints imply (redundancy.py).
     """
 
     name: str
@@ -54,6 +54,7 @@ class LinkModel:
     base: float
     scale: np.ndarray
     slide: str | None = None
+    idle: set[int] = field(default_factory=set)
 
     @property
     def rows(self) -> int:

@@ -404,7 +404,7 @@ static int step(fu_run *run, double h)
         }
     }
     configure(run, w, h);
-    if (place_stage(run, w, STAGES - 1, h) || fu_return_to_joints(run)) return 1;
+    if (place_stage(run, w, STAGES - 1, h) || fu_return_to_joints(run, &run->next)) return 1;
     return fu_complete(run, &run->next);
 }
 
