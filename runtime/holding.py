@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from funicular.anchors import Anchor
-from funicular.frames import has_section, joint_axes, slide_axes
+from funicular.frames import draws_section, has_section, joint_axes, slide_axes
 from funicular.joints import DRIVEN, Joint
 from funicular.libraries import kernels_of
 from funicular.placing import point_of
@@ -17,6 +17,9 @@ UP, CARRIED = -1, -2
 """What completes the frame of a tangent, as engine.h has it: a direction of the ground, or the slide's director."""
 
 FRAMES = {2: "planar_frame", 3: "frame"}
+
+SECTIONS = {2: np.array([[0.0, 1.0], [-1.0, 0.0]]), 3: np.eye(3)[:, [2, 0, 1]]}
+"""`frames.section_frame` in the frame of r_y and r_z."""
 
 
 @dataclass
@@ -86,7 +89,7 @@ class Holder:
             body = self.rigids[self.body_index[anchor.on]]
             length = float(np.sqrt(np.max(np.linalg.eigvalsh(body.inertia)) / body.mass))
             return EndModel(-1, self.body_index[anchor.on], 0, -1, anchor.at, none, none, body.mass, length, axes=axes)
-        found = self._on_cable(anchor.on, axes, up)
+        found = self._on_cable(anchor.on, anchor.s, axes, up, draws_section(self.scene.cables[anchor.on]))
         found.element, x = self.element(anchor.on, anchor.s)
         model = self.cables[found.cable]
         found.N = model.kernel("on_axis")(model.length, x)[0]
@@ -97,18 +100,24 @@ class Holder:
 
     def on_slide(self, slide: Slide, number: int, axes: np.ndarray) -> EndModel:
         """The cable's frame where a slide is."""
-        found = self._on_cable(slide.along, self._axes(axes), slide.up)
+        section = slide.frame == "section" and draws_section(self.scene.cables[slide.along])
+        found = self._on_cable(slide.along, slide.s, self._axes(axes), slide.up, section)
         found.slide = number
         if found.slopes[1] == UP and slide.roll == "free":
             found.slopes = (0, CARRIED)
         return found
 
-    def _on_cable(self, name: str, axes: np.ndarray | None, up) -> EndModel:
+    def _on_cable(self, name: str, s: float, axes: np.ndarray | None, up, section: bool) -> EndModel:
+        """An end with the frame of the section, or of the tangent with the director or up."""
         cable, index = self.scene.cables[name], self.cable_index[name]
         length = self.cables[index].length
         mass = cable.material.density * cable.section.area * length
         director = cable.kind_of_element.director
+        if up is None and not director:  # any direction does where the tangent is all that is held
+            up = cable.height(s)
         slopes = (0, "xyz".index(director[-1]) if director and up is None and cable.dim == 3 else UP)
+        if section:
+            slopes, axes = (1, 2 if cable.dim == 3 else UP), None if axes is None else SECTIONS[cable.dim] @ axes
         return EndModel(index, -1, 0, -1, (0.0,) * 3, np.zeros(0), np.zeros(0), mass, length,
                         FRAMES[self.scene.dim], slopes, (0.0,) * 3 if up is None else up, axes)
 

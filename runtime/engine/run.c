@@ -99,11 +99,11 @@ static int start_scheme(fu_run *run, int project)
     return run->integrator->start(run);
 }
 
-/* whether a start can be off its joints by a small gap: slides that are free begin where the cable is */
+/* whether a start can be off its joints by a small gap: bodies are put on their cables when they are drawn */
 static int closes(const fu_run *run)
 {
     int held = run->model->n_links;
-    for (int j = 0; j < run->model->n_joints; ++j) held |= run->now.mode[j] == FU_HELD;
+    for (int j = 0; j < run->model->n_joints; ++j) held |= run->now.mode[j] == FU_HELD || !run->model->joints[j].native;
     return held;
 }
 
