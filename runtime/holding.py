@@ -103,7 +103,7 @@ class Holder:
         section = slide.frame == "section" and draws_section(self.scene.cables[slide.along])
         found = self._on_cable(slide.along, slide.s, self._axes(axes), slide.up, section)
         found.slide = number
-        if found.slopes[1] == UP and slide.roll == "free":
+        if not section and found.slopes[1] == UP and slide.roll == "free":
             found.slopes = (0, CARRIED)
         return found
 
