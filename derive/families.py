@@ -92,7 +92,8 @@ def families() -> dict[str, Family]:
         for family in of_element(element):
             of_role[family.role].append(family)
     joints = [_joint(dim, name) for dim, of_dim in pair.JOINTS.items() for name in of_dim]
-    every = [*of_role["element"], *of_role["law"], *map(_body, BODIES.values()), *(_modal(name, of) for name, of in modal.FRAMES.items()),
+    every = [*of_role["element"], *of_role["law"], *map(_body, BODIES.values()),
+             *(_modal(name, of) for name, of in modal.FRAMES.items()),
              *of_role["slide"],
              *map(_frame, frame.FRAMES), *joints]
     return {f.name: f for f in every}

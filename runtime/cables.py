@@ -289,12 +289,18 @@ class Cable(Part):
         """(3,): along the section's height at ``s``: r_y as the elements draw it, the axis there if they have none."""
         if self._shape.straight or not self.kind_of_element.director:
             return self.axes_at(s)[1]
-        return self._off_axis(s, 1.0) - self._off_axis(s, 0.0)
+        return self._off_axis(s, y=1.0) - self._off_axis(s)
 
-    def _off_axis(self, s: float, y: float) -> np.ndarray:
-        """(3,): the point at height ``y`` of the section at ``s``, in m."""
+    def width(self, s: float) -> np.ndarray:
+        """(3,): along the section's width at ``s``: r_z as the elements draw it, the axis there if they have none."""
+        if self._shape.straight or "r_z" not in self.kind_of_element.nodal_vectors:
+            return self.axes_at(s)[2]
+        return self._off_axis(s, z=1.0) - self._off_axis(s)
+
+    def _off_axis(self, s: float, y: float = 0.0, z: float = 0.0) -> np.ndarray:
+        """(3,): the point at height ``y`` and width ``z`` of the section at ``s``, in m."""
         length, x, e = self._element_at(s)
-        _, r = self._kernel("position")(length, np.array([x, y, 0]), e)
+        _, r = self._kernel("position")(length, np.array([x, y, z]), e)
         return np.pad(r, (0, 3 - self.dim))
 
     def _element_at(self, s: float) -> tuple[float, float, np.ndarray]:

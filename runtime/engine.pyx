@@ -795,8 +795,47 @@ cdef class Engine:
         cdef int n = self.model.n_multipliers
         cdef double[:, ::1] S = np.zeros((max(n, 1), max(n, 1)))
         if fu_compliance(&self.model, &self.run.now, &self.run.accelerator, &S[0, 0]):
-            raise ValueError("the mass matrix is singular")
+            raise ArithmeticError("the mass matrix is singular")
         return np.asarray(S)[:n, :n]
+
+    def prepare(self):
+        """What `compliance` needs before `start`; whether there are consistent slides and a mass matrix."""
+        return fu_prepare(&self.run) == FU_RUNNING
+
+    def idle(self, rows):
+        """Let no multiplier stand for these rows of joints, (link, row) each, which others imply."""
+        for link, row in rows:
+            self.links[link].idle |= 1 << row
+
+    def wander(self, along):
+        """What is left of the joints' equations, (links, 6), after a small way `along` (n_dof,) the freedom that they
+        leave; None where no way leads back onto them. See fu_wander.
+        """
+        cdef double[::1] way = np.ascontiguousarray(along, dtype=float)
+        cdef double[::1] left = np.zeros(6 * self.model.n_links + 1)
+        if fu_wander(&self.run, &way[0], &left[0]):
+            return None
+        return np.asarray(left)[:6 * self.model.n_links].reshape(-1, 6)
+
+    def held(self):
+        """(links, FU_LINK_OUTPUTS): force and moment of joints on their second ends, and residual, in the static state."""
+        cdef int k, r
+        cdef double[::1] out = np.zeros(FU_LINK_OUTPUTS * self.model.n_links + 1)
+        for k in range(self.model.n_links):
+            for r in range(self.links[k].kernel.rows):
+                self.run.accelerator.multipliers[self.links[k].multiplier + r] = self.run.next.multipliers[6 * k + r]
+        fu_link_outputs(&self.model, &self.run.next, &self.run.accelerator, <fu_link_output *>&out[0])
+        return np.asarray(out)[:FU_LINK_OUTPUTS * self.model.n_links].reshape(-1, FU_LINK_OUTPUTS)
+
+    @property
+    def extent(self):
+        """Largest size of what coordinates are, m."""
+        return self.run.extent
+
+    @property
+    def closed(self):
+        """How far, in m, things moved at the start to close the gaps of joints."""
+        return self.run.closed
 
     def now(self):
         """t, q, v, s at the time reached."""

@@ -9,6 +9,7 @@ from funicular.equilibrium import Equilibrium
 from funicular.errors import SceneError
 from funicular.model import build
 from funicular.recording import body_state, spatial
+from funicular.redundancy import settle
 from funicular.rotations import rotate
 from funicular.scene import Scene
 from scipy.linalg import eig, eigh, null_space
@@ -56,6 +57,7 @@ def modes(scene: Scene, n: int, about: Equilibrium | None = None) -> Modes:
 
     model = build(scene)
     engine = Engine(model)
+    settle(model, engine)
     engine.place(0.0, **({} if about is None else about.placed))
     K, constraints = condensed(engine.matrix(0.0, 0.0, 1.0), model)
     size = K.shape[0]
@@ -78,18 +80,20 @@ def fastest(K: csc_array, M: csc_array, unknowns=slice(None)) -> float:
 
 
 def condensed(full: csc_array, model) -> tuple[csc_array, csc_array]:
-    """Stiffness over coordinates and arc-lengths, springs' forces eliminated; the joints' constraints on them."""
+    """Stiffness over coordinates and free arc-lengths, springs' forces eliminated; slides' and joints' constraints."""
     n = model.n_band + model.n_border_dof
     dim = model.dim
-    arc = np.array([n + j.unknown for j in model.joints], dtype=int)
-    forces = np.array([n + j.unknown + 1 + d for j in model.joints for d in range(dim)], dtype=int)
+    arc = np.array([n + j.unknown for j in model.joints if j.drive < 0], dtype=int)
+    held = [n + j.unknown + 1 + d for j in model.joints for d in range(dim)]
+    held += [n + link.unknown + r for link in model.links for r in range(link.rows)
+             if r not in link.idle]
     springs = np.array([n + s.unknown + d for s in model.springs for d in range(dim)], dtype=int)
     kept = np.concatenate([np.arange(n), arc])
     full = full.tocsr()
     K = full[kept][:, kept]
     if len(springs):  # their rows are F - law(q): F = -C q
         K = K - full[kept][:, springs] @ full[springs][:, kept]
-    return K.tocsc(), full[forces][:, kept].tocsc()
+    return K.tocsc(), full[np.array(held, dtype=int)][:, kept].tocsc()
 
 
 def _solve(K: csc_array, M: csc_array, constraints: csc_array, n: int) -> tuple[np.ndarray, np.ndarray]:

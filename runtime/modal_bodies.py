@@ -16,9 +16,6 @@ from funicular.sections import AnySection
 from funicular.validation import Count, Flag, Name, Part, Vector, not_negative, one_of, show, xyz
 from pydantic import PlainValidator, model_validator
 
-NODE = 1e-6
-"""Points nearer to a node than this part of the body's size are that node."""
-
 
 def _path(value: Any) -> str | None:
     if value is not None and not isinstance(value, str | os.PathLike):
@@ -140,26 +137,16 @@ class ModalBody(Part):
         """(3, 3): its axes at the start, as columns."""
         return rotate(self.frame[1], np.eye(3)).T
 
-    def point(self, at: Vector) -> np.ndarray:
-        """(3,): where the point ``at`` (m, body axes) of the undeformed body starts, in m."""
-        return self.frame[0] + rotate(self.frame[1], at)
+    def place(self, at: Vector | None = None, s: float | None = None) -> Vector:
+        """The point ``at`` or, of a beam, the one at the arc-length s (m), in body axes; the first end without either.
 
-    def node(self, at: Vector | None = None, s: float | None = None) -> int:
-        """Number of the node at a point in body axes or, of a beam, at the arc-length s, in m; its first end without
-        either. Raises ValueError(cause, remedy) where none is there.
+        Raises ValueError(cause, remedy).
         """
-        nodes = self.shape.nodes
-        if s is not None:
-            if self.data is not None:
-                raise ValueError("is given by a file and takes no arc-length s", "give a point in body axes")
-            at = (s - self.offset, 0.0, 0.0)
-        distance = np.linalg.norm(nodes - (nodes[0] if at is None else at), axis=1)
-        nearest = int(np.argmin(distance))
-        if distance[nearest] > NODE * np.linalg.norm(np.ptp(nodes, axis=0)):
-            place = f"s = {s:.9g} m" if s is not None else f"the point {show(at, 'm')}"
-            raise ValueError(f"has no node at {place}; the nearest is at {show(nodes[nearest], 'm')}",
-                             "hold it there, or take elements that have a node where you hold it")
-        return nearest
+        if s is None:
+            return tuple(self.shape.nodes[0].tolist()) if at is None else at
+        if self.data is not None:
+            raise ValueError("is given by a file and takes no arc-length s", "give a point in body axes")
+        return (s - self.offset, 0.0, 0.0)
 
     @property
     def mass(self) -> float:

@@ -14,7 +14,7 @@ from functools import partial
 import numpy as np
 from funicular.actions import Actions, DeadLoad, LoadModel, SignalModel, SpringModel
 from funicular.constants import constants
-from funicular.diagnosis import notes, redundant
+from funicular.diagnosis import notes
 from funicular.elements import gauge
 from funicular.errors import FunicularWarning, SceneError
 from funicular.holding import EndModel, Holder, LinkModel, linked, tied
@@ -24,6 +24,7 @@ from funicular.modal_shape import Shape
 from funicular.parts import Cable, ModalBody, RigidBody, Slide
 from funicular.recording import Recording, named, recorded
 from funicular.reduction import Node, Reduction, supports
+from funicular.redundancy import settle
 from funicular.rotations import rotate
 from funicular.scene import Scene
 from funicular.settings import RunSettings
@@ -395,7 +396,7 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
     engine, watcher = Engine(model), Watcher(scene, model)
     if watcher.watches:
         engine.watch(watcher)
-    messages = []
+    messages = settle(model, engine)
     if settings.step is not None:
         step = output_step / np.ceil(output_step / settings.step * (1 - 1e-9))
         if step < settings.step * (1 - 1e-6):
@@ -415,12 +416,11 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
         first_step=min(output_step, 1e-3 * settings.duration),
         room=None if stream is None else pace.room,
     )
-    if doubled := redundant(model, engine):
-        raise SceneError("scene", f"is over-constrained: {doubled} hold the same",
-                         "leave one of them out, or hold the body at other points")
     if status == "singular":
         raise SceneError("scene", "the equations are singular at the start: a mass is zero, or a cable's director lies "
                          "along its tangent", "look at masses and inertias, and at up")
+    if engine.closed > 1e-9 * engine.extent:
+        messages.append(f"gaps of joints were closed at the start: things moved by up to {engine.closed:.3g} m")
     largest = float(np.max(np.abs(change) * model.weight, initial=0.0))  # rates of slopes and turns as those of points
     if largest > 1e-9 * (1.0 + np.max(np.abs(model.v) * model.weight, initial=0.0)):
         messages.append(f"initial velocities broke a joint: changed by up to {largest:.3g} m/s to keep it")

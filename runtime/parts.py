@@ -16,5 +16,5 @@ KINDS = (Cable, Pin, Clamp, Motion, Join, RigidBody, ModalBody, Joint, Slide, Fo
 PARTS = {part.kind: part for part in KINDS}
 """The kinds of parts by their names in scene files and in messages."""
 
-__all__ = ["EXACT", "PARTS", "Cable", "Clamp", "DistributedForce", "Event", "Force", "Join", "Joint", "ModalBody", "Moment",
-           "Motion", "Pin", "RigidBody", "Slide", "Spring"]
+__all__ = ["EXACT", "PARTS", "Cable", "Clamp", "DistributedForce", "Event", "Force", "Join", "Joint", "ModalBody",
+           "Moment", "Motion", "Pin", "RigidBody", "Slide", "Spring"]

@@ -158,11 +158,12 @@ def placed_end(scene: Scene, end: Anchor, where: str, prefix: str = "") -> Ancho
     if end.on in scene.bodies:
         if isinstance(body := scene.bodies[end.on], ModalBody):
             try:
-                node = body.node(end.at, end.s)
+                at = body.place(end.at, end.s)
+                body.spot(at)
             except ValueError as error:
                 cause, *remedy = error.args
-                raise SceneError(where, f'{prefix}modal_body "{end.on}" {cause}', *remedy) from None
-            return end.model_copy(update={"at": tuple(body.shape.nodes[node].tolist()), "s": None})
+                raise SceneError(where, f'{prefix}modal_body "{end.on}": {cause}', *remedy) from None
+            return end.model_copy(update={"at": at, "s": None})
         if end.s is not None:
             raise SceneError(where, f'{prefix}acts on body "{end.on}" and takes no arc-length s',
                              "give a point in body axes, or nothing for its origin")

@@ -124,7 +124,8 @@ def anchor_path(run: Run, anchor: Anchor) -> np.ndarray:
         return np.broadcast_to(anchor.at, (len(run.time), 3))
     body = run.scene.bodies.get(anchor.on)
     if isinstance(body, ModalBody):
-        return run[f"{anchor.on}.nodes"][:, body.node(anchor.at)]
+        node = np.argmin(np.linalg.norm(body.shape.nodes - anchor.at, axis=1))
+        return run[f"{anchor.on}.nodes"][:, node]
     if body is not None:
         return run[f"{anchor.on}.position"] + rotate(run[f"{anchor.on}.orientation"], anchor.at)
     points = centreline(run[f"{anchor.on}.nodal_vectors"], run.coords[f"{anchor.on}.node"].values)

@@ -153,7 +153,7 @@ def named(model: Model, scene: Scene, engine) -> Rows:
 
     for k, link in enumerate(model.links):
         if link.slide is not None:
-            slides[link.slide]["moment"] = _joint_state(rows["link"][:, k])["moment"]
+            slides[link.slide]["moment"] = link_state(rows["link"][:, k])["moment"]
 
     def held(part) -> dict[str, np.ndarray]:
         return support_reaction(model, scene, part, rows["reaction"], q)
@@ -168,7 +168,7 @@ def named(model: Model, scene: Scene, engine) -> Rows:
         clamps={clamp.label: held(clamp) for clamp in scene.clamps},
         motions={motion.label: held(motion) for motion in scene.motions},
         joins={name: join_force(model, scene, join, rows["reaction"], q) for name, join in scene.joins.items()},
-        joints={link.name: _joint_state(rows["link"][:, k])
+        joints={link.name: link_state(rows["link"][:, k])
                 for k, link in enumerate(model.links) if link.slide is None},
         springs={spring.name: spring_state(model, spring, rows["spring"][:, k], q)
                  for k, spring in enumerate(model.springs)},
@@ -202,9 +202,9 @@ def recorded(model: Model, scene: Scene, engine, settings: RunSettings, status: 
     )
 
 
-def _joint_state(numbers: np.ndarray) -> dict[str, np.ndarray]:
-    """From the engine's numbers (time, FU_LINK_OUTPUTS) of a joint."""
-    return {"force": numbers[:, :3], "moment": numbers[:, 3:6], "residual": numbers[:, 6]}
+def link_state(numbers: np.ndarray) -> dict[str, np.ndarray]:
+    """From the engine's numbers (..., FU_LINK_OUTPUTS) of a joint."""
+    return {"force": numbers[..., :3], "moment": numbers[..., 3:6], "residual": numbers[..., 6]}
 
 
 def _turning(rates: np.ndarray) -> np.ndarray:

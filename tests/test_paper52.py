@@ -22,15 +22,15 @@ def test_the_rigid_link_moves_as_the_reference_says():
 
 
 def test_planar_and_spatial_joints_agree():
-    space, plane = (scene("rigid", planar=planar).run(duration=1.5, tol=1e-6, output_step=0.01) for planar in (False, True))
+    space, plane = (scene("rigid", planar=flat).run(duration=1.5, tol=1e-6, output_step=0.01) for flat in (False, True))
     assert apart(space, plane, 1.5) < 1e-11  # measured: 2e-14
     off = space["ball.acceleration"] - plane["ball.acceleration"]
     assert np.abs(off).max() < 1e-6  # of 25 m/s^2; measured: 2e-9
 
 
 def test_links_are_one_until_flexibility_parts_them():
-    runs = {stiffer: {kind: scene(kind, stiffer=stiffer).run(duration=1.5, tol=1e-4, output_step=0.01) for kind in KINDS}
-            for stiffer in (1.0, 10.0, 100.0)}
+    runs = {by: {kind: scene(kind, stiffer=by).run(duration=1.5, tol=1e-4, output_step=0.01) for kind in KINDS}
+            for by in (1.0, 10.0, 100.0)}
     for kind in ("modal", "ancf"):
         off = [[apart(of[kind], of["rigid"], until) for of in runs.values()] for until in (0.5, 1.5)]
         assert 1e-3 < off[0][0] < 5e-3, "together at first"

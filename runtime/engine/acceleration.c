@@ -14,6 +14,7 @@ static void evaluate_slide(const fu_model *model, const fu_state *state, int j, 
     fu_rows *rows = &work->rows[j];
     rows->first = joint->multiplier;
     rows->room = joint->room;
+    rows->idle = 0;
     for (int c = 0; c < rows->room; ++c) rows->scale[c] = joint->mass;
     fu_slide_terms(model, state, j, rows, &work->slides[j]);
 }
@@ -72,7 +73,8 @@ static int factor_border(const fu_model *model, const fu_state *state, fu_accele
         const fu_rows *rows = &work->rows[r];
         for (int c = 0; c < rows->room; ++c) {
             const int row = fu_extra(model, rows->first + c);
-            if (c >= rows->rows) fu_add(model, s, row, row, rows->scale[c]); /* not in use: its multiplier is nil */
+            if (c >= rows->rows || rows->idle >> c & 1)
+                fu_add(model, s, row, row, rows->scale[c]); /* not in use: its multiplier is nil */
             else
                 for (int k = 0; k < rows->n; ++k) { /* rows in kg, so that the border is of one scale */
                     fu_add(model, s, row, rows->at[k], rows->scale[c] * rows->H[c * rows->n + k]);

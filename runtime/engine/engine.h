@@ -134,6 +134,7 @@ typedef struct {
     const fu_pair *kernel;
     fu_end ends[2];
     int unknown, multiplier, signal;
+    int idle; /* bits of the rows that other joints' imply: their multipliers are nil */
     double base, scale[6]; /* scale of its rows, kg or kg m */
 } fu_link;
 
@@ -341,9 +342,9 @@ void fu_end_curvature(const fu_model *model, const fu_end *end, const fu_state *
                       int n, double *K);
 
 /* Constraints H q'' = W over the dofs `at`, with what is left of them C, and their rate at rest: `rows` of them now, from
- * the multiplier `first` on, which has `room` for some more. */
+ * the multiplier `first` on, which has `room` for some more; those of the bits `idle` are nil. */
 typedef struct {
-    int first, room, rows, n, at[FU_ROW_COORDINATES];
+    int first, room, rows, idle, n, at[FU_ROW_COORDINATES];
     double H[6 * FU_ROW_COORDINATES], W[6], C[6], rate[6], scale[6];
 } fu_rows;
 
@@ -558,6 +559,7 @@ struct fu_run {
     double recorded; /* s: time of the last row */
     double motion, least_motion, extent; /* m: largest so far, assumed at least, largest coordinate of a position */
     double allowed; /* m: error of the step */
+    double closed;  /* m: gaps at the start */
     double ceiling; /* s: that steps stay below, after one that failed */
     double newton_tolerance, round_off; /* of increments, m: where Newton may stop, and where it cannot go on */
     int factored, stopped_joint, turned;
@@ -591,7 +593,9 @@ double fu_algorithmic_book(fu_run *run, const double *q);
 
 /* projection.c */
 int fu_find_slides(fu_run *run);
-int fu_return_to_joints(fu_run *run);
+int fu_close(fu_run *run, fu_state *state, double enough, double *first);
+int fu_return_to_joints(fu_run *run, fu_state *state);
+int fu_wander(fu_run *run, const double *along, double *left);
 int fu_complete(fu_run *run, fu_state *state);
 
 /* books.c */
@@ -617,6 +621,7 @@ double fu_locate(fu_run *run, fu_event event, double h);
 void fu_watch_now(fu_run *run, fu_event event);
 
 /* run.c: the time loop */
+int fu_prepare(fu_run *run);
 int fu_start(fu_run *run);
 int fu_advance(fu_run *run, double seconds);
 int fu_stop(fu_run *run);

@@ -107,7 +107,7 @@ cdef extern from "engine.h" nogil:
     ctypedef struct fu_link:
         const fu_pair *kernel
         fu_end ends[2]
-        int unknown, multiplier, signal
+        int unknown, multiplier, signal, idle
         double base
         double scale[6]
     ctypedef struct fu_signal:
@@ -214,6 +214,8 @@ cdef extern from "engine.h" nogil:
         double *prescribed
         double *multipliers
         double *joints
+    ctypedef struct fu_link_output:
+        double residual
     ctypedef struct fu_genalpha:
         double alpha_m, alpha_f, beta, gamma
     ctypedef struct fu_algorithmic:
@@ -309,7 +311,7 @@ cdef extern from "engine.h" nogil:
         double *before
         double *first
         double *s_slope
-        double h, h_factored, contraction, motion
+        double h, h_factored, contraction, motion, extent, closed
         int factored, stopped_joint, rest_start
         fu_failure failure
         fu_books books
@@ -327,6 +329,9 @@ cdef extern from "engine.h" nogil:
     double fu_elastic_energy(const fu_model *model, const double *q)
     int fu_moves(const fu_run *run)
     int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S)
+    int fu_prepare(fu_run *run)
+    int fu_wander(fu_run *run, const double *along, double *left)
+    void fu_link_outputs(const fu_model *model, const fu_state *state, const fu_accelerator *work, fu_link_output *out)
     int fu_start(fu_run *run)
     int fu_advance(fu_run *run, double seconds)
     void fu_pause(fu_run *run)

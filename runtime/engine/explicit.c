@@ -92,7 +92,7 @@ static int step(fu_run *run, double h)
         keep(run, k, next);
     }
     if (move_to(run, tableau->b, n, run->now.t + h, h)) return 1;
-    if (fu_return_to_joints(run)) return 1;
+    if (fu_return_to_joints(run, next)) return 1;
     if (fu_complete(run, next)) return fu_fail(run, FU_MATRIX, next->v, -1);
     keep(run, n, next);
     run->statistics.evaluations += n;

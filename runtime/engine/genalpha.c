@@ -83,6 +83,7 @@ static void residual(fu_run *run, double inertia, double scale)
         double equations[6], J[6 * 2 * FU_END_COORDINATES];
         const int n = fu_link_residual(model, link, next, equations, at, J);
         for (int r = 0; r < link->kernel->rows; ++r) {
+            if (link->idle >> r & 1) equations[r] = 0.0;
             extra[link->unknown + r] = -fu_row_unit(inertia, link->scale[r]) * equations[r];
             for (int i = 0; i < n; ++i) {
                 const double pull = J[r * n + i] * multipliers[r];
@@ -154,6 +155,11 @@ static void matrix(fu_run *run, fu_weights w, const double *psi)
         const int n = fu_link_tangent(model, link, next, at, J, K), rows = link->kernel->rows, first = fu_extra(model, link->unknown);
         int from[2] = {0, 0}, unused[FU_END_COORDINATES];
         from[1] = fu_end_coordinates(model, &link->ends[0], next, unused);
+        for (int r = 0; r < rows; ++r) {
+            if (!(link->idle >> r & 1)) continue;
+            memset(J + r * n, 0, sizeof(double) * (size_t)n);
+            fu_add(model, system, first + r, first + r, fu_row_unit(w.inertia, link->scale[r]));
+        }
         for (int r = 0; r < rows; ++r)
             for (int i = 0; i < n; ++i)
                 if (at[i] < model->n_dof || slides(model, next, at[i]))

@@ -165,6 +165,12 @@ void fu_link_terms(const fu_model *model, const fu_link *link, const fu_state *s
         }
         to += of->n;
     }
+    rows->idle = link->idle;
+    for (int r = 0; r < m; ++r)
+        if (link->idle >> r & 1) {
+            memset(rows->H + r * rows->n, 0, sizeof(double) * (size_t)rows->n);
+            rows->W[r] = rows->C[r] = rows->rate[r] = 0.0;
+        }
 }
 
 /* what each joint puts on its second end, from the multipliers that fu_accelerations left */

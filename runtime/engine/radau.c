@@ -21,7 +21,7 @@ typedef double _Complex complex_;
 #define MOST_ITERATIONS 10
 #define SLOW 0.3          /* contraction above which the matrix is made anew for the next step */
 #define SAFE 3e-3         /* of the allowed error: what Newton may leave */
-#define SWEEPS 2          /* of the attitudes' quadrature for each iteration */
+#define SWEEPS 4          /* of the attitudes' quadrature for each iteration */
 
 enum { STAGES = 3 };
 
@@ -417,7 +417,7 @@ static int step(fu_run *run, double h)
         }
     }
     configure(run, w, h);
-    if (place_stage(run, w, STAGES - 1, h) || fu_return_to_joints(run)) return 1;
+    if (place_stage(run, w, STAGES - 1, h) || fu_return_to_joints(run, &run->next)) return 1;
     return fu_complete(run, &run->next);
 }
 

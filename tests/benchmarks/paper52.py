@@ -2,11 +2,11 @@
 
     python tests/benchmarks/paper52.py [--out FILE.csv] [--plots FOLDER] [--tol 1e-4]
 
-Fig. 7: the ball's y-acceleration with a rigid link, by the spatial and by the planar joint. Fig. 8: with a rigid link, one
-of modes, one of absolute nodal coordinates; and again with links 100 times as stiff, where all three are one: what parts
-them is their flexibility. The rigid link here has the rotary inertia of the others, which the thin rod of the scene
-file has not. Fig. 9: the ball's path with 1 m/s along x and z. The table: distance of the ball from that with the rigid
-link, error against a run of tighter tol, CPU seconds of the integration.
+Fig. 7: the ball's y-acceleration with a rigid link, by the spatial and by the planar joint. Fig. 8: with a rigid link,
+one of modes, one of absolute nodal coordinates; and again with links 100 times as stiff, where all three are one: what
+parts them is their flexibility. The rigid link here has the rotary inertia of the others, which the thin rod of the
+scene file has not. Fig. 9: the ball's path with 1 m/s along x and z. The table: distance of the ball from that with the
+rigid link, error against a run of tighter tol, CPU seconds of the integration.
 """
 
 from __future__ import annotations
@@ -135,18 +135,20 @@ def main() -> None:
     options.add_argument("--plots", type=Path, metavar="FOLDER", help="draw the figures")
     options.add_argument("--tol", type=float, default=1e-4)
     options = options.parse_args()
-    links, stiff = ({kind: moved(scene(kind, stiffer=factor), options.tol) for kind in KINDS} for factor in (1.0, 100.0))
+    links, stiff = ({kind: moved(scene(kind, stiffer=by), options.tol) for kind in KINDS} for by in (1.0, 100.0))
     flat, path = (moved(scene("rigid", **how), options.tol) for how in ({"planar": True}, {"aside": 1.0}))
-    rows = [row(f"{LABELS[kind]}, {name}", m, motions["rigid"])
-            for name, motions in (("of the print", links), ("100 times as stiff", stiff)) for kind, m in motions.items()]
-    show([*rows, row("rigid, planar joint", flat, links["rigid"]), row("rigid, 1 m/s along x and z", path)], options.out)
+    rows = [row(f"{LABELS[kind]}, {name}", m, of["rigid"])
+            for name, of in (("of the print", links), ("100 times as stiff", stiff)) for kind, m in of.items()]
+    rows += [row("rigid, planar joint", flat, links["rigid"]), row("rigid, 1 m/s along x and z", path)]
+    show(rows, options.out)
     if options.plots:
         draw(options.plots, flat, links, stiff, path)
 
 
 def row(name: str, motion: Motion, rigid: Motion | None = None) -> dict:
     """A row of the table."""
-    off = {f"mm off rigid, {t} s": "" if rigid is None else 1e3 * apart(motion.run, rigid.run, t) for t in (0.5, 1.0, 1.5)}
+    off = {f"mm off rigid, {t} s": "" if rigid is None else 1e3 * apart(motion.run, rigid.run, t)
+           for t in (0.5, 1.0, 1.5)}
     return {"link": name, **off, "error": motion.error, "CPU s": motion.seconds,
             "integrator": motion.run.report["integrator"]}
 
