@@ -137,7 +137,7 @@ class ModalBody(Part):
         """(3, 3): its axes at the start, as columns."""
         return rotate(self.frame[1], np.eye(3)).T
 
-    def place(self, at: Vector | None = None, s: float | None = None) -> Vector:
+    def located(self, at: Vector | None = None, s: float | None = None) -> Vector:
         """The point ``at`` or, of a beam, the one at the arc-length s (m), in body axes; the first end without either.
 
         Raises ValueError(cause, remedy).

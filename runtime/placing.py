@@ -158,7 +158,7 @@ def placed_end(scene: Scene, end: Anchor, where: str, prefix: str = "") -> Ancho
     if end.on in scene.bodies:
         if isinstance(body := scene.bodies[end.on], ModalBody):
             try:
-                at = body.place(end.at, end.s)
+                at = body.located(end.at, end.s)
                 body.spot(at)
             except ValueError as error:
                 cause, *remedy = error.args

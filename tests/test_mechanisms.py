@@ -85,7 +85,8 @@ def four_bars(n: int, speed=1.0, angle=np.pi / 2) -> Scene:
                          velocity=velocity / 2, angular_velocity=(0, 0, -speed))
         scene.joint("revolute", (k, 0, 0), (f"leg{k}", (-0.5, 0, 0)), axis=Z, name=f"foot{k}")
     for k in range(n):
-        scene.rigid_body(f"bar{k}", mass=1, inertia=inertia, position=along + np.array([k + 0.5, 0, 0]), velocity=velocity)
+        middle = along + np.array([k + 0.5, 0, 0])
+        scene.rigid_body(f"bar{k}", mass=1, inertia=inertia, position=middle, velocity=velocity)
         for side, at in (("left", -0.5), ("right", 0.5)):
             leg = f"leg{k + (side == 'right')}"
             scene.joint("revolute", (leg, (0.5, 0, 0)), (f"bar{k}", (at, 0, 0)), axis=Z, name=f"{side}{k}")

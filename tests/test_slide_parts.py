@@ -144,7 +144,7 @@ VERTICAL = {"body": "B", "along": "link", "s": 0.5}
 @pytest.mark.parametrize(("given", "complaint"), [
     ({"body": "link"}, 'cable "link" rides and needs the arc-length of its point; give body=("link", s)'),
     ({"body": ("link", 2)}, "body: s must lie on the cable, in [0, 1] m, got 2 m"),
-    ({"body": ("lnk", 0)}, 'body: there is no cable or rigid_body "lnk"; did you mean "link"?'),
+    ({"body": ("lnk", 0)}, 'body: there is no cable or body "lnk"; did you mean "link"?'),
     ({"body": ("A", 0)}, 'body: acts on body "A" and takes no arc-length s; give a point in body axes, or nothing for '
      "its centre of mass"),
     ({"body": ("link", 0), "at": (0, 0, 1)}, "at is a point in body axes, but body_s one on a cable; give one of the "
