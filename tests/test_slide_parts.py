@@ -146,7 +146,7 @@ VERTICAL = {"body": "B", "along": "link", "s": 0.5}
     ({"body": ("link", 2)}, "body: s must lie on the cable, in [0, 1] m, got 2 m"),
     ({"body": ("lnk", 0)}, 'body: there is no cable or body "lnk"; did you mean "link"?'),
     ({"body": ("A", 0)}, 'body: acts on body "A" and takes no arc-length s; give a point in body axes, or nothing for '
-     "its centre of mass"),
+     "its origin"),
     ({"body": ("link", 0), "at": (0, 0, 1)}, "at is a point in body axes, but body_s one on a cable; give one of the "
      "two"),
     ({"body": ("link", 0)}, 'the point of cable "link" at (1, 0, 0) m is 0.5 m away from cable "beam" at s = 0.5 m; '
