@@ -136,7 +136,7 @@ cdef class Engine:
     cdef fu_load *loads
     cdef fu_signal *signals
     cdef fu_watch *watches
-    cdef object watcher, error
+    cdef object watcher, error, spreads
     cdef fu_model model
     cdef fu_run run
     cdef list kept
@@ -181,6 +181,7 @@ cdef class Engine:
         m.threads, m.parts = 1, NULL
         m.gravity, m.zero = self._doubles(model.gravity), self._doubles(np.zeros(model.n_dof))
         self._work_space(model)
+        self.spreads = None
 
     def _bodies_and_cables(self, model, list tables, blocks):
         cdef int i, k, memory = 0
@@ -582,7 +583,42 @@ cdef class Engine:
         cdef fu_weights weights
         weights.inertia, weights.rate, weights.stiffness = inertia, rate, stiffness
         fu_matrix(&self.run, weights)
-        return self._matrix()
+        return self._matrix() + stiffness * self._between_cables() if stiffness and self.model.n_links else self._matrix()
+
+    def _between_cables(self):
+        """(n, n) sparse: what joints between two cables add to the stiffness and Newton in time does without."""
+        from scipy.sparse import coo_array, csr_array
+
+        cdef int[::1] at = np.zeros(2 * FU_END_COORDINATES, dtype=np.intc)
+        cdef double[::1] J = np.zeros(6 * 2 * FU_END_COORDINATES), K = np.zeros(4 * FU_END_COORDINATES ** 2)
+        cdef int k, i, n, first, n_dof = self.model.n_dof, total = self.run.newton.n + self.run.newton.m
+        whole = n_dof + self.model.n_extra
+        stiffness = csr_array((whole, whole))
+        for k in range(self.model.n_links):
+            if not fu_between_cables(&self.links[k]):
+                continue
+            first = fu_end_coordinates(&self.model, &self.links[k].ends[0], &self.run.next, &at[0])
+            n = fu_link_tangent(&self.model, &self.links[k], &self.run.next, &at[0], &J[0], &K[0])
+            block = np.array(K[:n * n]).reshape(n, n)
+            block[:first, :first] = block[first:, first:] = 0
+            places = np.array([at[i] for i in range(n)])
+            for i in range(n):  # an s that is held has no equilibrium of its own
+                if places[i] >= n_dof and self._is_held(places[i] - n_dof):
+                    block[i] = block[:, i] = 0
+            rows, columns = np.repeat(places, n), np.tile(places, n)
+            stiffness = stiffness + coo_array((block.ravel(), (rows, columns)), shape=(whole, whole)).tocsr()
+        if not stiffness.nnz:
+            return csr_array((total, total))
+        if self.spreads is None:
+            unit = [self.spread(x) for x in np.eye(total)[:total - self.model.n_extra]]
+            dofs = np.array(unit).reshape(-1, n_dof).T
+            self.spreads = csr_array(np.block([[dofs, np.zeros((n_dof, self.model.n_extra))],
+                                               [np.zeros((self.model.n_extra, dofs.shape[1])), np.eye(self.model.n_extra)]]))
+        return self.spreads.T @ stiffness @ self.spreads
+
+    def _is_held(self, int extra):
+        return any([self.joints[j].unknown == extra and self.run.next.mode[j] != FU_SLIDES
+                    for j in range(self.model.n_joints)])
 
     def elastic_energy(self):
         """J, of the static state."""

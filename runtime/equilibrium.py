@@ -28,8 +28,7 @@ def layout(scene: Scene) -> dict[str, list]:
     """What must be the same in two scenes for a state of one to be a state of the other."""
     return {"cables": [(c.name, c.element, c.elements, c.length) for c in scene.cables.values()],
             "bodies": list(scene.bodies), "slides": list(scene.slides),
-            "joints": [(j.name, j.pair) for j in scene.joints.values()],
-            "springs": list(scene.springs)}
+            "joints": [(j.name, j.pair) for j in scene.joints.values()], "springs": list(scene.springs)}
 
 
 @dataclass
@@ -60,8 +59,8 @@ class Equilibrium:
         """Read the static state of a path (static.py)."""
         left = path.off(fraction)
         units = np.where(path.weight > 0, path.weight, np.inf)
-        state = cls(scene, path.model, path.keep(), path.engine.reaction(), path.engine.held(), fraction,
-                    path.iterations,
+        engine = path.engine
+        state = cls(scene, path.model, path.keep(), engine.reaction(), engine.held(), fraction, path.iterations,
                     float(np.max(np.abs(left) / units, initial=0.0)))
         state.quantities = state._quantities()
         state.path, state.layout = [*path.history, state], layout(scene)

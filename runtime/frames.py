@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 class EndAxes(NamedTuple):
     """(3, 3) each: the axes of a joint as columns, in the frames of its two ends; equal in the ground's at the start.
 
-    Frame of an end: a body's axes, the ground's, or at a cable `section_frame`, else `cable_frame`. The joint's z is
-    its axis.
+    Frame of an end: a body's axes, the ground's, or at a cable `section_frame`, else `cable_frame`.
+    The joint's z is its axis.
     """
 
     a: np.ndarray

@@ -80,7 +80,7 @@ def fastest(K: csc_array, M: csc_array, unknowns=slice(None)) -> float:
 
 
 def condensed(full: csc_array, model) -> tuple[csc_array, csc_array]:
-    """Stiffness over coordinates and free arc-lengths, springs' forces eliminated; slides' and joints' constraints."""
+    """Stiffness over coordinates and free arc-lengths, springs' forces eliminated; the constraints on them."""
     n = model.n_band + model.n_border_dof
     dim = model.dim
     arc = np.array([n + j.unknown for j in model.joints if j.drive < 0], dtype=int)

@@ -30,7 +30,7 @@ def squeezer() -> Scene:
 
     def point(origin, angle, at):
         c, s = np.cos(angle), np.sin(angle)
-        return np.array(origin) + np.array([c * at[0] - s * at[1], s * at[0] + c * at[1], 0])
+        return origin + np.array([c * at[0] - s * at[1], s * at[0] + c * at[1], 0])
 
     O, A, B, C = (0, 0, 0), (-0.06934, -0.00227, 0), (-0.03635, 0.03273, 0), (0.014, 0.072, 0)
     bodies = {  # mass, moment of inertia, origin and angle of its axes, centre of mass in them
@@ -80,13 +80,13 @@ def four_bars(n: int, speed=1.0, angle=np.pi / 2) -> Scene:
     scene, inertia = Scene(), (1e-3, 1 / 12, 1 / 12)
     along = np.array([np.cos(angle), np.sin(angle), 0])
     velocity = speed * np.array([along[1], -along[0], 0])
+    step = np.array([1, 0, 0])
     for k in range(n + 1):
-        scene.rigid_body(f"leg{k}", mass=1, inertia=inertia, position=along / 2 + (k, 0, 0), orientation=turned(angle),
+        scene.rigid_body(f"leg{k}", mass=1, inertia=inertia, position=along / 2 + k * step, orientation=turned(angle),
                          velocity=velocity / 2, angular_velocity=(0, 0, -speed))
         scene.joint("revolute", (k, 0, 0), (f"leg{k}", (-0.5, 0, 0)), axis=Z, name=f"foot{k}")
     for k in range(n):
-        middle = along + np.array([k + 0.5, 0, 0])
-        scene.rigid_body(f"bar{k}", mass=1, inertia=inertia, position=middle, velocity=velocity)
+        scene.rigid_body(f"bar{k}", mass=1, inertia=inertia, position=along + (k + 0.5) * step, velocity=velocity)
         for side, at in (("left", -0.5), ("right", 0.5)):
             leg = f"leg{k + (side == 'right')}"
             scene.joint("revolute", (leg, (0.5, 0, 0)), (f"bar{k}", (at, 0, 0)), axis=Z, name=f"{side}{k}")
@@ -137,8 +137,8 @@ def door(hinges=2, **given) -> Scene:
 def test_a_door_on_two_hinges(integrator):
     run = door().run(1.0, integrator=integrator)
     assert run.report["messages"] == [
-        'over-constrained: 5 of the 5 equations of joint "hinge1" follow from those of joint "hinge0" and are left out'
-        ", without force or moment of their own"]
+        'over-constrained: 5 of the 5 equations of joint "hinge1" follow from those of joint "hinge0" and are left '
+        "out, without force or moment of their own"]
     assert np.abs(run["hinge1.force"]).max() == 0
     one = door(1).run(1.0, integrator=integrator)
     assert_allclose(run["door.position"], one["door.position"], atol=1e-12)
@@ -165,14 +165,12 @@ def test_what_drives_twice_is_refused():
     scene.rigid_body("leaf", mass=1.0, inertia=(1, 1, 1), position=(1.5, 0, 0))
     scene.joint("revolute", ("door", (0.5, 0, 0)), ("leaf", (-0.5, 0, 0)), axis=(0, 1, 0), angle=0.0, name="fold")
     scene.joint("cylindrical", ("leaf", (0, 0, 0)), (1.5, 0, 0), axis=(0, 1, 0), angle=0.0, name="spin")
-    with pytest.raises(SceneError, match=r'scene: is over-constrained: joints .*"fold" and "spin" drive or hold the '
-                                         "same; leave one of them out"):
+    with pytest.raises(SceneError, match=r'is over-constrained: joints .*"fold" and "spin" drive or hold the same'):
         scene.run(0.1)
 
 
 def test_a_start_in_a_singular_position_is_refused():
-    with pytest.raises(SceneError, match=r"scene: starts in a singular position: joints .*foot0.* hold the same "
-                                         "there, but not beside it; draw the scene a little away from it"):
+    with pytest.raises(SceneError, match=r"scene: starts in a singular position: joints .*foot0.* hold the same there"):
         four_bars(1, angle=0.0).run(0.1)
     four_bars(1, angle=1e-3).run(0.01)
 

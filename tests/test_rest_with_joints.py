@@ -135,4 +135,5 @@ def test_over_constrained_loops_rest_and_vibrate():
     assert door().modes(1).angular_frequency == pytest.approx(0, abs=1e-6)
     hanging = four_bars(1, speed=0.0, angle=-np.pi / 2)
     found = hanging.modes(1, about=hanging.equilibrium()).angular_frequency
-    assert_allclose(found, [np.sqrt(2 * G / (2 / 3 + 1))], rtol=1e-9)  # two legs, and a bar that does not turn
+    # two legs that turn about their ends, one bar that does not turn
+    assert_allclose(found, [np.sqrt(2 * G / (2 / 3 + 1))], rtol=1e-9)

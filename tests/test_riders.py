@@ -28,8 +28,7 @@ def trolley(frame="tangent", element="cable12", at=(0, 0.1, -0.05), **given) -> 
     planar = element.endswith("p")
     at = (at[0], at[1], 0) if planar else at
     scene.rigid_body("A", mass=1.3, inertia=(0.02, 0.03, 0.04), position=-np.array(at) + (0.4, 0, 0),
-                     velocity=(1, 0.2, 0) if planar else (1, 0.2, 0.1),
-                      angular_velocity=(0, 0, 1) if planar else (3, 1, 1))
+                     velocity=(1, 0.2, 0 if planar else 0.1), angular_velocity=(0, 0, 1) if planar else (3, 1, 1))
     scene.slide("A", along="wire", s=0.4, at=at, frame=frame, name="trolley", **given)
     return scene
 

@@ -362,6 +362,7 @@ double fu_slide_step(const fu_model *model, const fu_state *state, int j, double
 
 /* links.c */
 int fu_link_residual(const fu_model *model, const fu_link *link, const fu_state *state, double *phi, int *at, double *J);
+int fu_between_cables(const fu_link *link);
 int fu_link_tangent(const fu_model *model, const fu_link *link, const fu_state *state, int *at, double *J, double *K);
 double fu_link_driving(const fu_model *model, const fu_link *link, const fu_state *state);
 void fu_link_terms(const fu_model *model, const fu_link *link, const fu_state *state, const fu_slide_state *slides,
@@ -593,7 +594,7 @@ double fu_algorithmic_book(fu_run *run, const double *q);
 
 /* projection.c */
 int fu_find_slides(fu_run *run);
-int fu_close(fu_run *run, fu_state *state, double enough, double *first);
+int fu_close(fu_run *run);
 int fu_return_to_joints(fu_run *run, fu_state *state);
 int fu_wander(fu_run *run, const double *along, double *left);
 int fu_complete(fu_run *run, fu_state *state);

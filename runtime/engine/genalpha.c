@@ -172,8 +172,11 @@ static void matrix(fu_run *run, fu_weights w, const double *psi)
             for (int r = 0; r < rows; ++r)
                 fu_add(model, system, first + r, at[i], fu_row_unit(w.inertia, link->scale[r]) * J[r * n + i]);
             if (at[i] >= model->n_dof && !slides(model, next, at[i])) continue;
-            for (int m = 0; m < n; ++m)
-                if (K[i * n + m] != 0.0) fu_add(model, system, at[i], at[m], w.stiffness * K[i * n + m]);
+            for (int m = 0; m < n; ++m) {
+                /* what is between two cables would widen the band: Newton converges without */
+                if (K[i * n + m] == 0.0 || (fu_between_cables(link) && (i < from[1]) != (m < from[1]))) continue;
+                fu_add(model, system, at[i], at[m], w.stiffness * K[i * n + m]);
+            }
         }
     }
     for (int k = 0; k < model->n_springs; ++k)

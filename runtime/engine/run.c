@@ -129,7 +129,7 @@ int fu_start(fu_run *run)
     fu_state *now = &run->now;
     run->ceiling = run->duration;
     if (fu_prepare(run)) return FU_SINGULAR;
-    if (closes(run) && fu_close(run, now, 1e-12 * run->extent, &run->closed)) return FU_SINGULAR;
+    if (closes(run) && fu_close(run)) return FU_SINGULAR;
     memcpy(run->first, now->q, sizeof(double) * (size_t)model->n_q);
     if (start_scheme(run, 1) || record_row(run)) return FU_SINGULAR;
     if (run->rest_start) {
