@@ -301,11 +301,9 @@ cdef class Engine:
         return &view[0]
 
     cdef double *_named(self, name, shape):
-        cdef double *pointer = self._doubles(np.zeros(shape))
-        if np.prod(shape, dtype=int):
-            self.arrays[name] = self.kept[-1].reshape(shape)
-        else:
-            self.arrays[name] = np.zeros(shape)
+        array = np.zeros(shape)
+        cdef double *pointer = self._doubles(array)
+        self.arrays[name] = self.kept[-1].reshape(shape) if array.size else array
         return pointer
 
     cdef void _system(self, fu_system *system, model, int width, int m):

@@ -58,6 +58,15 @@ def test_a_rider_turns_round_and_runs_back_over_the_nodes(settings):
     assert run["trolley.s"].max() > 1.31
 
 
+@pytest.mark.parametrize("integrator", ["genalpha", "energy", "radau"])
+def test_a_node_crossed_and_recrossed_within_a_step_is_seen(integrator):
+    """0.25 mm beyond s = 1 and back in 45 ms of a step of 200 ms."""
+    scene = one_rider(0.75, 1.001, gravity=(-2, 0, 0))
+    run = scene.run(1.2, step=0.2, output_step=0.2, integrator=integrator)
+    assert run.report["element_crossings"] == 2
+    np.testing.assert_allclose(run["A.position"][:, 0], 0.75 + 1.001 * run.time - run.time**2, atol=1e-12)
+
+
 def test_a_fast_rider_crosses_several_nodes_in_a_step():
     """20 m/s over 48 elements of 31 mm, 20 mm a step; it leaves the end close to the frictionless time."""
     run, _ = to_the_end(one_rider(0.25, 20.0, elements=48), 1.0, step=1e-3)

@@ -8,16 +8,19 @@ static int n_rows(const fu_model *model)
     return model->n_joints + model->n_links;
 }
 
+static void evaluate_slide(const fu_model *model, const fu_state *state, int j, fu_accelerator *work)
+{
+    const fu_joint *joint = &model->joints[j];
+    fu_rows *rows = &work->rows[j];
+    rows->first = joint->multiplier;
+    rows->room = joint->room;
+    for (int c = 0; c < rows->room; ++c) rows->scale[c] = joint->mass;
+    fu_slide_terms(model, state, j, rows, &work->slides[j]);
+}
+
 static void evaluate(const fu_model *model, const fu_state *state, fu_accelerator *work)
 {
-    for (int j = 0; j < model->n_joints; ++j) {
-        const fu_joint *joint = &model->joints[j];
-        fu_rows *rows = &work->rows[j];
-        rows->first = joint->multiplier;
-        rows->room = joint->room;
-        for (int c = 0; c < rows->room; ++c) rows->scale[c] = joint->mass;
-        fu_slide_terms(model, state, j, rows, &work->slides[j]);
-    }
+    for (int j = 0; j < model->n_joints; ++j) evaluate_slide(model, state, j, work);
     for (int k = 0; k < model->n_links; ++k) {
         const fu_link *link = &model->links[k];
         fu_rows *rows = &work->rows[model->n_joints + k];
@@ -26,6 +29,13 @@ static void evaluate(const fu_model *model, const fu_state *state, fu_accelerato
         memcpy(rows->scale, link->scale, sizeof rows->scale);
         fu_link_terms(model, link, state, work->slides, work->rows, rows);
     }
+}
+
+/* ds/dt of one slide */
+double fu_slide_rate(const fu_model *model, const fu_state *state, int j, fu_accelerator *work)
+{
+    evaluate_slide(model, state, j, work);
+    return work->slides[j].s_rate;
 }
 
 /* M is constant, that of the bodies by body axes: its band is factored once, and its border's columns are solved. */

@@ -241,4 +241,4 @@ static void book(fu_run *run, double h)
     }
 }
 
-const fu_integrator fu_energy_method = {"energy", start, step, error, book, 1, &newton};
+const fu_integrator fu_energy_method = {"energy", start, step, error, book, 1, 0, &newton};

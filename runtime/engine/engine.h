@@ -349,6 +349,7 @@ void fu_link_outputs(const fu_model *model, const fu_state *state, const fu_acce
 int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S);
 int fu_project_positions(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change);
 int fu_project_velocities(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change);
+double fu_slide_rate(const fu_model *model, const fu_state *state, int joint, fu_accelerator *work);
 int fu_find_arc_length(const fu_model *model, const fu_state *state, int joint, double *s);
 void fu_carry_directors(const fu_model *model, fu_state *state);
 
@@ -451,6 +452,7 @@ typedef struct {
     double (*error)(fu_run *run, double h);
     void (*book)(fu_run *run, double h);
     int conserves; /* energy: velocities stay as they are where the scheme starts anew, projecting them would cost some */
+    int straddles; /* steps may go over boundaries of elements: the slides' elements are found within the iteration */
     const fu_newton *newton; /* null where there is none */
 } fu_integrator;
 extern const fu_integrator fu_genalpha_method, fu_explicit_method, fu_energy_method, fu_radau_method;
@@ -494,6 +496,7 @@ struct fu_run {
     double ceiling; /* s: that steps stay below, after one that failed */
     double newton_tolerance, round_off; /* of increments, m: where Newton may stop, and where it cannot go on */
     int factored, stopped_joint, turned;
+    int holds; /* slides keep their elements in a step, which ends where one of these does */
     int struggle; /* steps rejected of late, less those taken */
     fu_failure failure; /* of the last step that failed */
     fu_books books;
@@ -543,6 +546,11 @@ int fu_fail_at(fu_run *run, int cause, int unknown);
 /* events.c */
 fu_event fu_find_event(const fu_run *run, fu_event known);
 fu_event fu_late_event(fu_run *run);
+double fu_time_to_boundary(fu_run *run);
+double fu_time_of_turn(fu_run *run, double h);
+void fu_seat_slides(fu_run *run);
+int fu_count_changes(const fu_run *run);
+void fu_keep_elements(fu_run *run);
 int fu_stands_on_boundary(const fu_run *run, fu_event event);
 double fu_locate(fu_run *run, fu_event event, double h);
 void fu_watch_now(fu_run *run, fu_event event);

@@ -1,7 +1,13 @@
 /* Events: a slide leaves its element, a quantity passes a threshold, a function of the user's changes sign. */
 #include "engine.h"
 
+#include <stdlib.h>
+#include <string.h>
+
 #define MOST_TRIALS 80
+#define PRECISE 1e-13     /* of an element, or of what a watched quantity changes by in the step */
+#define LITTLE 1e-2       /* of what is allowed */
+#define LARGEST_MISS 1e-6 /* of an element */
 
 static double boundary_tolerance(const fu_run *run, int j)
 {
@@ -15,6 +21,65 @@ static double outside(const fu_run *run, const fu_state *state, int j, int *side
     const double x = state->s[j] - fu_element_start(run->model, j, state->element[j]);
     *side = x > 0.5 * length ? 1 : -1;
     return *side > 0 ? x - length : -x;
+}
+
+/* Slides of `next` on the elements that hold their s, unless they are to keep those of `now`. The matrix is of the
+ * elements that it was made with. */
+void fu_seat_slides(fu_run *run)
+{
+    if (run->holds) return;
+    for (int j = 0; j < run->model->n_joints; ++j) {
+        const fu_cable *cable = &run->model->cables[run->model->joints[j].cable];
+        int side, *element = &run->next.element[j];
+        if (!(outside(run, &run->next, j, &side) > boundary_tolerance(run, j))) continue;
+        const double place = fmin(fmax(run->next.s[j] / cable->length, 0.0), cable->n_elements - 1.0);
+        if ((int)place != *element) run->factored = 0;
+        *element = (int)place;
+    }
+}
+
+/* how many boundaries the slides are across at `next` */
+int fu_count_changes(const fu_run *run)
+{
+    int count = 0;
+    for (int j = 0; j < run->model->n_joints; ++j) count += abs(run->next.element[j] - run->now.element[j]);
+    return count;
+}
+
+/* Slides of `next` on the elements of `now`, which they have left. */
+void fu_keep_elements(fu_run *run)
+{
+    memcpy(run->next.element, run->now.element, sizeof(int) * (size_t)run->model->n_joints);
+}
+
+/* s until the first of the slides reaches a boundary of its element at the speed that it has */
+double fu_time_to_boundary(fu_run *run)
+{
+    double least = INFINITY;
+    for (int j = 0; j < run->model->n_joints; ++j) {
+        const double rate = fu_slide_rate(run->model, &run->now, j, &run->accelerator);
+        const double end = fu_element_start(run->model, j, run->now.element[j] + (rate > 0.0));
+        const double way = fabs(end - run->now.s[j]);
+        if (way > boundary_tolerance(run, j)) least = fmin(least, way / fabs(rate));
+    }
+    return least;
+}
+
+/* How long after `now` a slide turns, by the parabola through both ends of the step, that is back at `next` from beyond a
+ * boundary, or beyond one that it stood on and has left inwards; 0 where none does. */
+double fu_time_of_turn(fu_run *run, double h)
+{
+    for (int j = 0; j < run->model->n_joints; ++j) {
+        const double rise = h * fu_slide_rate(run->model, &run->now, j, &run->accelerator), way = fabs(rise);
+        const double at = 0.5 * rise / (rise - (run->next.s[j] - run->now.s[j])), close = boundary_tolerance(run, j);
+        const int up = rise > 0.0, element = run->now.element[j];
+        const double ahead = fabs(fu_element_start(run->model, j, element + up) - run->now.s[j]);
+        const double behind = fabs(fu_element_start(run->model, j, element + !up) - run->now.s[j]);
+        const double gone = (up ? 1.0 : -1.0) * (run->next.s[j] - run->now.s[j]);
+        if (at > 0.0 && at < 1.0 && ((0.5 * way * at > ahead + close && gone < ahead) ||
+                                     (behind <= close && gone < -behind - close))) return at * h;
+    }
+    return 0.0;
 }
 
 /* what an event of the user's watches, positive where it has happened when `side` is 1 */
@@ -55,7 +120,7 @@ fu_event fu_find_event(const fu_run *run, fu_event known)
     for (int j = 0; j < run->model->n_joints; ++j) {
         int side;
         const double d = outside(run, &run->next, j, &side) - boundary_tolerance(run, j);
-        if (d > worst) {
+        if (d > worst && (known.kind != FU_CROSSING || known.which != j)) {
             worst = d;
             found = (fu_event){FU_CROSSING, j, side};
         }
@@ -73,18 +138,40 @@ int fu_stands_on_boundary(const fu_run *run, fu_event event)
         -boundary_tolerance(run, event.which) && side == event.side;
 }
 
+/* The fraction of a step at which g = g_low + rate x + ... reaches zero on its way to g_high: that of the parabola. */
+static double root_of_parabola(double g_low, double g_high, double rate)
+{
+    const double bend = g_high - g_low - rate, square = rate * rate - 4.0 * bend * g_low;
+    return square > 0.0 ? -2.0 * g_low / (rate + sqrt(square)) : -g_low / (g_high - g_low);
+}
+
+/* How close to an event a step must end. A slide that goes on in the next element, a way d from the boundary, has gone
+ * that way on the wrong curve, whose direction is wrong by d times the jump of r_xx: its velocity by less than rate
+ * d/length for elements that bend by less than a radian. Over the step that shall be little of what is allowed. */
+static double landing(const fu_run *run, fu_event event, double range)
+{
+    if (event.kind == FU_WATCHED) return PRECISE * range;
+    const fu_cable *cable = &run->model->cables[run->model->joints[event.which].cable];
+    const int next = run->now.element[event.which] + event.side;
+    if (run->fixed_step > 0.0 || next < 0 || next >= cable->n_elements) return PRECISE * cable->length;
+    return fmax(PRECISE, fmin(LARGEST_MISS, LITTLE * run->allowed / range)) * cable->length;
+}
+
 /* Shorten the step until it ends where the event happens (Illinois); returns the step, 0 on failure. `next` is there
  * then. */
-double fu_locate(fu_run *run, fu_event event, double h)
+static double locate(fu_run *run, fu_event event, double h)
 {
     double low = 0.0, high = h, g_high = value(run, &run->next, event);
     double g_low = event.kind == FU_WATCHED ? event.side * run->watched[event.which] : value(run, &run->now, event);
-    const double close = event.kind == FU_CROSSING ? boundary_tolerance(run, event.which) : 1e-13 * (g_high - g_low);
-    const double least = 1e-13 * run->duration;
+    double middle = h * g_low / (g_low - g_high);
+    const double least = 1e-13 * run->duration, close = landing(run, event, g_high - g_low);
     int last = 0;
+    if (event.kind == FU_CROSSING) {
+        const double rate = event.side * fu_slide_rate(run->model, &run->now, event.which, &run->accelerator);
+        middle = h * root_of_parabola(g_low, g_high, h * rate);
+    }
     if (g_high <= close) return h;
     for (int i = 0; i < MOST_TRIALS; ++i) {
-        double middle = low + (high - low) * g_low / (g_low - g_high);
         if (!(middle > low && middle < high) || (i > 10 && i % 2)) middle = 0.5 * (low + high); /* rounding may rule g */
         if (run->integrator->step(run, middle)) return 0.0;
         const double g = value(run, &run->next, event);
@@ -102,8 +189,20 @@ double fu_locate(fu_run *run, fu_event event, double h)
             last = -1;
             if (high - low <= least) return run->integrator->step(run, high) ? 0.0 : high;
         }
+        middle = low + (high - low) * g_low / (g_low - g_high);
     }
     return 0.0;
+}
+
+/* The same, with slides that keep their elements until one of them leaves it. */
+double fu_locate(fu_run *run, fu_event event, double h)
+{
+    const int holds = run->holds;
+    run->holds |= event.kind == FU_CROSSING;
+    run->newton_tolerance *= 1e-2; /* lest its noise rule where the event is */
+    const double found = locate(run, event, h);
+    run->holds = holds;
+    return found;
 }
 
 /* Values of the user's events at `now`; none of those that have just passed, or rounding would let them pass again.

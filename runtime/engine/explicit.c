@@ -139,4 +139,4 @@ static void book(fu_run *run, double h)
     run->external_power = powers(run, n)[1];
 }
 
-const fu_integrator fu_explicit_method = {"explicit", start, step, error, book, 0, 0};
+const fu_integrator fu_explicit_method = {"explicit", start, step, error, book, 0, 0, 0};

@@ -6,6 +6,7 @@
 #include <time.h>
 
 #define STAGNANT 0.3 /* increments that shrink less than to this, at the size of rounding, are rounding */
+#define QUICK 0.03   /* contraction that is believed in: the first iterations mend what is linear, the next are slower */
 
 double fu_clock(void)
 {
@@ -127,7 +128,7 @@ static int iterate(fu_run *run, const fu_newton *method, double h)
         if (i > 0) {
             ratio = size / last;
             if (ratio >= 1.0 && size > 100.0 * run->round_off) return blame(run);
-            run->contraction = ratio < 1e-3 ? 1e-3 : ratio > 0.9 ? 0.9 : ratio;
+            run->contraction = ratio < QUICK ? QUICK : ratio > 0.9 ? 0.9 : ratio;
         }
         if (size * run->contraction / (1.0 - run->contraction) <= run->newton_tolerance ||
             (size <= run->round_off && (!method->to_rounding || ratio > STAGNANT))) {

@@ -449,4 +449,4 @@ static void book(fu_run *run, double h)
     run->predictor = 1;
 }
 
-const fu_integrator fu_radau_method = {"radau", start, step, error, book, 0, 0};
+const fu_integrator fu_radau_method = {"radau", start, step, error, book, 0, 0, 0};

@@ -8,6 +8,7 @@
 #define FIRST_PART 1e-3     /* of the duration: errors in it share one allowance */
 #define SAFETY 0.5          /* what the logarithm costs */
 #define SHORT_STEP 1e-3     /* of the usual step */
+#define BEYOND 0.1          /* of a step: how far it may go on after a slide should have reached its boundary */
 #define MOST_STRUGGLE 10000 /* steps rejected beyond those taken */
 #define DIVISIONS 8         /* of a fixed step that do not count */
 #define MOST_TURNS 2        /* of a slide on one boundary before a step is taken all the same: it rests there */
@@ -134,6 +135,7 @@ static void accept(fu_run *run, double h, fu_event event)
     const fu_model *model = run->model;
     for (int j = 0; j < model->n_joints; ++j) run->s_slope[j] = (run->next.s[j] - run->now.s[j]) / h;
     run->integrator->book(run, h);
+    run->statistics.crossings += fu_count_changes(run);
     const fu_state state = run->now;
     run->now = run->next;
     run->next = state;
@@ -162,7 +164,6 @@ static int enter(fu_run *run, int j, int side)
         return FU_END_OF_CABLE;
     }
     now->element[j] = element;
-    now->s[j] = fu_element_start(model, j, side > 0 ? element : element + 1);
     ++run->statistics.crossings;
     fu_watch_now(run, (fu_event){FU_NO_EVENT, 0, 0});
     return start_scheme(run, !run->integrator->conserves);
@@ -205,7 +206,7 @@ static double allow(fu_run *run, double h)
      * positions, the local error T/h times; a fixed step is solved as well as it can be, whatever its error */
     const double extent = fmax(run->extent, scale);
     run->newton_tolerance = run->fixed_step > 0.0 ? fmin(1e-2 * h / run->duration * run->last_error, 1e-14 * extent)
-                                                  : fmin(0.1 * h / run->duration * allowed, 1e-12 * extent);
+                                                  : fmin(0.1 * h / run->duration * allowed, 1e-10 * extent);
     return run->allowed = allowed;
 }
 
@@ -221,6 +222,17 @@ static void adapt(fu_run *run, double h, double ratio)
     else if (factor < 0.8) run->h = h * factor;
 }
 
+/* The step after one whose error was too large. */
+static double smaller(fu_run *run, double h, double ratio)
+{
+    double want = h * fmax(0.2, 0.8 * pow(ratio, -1.0 / run->order));
+    if (!(want > 0.0)) want = 0.2 * h;
+    fu_fail(run, FU_ERROR, run->work, -1);
+    ++run->statistics.rejected;
+    ++run->struggle;
+    return run->h = want;
+}
+
 /* One accepted step towards `target`, or a change of a slide's element. */
 static int step_towards(fu_run *run, double target)
 {
@@ -230,10 +242,12 @@ static int step_towards(fu_run *run, double target)
     const fu_event none = {FU_NO_EVENT, 0, 0}, late = fu_late_event(run);
     double want = adaptive ? run->h : run->fixed_step;
     if (late.kind) return happened(run, late);
+    run->holds = !adaptive || !run->integrator->straddles;
     for (;;) {
         const double remaining = target - run->now.t;
         double h = fitted(remaining, want);
         if ((h < smallest && remaining > smallest) || run->struggle > MOST_STRUGGLE) return FU_NO_CONVERGENCE;
+        if (run->holds) h = fmin(h, fu_time_to_boundary(run) + BEYOND * h);
         const double allowed = allow(run, h);
         run->failure.cause = FU_NO_FAILURE;
         if (run->integrator->step(run, h)) {
@@ -248,15 +262,21 @@ static int step_towards(fu_run *run, double target)
             continue;
         }
         const double error = run->integrator->error(run, h), ratio = error / allowed;
-        if (adaptive && !(ratio <= 2.0)) {
-            fu_fail(run, FU_ERROR, run->work, -1);
-            want = run->h = h * fmax(0.2, 0.8 * pow(ratio, -1.0 / run->order));
-            if (!(want > 0.0)) want = run->h = 0.2 * h;
-            ++run->statistics.rejected;
-            ++run->struggle;
+        const int changes = fu_count_changes(run);
+        if (adaptive && !changes && !(ratio <= 2.0)) {
+            want = smaller(run, h, ratio);
             continue;
         }
         fu_event event = fu_find_event(run, none);
+        if (changes && (event.kind == FU_CROSSING || !(ratio <= 1.0))) { /* a jump too large for the step: end it there */
+            fu_keep_elements(run);
+            event = fu_find_event(run, none);
+        }
+        const double turn = run->holds ? fu_time_of_turn(run, h) : 0.0;
+        if (turn > smallest && run->turned < MOST_TURNS) {
+            want = turn;
+            continue;
+        }
         if (event.kind == FU_CROSSING && run->turned >= MOST_TURNS) event = none;
         if (fu_stands_on_boundary(run, event)) {
             ++run->turned;
@@ -274,6 +294,13 @@ static int step_towards(fu_run *run, double target)
                 want *= 0.5;
                 if (want < smallest) return FU_NO_CONVERGENCE;
                 continue;
+            }
+            if (changes) { /* what the error was without the jump is not known yet */
+                const double cut = run->integrator->error(run, h) / allow(run, h);
+                if (!(cut <= 2.0)) {
+                    want = smaller(run, h, cut);
+                    continue;
+                }
             }
             accept(run, h, event);
             const int status = event.kind == FU_CROSSING ? FU_RUNNING : refresh(run, h);

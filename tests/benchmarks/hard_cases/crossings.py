@@ -49,7 +49,8 @@ def slowly(integrator):
     return figures(found, reference(0.495, 0.1, 0.1))
 
 
-@HERE.case("crossing nodes at 100 m/s", crossings=(5, 5), error=3e-6, balance=BALANCE, residual=HELD, gap=HELD)
+@HERE.case("crossing nodes at 100 m/s", crossings=(5, 5),
+           error={"genalpha": 1.5e-5, "energy": 3e-6, "explicit": 3e-6, "radau": 3e-6}, balance=BALANCE, residual=HELD, gap=HELD)
 def fast(integrator):
     found = simulate(rider(0.1, 100.0), 0.0135, integrator=integrator)
     return figures(found, reference(0.1, 100.0, 0.0135))
@@ -81,7 +82,6 @@ def turning(speed: float):
     return measure
 
 
-# An excursion beyond the node that is over within one step goes unseen: its force is wrong by r_xx ds/dt², third order.
 for difference in (0, 1e-14, -1e-14, 1e-9, -1e-9, 1e-3):
     HERE.case(f"a rider that turns round on a node, {difference:g} m/s too fast", error=1e-11, balance=1e-10,
               residual=1e-12, gap=1e-12, force=1e-9, end=(1.2, 1.2),
