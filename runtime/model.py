@@ -16,7 +16,9 @@ from funicular.actions import Actions, DeadLoad, LoadModel, SignalModel, SpringM
 from funicular.constants import constants
 from funicular.diagnosis import notes, redundant
 from funicular.elements import gauge
+from funicular.ends import Buffer, HardStop, Stop
 from funicular.errors import FunicularWarning, SceneError
+from funicular.friction import Friction
 from funicular.holding import EndModel, Holder, LinkModel, linked, tied
 from funicular.integrators import choose
 from funicular.libraries import kernels_of, tables_of
@@ -30,6 +32,7 @@ from funicular.watching import Watcher
 from scipy.sparse import csr_array
 
 MOST_OUTPUT = 4e9  # bytes
+BRAKES = {2: "planar_brake", 3: "brake"}
 BODIES = {2: ("planar_rigid", 4, 3), 3: ("rigid", 7, 6)}
 """Kernels, length of the configuration and dofs of a rigid body, by dimension of the scene."""
 RIDERS = {2: "planar_point", 3: "point"}
@@ -80,7 +83,8 @@ class RigidModel:
 class JointModel:
     """One slide: kernels, its cable and its rider, its unknowns, what drives it, and where it starts.
 
-    native: the kernels take the rider's own configuration; room: multipliers that it has; drive: a signal, or -1.
+    native: the kernels take the rider's own configuration; room: multipliers that it has; drive: a signal, or -1;
+    brake: kernels of friction and buffers, or none; ends: what waits at the start and at the end of the cable.
     """
 
     name: str
@@ -97,6 +101,9 @@ class JointModel:
     s: float
     element: int
     director: np.ndarray
+    brake: str = ""
+    friction: Friction | None = None
+    ends: tuple[str | Stop, str | Stop] = ("error", "error")
 
 
 @dataclass
@@ -143,7 +150,7 @@ class Model:
         """Names of the kernel families that the scene touches."""
         return sorted({c.element for c in self.cables} | {f"{c.element}_{c.law}" for c in self.cables}
                       | {j.kernel for j in self.joints} | {b.kernel for b in self.rigids}
-                      | {link.kernel for link in self.links})
+                      | {link.kernel for link in self.links} | {j.brake for j in self.joints if j.brake})
 
 
 @dataclass
@@ -279,7 +286,9 @@ def _joint(slide: Slide, scene: Scene, holder: Holder, signal, number: int, mult
         forward = not native or np.dot(axes[0], scene.bodies[slide.body].velocity) >= 0
         at = node if forward else node - 1
     rider = holder.end(slide.rider)
-    driven = slide.prescribed is not None
+    driven, ends, friction = slide.prescribed is not None, (slide.at_start, slide.at_end), slide.friction
+    may_hold = driven or (friction is not None and friction.sticks) or any(isinstance(end, HardStop) for end in ends)
+    brakes = not driven and (friction is not None or any(isinstance(end, Buffer) for end in ends))
     return JointModel(
         slide.name,
         f"slide_{along.element}_{BODIES[dim][0] if native else RIDERS[dim]}",
@@ -288,13 +297,16 @@ def _joint(slide: Slide, scene: Scene, holder: Holder, signal, number: int, mult
         native,
         (1 + dim) * number,
         multiplier,
-        dim - 1 + driven,
+        dim - 1 + may_hold,
         signal(slide.prescribed) if driven else -1,
         dim == 3 and not along.kind_of_element.director,
         rider.mass,
         slide.s,
         int(np.clip(np.floor(at), 0, along.elements - 1)),
         axes[1],
+        BRAKES[dim] * brakes,
+        friction if brakes else None,
+        ends,
     )
 
 
@@ -314,8 +326,7 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
     output_step = settings.output_step
     pace = pauses(int(np.ceil(settings.duration / output_step)) + 1, _check_size(model, settings, stream))
     engine, watcher = Engine(model), Watcher(scene, model)
-    if watcher.watches:
-        engine.watch(watcher)
+    engine.watch(watcher)
     messages = []
     if settings.step is not None:
         step = output_step / np.ceil(output_step / settings.step * (1 - 1e-9))
@@ -373,6 +384,10 @@ def _check_conserves(model: Model, scene: Scene, engine, method) -> None:
             raise SceneError(scene.cables[cable.name].where,
                              f'integrator "energy" has no algorithmic dissipation of the law "{cable.law}"',
                              "take spectral_radius = 1, another law, or another integrator")
+    for slide in scene.slides.values():
+        if slide.friction is not None or (slide.at_start, slide.at_end) != ("error", "error"):
+            raise SceneError(slide.where, 'integrator "energy" knows neither friction nor ends of cables',
+                             "take another integrator: genalpha, radau and explicit do")
     parts = [*(scene.joints[link.name] for link in model.links if link.slide is None),
              *(slide for slide, joint in zip(scene.slides.values(), model.joints, strict=True)
                if not joint.native or joint.drive >= 0 or slide.frame != "point")]
