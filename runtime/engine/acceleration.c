@@ -5,7 +5,7 @@
 
 #define MOST_SWEEPS 200
 #define SETTLED 1e-15 /* change of R by a sweep, over the force */
-#define NEARLY 1e-11  /* the same where rounding rules it */
+#define NEARLY 1e-7   /* the same where rounding may rule it */
 
 static int n_rows(const fu_model *model)
 {
@@ -183,7 +183,7 @@ static int settle(const fu_model *model, const fu_state *state, fu_accelerator *
         solve(model, work, work->work, acceleration);
         if (!model->n_brakes) return 0;
         const double change = brake(model, state, work, lambda);
-        if (change <= SETTLED || (change <= NEARLY && change >= 0.5 * last)) break;
+        if (change <= SETTLED || (change <= NEARLY && change >= last)) break;
         if (!(change < 1e30) || sweep == MOST_SWEEPS) return 1;
         last = change;
     }
