@@ -516,6 +516,8 @@ cdef class Engine:
                 state.element[i] = min(max(int(state.s[i] // length), 0), n - 1)
             for k in range(3):
                 state.f[3 * i + k] = 0.0 if force is None else force[i][k]
+        if self.model.n_brakes:
+            fu_touch_buffers(&self.model, state)
         for i in range(self.model.n_links):
             for k in range(6):
                 state.multipliers[6 * i + k] = 0.0 if multipliers is None else multipliers[i][k]
@@ -560,7 +562,8 @@ cdef class Engine:
 
     def elastic_energy(self):
         """J, of the static state."""
-        return fu_elastic_energy(&self.model, self.run.next.q)
+        cdef double buffers = fu_brake_energy(&self.model, &self.run.next) if self.model.n_brakes else 0.0
+        return fu_elastic_energy(&self.model, self.run.next.q) + buffers
 
     def spread(self, unknowns):
         """(n_dof,): what unknowns move the dofs by."""

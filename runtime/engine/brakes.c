@@ -67,6 +67,17 @@ double fu_brake_energy(const fu_model *model, const fu_state *state)
     return energy;
 }
 
+/* Statics: the buffers that slides are in. */
+void fu_touch_buffers(const fu_model *model, fu_state *state)
+{
+    for (int j = 0; j < model->n_joints; ++j) {
+        state->contact[j] = 0;
+        for (int side = -1; side <= 1; side += 2)
+            if (model->joints[j].stops[side > 0].kind == FU_END_IS_BUFFERED && fu_compression(model, state, j, side) > 0.0)
+                state->contact[j] = side;
+    }
+}
+
 /* t and u from the derivatives of phi = r - p by the slide's coordinates and s */
 void fu_slide_motion(const fu_model *model, const fu_state *state, int j, const double *J, double *t, double *u)
 {

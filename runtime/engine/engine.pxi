@@ -305,6 +305,8 @@ cdef extern from "engine.h" nogil:
     void fu_prescribe(const fu_model *model, fu_state *state)
     void fu_carry_directors(const fu_model *model, fu_state *state)
     double fu_elastic_energy(const fu_model *model, const double *q)
+    void fu_touch_buffers(const fu_model *model, fu_state *state)
+    double fu_brake_energy(const fu_model *model, const fu_state *state)
     int fu_moves(const fu_run *run)
     int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S)
     int fu_start(fu_run *run)

@@ -283,6 +283,7 @@ void fu_static_move(fu_run *run, const double *change)
     fu_spread(model, run->rhs, run->work);
     fu_move(model, run->next.q, run->work);
     fu_apply_extra(run, 0.0, 1.0);
+    if (model->n_brakes) fu_touch_buffers(model, &run->next);
 }
 
 /* minus the sum of forces and the joints' residuals, in run->rhs */

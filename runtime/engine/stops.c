@@ -25,12 +25,22 @@ int fu_has_stops(const fu_model *model)
     return 0;
 }
 
-/* Force along the cable that must be held where a slide is held, and how much of it friction and a hard stop do not. */
-static double excess(const fu_model *model, const fu_state *state, int j, double *pull)
+/* The force on the rider of a slide that is held: by eq 38, as a Newton method's has the rounding of positions over h^2. */
+static const double *held_force(const fu_run *run, const fu_state *state, int j)
 {
+    fu_joint_output *joints = (fu_joint_output *)run->accelerator.joints;
+    if (!run->integrator->newton) return state->f + 3 * j;
+    fu_accelerator work = run->accelerator;
+    return fu_accelerations(run->model, state, &work, run->work, joints, 0) ? state->f + 3 * j : joints[j].force;
+}
+
+/* Force along the cable that must be held where a slide is held, and how much of it friction and a hard stop do not. */
+static double excess(const fu_run *run, const fu_state *state, int j, double *pull)
+{
+    const fu_model *model = run->model;
     const fu_joint *joint = &model->joints[j];
     const int dim = model->dim, side = state->contact[j];
-    const double *f = state->f + 3 * j;
+    const double *f = held_force(run, state, j);
     double square = 0.0, along = 0.0, normal = 0.0;
     fu_slide_state slide;
     fu_slide_now(model, state, j, &slide);
@@ -54,7 +64,7 @@ double fu_grip(const fu_run *run, const fu_state *state, int j)
     const fu_joint *joint = &run->model->joints[j];
     double pull;
     if (state->mode[j] == FU_LEFT || joint->drive >= 0) return -1.0;
-    if (state->mode[j] == FU_HELD) return excess(run->model, state, j, &pull);
+    if (state->mode[j] == FU_HELD) return excess(run, state, j, &pull);
     return joint->sticks ? -state->way[j] * fu_slide_rate(run->model, state, j) : -1.0;
 }
 
@@ -88,7 +98,7 @@ static int settle(fu_run *run, int j)
     if (fu_project_velocities(run->model, now, &run->accelerator, run->work)) return FU_SINGULAR;
     for (int i = 0; i < run->model->n_dof; ++i) now->v[i] += run->work[i];
     if (fu_complete(run, now)) return FU_SINGULAR;
-    if (excess(run->model, now, j, &pull) > 0.0) release(run, j, pull);
+    if (excess(run, now, j, &pull) > 0.0) release(run, j, pull);
     return FU_RUNNING;
 }
 
@@ -164,8 +174,8 @@ int fu_reach_end(fu_run *run, int j, int side, int *what)
         run->stopped_joint = j;
         return FU_END_OF_CABLE;
     }
-    const int status = strike(run, j, side);
-    *what = now->mode[j] == FU_HELD ? FU_RESTS : FU_STRUCK;
+    const int last = is_at_rest(run, j) || joint->stops[side > 0].restitution > 0.0, status = strike(run, j, side);
+    *what = last && now->mode[j] == FU_HELD ? FU_RESTS : FU_STRUCK;
     return status;
 }
 
@@ -184,7 +194,7 @@ int fu_act(fu_run *run, const fu_watch *watch, int side, int *what)
     }
     if (now->mode[j] == FU_HELD) {
         double pull;
-        excess(run->model, now, j, &pull);
+        excess(run, now, j, &pull);
         *what = is_hard(run->model, j, now->contact[j]) ? FU_FREED : FU_BROKE_LOOSE;
         release(run, j, pull);
         return FU_RUNNING;
