@@ -381,7 +381,7 @@ cdef class Engine:
         a.rows = <fu_rows *>self._zeros(rows * sizeof(fu_rows) // sizeof(double) + 1)
         a.slides = <fu_slide_state *>self._zeros(n_joints * sizeof(fu_slide_state) // sizeof(double) + 1)
         a.multipliers = self._zeros(model.n_multipliers)
-        a.braking, a.jammed = self._zeros(n_joints + 1), -1
+        a.braking, a.jammed = self._zeros(3 * n_joints + 1), -1
         a.joints = self._doubles(np.zeros(n_joints * FU_JOINT_OUTPUTS))
         a.force, a.work = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         a.prescribed = self._doubles(np.zeros(n_dof))
@@ -771,6 +771,11 @@ cdef class Engine:
         """Of the last step that failed: why (see CAUSES), and the dof and joint (or None) where that shows most."""
         f = self.run.failure
         return CAUSES[f.cause], f.dof, f.joint if f.joint >= 0 else None
+
+    @property
+    def jammed(self):
+        """Index of the slide whose friction has no solution, -1."""
+        return self.run.accelerator.jammed
 
     @property
     def books(self):

@@ -3,7 +3,9 @@
 
 #include <string.h>
 
-#define MOST_SWEEPS 200
+#define MOST_SWEEPS 100
+#define TRIAL 0.1     /* of the change that the law asks for: the first step, lest it turn the normal force round */
+#define STEEP 0.1     /* slopes below have no secant that is worth it */
 #define SETTLED 1e-15 /* change of R by a sweep, over the force */
 #define NEARLY 1e-7   /* the same where rounding may rule it */
 
@@ -138,16 +140,27 @@ static void along(const fu_model *model, const fu_slide_state *slide, double *t,
     }
 }
 
+/* By how much a slide's R should change where its law asks for `change`: by the secant of the last sweep, as what friction
+ * presses on the cable or takes off it hangs on R almost linearly. */
+static double towards(fu_accelerator *work, int n_joints, int j, double change)
+{
+    double *last = work->braking + n_joints + 1 + 2 * j;
+    const double slope = last[0] != 0.0 ? (last[1] - change) / last[0] : 0.0;
+    last[0] = last[0] == 0.0 ? TRIAL * change : slope > STEEP ? change / slope : change;
+    last[1] = change;
+    return last[0];
+}
+
 /* R of all slides by these multipliers, or null: by the forces of the state; work->work follows by G' R. Returns the
  * largest change over the force. */
 static double brake(const fu_model *model, const fu_state *state, fu_accelerator *work, const double *lambda)
 {
-    double largest = 0.0;
+    double largest = 0.0, *steps = work->braking + model->n_joints + 1;
     work->braking[model->n_joints] = 0.0;
     for (int j = 0; j < model->n_joints; ++j) {
         double t[3], u[3], f[3], size = 0.0;
         fu_braking braking;
-        if (!lambda) work->braking[j] = 0.0;
+        if (!lambda) work->braking[j] = steps[2 * j] = 0.0;
         if (!model->joints[j].brake || state->mode[j] != FU_SLIDES) continue;
         along(model, &work->slides[j], t, u);
         if (lambda) force_of(model, work, j, lambda, f);
@@ -155,22 +168,23 @@ static double brake(const fu_model *model, const fu_state *state, fu_accelerator
         fu_braking_of(model, state, j, t, u, f, &braking);
         work->braking[model->n_joints] += fu_brake_power(model, state, j, t, u, f);
         const double change = braking.R - work->braking[j];
+        const double step = lambda ? towards(work, model->n_joints, j, change) : change;
         for (int d = 0; d < model->dim; ++d) size = fmax(size, fabs(f[d]));
         size = fabs(change) / fmax(size, fabs(braking.R));
         if (change != 0.0 && !(size <= largest)) {
             largest = size;
             work->jammed = j;
         }
-        work->braking[j] = braking.R;
+        work->braking[j] += step;
         for (int k = 0; k < work->rows[j].n; ++k)
-            work->work[work->rows[j].at[k]] += work->slides[j].G[k] * change;
+            work->work[work->rows[j].at[k]] += work->slides[j].G[k] * step;
     }
     return largest;
 }
 
 /* Accelerations and multipliers, in work->rhs, by the forces in work->work; with brakes, whose friction hangs on the
- * multipliers, by sweeps. Not zero where these do not settle: so much friction holds the rider the faster, the more it
- * is pressed on the cable. */
+ * multipliers, by sweeps. Not zero where these do not settle: where friction presses the rider on the cable by more than
+ * what it comes from, there is no solution (Painleve's). */
 static int settle(const fu_model *model, const fu_state *state, fu_accelerator *work, double *acceleration)
 {
     double *lambda = work->rhs + model->n_band + model->n_border_dof, last = INFINITY;

@@ -365,7 +365,7 @@ typedef struct {
     fu_slide_state *slides;
     double *force, *work, *prescribed; /* n_dof */
     double *multipliers;  /* of slides and links, as eq 38 gives them */
-    double *braking;      /* per slide: R; and the power that brakes take, after all of them */
+    double *braking;      /* per slide: R; then the power that brakes take; then of each slide's R the last step and its cause */
     int jammed;           /* slide whose R was not found, -1 */
     double *joints;       /* FU_JOINT_OUTPUTS a joint */
 } fu_accelerator;
