@@ -24,11 +24,14 @@ FREE = {"spherical": "rx ry rz", "revolute": "rz", "revolute_angle": "", "univer
 
 
 def samples(family: Family, random: np.random.Generator) -> dict[str, np.ndarray]:
-    """Inputs of a frame's or a joint's kernels."""
+    """Inputs of the kernels of a frame, a joint or a brake."""
     dim, turns = family.dim, TURNS[family.dim]
     if family.role == "frame":
         names = ("a", "b", "a_rate", "b_rate", "a_second", "b_second")
         return {name: random.normal(size=dim) for name in names} | {"m": random.normal(size=turns)}
+    if family.role == "brake":
+        return ({name: random.normal(size=dim) for name in ("t", "u", "f")}
+                | {"friction": np.array([0.4, 0.7, 0.3, 0.0, 1e-30]), "buffer": np.array([5.0, 0.6, 0.2, -1.0])})
     c = random.uniform(0.3, 1.2)
     return {"gap": random.normal(size=dim), "A1": _attitude(random, dim), "A2": _attitude(random, dim),
             "c": np.array([c, np.cos(c), np.sin(c)]), "f": random.normal(size=family.facts["rows"]),
@@ -199,3 +202,32 @@ def joint_invariances(family: Family, k: Numbers, s: State) -> Iterator[tuple[st
         dim + turns - len(allowed.split()) - len(J)), 0.0
 
 
+
+
+def brake_relations(family: Family) -> list[Relation]:
+    """What each derivative of R is one of."""
+    dim = family.dim
+
+    def moved(name, at=0):
+        return from_kernel("force", "R", **{name: lambda s, j: np.eye(len(s[name]), dtype=int)[j + at]})
+
+    return [Relation("force", "R", "at 50 digits; see what it is along and across the cable", 0, from_kernel("force", "R")),
+            *(Relation("force", f"R_{name}", f"dR by {name}", 1, moved(name), dim) for name in "tuf"),
+            Relation("force", "R_x", "dR by x", 1, moved("buffer", 2), 1)]
+
+
+def brake_invariances(family: Family, k: Numbers, s: State) -> Iterator[tuple[str, float, float]]:
+    """Friction against the motion, as large as the normal force makes it; a buffer of its own."""
+    i = s["t"] / np.linalg.norm(s["t"])
+    length, v = np.linalg.norm(s["t"]), i @ s["u"]
+    N = np.linalg.norm(s["f"] - (s["f"] @ i) * i)
+    none = np.zeros(4)
+    for way in (1.0, -1.0):
+        R = k("force", {**s, "friction": np.array([0.4, 0.0, 0.3, way, 1e-30]), "buffer": none})["R"][0]
+        yield "friction with a way is the coefficient's", abs(R + way * 0.4 * N * length), 64 * EPS
+    fast = k("force", {**s, "friction": np.array([0.4, 0.0, 1e-12 * abs(v), 0.0, 1e-30]), "buffer": none})["R"][0]
+    yield "fast friction has the way of the motion", abs(fast + np.sign(v) * 0.4 * N * length), 64 * EPS
+    slow = k("force", {**s, "friction": np.zeros(5) + [0.0, 0.7, 0.3, 0.0, 1e-30], "buffer": none})["R"][0]
+    yield "viscous friction goes with the speed", abs(slow + 0.7 * v * length), 64 * EPS
+    held = k("force", {**s, "u": 0 * i, "friction": np.array([0.4, 0.7, 0.3, 0.0, 1e-30])})["R"][0]
+    yield "at rest there is the buffer's spring alone", abs(held - 5.0 * 0.2), 64 * EPS

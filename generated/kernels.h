@@ -488,6 +488,12 @@ void joint_planar_distance_motion(const fu_real *gap, const fu_real *A1, const f
 void joint_planar_locked_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
 void joint_planar_locked_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
 
+/* brake: friction and buffers of slides in space */
+void brake_force(const fu_real *t, const fu_real *u, const fu_real *f, const fu_real *friction, const fu_real *buffer, fu_real *R, fu_real *R_t, fu_real *R_u, fu_real *R_f, fu_real *R_x);
+
+/* planar_brake: friction and buffers of slides in the plane */
+void planar_brake_force(const fu_real *t, const fu_real *u, const fu_real *f, const fu_real *friction, const fu_real *buffer, fu_real *R, fu_real *R_t, fu_real *R_u, fu_real *R_f, fu_real *R_x);
+
 /* What the engine needs of a element. */
 typedef struct {
     const char *name;
@@ -585,6 +591,13 @@ typedef struct {
     void (*motion)(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
 } fu_pair;
 
+/* What the engine needs of a brake. */
+typedef struct {
+    const char *name;
+    int dim;
+    void (*force)(const fu_real *t, const fu_real *u, const fu_real *f, const fu_real *friction, const fu_real *buffer, fu_real *R, fu_real *R_t, fu_real *R_u, fu_real *R_f, fu_real *R_x);
+} fu_brake;
+
 /* Every table, one entry a family. */
 typedef struct {
     int n_elements;
@@ -601,6 +614,8 @@ typedef struct {
     const fu_frame *frames;
     int n_pairs;
     const fu_pair *pairs;
+    int n_brakes;
+    const fu_brake *brakes;
 } fu_tables;
 extern const fu_tables fu_all;
 

@@ -601,6 +601,17 @@ static const fu_pair pairs[] = {
     }
 };
 
+static const fu_brake brakes[] = {
+    {"brake",
+     3,
+     brake_force
+    },
+    {"planar_brake",
+     2,
+     planar_brake_force
+    }
+};
+
 static void call_beam24_mass(const fu_real *const *a, fu_real *const *out)
 {
     beam24_mass(*a[0], *a[1], a[2], out[0]);
@@ -1953,6 +1964,14 @@ static void call_joint_planar_locked_motion(const fu_real *const *a, fu_real *co
 {
     joint_planar_locked_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
 }
+static void call_brake_force(const fu_real *const *a, fu_real *const *out)
+{
+    brake_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]);
+}
+static void call_planar_brake_force(const fu_real *const *a, fu_real *const *out)
+{
+    planar_brake_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]);
+}
 
 const fu_kernel fu_kernels[] = {
     {"beam24_mass", call_beam24_mass},
@@ -2293,6 +2312,8 @@ const fu_kernel fu_kernels[] = {
     {"joint_planar_distance_motion", call_joint_planar_distance_motion},
     {"joint_planar_locked_force", call_joint_planar_locked_force},
     {"joint_planar_locked_motion", call_joint_planar_locked_motion},
+    {"brake_force", call_brake_force},
+    {"planar_brake_force", call_planar_brake_force},
 };
 const int fu_n_kernels = sizeof fu_kernels / sizeof fu_kernels[0];
 
@@ -2303,5 +2324,6 @@ const fu_tables fu_all = {
     2, modals,
     10, slides,
     2, frames,
-    20, pairs
+    20, pairs,
+    2, brakes
 };

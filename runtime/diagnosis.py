@@ -40,7 +40,8 @@ def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
     what = {"iteration": f"the iteration does not settle, least of all at {where}",
             "error": f"the error stays above what tol allows, most of all at {where}",
             "lost_rider": f"{where} does not find its place on the cable any more",
-            "not_finite": f"{where} runs away"}[cause]
+            "not_finite": f"{where} runs away",
+            "jam": f"friction jams {where}: the more it holds, the more it is pressed on the cable"}[cause]
     counts = engine.statistics
     gone = f" after {counts['steps']} steps down to {counts['smallest_step_s']:.2g} s" if counts["steps"] else ""
     if settings.step is not None and engine.integrator == "explicit":

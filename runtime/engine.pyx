@@ -33,7 +33,11 @@ STATUS = {FU_DONE: "completed", FU_END_OF_CABLE: "end_of_cable", FU_NO_CONVERGEN
           FU_SINGULAR: "singular", FU_EVENT: "event",
           FU_UNSTABLE: "unstable"}
 CAUSES = {FU_NO_FAILURE: None, FU_ITERATION: "iteration", FU_MATRIX: "matrix", FU_ERROR: "error",
-          FU_LOST_RIDER: "lost_rider", FU_NOT_FINITE: "not_finite"}
+          FU_LOST_RIDER: "lost_rider", FU_NOT_FINITE: "not_finite", FU_JAM: "jam"}
+ACTIONS = {FU_STUCK: "stuck", FU_BROKE_LOOSE: "broke loose", FU_TURNED: "turned round", FU_STRUCK: "struck the end",
+           FU_RESTS: "came to rest at the end", FU_FREED: "left the end", FU_FLEW: "left", FU_ENTERED: "entered the buffer",
+           FU_CAME_OUT: "left the buffer"}
+ENDS = {"error": FU_END_IS_ERROR, "leave": FU_END_IS_OPEN, "hard": FU_END_IS_HARD, "buffer": FU_END_IS_BUFFERED}
 JOINT_OUTPUTS = ("s_rate", "s_acceleration", "force", "multiplier", "traction", "residual")
 
 
@@ -104,6 +108,16 @@ cdef const fu_pair *_pair(list tables, str name) except NULL:
         for k in range(table.n_pairs):
             if table.pairs[k].name == name.encode():
                 return &table.pairs[k]
+    raise ValueError(f"no kernels for {name}")
+
+
+cdef const fu_brake *_brake(list tables, str name) except NULL:
+    cdef int k
+    for address in tables:
+        table = <const fu_tables *><size_t>address
+        for k in range(table.n_brakes):
+            if table.brakes[k].name == name.encode():
+                return &table.brakes[k]
     raise ValueError(f"no kernels for {name}")
 
 
@@ -274,7 +288,7 @@ cdef class Engine:
         return 0
 
     def _joints_and_springs(self, model, list tables):
-        cdef int i, k
+        cdef int i, k, brakes = 0
         for i, joint in enumerate(model.joints):
             j = &self.joints[i]
             j.kernel = _slide(tables, joint.kernel)
@@ -284,6 +298,18 @@ cdef class Engine:
             j.unknown, j.multiplier, j.carries_director = joint.unknown, joint.multiplier, joint.carries_director
             j.mass = joint.mass
             self._end(&j.rider, joint.rider, tables)
+            j.brake = _brake(tables, joint.brake) if joint.brake else NULL
+            brakes += bool(joint.brake)
+            if joint.friction is not None:
+                j.sticks, j.viscous, j.velocity = joint.friction.sticks, joint.friction.viscous, joint.friction.velocity
+                j.friction, j.holding = joint.friction.sliding, joint.friction.holding
+            for k, end in enumerate(joint.ends):
+                e = &j.stops[k]
+                e.kind = ENDS[end if isinstance(end, str) else end.stop]
+                if e.kind == FU_END_IS_HARD:
+                    e.restitution = end.restitution
+                if e.kind == FU_END_IS_BUFFERED:
+                    e.length, e.stiffness, e.damping = end.length, end.stiffness, end.damping
         for i, link in enumerate(model.links):
             l = &self.links[i]
             l.kernel = _pair(tables, link.kernel)
@@ -300,6 +326,7 @@ cdef class Engine:
                 self._end(&p.ends[k], spring.ends[k], tables)
         m = &self.model
         m.n_joints, m.n_links, m.n_springs = len(model.joints), len(model.links), len(model.springs)
+        m.n_brakes = brakes
         m.joints, m.links, m.springs = self.joints, self.links, self.springs
 
     def _loads_and_motions(self, model):
@@ -388,6 +415,7 @@ cdef class Engine:
         state.hold = self._doubles(np.zeros(joints))
         state.element = self._ints([j.element for j in model.joints])
         state.mode = self._ints([FU_HELD if j.drive >= 0 else FU_SLIDES for j in model.joints])
+        state.way, state.contact = self._ints(np.zeros(joints)), self._ints(np.zeros(joints))
         state.director = self._doubles([j.director for j in model.joints])
         state.memory = self._zeros(0)
 
@@ -410,6 +438,7 @@ cdef class Engine:
         a.rows = <fu_rows *>self._zeros(rows * sizeof(fu_rows) // sizeof(double) + 1)
         a.slides = <fu_slide_state *>self._zeros(n_joints * sizeof(fu_slide_state) // sizeof(double) + 1)
         a.multipliers = self._zeros(model.n_multipliers)
+        a.braking, a.jammed = self._zeros(3 * n_joints + 1), -1
         a.joints = self._doubles(np.zeros(n_joints * FU_JOINT_OUTPUTS))
         a.force, a.work = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         a.prescribed = self._doubles(np.zeros(n_dof))
@@ -417,6 +446,7 @@ cdef class Engine:
         run.psi, run.force = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         run.work, run.before = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         run.first, run.s_slope = self._doubles(np.zeros(model.n_q)), self._doubles(np.zeros(n_joints))
+        self._watch([])
 
     def _algorithmic(self, method):
         cdef int i
@@ -543,6 +573,8 @@ cdef class Engine:
                 state.element[i] = min(max(int(state.s[i] // length), 0), n - 1)
             for k in range(3):
                 state.f[3 * i + k] = 0.0 if force is None else force[i][k]
+        if self.model.n_brakes:
+            fu_touch_buffers(&self.model, state)
         for i in range(self.model.n_links):
             for k in range(6):
                 state.multipliers[6 * i + k] = 0.0 if multipliers is None else multipliers[i][k]
@@ -622,7 +654,8 @@ cdef class Engine:
 
     def elastic_energy(self):
         """J, of the static state."""
-        return fu_elastic_energy(&self.model, self.run.next.q)
+        cdef double buffers = fu_brake_energy(&self.model, &self.run.next) if self.model.n_brakes else 0.0
+        return fu_elastic_energy(&self.model, self.run.next.q) + buffers
 
     def spread(self, unknowns):
         """(n_dof,): what unknowns move the dofs by."""
@@ -644,20 +677,32 @@ cdef class Engine:
 
     def watch(self, watcher):
         """Watch for the events of a `Watcher`; call it before `start`."""
+        self.watcher, self.error = watcher, None
+        self._watch(watcher.watches)
+        self.run.call, self.run.context = &_call, <void *>self
+
+    def _watch(self, watches):
+        """Watch for these, and after them for what the slides do."""
         kinds = {"q": FU_WATCH_Q, "v": FU_WATCH_V, "s": FU_WATCH_S, "function": FU_WATCH_CALL}
-        cdef int i
+        numbers = [(kinds[watch.kind], watch.index, watch.direction, watch.value) for watch in watches]
+        cdef int i, k, side
+        for i in range(self.model.n_joints):
+            j = &self.joints[i]
+            if j.drive < 0 and (j.sticks or FU_END_IS_HARD in (j.stops[0].kind, j.stops[1].kind)):
+                numbers.append((FU_WATCH_GRIP, i, 1, 0.0))
+            for k, side in enumerate((-1, 1)):
+                if j.drive < 0 and j.stops[k].kind == FU_END_IS_BUFFERED:
+                    numbers.append((FU_WATCH_BUFFER, i, 0, side))
         PyMem_Free(self.watches)
-        self.watches = <fu_watch *>PyMem_Calloc(len(watcher.watches) + 1, sizeof(fu_watch))
+        self.watches = <fu_watch *>PyMem_Calloc(len(numbers) + 1, sizeof(fu_watch))
         if not self.watches:
             raise MemoryError
-        for i, watch in enumerate(watcher.watches):
+        for i, (kind, index, direction, value) in enumerate(numbers):
             w = &self.watches[i]
-            w.kind, w.index, w.direction, w.value = kinds[watch.kind], watch.index, watch.direction, watch.value
-        self.watcher, self.error = watcher, None
+            w.kind, w.index, w.direction, w.value = kind, index, direction, value
         run = &self.run
-        run.n_watches, run.watches = len(watcher.watches), self.watches
+        run.n_watches, run.watches = len(numbers), self.watches
         run.watched, run.late = self._doubles(np.zeros(run.n_watches)), self._ints(np.zeros(run.n_watches))
-        run.call, run.context = &_call, <void *>self
 
     cdef _snapshot(self, const fu_state *state):
         """t, q, v, s of a state."""
@@ -725,6 +770,10 @@ cdef class Engine:
                 if stream is not None:
                     stream.between()
                 PyErr_CheckSignals()
+                if status == FU_EVENT and run.event.kind == FU_ACTED:
+                    if self.watcher is not None:
+                        self.watcher.acts(run.event.which, ACTIONS[run.event.side], run.now.t, run.now.s[run.event.which])
+                    status = FU_RUNNING
                 if status == FU_EVENT:
                     if not self.watcher.happens(run.event.which, *self._snapshot(&run.now)):
                         with nogil:
@@ -814,6 +863,11 @@ cdef class Engine:
         """Of the last step that failed: why (see CAUSES), and the dof and joint (or None) where that shows most."""
         f = self.run.failure
         return CAUSES[f.cause], f.dof, f.joint if f.joint >= 0 else None
+
+    @property
+    def jammed(self):
+        """Index of the slide whose friction has no solution, -1."""
+        return self.run.accelerator.jammed
 
     @property
     def books(self):

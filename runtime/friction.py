@@ -33,6 +33,21 @@ class Friction(Part):
         return self
 
     @property
+    def sticks(self) -> bool:
+        """Whether it holds at rest."""
+        return self.model == "stick"
+
+    @property
+    def sliding(self) -> float:
+        """What the normal force is multiplied by: sliding and rolling."""
+        return self.coefficient + self.rolling
+
+    @property
+    def holding(self) -> float:
+        """The same at rest; nothing where it does not stick."""
+        return self.static + self.rolling if self.sticks else 0.0
+
+    @property
     def static(self) -> float:
         """The coefficient of sticking."""
         return self.coefficient if self.static_coefficient is None else self.static_coefficient

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from funicular.model import Model
     from funicular.scene import Scene
     from funicular.settings import RunSettings
+    from funicular.slides import Slide
 
 STABLE = 4.5
 """Of the explicit method: its step times the highest angular frequency, where step control holds it (its imaginary
@@ -124,6 +125,7 @@ def choose(settings: RunSettings, scene: Scene, model: Model,
     if "spectral_radius" in settings.model_fields_set:
         return implicit, "spectral_radius is given, which is genalpha's"
     frequency, decay = fastest_rates(model, engine)
+    decay = max(decay, *(regularised_decay(scene, slide) for slide in scene.slides.values()), 0.0)
     slow = slowest_rate(scene, model, settings.duration)
     explicit_cost = 12 * max(frequency / STABLE, decay / STABLE_DAMPING)
     implicit_cost = COST_OF_IMPLICIT * slow * (1e-4 / settings.tol) ** (1 / 3)
@@ -133,6 +135,14 @@ def choose(settings: RunSettings, scene: Scene, model: Model,
               f"{frequency:.3g} rad/s" + (f", fastest decay {decay:.3g} 1/s" if decay else "")
               + f"), tol asks {implicit.name} for work like {implicit_cost:.3g}")
     return (Explicit() if explicit_cost < implicit_cost else implicit), reason
+
+
+def regularised_decay(scene: Scene, slide: Slide) -> float:
+    """1/s: how fast a slow rider under its weight comes to the speed at which regularised friction lets it creep."""
+    friction = slide.friction
+    if friction is None or friction.sticks:
+        return 0.0
+    return friction.sliding * float(np.linalg.norm(scene.gravity)) / friction.velocity
 
 
 def slowest_rate(scene: Scene, model: Model, duration: float) -> float:

@@ -16,7 +16,9 @@ from funicular.actions import Actions, DeadLoad, LoadModel, SignalModel, SpringM
 from funicular.constants import constants
 from funicular.diagnosis import notes
 from funicular.elements import gauge
+from funicular.ends import Buffer, HardStop, Stop
 from funicular.errors import FunicularWarning, SceneError
+from funicular.friction import Friction
 from funicular.holding import EndModel, Holder, LinkModel, linked, tied
 from funicular.integrators import choose
 from funicular.libraries import kernels_of, tables_of
@@ -33,6 +35,7 @@ from funicular.watching import Watcher
 from scipy.sparse import csr_array
 
 MOST_OUTPUT = 4e9  # bytes
+BRAKES = {2: "planar_brake", 3: "brake"}
 BODIES = {2: ("planar_rigid", 4, 3), 3: ("rigid", 7, 6)}
 """Kernels, length of the configuration and dofs of a rigid body, by dimension of the scene."""
 RIDERS = {2: "planar_point", 3: "point"}
@@ -110,7 +113,8 @@ class RigidModel:
 class JointModel:
     """One slide: kernels, its cable and its rider, its unknowns, what drives it, and where it starts.
 
-    native: the kernels take the rider's own configuration; room: multipliers that it has; drive: a signal, or -1.
+    native: the kernels take the rider's own configuration; room: multipliers that it has; drive: a signal, or -1;
+    brake: kernels of friction and buffers, or none; ends: what waits at the start and at the end of the cable.
     """
 
     name: str
@@ -127,6 +131,9 @@ class JointModel:
     s: float
     element: int
     director: np.ndarray
+    brake: str = ""
+    friction: Friction | None = None
+    ends: tuple[str | Stop, str | Stop] = ("error", "error")
 
 
 @dataclass
@@ -174,6 +181,7 @@ class Model:
         return sorted({c.element for c in self.cables} | {f"{c.element}_{c.law}" for c in self.cables}
                       | {j.kernel for j in self.joints} | {b.kernel for b in self.rigids}
                       | {link.kernel for link in self.links}
+                      | {j.brake for j in self.joints if j.brake}
                       | {b.modal_kernel for b in self.rigids if b.modes})
 
 
@@ -359,7 +367,9 @@ def _joint(slide: Slide, scene: Scene, holder: Holder, signal, number: int, mult
         forward = body is None or np.dot(axes[0], body.velocity) >= 0
         at = node if forward else node - 1
     rider = holder.end(slide.rider)
-    driven = slide.prescribed is not None
+    driven, ends, friction = slide.prescribed is not None, (slide.at_start, slide.at_end), slide.friction
+    may_hold = driven or (friction is not None and friction.sticks) or any(isinstance(end, HardStop) for end in ends)
+    brakes = not driven and (friction is not None or any(isinstance(end, Buffer) for end in ends))
     return JointModel(
         slide.name,
         f"slide_{along.element}_{BODIES[dim][0] if native else RIDERS[dim]}",
@@ -368,13 +378,16 @@ def _joint(slide: Slide, scene: Scene, holder: Holder, signal, number: int, mult
         native,
         (1 + dim) * number,
         multiplier,
-        dim - 1 + driven,
+        dim - 1 + may_hold,
         signal(slide.prescribed) if driven else -1,
         dim == 3 and not along.kind_of_element.director,
         rider.mass,
         slide.s,
         int(np.clip(np.floor(at), 0, along.elements - 1)),
         axes[1],
+        BRAKES[dim] * brakes,
+        friction if brakes else None,
+        ends,
     )
 
 
@@ -394,8 +407,7 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
     output_step = settings.output_step
     pace = pauses(int(np.ceil(settings.duration / output_step)) + 1, _check_size(model, settings, stream))
     engine, watcher = Engine(model), Watcher(scene, model)
-    if watcher.watches:
-        engine.watch(watcher)
+    engine.watch(watcher)
     messages = settle(model, engine)
     if settings.step is not None:
         step = output_step / np.ceil(output_step / settings.step * (1 - 1e-9))
@@ -416,6 +428,10 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
         first_step=min(output_step, 1e-3 * settings.duration),
         room=None if stream is None else pace.room,
     )
+    if status == "singular" and engine.jammed >= 0:
+        slide = list(scene.slides.values())[engine.jammed]
+        raise SceneError(slide.where, "friction jams it at the start: the more it holds, the more it presses the rider "
+                         "on the cable", "take a smaller coefficient, or the rider's point nearer to its centre of mass")
     if status == "singular":
         raise SceneError("scene", "the equations are singular at the start: a mass is zero, or a cable's director lies "
                          "along its tangent", "look at masses and inertias, and at up")
@@ -456,6 +472,10 @@ def _check_conserves(model: Model, scene: Scene, engine, method) -> None:
             raise SceneError(scene.cables[cable.name].where,
                              f'integrator "energy" has no algorithmic dissipation of the law "{cable.law}"',
                              "take spectral_radius = 1, another law, or another integrator")
+    for slide in scene.slides.values():
+        if slide.friction is not None or (slide.at_start, slide.at_end) != ("error", "error"):
+            raise SceneError(slide.where, 'integrator "energy" knows neither friction nor ends of cables',
+                             "take another integrator: genalpha, radau and explicit do")
     parts = [*(scene.joints[link.name] for link in model.links if link.slide is None),
              *(slide for slide, joint in zip(scene.slides.values(), model.joints, strict=True)
                if not joint.native or joint.drive >= 0 or slide.frame != "point")]

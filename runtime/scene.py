@@ -12,7 +12,6 @@ from funicular.ends import Stop
 from funicular.errors import ConvergenceError, EndOfCableError, FunicularWarning, ResultFileError, SceneError
 from funicular.friction import Friction
 from funicular.materials import Material
-from funicular.not_yet import refuse_what_the_engine_lacks
 from funicular.parts import (
     EXACT,
     Cable,
@@ -336,7 +335,6 @@ class Scene:
                                  "leave such a mode out, or give masses off the line that the others are on")
         for slide in self.slides.values():
             check_on_cable(self, slide)
-        refuse_what_the_engine_lacks(self)
 
     def run(
         self,

@@ -134,6 +134,10 @@ class Watcher:
         name, axis = event.quantity.rsplit(".", 1)
         return lambda time, state: state[name][AXES.index(axis)] - event.value
 
+    def acts(self, which: int, what: str, time: float, s: float) -> None:
+        """Note what a slide has done of itself: stuck, struck the end, and so on."""
+        self.happened.append({"name": self.model.joints[which].name, "time": time, "what": what, "s": s})
+
     def happens(self, which: int, time: float, q: np.ndarray, v: np.ndarray, s: np.ndarray) -> bool:
         """Note an event; whether the run goes on."""
         event, state = self.watches[which].event, State(self.model, q, v, s)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from funicular import Harmonic, Material, Ramp, Rectangle, Scene
+from funicular import Buffer, Friction, Harmonic, Material, Ramp, Rectangle, Scene
 from funicular.engine import Engine
 from funicular.integrators import GeneralisedAlpha
 from funicular.model import build
@@ -168,8 +168,24 @@ def tied() -> Scene:
     return scene
 
 
+def braked() -> Scene:
+    """Friction and buffers pressed, of a body off its centre and of a cable that rides, which do not stick."""
+    scene = loaded()
+    friction = Friction(coefficient=0.4, rolling=0.1, viscous=3.0, velocity=20.0)
+    scene.rigid_body("B", mass=1.0, inertia=(0.02, 0.03, 0.04), position=(0.9, -0.1, 0.05), velocity=(1, 0.2, 0.1),
+                     angular_velocity=(3, 5, -4))
+    scene.slide("B", along="wire", s=0.9, at=(0, 0.1, -0.05), friction=friction,
+                at_end=Buffer(length=1.0, stiffness=300.0, damping=20.0))
+    scene.cable("tail", start=(1.2, 0, 0), end=(1.2, -0.5, 0.3), elements=2, element="cable12",
+                section=Rectangle(height=0.05, width=0.05),
+                material=Material(youngs_modulus=1e8, poisson_ratio=0.3, density=4200))
+    scene.slide(("tail", 0.0), along="wire", s=1.2, friction=friction,
+                at_start=Buffer(length=1.4, stiffness=500.0, damping=10.0))
+    return scene
+
+
 SCENES = {f.__name__: f for f in (rider, loaded, planar, frame, star, jointed, jointed_plane, tied, modal,
-                                 modal_in_the_plane)}
+                                 modal_in_the_plane, braked)}
 
 
 @pytest.fixture(params=list(SCENES))

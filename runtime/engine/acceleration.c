@@ -3,25 +3,28 @@
 
 #include <string.h>
 
+#define MOST_SWEEPS 100
+#define TRIAL 0.1     /* of the change that the law asks for: the first step, lest it turn the normal force round */
+#define STEEP 0.1     /* slopes below have no secant that is worth it */
+#define SETTLED 1e-15 /* change of R by a sweep, over the force */
+#define NEARLY 1e-7   /* the same where rounding may rule it */
+
 static int n_rows(const fu_model *model)
 {
     return model->n_joints + model->n_links;
 }
 
-static void evaluate_slide(const fu_model *model, const fu_state *state, int j, fu_accelerator *work)
-{
-    const fu_joint *joint = &model->joints[j];
-    fu_rows *rows = &work->rows[j];
-    rows->first = joint->multiplier;
-    rows->room = joint->room;
-    rows->idle = 0;
-    for (int c = 0; c < rows->room; ++c) rows->scale[c] = joint->mass;
-    fu_slide_terms(model, state, j, rows, &work->slides[j]);
-}
-
 static void evaluate(const fu_model *model, const fu_state *state, fu_accelerator *work)
 {
-    for (int j = 0; j < model->n_joints; ++j) evaluate_slide(model, state, j, work);
+    for (int j = 0; j < model->n_joints; ++j) {
+        const fu_joint *joint = &model->joints[j];
+        fu_rows *rows = &work->rows[j];
+        rows->first = joint->multiplier;
+        rows->room = joint->room;
+        rows->idle = 0;
+        for (int c = 0; c < rows->room; ++c) rows->scale[c] = joint->mass;
+        fu_slide_terms(model, state, j, rows, &work->slides[j]);
+    }
     for (int k = 0; k < model->n_links; ++k) {
         const fu_link *link = &model->links[k];
         fu_rows *rows = &work->rows[model->n_joints + k];
@@ -32,11 +35,20 @@ static void evaluate(const fu_model *model, const fu_state *state, fu_accelerato
     }
 }
 
-/* ds/dt of one slide */
-double fu_slide_rate(const fu_model *model, const fu_state *state, int j, fu_accelerator *work)
+/* How one slide moves. */
+void fu_slide_now(const fu_model *model, const fu_state *state, int j, fu_slide_state *slide)
 {
-    evaluate_slide(model, state, j, work);
-    return work->slides[j].s_rate;
+    fu_rows unused;
+    fu_slide_terms(model, state, j, &unused, slide);
+}
+
+/* ds/dt of one slide; zero where s is held for good */
+double fu_slide_rate(const fu_model *model, const fu_state *state, int j)
+{
+    fu_slide_state slide;
+    if (state->mode[j] == FU_HELD && model->joints[j].drive < 0) return 0.0;
+    fu_slide_now(model, state, j, &slide);
+    return slide.s_rate;
 }
 
 /* M is constant, that of rigid bodies by body axes: its band is factored once, and its border's columns are solved. */
@@ -106,6 +118,97 @@ static double minus_H(const fu_rows *rows, int c, const double *x)
     return sum;
 }
 
+/* The force on a slide's rider. */
+static void force_of(const fu_model *model, const fu_accelerator *work, int j, const double *lambda, double *f)
+{
+    const fu_rows *rows = &work->rows[j];
+    const int dim = model->dim;
+    const double *by_point = work->slides[j].by_point;
+    for (int d = 0; d < dim; ++d) {
+        f[d] = 0.0;
+        for (int c = 0; c < rows->rows; ++c) f[d] -= by_point[c * dim + d] * lambda[rows->first + c];
+        if (model->joints[j].brake) f[d] += by_point[(dim - 1) * dim + d] * work->braking[j];
+    }
+}
+
+/* r_x, and the velocity along it, of a slide on its cable */
+static void along(const fu_model *model, const fu_slide_state *slide, double *t, double *u)
+{
+    const int dim = model->dim;
+    const double *G = slide->by_point + (dim - 1) * dim;
+    double square = 0.0;
+    for (int d = 0; d < dim; ++d) square += G[d] * G[d];
+    for (int d = 0; d < dim; ++d) {
+        t[d] = G[d] / square;
+        u[d] = t[d] * slide->s_rate;
+    }
+}
+
+/* By how much a slide's R should change where its law asks for `change`: by the secant of the last sweep, as what friction
+ * presses on the cable or takes off it hangs on R almost linearly. */
+static double towards(fu_accelerator *work, int n_joints, int j, double change)
+{
+    double *last = work->braking + n_joints + 1 + 2 * j;
+    const double slope = last[0] != 0.0 ? (last[1] - change) / last[0] : 0.0;
+    last[0] = last[0] == 0.0 ? TRIAL * change : slope > STEEP ? change / slope : change;
+    last[1] = change;
+    return last[0];
+}
+
+/* R of all slides by these multipliers, or null: by the forces of the state; work->work follows by G' R. Returns the
+ * largest change over the force. */
+static double brake(const fu_model *model, const fu_state *state, fu_accelerator *work, const double *lambda)
+{
+    double largest = 0.0, *steps = work->braking + model->n_joints + 1;
+    work->braking[model->n_joints] = 0.0;
+    for (int j = 0; j < model->n_joints; ++j) {
+        double t[3], u[3], f[3], size = 0.0;
+        fu_braking braking;
+        if (!lambda) work->braking[j] = steps[2 * j] = 0.0;
+        if (!model->joints[j].brake || state->mode[j] != FU_SLIDES) continue;
+        along(model, &work->slides[j], t, u);
+        if (lambda) force_of(model, work, j, lambda, f);
+        else memcpy(f, state->f + 3 * j, sizeof f);
+        fu_braking_of(model, state, j, t, u, f, &braking);
+        work->braking[model->n_joints] += fu_brake_power(model, state, j, t, u, f);
+        const double change = braking.R - work->braking[j];
+        const double step = lambda ? towards(work, model->n_joints, j, change) : change;
+        for (int d = 0; d < model->dim; ++d) size = fmax(size, fabs(f[d]));
+        size = fabs(change) / fmax(size, fabs(braking.R));
+        if (change != 0.0 && !(size <= largest)) {
+            largest = size;
+            work->jammed = j;
+        }
+        work->braking[j] += step;
+        for (int k = 0; k < work->rows[j].n; ++k)
+            work->work[work->rows[j].at[k]] += work->slides[j].G[k] * step;
+    }
+    return largest;
+}
+
+/* Accelerations and multipliers, in work->rhs, by the forces in work->work; with brakes, whose friction hangs on the
+ * multipliers, by sweeps. Not zero where these do not settle: where friction presses the rider on the cable by more than
+ * what it comes from, there is no solution (Painleve's). */
+static int settle(const fu_model *model, const fu_state *state, fu_accelerator *work, double *acceleration)
+{
+    double *lambda = work->rhs + model->n_band + model->n_border_dof, last = INFINITY;
+    if (model->n_brakes) brake(model, state, work, 0);
+    for (int sweep = 0;; ++sweep) {
+        for (int r = 0; r < n_rows(model); ++r)
+            for (int c = 0; c < work->rows[r].room; ++c)
+                lambda[work->rows[r].first + c] = c < work->rows[r].rows
+                    ? work->rows[r].W[c] + minus_H(&work->rows[r], c, work->prescribed) : 0.0;
+        solve(model, work, work->work, acceleration);
+        if (!model->n_brakes) return 0;
+        const double change = brake(model, state, work, lambda);
+        if (change <= SETTLED || (change <= NEARLY && change >= last)) break;
+        if (!(change < 1e30) || sweep == MOST_SWEEPS) return 1;
+        last = change;
+    }
+    work->jammed = -1;
+    return 0;
+}
+
 /* S = H M^-1 H' (multipliers x multipliers) at a state: singular where joints hold the same. */
 int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S)
 {
@@ -138,6 +241,7 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
                      fu_joint_output *joints, double *reaction)
 {
     double *lambda = work->rhs + model->n_band + model->n_border_dof, *prescribed = work->prescribed;
+    work->jammed = -1;
     evaluate(model, state, work);
     const int info = factor_border(model, state, work);
     if (info) return info;
@@ -149,10 +253,7 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
         prescribed[model->motions[k].dof] = state->acceleration[model->motions[k].dof];
     if (model->n_motions) fu_mass_times(model, state->q, prescribed, work->work);
     for (int i = 0; i < model->n_dof; ++i) work->work[i] = -work->force[i] - work->work[i];
-    for (int r = 0; r < n_rows(model); ++r)
-        for (int c = 0; c < work->rows[r].rows; ++c)
-            lambda[work->rows[r].first + c] = work->rows[r].W[c] + minus_H(&work->rows[r], c, prescribed);
-    solve(model, work, work->work, acceleration);
+    if (settle(model, state, work, acceleration)) return 1;
     for (int i = 0; i < model->n_dof; ++i) acceleration[i] += prescribed[i];
     memcpy(work->multipliers, lambda, sizeof(double) * (size_t)model->n_multipliers);
     if (joints)
@@ -166,16 +267,15 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
             out->s_acceleration = slide->s_bias;
             for (int k = 0; k < rows->n; ++k) out->s_acceleration += slide->G[k] * acceleration[rows->at[k]];
             for (int c = 0; c < dim - 1 && c < rows->rows; ++c) out->multiplier[c] = lambda[rows->first + c];
-            double along = 0.0, square = 0.0;
+            double pull = 0.0, square = 0.0;
+            force_of(model, work, j, lambda, out->force);
             for (int d = 0; d < dim; ++d) {
                 const double G = slide->by_point[(dim - 1) * dim + d]; /* along the tangent */
                 out->residual[d] = slide->C[d];
-                for (int c = 0; c < rows->rows; ++c)
-                    out->force[d] -= slide->by_point[c * dim + d] * lambda[rows->first + c];
-                along += G * out->force[d];
+                pull += G * out->force[d];
                 square += G * G;
             }
-            out->traction = along / sqrt(square);
+            if (square > 0.0) out->traction = pull / sqrt(square);
         }
     if (reaction) {
         fu_mass_times(model, state->q, acceleration, work->work);
@@ -185,22 +285,30 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
             for (int c = 0; c < rows->rows; ++c)
                 for (int k = 0; k < rows->n; ++k)
                     reaction[rows->at[k]] += rows->H[c * rows->n + k] * lambda[rows->first + c];
+            if (r < model->n_joints && model->joints[r].brake)
+                for (int k = 0; k < rows->n; ++k)
+                    reaction[rows->at[k]] -= work->slides[r].G[k] * work->braking[r];
         }
     }
     return 0;
 }
 
-/* change = the smallest (in the mass norm) change of the dofs with H change = -C_m, or, of velocities, -H v */
-static int project(const fu_model *model, const fu_state *state, fu_accelerator *work, int of_velocities,
+/* change = the smallest (in the mass norm) change of the dofs with H change = -C_m, or, of velocities, -H v; of these the
+ * slide `struck` comes back with the restitution of the stop that it has come to */
+static int project(const fu_model *model, const fu_state *state, fu_accelerator *work, int of_velocities, int struck,
                    double *change)
 {
     double *lambda = work->rhs + model->n_band + model->n_border_dof;
     evaluate(model, state, work);
     const int info = factor_border(model, state, work);
     if (info) return info;
+    if (struck >= 0)
+        work->rows[struck].rate[model->dim - 1] =
+            model->joints[struck].stops[state->contact[struck] > 0].restitution * work->slides[struck].s_rate;
     for (int i = 0; i < model->n_dof; ++i) work->work[i] = 0.0;
     for (int r = 0; r < n_rows(model); ++r) {
         const fu_rows *rows = &work->rows[r];
+        for (int c = rows->rows; c < rows->room; ++c) lambda[rows->first + c] = 0.0;
         for (int c = 0; c < rows->rows; ++c)
             lambda[rows->first + c] = of_velocities ? minus_H(rows, c, state->v) - rows->rate[c] : -rows->C[c];
     }
@@ -211,13 +319,20 @@ static int project(const fu_model *model, const fu_state *state, fu_accelerator 
 /* change = an increment of the dofs that makes constraints zero, to first order */
 int fu_project_positions(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change)
 {
-    return project(model, state, work, 0, change);
+    return project(model, state, work, 0, -1, change);
 }
 
 /* change = a change of v that makes H v = 0, or minus what drives them */
 int fu_project_velocities(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change)
 {
-    return project(model, state, work, 1, change);
+    return project(model, state, work, 1, -1, change);
+}
+
+/* change = that of v where a slide, which the state holds for that, strikes its stop: M change + H' L + G' P = 0, so that
+ * momentum changes by what the stop gives alone */
+int fu_strike(const fu_model *model, const fu_state *state, fu_accelerator *work, int joint, double *change)
+{
+    return project(model, state, work, 1, joint, change);
 }
 
 /* Newton step for s of a joint where it stands with this s, and the tangent */

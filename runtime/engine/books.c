@@ -29,6 +29,24 @@ static double driving_power(const fu_run *run, const fu_state *state)
     return power;
 }
 
+/* power that goes to heat at a state: in cables and springs, and in brakes by the forces that a Newton method solves for,
+ * else by those of eq 38 */
+double fu_dissipated_power(const fu_run *run, const fu_state *state)
+{
+    const fu_model *model = run->model;
+    double power = fu_dissipation(model, state->q, state->v);
+    if (!model->n_brakes) return power;
+    if (!run->integrator->newton) return power + run->accelerator.braking[model->n_joints];
+    for (int j = 0; j < model->n_joints; ++j) {
+        double J[3 * (FU_SLIDE_COORDINATES + 1)], K[(FU_SLIDE_COORDINATES + 1) * (FU_SLIDE_COORDINATES + 1)], t[3], u[3];
+        if (!model->joints[j].brake || state->mode[j] != FU_SLIDES) continue;
+        fu_slide_tangent(model, state, j, state->f + 3 * j, J, K);
+        fu_slide_motion(model, state, j, J, t, u);
+        power += fu_brake_power(model, state, j, t, u, state->f + 3 * j);
+    }
+    return power;
+}
+
 /* power of the loads, of what drives slides and joints and, with the forces that the supports give, of the motions */
 double fu_external_power(fu_run *run, const fu_state *state, const double *reaction)
 {
@@ -49,7 +67,7 @@ double fu_external_power(fu_run *run, const fu_state *state, const double *react
 /* The step just made, by the trapezoidal rule: as good as a method of order 2. */
 void fu_book_trapezoid(fu_run *run, double h)
 {
-    const double dissipated = fu_dissipation(run->model, run->next.q, run->next.v);
+    const double dissipated = fu_dissipated_power(run, &run->next);
     const double external = fu_external_power(run, &run->next, run->force);
     run->dissipated += 0.5 * h * (run->dissipated_power + dissipated);
     run->external += 0.5 * h * (run->external_power + external);

@@ -35,6 +35,8 @@ static void copy_state(copier *c, const fu_model *model, fu_state *state)
     copy(c, state->hold, sizeof(double) * joints);
     copy(c, state->element, sizeof(int) * joints);
     copy(c, state->mode, sizeof(int) * joints);
+    copy(c, state->way, sizeof(int) * joints);
+    copy(c, state->contact, sizeof(int) * joints);
     copy(c, state->director, 3 * sizeof(double) * joints);
     copy(c, state->memory, sizeof(double) * (size_t)model->n_memory);
 }

@@ -115,6 +115,14 @@ typedef struct {
     double A[9], omega[3], alpha[3], T[3 * FU_END_COORDINATES];
 } fu_place;
 
+/* What waits for a slide at an end of its cable, and what it does in its own way: restitution of a hard stop; length
+ * before the end, stiffness and damping of a buffer. */
+enum { FU_END_IS_ERROR, FU_END_IS_OPEN, FU_END_IS_HARD, FU_END_IS_BUFFERED };
+typedef struct {
+    int kind;
+    double restitution, length, stiffness, damping;
+} fu_terminal;
+
 /* A slide. It slides, or s is held, at a signal or where it stands, or the rider has left the cable. */
 enum { FU_SLIDES, FU_HELD, FU_LEFT };
 typedef struct {
@@ -127,6 +135,10 @@ typedef struct {
     int drive;               /* signal that s follows, -1 */
     int carries_director;    /* the element has none of its own */
     double mass; /* scale of the constraint rows, kg */
+    const fu_brake *brake;   /* null where there are neither friction nor buffers */
+    int sticks;              /* friction holds it at rest, else it rises with the speed */
+    double friction, holding, viscous, velocity; /* coefficients sliding and at rest; N s/m; m/s */
+    fu_terminal stops[2];        /* at the start and at the end */
 } fu_joint;
 
 /* A joint between two ends; c = base + its signal drives it. */
@@ -235,6 +247,7 @@ typedef struct {
     const fu_load *loads;
     const fu_signal *signals;
     int n_q, n_dof, n_band, n_border_dof;
+    int n_brakes; /* slides that have one */
     int n_memory; /* zero without algorithmic dissipation */
     int n_extra, n_multipliers; /* unknowns of slides, joints and springs in a Newton system, of the former in eq 38 */
     const int *place;
@@ -262,6 +275,8 @@ typedef struct {
     double *hold;    /* per joint: s where it is held */
     int *element;    /* per joint: element that holds s */
     int *mode;       /* per joint: FU_SLIDES and so on */
+    int *way;        /* per joint: 1 or -1 where friction is against that direction whatever the speed */
+    int *contact;    /* per joint: 1 or -1 where it lies against what is at the end or at the start */
     double *director; /* per joint: unit vector across the tangent, carried along with the slide */
     double *memory;  /* of algorithmic dissipation */
 } fu_state;
@@ -356,11 +371,27 @@ typedef struct {
 int fu_slide_coordinates(const fu_model *model, const fu_state *state, int j, int *at);
 double fu_slide_held(const fu_model *model, const fu_state *state, int j, double *rate, double *second);
 void fu_slide_residual(const fu_model *model, const fu_state *state, int j, double *phi, double *g);
-void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, double *J, double *K);
+void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, const double *f, double *J, double *K);
 void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows *rows, fu_slide_state *slide);
 double fu_slide_step(const fu_model *model, const fu_state *state, int j, double s, double A_t[9]);
 
+/* brakes.c: R of a slide, the force along its cable times r_x, and its derivatives */
+typedef struct {
+    double R, by_t[3], by_u[3], by_f[3], by_s;
+} fu_braking;
+void fu_braking_of(const fu_model *model, const fu_state *state, int j, const double *t, const double *u, const double *f,
+              fu_braking *braking);
+double fu_brake_power(const fu_model *model, const fu_state *state, int j, const double *t, const double *u,
+                      const double *f);
+double fu_brake_energy(const fu_model *model, const fu_state *state);
+void fu_touch_buffers(const fu_model *model, fu_state *state);
+double fu_compression(const fu_model *model, const fu_state *state, int j, int side);
+void fu_slide_motion(const fu_model *model, const fu_state *state, int j, const double *J, double *t, double *u);
+void fu_brake_rows(const fu_model *model, const fu_state *state, int j, const double *J, const fu_braking *braking,
+                   double *by_place, double *by_rate);
+
 /* links.c */
+int fu_link_is_idle(const fu_link *link, const fu_state *state);
 int fu_link_residual(const fu_model *model, const fu_link *link, const fu_state *state, double *phi, int *at, double *J);
 int fu_between_cables(const fu_link *link);
 int fu_link_tangent(const fu_model *model, const fu_link *link, const fu_state *state, int *at, double *J, double *K);
@@ -401,6 +432,8 @@ typedef struct {
     fu_slide_state *slides;
     double *force, *work, *prescribed; /* n_dof */
     double *multipliers;  /* of slides and links, as eq 38 gives them */
+    double *braking;      /* per slide: R; then the power that brakes take; then of each slide's R the last step and its cause */
+    int jammed;           /* slide whose R was not found, -1 */
     double *joints;       /* FU_JOINT_OUTPUTS a joint */
 } fu_accelerator;
 typedef struct {
@@ -416,7 +449,9 @@ void fu_link_outputs(const fu_model *model, const fu_state *state, const fu_acce
 int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S);
 int fu_project_positions(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change);
 int fu_project_velocities(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change);
-double fu_slide_rate(const fu_model *model, const fu_state *state, int joint, fu_accelerator *work);
+int fu_strike(const fu_model *model, const fu_state *state, fu_accelerator *work, int joint, double *change);
+void fu_slide_now(const fu_model *model, const fu_state *state, int joint, fu_slide_state *slide);
+double fu_slide_rate(const fu_model *model, const fu_state *state, int joint);
 int fu_find_arc_length(const fu_model *model, const fu_state *state, int joint, double *s);
 void fu_carry_directors(const fu_model *model, fu_state *state);
 
@@ -452,14 +487,17 @@ typedef struct {
     int *pivot_band, *pivot_border;
 } fu_complex_system;
 
-/* What the user watches: an entry of the state less a value, or a function of his. */
-enum { FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_CALL };
+/* What the user watches: an entry of the state less a value, or a function of his; what stops.c watches on a slide:
+ * whether it stays as it is, and its buffer at the end that `value` is the side of. */
+enum { FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_CALL, FU_WATCH_GRIP, FU_WATCH_BUFFER };
 typedef struct {
     int kind, index, direction; /* direction: 1 rising, -1 falling, 0 both */
     double value;
 } fu_watch;
 
-enum { FU_NO_EVENT = 0, FU_CROSSING, FU_WATCHED };
+/* FU_ACTED: a slide, `which`, has done what `side` says: engine.pyx has words for it */
+enum { FU_NO_EVENT = 0, FU_CROSSING, FU_WATCHED, FU_ACTED };
+enum { FU_NOTHING, FU_STUCK, FU_BROKE_LOOSE, FU_TURNED, FU_STRUCK, FU_FREED, FU_FLEW, FU_ENTERED, FU_CAME_OUT, FU_RESTS };
 typedef struct {
     int kind, which, side;
 } fu_event;
@@ -473,7 +511,7 @@ enum { FU_RUNNING = 0, FU_DONE = 1, FU_END_OF_CABLE = 2, FU_NO_CONVERGENCE = 3, 
        FU_UNSTABLE = 6 };
 
 /* Why a step failed, and where that shows most: a dof, and a joint or -1. */
-enum { FU_NO_FAILURE = 0, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE };
+enum { FU_NO_FAILURE = 0, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE, FU_JAM };
 typedef struct {
     int cause, dof, joint;
 } fu_failure;
@@ -600,6 +638,7 @@ int fu_wander(fu_run *run, const double *along, double *left);
 int fu_complete(fu_run *run, fu_state *state);
 
 /* books.c */
+double fu_dissipated_power(const fu_run *run, const fu_state *state);
 double fu_external_power(fu_run *run, const fu_state *state, const double *reaction);
 void fu_book_trapezoid(fu_run *run, double h);
 int fu_moves(const fu_run *run);
@@ -608,6 +647,7 @@ int fu_check_books(fu_run *run, const double energies[FU_ENERGIES], int first);
 /* failure.c: why a step failed */
 int fu_fail(fu_run *run, int cause, const double *dofs, int joint);
 int fu_fail_at(fu_run *run, int cause, int unknown);
+int fu_fail_eq38(fu_run *run);
 
 /* events.c */
 fu_event fu_find_event(const fu_run *run, fu_event known);
@@ -620,6 +660,15 @@ void fu_keep_elements(fu_run *run);
 int fu_stands_on_boundary(const fu_run *run, fu_event event);
 double fu_locate(fu_run *run, fu_event event, double h);
 void fu_watch_now(fu_run *run, fu_event event);
+void fu_watch_anew(fu_run *run, int joint);
+
+/* stops.c: slides that stick, break loose, and reach what is at the ends of their cables */
+int fu_has_stops(const fu_model *model);
+double fu_grip(const fu_run *run, const fu_state *state, int joint);
+double fu_press(const fu_run *run, const fu_state *state, int joint, int side);
+int fu_begin_stops(fu_run *run);
+int fu_reach_end(fu_run *run, int joint, int side, int *what);
+int fu_act(fu_run *run, const fu_watch *watch, int side, int *what);
 
 /* run.c: the time loop */
 int fu_prepare(fu_run *run);

@@ -21,8 +21,10 @@ cdef extern from "kernels.h" nogil:
     ctypedef struct fu_pair:
         const char *name
         int rows
+    ctypedef struct fu_brake:
+        const char *name
     ctypedef struct fu_tables:
-        int n_elements, n_laws, n_bodys, n_modals, n_slides, n_frames, n_pairs
+        int n_elements, n_laws, n_bodys, n_modals, n_slides, n_frames, n_pairs, n_brakes
         const fu_element *elements
         const fu_law *laws
         const fu_body *bodys
@@ -30,6 +32,7 @@ cdef extern from "kernels.h" nogil:
         const fu_slide *slides
         const fu_frame *frames
         const fu_pair *pairs
+        const fu_brake *brakes
 
 cdef extern from "blocks.h" nogil:
     ctypedef struct fu_law_blocks:
@@ -39,8 +42,10 @@ cdef extern from "blocks.h" nogil:
 cdef extern from "engine.h" nogil:
     int FU_JOINT_OUTPUTS, FU_LINK_OUTPUTS, FU_MAX_COORDINATES, FU_MAX_RATES, FU_END_COORDINATES, FU_SLIDES, FU_HELD, FU_LEFT
     int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT, FU_UNSTABLE
-    int FU_NO_FAILURE, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE
-    int FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_CALL
+    int FU_NO_FAILURE, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE, FU_JAM
+    int FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_CALL, FU_WATCH_GRIP, FU_WATCH_BUFFER
+    int FU_ACTED, FU_STUCK, FU_BROKE_LOOSE, FU_TURNED, FU_STRUCK, FU_FREED, FU_FLEW, FU_ENTERED, FU_CAME_OUT, FU_RESTS
+    int FU_END_IS_ERROR, FU_END_IS_OPEN, FU_END_IS_HARD, FU_END_IS_BUFFERED
     int FU_SIGNAL_TERMS, FU_BAND_GROUP
     long FU_BAND_BEYOND(int width)
     long FU_BAND_LENGTH(int n, int width)
@@ -99,11 +104,18 @@ cdef extern from "engine.h" nogil:
                          fu_modal_point *out, double *P, double *T)
     void fu_modal_anchor_force(const fu_rigid *body, const fu_spot *spot, const double *b, const double *f,
                                const double *m, double *K)
+    ctypedef struct fu_terminal:
+        int kind
+        double restitution, length, stiffness, damping
     ctypedef struct fu_joint:
         const fu_slide *kernel
         int cable, native, unknown, multiplier, room, drive, carries_director
         fu_end rider
         double mass
+        const fu_brake *brake
+        int sticks
+        double friction, holding, viscous, velocity
+        fu_terminal stops[2]
     ctypedef struct fu_link:
         const fu_pair *kernel
         fu_end ends[2]
@@ -171,7 +183,7 @@ cdef extern from "engine.h" nogil:
         const fu_dead_load *dead_loads
         const fu_load *loads
         const fu_signal *signals
-        int n_q, n_dof, n_band, n_border_dof, n_memory, n_extra, n_multipliers
+        int n_q, n_dof, n_band, n_border_dof, n_brakes, n_memory, n_extra, n_multipliers
         const int *place
         const int *combination_start
         const int *combination_place
@@ -197,6 +209,8 @@ cdef extern from "engine.h" nogil:
         double *hold
         int *element
         int *mode
+        int *way
+        int *contact
         double *director
         double *memory
     ctypedef struct fu_rows:
@@ -213,6 +227,8 @@ cdef extern from "engine.h" nogil:
         double *work
         double *prescribed
         double *multipliers
+        double *braking
+        int jammed
         double *joints
     ctypedef struct fu_link_output:
         double residual
@@ -327,6 +343,8 @@ cdef extern from "engine.h" nogil:
     void fu_prescribe(const fu_model *model, fu_state *state)
     void fu_carry_directors(const fu_model *model, fu_state *state)
     double fu_elastic_energy(const fu_model *model, const double *q)
+    void fu_touch_buffers(const fu_model *model, fu_state *state)
+    double fu_brake_energy(const fu_model *model, const fu_state *state)
     int fu_moves(const fu_run *run)
     int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S)
     int fu_prepare(fu_run *run)

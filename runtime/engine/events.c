@@ -8,6 +8,7 @@
 #define PRECISE 1e-13     /* of an element, or of what a watched quantity changes by in the step */
 #define LITTLE 1e-2       /* of what is allowed */
 #define LARGEST_MISS 1e-6 /* of an element */
+#define SMALLEST 1e-300   /* a value with a sign */
 
 static double boundary_tolerance(const fu_run *run, int j)
 {
@@ -57,7 +58,7 @@ double fu_time_to_boundary(fu_run *run)
 {
     double least = INFINITY;
     for (int j = 0; j < run->model->n_joints; ++j) {
-        const double rate = fu_slide_rate(run->model, &run->now, j, &run->accelerator);
+        const double rate = fu_slide_rate(run->model, &run->now, j);
         const double end = fu_element_start(run->model, j, run->now.element[j] + (rate > 0.0));
         const double way = fabs(end - run->now.s[j]);
         if (way > boundary_tolerance(run, j)) least = fmin(least, way / fabs(rate));
@@ -70,7 +71,7 @@ double fu_time_to_boundary(fu_run *run)
 double fu_time_of_turn(fu_run *run, double h)
 {
     for (int j = 0; j < run->model->n_joints; ++j) {
-        const double rise = h * fu_slide_rate(run->model, &run->now, j, &run->accelerator), way = fabs(rise);
+        const double rise = h * fu_slide_rate(run->model, &run->now, j), way = fabs(rise);
         const double at = 0.5 * rise / (rise - (run->next.s[j] - run->now.s[j])), close = boundary_tolerance(run, j);
         const int up = rise > 0.0, element = run->now.element[j];
         const double ahead = fabs(fu_element_start(run->model, j, element + up) - run->now.s[j]);
@@ -82,7 +83,7 @@ double fu_time_of_turn(fu_run *run, double h)
     return 0.0;
 }
 
-/* what an event of the user's watches, positive where it has happened when `side` is 1 */
+/* what an event of the user's, or of a slide's, watches, positive where it has happened when `side` is 1 */
 static double watched(const fu_run *run, const fu_state *state, int k)
 {
     const fu_watch *watch = &run->watches[k];
@@ -90,6 +91,8 @@ static double watched(const fu_run *run, const fu_state *state, int k)
     case FU_WATCH_Q: return state->q[watch->index] - watch->value;
     case FU_WATCH_V: return state->v[watch->index] - watch->value;
     case FU_WATCH_S: return state->s[watch->index] - watch->value;
+    case FU_WATCH_GRIP: return fu_grip(run, state, watch->index);
+    case FU_WATCH_BUFFER: return fu_press(run, state, watch->index, (int)watch->value);
     default: return run->call(run->context, k, state);
     }
 }
@@ -167,7 +170,7 @@ static double locate(fu_run *run, fu_event event, double h)
     const double least = 1e-13 * run->duration, close = landing(run, event, g_high - g_low);
     int last = 0;
     if (event.kind == FU_CROSSING) {
-        const double rate = event.side * fu_slide_rate(run->model, &run->now, event.which, &run->accelerator);
+        const double rate = event.side * fu_slide_rate(run->model, &run->now, event.which);
         middle = h * root_of_parabola(g_low, g_high, h * rate);
     }
     if (g_high <= close) return h;
@@ -216,6 +219,19 @@ void fu_watch_now(fu_run *run, fu_event event)
         if (known || late.kind) run->watched[k] = 0.0;
         else if (value != 0.0) run->watched[k] = value;
         if (!known && late.kind) run->late[k] = late.side;
+    }
+}
+
+/* The side on which a slide's watches stand now that a slide has another state, and has just had their value zero. */
+void fu_watch_anew(fu_run *run, int joint)
+{
+    for (int k = 0; k < run->n_watches; ++k) {
+        const fu_watch *watch = &run->watches[k];
+        if (watch->kind != FU_WATCH_GRIP && watch->kind != FU_WATCH_BUFFER) continue;
+        if (watch->index == joint) run->late[k] = 0;
+        if (run->late[k]) continue;
+        const int side = watch->kind == FU_WATCH_BUFFER && run->now.contact[watch->index] == (int)watch->value ? 1 : -1;
+        run->watched[k] = side * fmax(side * watched(run, &run->now, k), SMALLEST);
     }
 }
 

@@ -51,7 +51,7 @@ static double *powers(fu_run *run, int k)
 static void keep(fu_run *run, int k, const fu_state *state)
 {
     rates(run->model, state, stage(run, k));
-    powers(run, k)[0] = fu_dissipation(run->model, state->q, state->v);
+    powers(run, k)[0] = fu_dissipated_power(run, state);
     powers(run, k)[1] = fu_external_power(run, state, run->force);
 }
 
@@ -88,12 +88,12 @@ static int step(fu_run *run, double h)
     for (int k = 1; k < n; ++k) {
         if (move_to(run, tableau->A + k * n, k, run->now.t + tableau->c[k] * h, h)) return 1;
         if (fu_accelerations(model, next, &run->accelerator, next->acceleration, 0, reaction))
-            return fu_fail(run, FU_MATRIX, next->v, -1);
+            return fu_fail_eq38(run);
         keep(run, k, next);
     }
     if (move_to(run, tableau->b, n, run->now.t + h, h)) return 1;
     if (fu_return_to_joints(run, next)) return 1;
-    if (fu_complete(run, next)) return fu_fail(run, FU_MATRIX, next->v, -1);
+    if (fu_complete(run, next)) return fu_fail_eq38(run);
     keep(run, n, next);
     run->statistics.evaluations += n;
     for (int i = 0; i < model->n_dof; ++i)

@@ -30,3 +30,10 @@ int fu_fail_at(fu_run *run, int cause, int unknown)
             run->failure.joint = j;
     return 1;
 }
+
+/* The same where eq 38 has no solution: by friction that jams, or by its matrix. */
+int fu_fail_eq38(fu_run *run)
+{
+    const int jammed = run->accelerator.jammed;
+    return fu_fail(run, jammed >= 0 ? FU_JAM : FU_MATRIX, run->next.v, jammed);
+}

@@ -52,6 +52,14 @@ static int slides(const fu_model *model, const fu_state *state, int at)
     return 0;
 }
 
+/* R of a slide that has a brake and slides; J: derivatives of phi by its coordinates and s */
+static void brake(const fu_model *model, const fu_state *state, int j, const double *J, fu_braking *braking)
+{
+    double t[3], u[3];
+    fu_slide_motion(model, state, j, J, t, u);
+    fu_braking_of(model, state, j, t, u, state->f + 3 * j, braking);
+}
+
 /* minus the scaled residual, over the unknowns; run->force keeps the unscaled sum over the dofs */
 static void residual(fu_run *run, double inertia, double scale)
 {
@@ -74,6 +82,13 @@ static void residual(fu_run *run, double inertia, double scale)
         for (int i = 0; i < s; ++i) run->force[at[i]] += g[i];
         extra[joint->unknown] = mode == FU_SLIDES ? -scale * g[s]
             : -unit * (next->s[j] - (mode == FU_HELD ? fu_slide_held(model, next, j, &rate, &second) : run->now.s[j]));
+        if (joint->brake && mode == FU_SLIDES) {
+            double J[3 * (FU_SLIDE_COORDINATES + 1)], K[(FU_SLIDE_COORDINATES + 1) * (FU_SLIDE_COORDINATES + 1)];
+            fu_braking braking;
+            fu_slide_tangent(model, next, j, next->f + 3 * j, J, K);
+            brake(model, next, j, J, &braking);
+            extra[joint->unknown] += scale * braking.R;
+        }
         for (int d = 0; d < joint->kernel->dim; ++d)
             extra[joint->unknown + 1 + d] = mode == FU_LEFT ? -scale * next->f[3 * j + d] : -unit * phi[d];
     }
@@ -81,6 +96,10 @@ static void residual(fu_run *run, double inertia, double scale)
         const fu_link *link = &model->links[k];
         const double *multipliers = next->multipliers + 6 * k;
         double equations[6], J[6 * 2 * FU_END_COORDINATES];
+        if (fu_link_is_idle(link, next)) {
+            for (int r = 0; r < link->kernel->rows; ++r) extra[link->unknown + r] = -scale * multipliers[r];
+            continue;
+        }
         const int n = fu_link_residual(model, link, next, equations, at, J);
         for (int r = 0; r < link->kernel->rows; ++r) {
             if (link->idle >> r & 1) equations[r] = 0.0;
@@ -114,6 +133,24 @@ static void turn_columns(const fu_model *model, const fu_end *end, const double 
     fu_turn_columns(body->kernel, rows, n_rows, n_columns, first, psi + body->dof);
 }
 
+/* What R adds to the row of s of a slide; J as above, by the coordinates themselves. */
+static void brake_matrix(fu_run *run, int j, const double *J, fu_weights w, const double *psi)
+{
+    const fu_model *model = run->model;
+    const fu_joint *joint = &model->joints[j];
+    double by_place[FU_SLIDE_COORDINATES + 1], by_rate[FU_SLIDE_COORDINATES + 1];
+    int at[FU_SLIDE_COORDINATES + 1];
+    const int s = fu_slide_coordinates(model, &run->next, j, at), n = s + 1;
+    fu_braking braking;
+    brake(model, &run->next, j, J, &braking);
+    fu_brake_rows(model, &run->next, j, J, &braking, by_place, by_rate);
+    turn_columns(model, &joint->rider, psi, by_place, 1, n, model->cables[joint->cable].coordinates);
+    for (int k = 0; k < n; ++k)
+        fu_add(model, &run->newton, at[s], at[k], -w.stiffness * (by_place[k] + w.rate * by_rate[k]));
+    for (int d = 0; d < model->dim; ++d)
+        fu_add(model, &run->newton, at[s], at[s] + 1 + d, -fu_row_unit(w.inertia, joint->mass) * braking.by_f[d]);
+}
+
 /* Derivative at `next` of the scaled residual by the unknowns; psi: what moved the bodies there, or null where the
  * unknowns move them from there. */
 static void matrix(fu_run *run, fu_weights w, const double *psi)
@@ -133,7 +170,8 @@ static void matrix(fu_run *run, fu_weights w, const double *psi)
         const double mass = fu_row_unit(w.inertia, joint->mass);
         const int s = fu_slide_coordinates(model, next, j, at), n = s + 1, dim = joint->kernel->dim;
         const int row = at[s], force = row + 1;
-        fu_slide_tangent(model, next, j, J, K);
+        fu_slide_tangent(model, next, j, next->f + 3 * j, J, K);
+        if (joint->brake && next->mode[j] == FU_SLIDES) brake_matrix(run, j, J, w, psi);
         for (int i = 0; i < n; ++i)
             for (int d = 0; d < dim; ++d)
                 if (i < s || next->mode[j] == FU_SLIDES) fu_add(model, system, at[i], force + d, mass * J[d * n + i]);
@@ -154,6 +192,11 @@ static void matrix(fu_run *run, fu_weights w, const double *psi)
         const fu_link *link = &model->links[k];
         const int n = fu_link_tangent(model, link, next, at, J, K), rows = link->kernel->rows, first = fu_extra(model, link->unknown);
         int from[2] = {0, 0}, unused[FU_END_COORDINATES];
+        if (fu_link_is_idle(link, next)) {
+            for (int r = 0; r < rows; ++r)
+                fu_add(model, system, first + r, first + r, fu_row_unit(w.inertia, link->scale[r]));
+            continue;
+        }
         from[1] = fu_end_coordinates(model, &link->ends[0], next, unused);
         for (int r = 0; r < rows; ++r) {
             if (!(link->idle >> r & 1)) continue;
@@ -250,6 +293,7 @@ void fu_static_move(fu_run *run, const double *change)
     fu_spread(model, run->rhs, run->work);
     fu_move(model, run->next.q, run->work);
     fu_apply_extra(run, 0.0, 1.0);
+    if (model->n_brakes) fu_touch_buffers(model, &run->next);
 }
 
 /* minus the sum of forces and the joints' residuals, in run->rhs */

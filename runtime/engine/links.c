@@ -63,6 +63,14 @@ static int coordinates(const link_view *view, int *at)
     return view->n;
 }
 
+/* whether the slide that it stands beside has left its cable */
+int fu_link_is_idle(const fu_link *link, const fu_state *state)
+{
+    for (int e = 0; e < 2; ++e)
+        if (link->ends[e].slide >= 0 && state->mode[link->ends[e].slide] == FU_LEFT) return 1;
+    return 0;
+}
+
 /* phi, its derivatives J over the joint's coordinates, and their numbers for fu_add; returns how many they are */
 int fu_link_residual(const fu_model *model, const fu_link *link, const fu_state *state, double *phi, int *at, double *J)
 {
@@ -120,6 +128,10 @@ void fu_link_terms(const fu_model *model, const fu_link *link, const fu_state *s
     const int m = link->kernel->rows, dim = model->dim;
     double by_moves[6 * MOVES], K[MOVES * MOVES], J[6 * 2 * FU_END_COORDINATES], s_rate[2], gap_rate[3];
     link_view view;
+    if (fu_link_is_idle(link, state)) {
+        rows->n = rows->rows = 0;
+        return;
+    }
     for (int e = 0; e < 2; ++e) s_rate[e] = link->ends[e].slide >= 0 ? slides[link->ends[e].slide].s_rate : 0.0;
     look(model, link, state, s_rate, &view);
     const fu_place *one = &view.place[0], *two = &view.place[1];
@@ -183,6 +195,10 @@ void fu_link_outputs(const fu_model *model, const fu_state *state, const fu_acce
         const fu_link *link = &model->links[k];
         double phi[6], by_moves[6 * MOVES], K[MOVES * MOVES];
         link_view view;
+        if (fu_link_is_idle(link, state)) {
+            out[k] = (fu_link_output){0};
+            continue;
+        }
         look(model, link, state, 0, &view);
         link->kernel->force(view.gap, view.place[0].A, view.place[1].A, view.c, work->multipliers + link->multiplier, phi,
                             by_moves, K);

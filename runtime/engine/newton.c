@@ -88,6 +88,8 @@ void fu_predict_extra(fu_run *run, double h)
         run->next.element[j] = run->now.element[j];
         run->next.mode[j] = run->now.mode[j];
         run->next.hold[j] = run->now.hold[j];
+        run->next.way[j] = run->now.way[j];
+        run->next.contact[j] = run->now.contact[j];
     }
 }
 

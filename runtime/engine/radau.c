@@ -73,7 +73,7 @@ static int is_damped(const fu_model *model)
     int damped = 0;
     for (int c = 0; c < model->n_cables; ++c) damped |= model->cables[c].tau > 0.0 || model->cables[c].mass_damping > 0.0;
     for (int k = 0; k < model->n_springs; ++k) damped |= model->springs[k].damping > 0.0;
-    return damped || model->n_rigids; /* forces of inertia go with the velocity of a body */
+    return damped || model->n_brakes || model->n_rigids; /* forces of inertia go with the velocity of a body */
 }
 
 /* column k of X, and the rows of it that count; not if B has none */
@@ -267,9 +267,9 @@ static int evaluate(fu_run *run, workspace w, double h)
     configure(run, w, h);
     for (int k = 0; k < STAGES; ++k) {
         if (place_stage(run, w, k, h)) return 1;
-        if (fu_accelerations(model, next, &run->accelerator, next->acceleration, 0, reaction)) return 1;
+        if (fu_accelerations(model, next, &run->accelerator, next->acceleration, 0, reaction)) return fu_fail_eq38(run);
         memcpy(w.a + (long)k * model->n_dof, next->acceleration, sizeof(double) * (size_t)model->n_dof);
-        w.powers[2 * k] = fu_dissipation(model, next->q, next->v);
+        w.powers[2 * k] = fu_dissipated_power(run, next);
         w.powers[2 * k + 1] = fu_external_power(run, next, reaction);
     }
     run->statistics.evaluations += STAGES;
@@ -418,7 +418,7 @@ static int step(fu_run *run, double h)
     }
     configure(run, w, h);
     if (place_stage(run, w, STAGES - 1, h) || fu_return_to_joints(run, &run->next)) return 1;
-    return fu_complete(run, &run->next);
+    return fu_complete(run, &run->next) ? fu_fail_eq38(run) : 0;
 }
 
 /* (L/h - J)^-1 of the rate at the start and what the stages say of it, for the real L: an estimate of order 3, damped
@@ -455,7 +455,7 @@ static void book(fu_run *run, double h)
         run->dissipated += h * b[k] * w.powers[2 * k];
         run->external += h * b[k] * w.powers[2 * k + 1];
     }
-    run->dissipated_power = fu_dissipation(run->model, run->next.q, run->next.v);
+    run->dissipated_power = fu_dissipated_power(run, &run->next);
     run->external_power = fu_external_power(run, &run->next, run->force);
     memcpy(w.last, w.Z, sizeof(double) * STAGES * (size_t)run->model->n_dof);
     *w.h_last = h;

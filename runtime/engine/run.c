@@ -68,6 +68,7 @@ static int record_row(fu_run *run)
                                       r->reaction + row * model->n_dof);
     r->kinetic[row] = fu_kinetic_energy(model, now->q, now->v);
     r->elastic[row] = fu_elastic_energy(model, now->q);
+    if (model->n_brakes) r->elastic[row] += fu_brake_energy(model, now);
     r->potential[row] = fu_potential_energy(model, now->q);
     r->dissipated[row] = run->dissipated;
     r->external[row] = run->external;
@@ -94,7 +95,7 @@ static int start_scheme(fu_run *run, int project)
         for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->before[i];
     }
     if (fu_complete(run, now)) return FU_SINGULAR;
-    run->dissipated_power = fu_dissipation(model, now->q, now->v);
+    run->dissipated_power = fu_dissipated_power(run, now);
     run->external_power = fu_external_power(run, now, run->force);
     for (int j = 0; j < model->n_joints; ++j) run->s_slope[j] = joints[j].s_rate;
     return run->integrator->start(run);
@@ -131,7 +132,13 @@ int fu_start(fu_run *run)
     if (fu_prepare(run)) return FU_SINGULAR;
     if (closes(run) && fu_close(run)) return FU_SINGULAR;
     memcpy(run->first, now->q, sizeof(double) * (size_t)model->n_q);
-    if (start_scheme(run, 1) || record_row(run)) return FU_SINGULAR;
+    if (start_scheme(run, 1)) return FU_SINGULAR;
+    if (fu_has_stops(model)) {
+        memcpy(run->psi, run->before, sizeof(double) * (size_t)model->n_dof); /* what the start asked for, for the caller */
+        if (fu_begin_stops(run) || start_scheme(run, 0)) return FU_SINGULAR;
+        memcpy(run->before, run->psi, sizeof(double) * (size_t)model->n_dof);
+    }
+    if (record_row(run)) return FU_SINGULAR;
     if (run->rest_start) {
         memset(now->acceleration, 0, sizeof(double) * (size_t)model->n_dof);
         memset(now->a, 0, sizeof(double) * (size_t)model->n_dof);
@@ -145,6 +152,7 @@ int fu_start(fu_run *run)
         if (d > run->least_motion) run->least_motion = d;
     }
     fu_watch_now(run, (fu_event){FU_NO_EVENT, 0, 0});
+    fu_watch_anew(run, -1);
     return FU_RUNNING;
 }
 
@@ -168,6 +176,15 @@ static void accept(fu_run *run, double h, fu_event event)
     if (h > s->h_max) s->h_max = h;
 }
 
+/* A slide has done `what`: the scheme starts anew, and the caller is told. */
+static int acted(fu_run *run, int j, int what)
+{
+    const int status = start_scheme(run, 1);
+    fu_watch_anew(run, j);
+    run->event = (fu_event){FU_ACTED, j, what};
+    return status ? status : FU_EVENT;
+}
+
 /* Put a slide that stands on a boundary into the neighbour. Accelerations and force jump with r_xx there: the scheme
  * starts anew. Were they carried over, the short steps around a boundary would raise what the constraints left in them
  * by the ratio of the steps, crossing by crossing, and a spectral radius of 1 never lets it decay. Returns
@@ -178,8 +195,9 @@ static int enter(fu_run *run, int j, int side)
     fu_state *now = &run->now;
     const int element = now->element[j] + side;
     if (element < 0 || element >= model->cables[model->joints[j].cable].n_elements) {
-        run->stopped_joint = j;
-        return FU_END_OF_CABLE;
+        int what;
+        const int status = fu_reach_end(run, j, side, &what);
+        return status ? status : acted(run, j, what);
     }
     now->element[j] = element;
     ++run->statistics.crossings;
@@ -191,6 +209,12 @@ static int enter(fu_run *run, int j, int side)
 static int happened(fu_run *run, fu_event event)
 {
     if (event.kind == FU_CROSSING) return enter(run, event.which, event.side);
+    const fu_watch *watch = &run->watches[event.which];
+    if (watch->kind == FU_WATCH_GRIP || watch->kind == FU_WATCH_BUFFER) {
+        int what;
+        const int status = fu_act(run, watch, event.side, &what);
+        return status || what == FU_NOTHING ? status : acted(run, watch->index, what);
+    }
     run->event = event;
     return FU_EVENT;
 }
@@ -260,7 +284,7 @@ static int step_towards(fu_run *run, double target)
     const fu_event none = {FU_NO_EVENT, 0, 0}, late = fu_late_event(run);
     double want = adaptive ? run->h : run->fixed_step;
     if (late.kind) return happened(run, late);
-    run->holds = !adaptive || !run->integrator->straddles;
+    run->holds = !adaptive || !run->integrator->straddles || fu_has_stops(model);
     for (;;) {
         const double remaining = target - run->now.t;
         double h = fitted(remaining, want);

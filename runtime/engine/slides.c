@@ -80,8 +80,8 @@ void fu_slide_residual(const fu_model *model, const fu_state *state, int j, doub
     if (!joint->native) expand(joint, &v, 1, model->cables[joint->cable].coordinates, 1, of_point, g);
 }
 
-/* derivatives of both over the same */
-void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, double *J, double *K)
+/* derivatives of both over the same, at a force f */
+void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, const double *f, double *J, double *K)
 {
     const fu_joint *joint = &model->joints[j];
     const int n_element = model->cables[joint->cable].coordinates, dim = joint->kernel->dim, from = n_element + dim + 1;
@@ -89,12 +89,12 @@ void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, doubl
     slide_view v;
     look(model, state, j, &v);
     if (joint->native) {
-        joint->kernel->tangent(v.length, v.x, v.e, v.b, v.u, state->f + 3 * j, J, K);
+        joint->kernel->tangent(v.length, v.x, v.e, v.b, v.u, f, J, K);
         return;
     }
     double J_point[3 * FU_MAX_COORDINATES], pull[3], part[FU_END_COORDINATES * FU_END_COORDINATES];
     const int n_rider = v.place.n, n = n_element + n_rider + 1;
-    joint->kernel->tangent(v.length, v.x, v.e, v.b, v.u, state->f + 3 * j, J_point, of_point);
+    joint->kernel->tangent(v.length, v.x, v.e, v.b, v.u, f, J_point, of_point);
     expand(joint, &v, dim, n_element, 1, J_point, J);
     /* the rider's point stands in phi = r - p alone: of second derivatives there are those of the point itself */
     memset(K, 0, sizeof(double) * (size_t)(n * n));
@@ -104,7 +104,7 @@ void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, doubl
             K[(i < n_element ? i : n - 1) * n + (k < n_element ? k : n - 1)] = of_point[a * from + b];
         }
     memset(part, 0, sizeof(double) * (size_t)(n_rider * n_rider));
-    for (int d = 0; d < dim; ++d) pull[d] = -state->f[3 * j + d];
+    for (int d = 0; d < dim; ++d) pull[d] = -f[d];
     fu_end_curvature(model, &joint->rider, state, pull, 0, n_rider, part);
     for (int i = 0; i < n_rider; ++i)
         for (int k = 0; k < n_rider; ++k) K[(n_element + i) * n + n_element + k] = part[i * n_rider + k];
@@ -117,6 +117,11 @@ void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows
     const int n_element = model->cables[joint->cable].coordinates, dim = joint->kernel->dim;
     double C_q[3 * FU_SLIDE_COORDINATES], C_s[3], Q_d[3], H[2 * FU_SLIDE_COORDINATES], G[FU_SLIDE_COORDINATES];
     slide_view v;
+    if (state->mode[j] == FU_LEFT) { /* far from the cable, nothing of it means anything */
+        memset(slide, 0, sizeof *slide);
+        rows->n = rows->rows = 0;
+        return;
+    }
     look(model, state, j, &v);
     const int n = fu_slide_coordinates(model, state, j, rows->at), held = dim - 1;
     joint->kernel->terms(v.length, v.x, v.e, v.b, v.u, v.v, v.w, state->director + 3 * j, slide->C, C_q, C_s, G,
@@ -138,7 +143,7 @@ void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows
         }
     }
     rows->n = n;
-    rows->rows = state->mode[j] == FU_LEFT ? 0 : state->mode[j] == FU_HELD ? dim : held;
+    rows->rows = state->mode[j] == FU_HELD ? dim : held;
     for (int c = 0; c < held; ++c) {
         rows->C[c] = slide->C[1 + c];
         rows->rate[c] = 0.0;
