@@ -215,9 +215,9 @@ def test_matrix_is_the_derivative_of_the_residual(engine, h):
 def test_conditioning_does_not_depend_on_the_step(engine):
     """Small steps leave that of the mass matrix with the joints: unscaled rows would add (1/h)^2 a power of ten."""
     n = engine.unknowns
-    numbers = [np.linalg.cond(engine.linearise(h, np.zeros(n))[1]) for h in (1e-2, 1e-5, 1e-6, 1e-7)]
+    numbers = [np.linalg.cond(engine.linearise(h, np.zeros(n))[1]) for h in (3e-3, 1e-5, 1e-6, 1e-7)]
     assert max(numbers[1:]) < 1.5 * min(numbers[1:])  # measured: 1.1 at most
-    assert numbers[0] < 25 * numbers[-1]  # measured: 6.2 where a slender body turns far, 12 with the chain of joints
+    assert numbers[0] < 4 * numbers[-1]  # measured: 2.6; beyond that step stiffness outweighs the mass, scene by scene
 
 
 def welded() -> Scene:
