@@ -34,10 +34,13 @@ def settle(model: Model, engine) -> list[str]:
         return []  # slides of different bodies never do: each acts on its own body, whose mass is not zero
     if not engine.prepare():
         return []  # start tells why
-    follows = _following(engine.compliance())
+    S, owner, driven = engine.compliance(), _owners(model), _driven(model)
+    if held := [name for name, own in zip(owner, np.diag(S), strict=True) if own == 0]:
+        raise SceneError("scene", f"is over-constrained: {_listed(held)} between places that supports hold already",
+                         "leave that out, or the supports")
+    follows = _following(S)
     if not follows:
         return []
-    owner, driven = _owners(model), _driven(model)
     idle = []
     for row, others in follows.items():
         names = _listed([owner[k] for k in sorted({row, *others})])
