@@ -146,6 +146,14 @@ def test_a_door_on_two_hinges(integrator):
     assert run["hinge1.residual"].max() < 1e-9
 
 
+@pytest.mark.filterwarnings("ignore:joint")
+def test_hinges_that_do_not_fit_together_are_refused():
+    scene = door(1)
+    scene.joint("revolute", (2e-4, -0.8, 0), ("door", (-0.5, -0.8, 0)), axis=(0, 1, 0), name="off")
+    with pytest.raises(SceneError, match=r'"hinge0" and "off" hold the same, but do not fit together: 0.0002 \(m or'):
+        scene.run(0.1)
+
+
 def test_a_four_bar_in_space_moves_as_one_with_ball_joints():
     """A hinge, a ball, a universal joint and a hinge hold what is needed, and no more."""
     over, free = four_bars(1), Scene()
