@@ -34,36 +34,53 @@ def settle(model: Model, engine) -> list[str]:
         return []  # slides of different bodies never do: each acts on its own body, whose mass is not zero
     if not engine.prepare():
         return []  # start tells why
-    follows = _following(engine.compliance())
+    S, owner = engine.compliance(), _owners(model)
+    if held := [name for name, own in zip(owner, np.diag(S), strict=True) if own == 0]:
+        raise SceneError("scene", f"is over-constrained: {_listed(held)} between places that supports hold already",
+                         "leave that out, or the supports")
+    follows = _following(S)
     if not follows:
         return []
-    owner, driven = _owners(model), _driven(model)
-    idle = []
-    for row, others in follows.items():
-        names = _listed([owner[k] for k in sorted({row, *others})])
-        if driven & {row, *others}:
-            raise SceneError("scene", f"is over-constrained: {names} drive or hold the same", "leave one of them out")
-        k = next((k for k, link in enumerate(model.links) if 0 <= row - link.multiplier < link.rows), None)
-        if k is None or model.links[k].slide is not None:
-            raise SceneError("scene", f"is over-constrained: {names} hold the same",
-                             "leave one of them out, or hold the body at other points")
-        idle.append((k, row - model.links[k].multiplier))
+    idle = [_left_out(model, row, others, owner) for row, others in follows.items()]
     for k, row in idle:
         model.links[k].idle.add(row)
     engine.idle(idle)
-    if not _follow_elsewhere(model, engine, idle):
-        names = _listed([owner[k] for row, others in follows.items() for k in sorted({row, *others})])
-        raise SceneError("scene", f"starts in a singular position: {names} hold the same there, but not beside it",
-                         "draw the scene a little away from it")
+    _check_that_they_follow(model, engine, idle, _listed([owner[k] for row in follows for k in (*follows[row], row)]))
     told = []
-    for k in sorted({k for k, _ in idle}):
-        n = sum(link == k for link, _ in idle)
-        rows = [model.links[link].multiplier + row for link, row in idle if link == k]
-        others = sorted({j for row in rows for j in follows[row]} - set(rows))
-        names = _listed([owner[j] for j in others if owner[j] != owner[rows[0]]])
-        told.append(f"over-constrained: {n} of the {model.links[k].rows} equations of {owner[rows[0]]} follow from "
+    for k in dict.fromkeys(k for k, _ in idle):
+        link = model.links[k]
+        own = range(link.multiplier, link.multiplier + link.rows)
+        names = _listed([owner[other] for row in own for other in follows.get(row, ()) if other not in own])
+        told.append(f"over-constrained: {len(link.idle)} of the {link.rows} equations of {owner[own[0]]} follow from "
                     f"those of {names} and are left out, without force or moment of their own")
     return told
+
+
+def _left_out(model: Model, row: int, others: list[int], owner: list[str]) -> tuple[int, int]:
+    """The joint and the row of it that others imply; raises SceneError where it has to stay."""
+    names = _listed([owner[k] for k in (*others, row)])
+    if _driven(model) & {row, *others}:
+        raise SceneError("scene", f"is over-constrained: {names} drive or hold the same", "leave one of them out")
+    for k, link in enumerate(model.links):
+        if 0 <= row - link.multiplier < link.rows and link.slide is None:
+            return k, row - link.multiplier
+    raise SceneError("scene", f"is over-constrained: {names} hold the same",
+                     "leave one of them out, or hold the body at other points")
+
+
+def _check_that_they_follow(model: Model, engine, idle: list[tuple[int, int]], names: str) -> None:
+    """Raise SceneError unless the idle rows are kept, the others being so, at the start and a small way from there."""
+    size = engine.extent
+    unit = np.where(model.weight == 1, size, np.minimum(size / model.weight, 1.0))
+    way = WAY * unit * np.random.default_rng(0).uniform(-1, 1, model.n_dof)
+    at_start, beside = (engine.wander(along) for along in (np.zeros(model.n_dof), way))
+    gap, error = (np.inf if left is None else max(abs(left[at]) for at in idle) for left in (at_start, beside))
+    if gap > RETURN * min(size, 1.0):
+        raise SceneError("scene", f"is over-constrained: {names} hold the same, but do not fit together: {gap:.3g} (m "
+                         "or rad) are left between them", "leave one of them out, or draw them without gaps")
+    if error > RETURN * min(size, 1.0):
+        raise SceneError("scene", f"starts in a singular position: {names} hold the same there, but not beside it",
+                         "draw the scene a little away from it")
 
 
 def redundant(model: Model, engine, ratio: float = NEARLY) -> str:
@@ -102,14 +119,6 @@ def _following(S: np.ndarray) -> dict[int, list[int]]:
             share = np.abs(solve_triangular(L[:n, :n].T, factor))
             found[int(used[row])] = [int(used[k]) for k, part in zip(kept, share, strict=True) if part > SHARE]
     return found
-
-
-def _follow_elsewhere(model: Model, engine, idle: list[tuple[int, int]]) -> bool:
-    """Whether the idle rows are still kept, the others being so, a small way along the freedom there is."""
-    size = engine.extent
-    unit = np.where(model.weight == 1, size, np.minimum(size / model.weight, 1.0))
-    left = engine.wander(WAY * unit * np.random.default_rng(0).uniform(-1, 1, model.n_dof))
-    return left is not None and all(abs(left[at]) < RETURN * min(size, 1.0) for at in idle)
 
 
 def _owners(model: Model) -> list[str]:

@@ -425,6 +425,7 @@ class Scene:
     def modes(self, n: int, about: Equilibrium | None = None) -> Modes:
         """The ``n`` lowest natural frequencies and shapes, about the scene as drawn or a state from `equilibrium`.
 
+        As drawn, joints and slides bear nothing yet: what swings by its weight does so about its equilibrium alone.
         Raises SceneError.
         """
         settings = ModeSettings(n=n)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from funicular import FunicularWarning, Scene, SceneError
+from funicular import Circle, FunicularWarning, Material, Scene, SceneError
 from numpy.testing import assert_allclose
 
 Z = (0, 0, 1)
@@ -146,6 +146,14 @@ def test_a_door_on_two_hinges(integrator):
     assert run["hinge1.residual"].max() < 1e-9
 
 
+@pytest.mark.filterwarnings("ignore:joint")
+def test_hinges_that_do_not_fit_together_are_refused():
+    scene = door(1)
+    scene.joint("revolute", (2e-4, -0.8, 0), ("door", (-0.5, -0.8, 0)), axis=(0, 1, 0), name="off")
+    with pytest.raises(SceneError, match=r'"hinge0" and "off" hold the same, but do not fit together: 0.0002 \(m or'):
+        scene.run(0.1)
+
+
 def test_a_four_bar_in_space_moves_as_one_with_ball_joints():
     """A hinge, a ball, a universal joint and a hinge hold what is needed, and no more."""
     over, free = four_bars(1), Scene()
@@ -166,6 +174,17 @@ def test_what_drives_twice_is_refused():
     scene.joint("revolute", ("door", (0.5, 0, 0)), ("leaf", (-0.5, 0, 0)), axis=(0, 1, 0), angle=0.0, name="fold")
     scene.joint("cylindrical", ("leaf", (0, 0, 0)), (1.5, 0, 0), axis=(0, 1, 0), angle=0.0, name="spin")
     with pytest.raises(SceneError, match=r'is over-constrained: joints .*"fold" and "spin" drive or hold the same'):
+        scene.run(0.1)
+
+
+def test_a_joint_between_places_that_are_held_is_refused():
+    scene = Scene()
+    for name, y in (("a", 1.0), ("b", -1.0)):
+        scene.cable(name, start=(0, 0, 0), end=(0, y, 0), elements=2, element="cable12", up=(0, 0, 1),
+                    section=Circle(radius=0.01), material=Material(youngs_modulus=1e7, poisson_ratio=0, density=1e3))
+        scene.pin(name, s=0.0)
+    scene.joint("spherical", ("a", 0.0), ("b", 0.0), name="knot")
+    with pytest.raises(SceneError, match=r'joint "knot" between places that supports hold already; leave that out'):
         scene.run(0.1)
 
 

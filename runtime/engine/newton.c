@@ -140,7 +140,10 @@ static int iterate(fu_run *run, const fu_newton *method, double h)
         }
         last = size;
     }
-    return blame(run);
+    if (last > 100.0 * run->round_off) return blame(run);
+    method->kinematics(run, h); /* rounding: long chains of joints make more of it than one position has */
+    run->factored = 0;
+    return 0;
 }
 
 /* One step of size h from `now` to `next`; 0 when the Newton iteration converged. */
