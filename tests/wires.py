@@ -3,7 +3,7 @@
 import numpy as np
 from funicular import Material, Rectangle, Scene
 
-G, MASS, LENGTH = 9.81, 2.0, 4.0
+G, MASS, LENGTH, SLOPE = 9.81, 2.0, 4.0, 0.5
 KIND = {2: "cable8p", 3: "cable12"}
 
 
@@ -19,7 +19,7 @@ def wire(dim=3, elements=4, length=LENGTH) -> Scene:
     return scene
 
 
-def block(s, speed=0.0, *, weight=MASS * G, slope=0.5, dim=3, scene=None, name="A", slide="trolley", **given) -> Scene:
+def block(s, speed=0.0, *, weight=MASS * G, slope=SLOPE, dim=3, scene=None, name="A", slide="trolley", **given) -> Scene:
     """A block of MASS on a wire that falls towards its end by `slope`, in rad: its weight is turned, not the wire."""
     scene = scene or wire(dim)
     scene.rigid_body(name, mass=MASS, inertia=(1e-2, 1e-2, 1e-2), position=(s, 0, 0), velocity=(speed, 0, 0))
