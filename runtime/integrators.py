@@ -11,8 +11,8 @@ if TYPE_CHECKING:
     from funicular.engine import Engine
     from funicular.model import Model
     from funicular.scene import Scene
-    from funicular.slides import Slide
     from funicular.settings import RunSettings
+    from funicular.slides import Slide
 
 STABLE = 4.5
 """Of the explicit method: its step times the highest angular frequency, where step control holds it (its imaginary

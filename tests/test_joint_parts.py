@@ -311,9 +311,3 @@ def test_in_a_file():
         loads(text + 'kind="revolute"\nname="j"\naxes=[0,0,1]\n', "x.toml")
     scene = loads(text + 'kind="revolute"\naxis=[0,0,1]\nangle={form="ramp", start=0, end=2}\n', "x.toml")
     assert scene.joints["joint_1"].angle == Ramp(start=0, end=2)
-
-
-def test_until_the_engine_has_them(scene):
-    scene.joint("spherical", "A", (0, 2, 0))
-    with refused('joint "joint_1": a spherical joint is not in the engine yet'):
-        scene.run(1.0)
