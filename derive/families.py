@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from functools import partial
 from types import ModuleType
 
-from funicular.derive import body_kernels, element_kernels, law_kernels, structural_kernels
-from funicular.derive.bodies import BODIES, RIDERS
+from funicular.derive import body_kernels, element_kernels, law_kernels, modal_kernels, structural_kernels
+from funicular.derive.bodies import BODIES, RIDERS, modal
 from funicular.derive.bodies.point import Point
 from funicular.derive.elements import ELEMENTS
 from funicular.derive.joints import brake, frame, pair, slide
@@ -45,6 +45,14 @@ def _body(body: ModuleType) -> Family:
                   role="body",
                   facts={"dim": body.DIM, "configuration": body.N_CONFIGURATION, "velocity": body.N_VELOCITY},
                   rider=body.NAME)
+
+
+def _modal(name: str, frame: ModuleType) -> Family:
+    return Family(name, f"modal body on a {frame.NAME} frame", partial(modal_kernels.build, name, frame),
+                  ("bodies.modal", f"bodies.{frame.NAME}", "modal_kernels"),
+                  role="modal",
+                  facts={"dim": frame.DIM},
+                  rider=frame.NAME)
 
 
 def _slide(element: Element, rider: ModuleType | Point) -> Family:
@@ -91,9 +99,10 @@ def families() -> dict[str, Family]:
         for family in of_element(element):
             of_role[family.role].append(family)
     joints = [_joint(dim, name) for dim, of_dim in pair.JOINTS.items() for name in of_dim]
-    every = [*of_role["element"], *of_role["law"], *map(_body, BODIES.values()), *of_role["slide"],
-             *map(_frame, frame.FRAMES), *joints,
-             *map(_brake, brake.BRAKES)]
+    every = [*of_role["element"], *of_role["law"], *map(_body, BODIES.values()),
+             *(_modal(name, of) for name, of in modal.FRAMES.items()),
+             *of_role["slide"],
+             *map(_frame, frame.FRAMES), *joints, *map(_brake, brake.BRAKES)]
     return {f.name: f for f in every}
 
 

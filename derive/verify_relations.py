@@ -16,11 +16,12 @@ from funicular.derive.verify_motion import RIDERS, cross, exponential, spin, tur
 def relations(family: Family) -> list[Relation]:
     """The relations of a family's kernels."""
     from funicular.derive.verify_joints import brake_relations, frame_relations, joint_relations
+    from funicular.derive.verify_modal import modal
     from funicular.derive.verify_slide import slide
 
     table: dict[str, Callable[[Family], list[Relation]]] = {
-        "element": element, "law": law, "slide": slide, "body": body, "frame": frame_relations, "pair": joint_relations,
-        "brake": brake_relations}
+        "element": element, "law": law, "slide": slide, "body": body, "modal": modal,
+        "frame": frame_relations, "pair": joint_relations, "brake": brake_relations}
     return table[family.role](family)
 
 
@@ -85,6 +86,9 @@ def law(family: Family) -> list[Relation]:
                    for output in verify_sections.TEXTS]
     force_by_both = from_kernel("damping_force", "f", e=entry("e"), v=lambda s, j: s["rate"] * unit(s["v"], j))
 
+    def weighted(k, s, t, j):
+        return k("dissipation", s, v=s["v"] + t * unit(s["v"], j), tau=s["weight"])["P"] / 2
+
     def damped(k, s, t, j):
         return k("damping_force", s, v=s["v"] - s["vdot"], tau=s["weight"])["f"]
 
@@ -111,6 +115,8 @@ def law(family: Family) -> list[Relation]:
         Relation("damping_force", "f", "d(P/2)/dv", 1, _half(from_kernel("dissipation", "P", v=entry("v"))), n),
         Relation("damping_tangent", "K", "df/de + rate df/dv", 1, force_by_both, n),
         Relation("dissipation", "P", "the law's integral by quadrature", 0, power),
+        Relation("algorithmic_force", "f", "d(weight P/2)/dv where nothing is known", 1, weighted, n,
+                 of=lambda k, s: k("algorithmic_force", s, known=0 * s["known"])["f"]),
         Relation("algorithmic_force", "f", "damping force at v - vdot where vdot's strain is known", 0, damped,
                  of=known_of_vdot),
         Relation("algorithmic_force", "dE", "as derived, at 50 digits", 0, from_kernel("algorithmic_force", "dE")),

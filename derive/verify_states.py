@@ -25,6 +25,8 @@ def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
     Constants that one kernel makes for another (m, A) come from the 50-digit programs: a fault in the compiled one
     then shows up there and nowhere else.
     """
+    from funicular.derive import verify_modal
+
     found = []
     for seed in SEEDS:
         random = np.random.default_rng(seed)
@@ -48,12 +50,17 @@ def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
         state["f"] = random.normal(size=dim)
         if family.role in ("element", "law"):
             state |= _constants(family, exact, state, random)
+        if family.role == "modal":
+            state |= verify_modal.sample(random, dim)
         if family.role == "element":
             state |= loads(family.element, random)
         found.append(state)
     if family.dim:
         return found
     rest = found[0] | at_rest(family)
+    if family.role == "modal":
+        rest |= {name: 0 * rest[name] for name in verify_modal.RATES}
+        rest |= verify_modal.integrals(rest)
     if family.law and family.law.endswith("_curved"):
         rest["e0"] = rest["e"]
         rest |= _from_kernels(family, exact, rest)

@@ -296,6 +296,38 @@ void planar_rigid_inertia_tangent(fu_real mass, const fu_real *J, const fu_real 
 void planar_rigid_kinetic_energy(fu_real mass, const fu_real *J, const fu_real *w, fu_real *T);
 void planar_rigid_discrete_point(const fu_real *b, const fu_real *u, const fu_real *b_next, fu_real *P);
 
+/* modal: modal body on a rigid frame */
+void modal_inertia_force(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *S2, const fu_real *X, const fu_real *X1, const fu_real *X2, fu_real *f);
+void modal_mass_matrix(const fu_real *b, fu_real mass, const fu_real *S, const fu_real *X, fu_real *M);
+void modal_inertia_tangent(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *S2, const fu_real *X, const fu_real *X1, const fu_real *X2, fu_real *D, fu_real *K);
+void modal_mode_force(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *s, const fu_real *Y, const fu_real *Y1, const fu_real *Y2, fu_real *f);
+void modal_mode_mass(const fu_real *b, const fu_real *s, const fu_real *Y, fu_real *M);
+void modal_mode_tangent(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *s, const fu_real *Y, const fu_real *Y1, const fu_real *Y2, fu_real *D, fu_real *K, fu_real *D_frame, fu_real *K_frame);
+void modal_pair_tangent(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *X_kl, fu_real *D, fu_real *K);
+void modal_kinetic_energy(const fu_real *b, const fu_real *w, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *X, const fu_real *X1, fu_real X11, fu_real *T);
+void modal_potential_energy(const fu_real *b, const fu_real *g, fu_real mass, const fu_real *S, fu_real *V);
+void modal_anchor(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *w, const fu_real *u1, const fu_real *theta1, fu_real *p, fu_real *axes, fu_real *P, fu_real *T, fu_real *velocity, fu_real *omega, fu_real *bias, fu_real *omega_bias);
+void modal_anchor_mode(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, fu_real *P, fu_real *T);
+void modal_anchor_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *f, const fu_real *m, fu_real *K);
+void modal_anchor_mode_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *f, const fu_real *m, fu_real *K, fu_real *K_frame);
+void modal_anchor_pair_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K);
+
+/* planar_modal: modal body on a planar_rigid frame */
+void planar_modal_inertia_force(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *S2, const fu_real *X, const fu_real *X1, const fu_real *X2, fu_real *f);
+void planar_modal_mass_matrix(const fu_real *b, fu_real mass, const fu_real *S, const fu_real *X, fu_real *M);
+void planar_modal_inertia_tangent(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *S2, const fu_real *X, const fu_real *X1, const fu_real *X2, fu_real *D, fu_real *K);
+void planar_modal_mode_force(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *s, const fu_real *Y, const fu_real *Y1, const fu_real *Y2, fu_real *f);
+void planar_modal_mode_mass(const fu_real *b, const fu_real *s, const fu_real *Y, fu_real *M);
+void planar_modal_mode_tangent(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *s, const fu_real *Y, const fu_real *Y1, const fu_real *Y2, fu_real *D, fu_real *K, fu_real *D_frame, fu_real *K_frame);
+void planar_modal_pair_tangent(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *X_kl, fu_real *D, fu_real *K);
+void planar_modal_kinetic_energy(const fu_real *b, const fu_real *w, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *X, const fu_real *X1, fu_real X11, fu_real *T);
+void planar_modal_potential_energy(const fu_real *b, const fu_real *g, fu_real mass, const fu_real *S, fu_real *V);
+void planar_modal_anchor(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *w, const fu_real *u1, const fu_real *theta1, fu_real *p, fu_real *axes, fu_real *P, fu_real *T, fu_real *velocity, fu_real *omega, fu_real *bias, fu_real *omega_bias);
+void planar_modal_anchor_mode(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, fu_real *P, fu_real *T);
+void planar_modal_anchor_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *f, const fu_real *m, fu_real *K);
+void planar_modal_anchor_mode_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *f, const fu_real *m, fu_real *K, fu_real *K_frame);
+void planar_modal_anchor_pair_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K);
+
 /* slide_beam24_rigid: sliding joint of a rigid rider on a beam24 cable */
 void slide_beam24_rigid_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
 void slide_beam24_rigid_terms(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *v, const fu_real *w, const fu_real *director, fu_real *C, fu_real *C_q, fu_real *C_s, fu_real *G, fu_real *s_rate, fu_real *Q_d, fu_real *H, fu_real *W, fu_real *s_bias);
@@ -509,6 +541,26 @@ typedef struct {
     void (*discrete_point)(const fu_real *b, const fu_real *u, const fu_real *b_next, fu_real *P);
 } fu_body;
 
+/* What the engine needs of a modal. */
+typedef struct {
+    const char *name;
+    int dim;
+    void (*inertia_force)(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *S2, const fu_real *X, const fu_real *X1, const fu_real *X2, fu_real *f);
+    void (*mass_matrix)(const fu_real *b, fu_real mass, const fu_real *S, const fu_real *X, fu_real *M);
+    void (*inertia_tangent)(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *S2, const fu_real *X, const fu_real *X1, const fu_real *X2, fu_real *D, fu_real *K);
+    void (*mode_force)(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *s, const fu_real *Y, const fu_real *Y1, const fu_real *Y2, fu_real *f);
+    void (*mode_mass)(const fu_real *b, const fu_real *s, const fu_real *Y, fu_real *M);
+    void (*mode_tangent)(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *s, const fu_real *Y, const fu_real *Y1, const fu_real *Y2, fu_real *D, fu_real *K, fu_real *D_frame, fu_real *K_frame);
+    void (*pair_tangent)(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *X_kl, fu_real *D, fu_real *K);
+    void (*kinetic_energy)(const fu_real *b, const fu_real *w, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *X, const fu_real *X1, fu_real X11, fu_real *T);
+    void (*potential_energy)(const fu_real *b, const fu_real *g, fu_real mass, const fu_real *S, fu_real *V);
+    void (*anchor)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *w, const fu_real *u1, const fu_real *theta1, fu_real *p, fu_real *axes, fu_real *P, fu_real *T, fu_real *velocity, fu_real *omega, fu_real *bias, fu_real *omega_bias);
+    void (*anchor_mode)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, fu_real *P, fu_real *T);
+    void (*anchor_force)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *f, const fu_real *m, fu_real *K);
+    void (*anchor_mode_force)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *f, const fu_real *m, fu_real *K, fu_real *K_frame);
+    void (*anchor_pair_force)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K);
+} fu_modal;
+
 /* What the engine needs of a slide. */
 typedef struct {
     const char *name;
@@ -554,6 +606,8 @@ typedef struct {
     const fu_law *laws;
     int n_bodys;
     const fu_body *bodys;
+    int n_modals;
+    const fu_modal *modals;
     int n_slides;
     const fu_slide *slides;
     int n_frames;

@@ -333,6 +333,43 @@ static const fu_body bodys[] = {
     }
 };
 
+static const fu_modal modals[] = {
+    {"modal",
+     3,
+     modal_inertia_force,
+     modal_mass_matrix,
+     modal_inertia_tangent,
+     modal_mode_force,
+     modal_mode_mass,
+     modal_mode_tangent,
+     modal_pair_tangent,
+     modal_kinetic_energy,
+     modal_potential_energy,
+     modal_anchor,
+     modal_anchor_mode,
+     modal_anchor_force,
+     modal_anchor_mode_force,
+     modal_anchor_pair_force
+    },
+    {"planar_modal",
+     2,
+     planar_modal_inertia_force,
+     planar_modal_mass_matrix,
+     planar_modal_inertia_tangent,
+     planar_modal_mode_force,
+     planar_modal_mode_mass,
+     planar_modal_mode_tangent,
+     planar_modal_pair_tangent,
+     planar_modal_kinetic_energy,
+     planar_modal_potential_energy,
+     planar_modal_anchor,
+     planar_modal_anchor_mode,
+     planar_modal_anchor_force,
+     planar_modal_anchor_mode_force,
+     planar_modal_anchor_pair_force
+    }
+};
+
 static const fu_slide slides[] = {
     {"slide_beam24_rigid",
      30,
@@ -1431,6 +1468,118 @@ static void call_planar_rigid_discrete_point(const fu_real *const *a, fu_real *c
 {
     planar_rigid_discrete_point(a[0], a[1], a[2], out[0]);
 }
+static void call_modal_inertia_force(const fu_real *const *a, fu_real *const *out)
+{
+    modal_inertia_force(a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0]);
+}
+static void call_modal_mass_matrix(const fu_real *const *a, fu_real *const *out)
+{
+    modal_mass_matrix(a[0], *a[1], a[2], a[3], out[0]);
+}
+static void call_modal_inertia_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    modal_inertia_tangent(a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0], out[1]);
+}
+static void call_modal_mode_force(const fu_real *const *a, fu_real *const *out)
+{
+    modal_mode_force(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0]);
+}
+static void call_modal_mode_mass(const fu_real *const *a, fu_real *const *out)
+{
+    modal_mode_mass(a[0], a[1], a[2], out[0]);
+}
+static void call_modal_mode_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    modal_mode_tangent(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3]);
+}
+static void call_modal_pair_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    modal_pair_tangent(a[0], a[1], a[2], a[3], a[4], out[0], out[1]);
+}
+static void call_modal_kinetic_energy(const fu_real *const *a, fu_real *const *out)
+{
+    modal_kinetic_energy(a[0], a[1], *a[2], a[3], a[4], a[5], a[6], *a[7], out[0]);
+}
+static void call_modal_potential_energy(const fu_real *const *a, fu_real *const *out)
+{
+    modal_potential_energy(a[0], a[1], *a[2], a[3], out[0]);
+}
+static void call_modal_anchor(const fu_real *const *a, fu_real *const *out)
+{
+    modal_anchor(a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7]);
+}
+static void call_modal_anchor_mode(const fu_real *const *a, fu_real *const *out)
+{
+    modal_anchor_mode(a[0], a[1], a[2], a[3], a[4], out[0], out[1]);
+}
+static void call_modal_anchor_force(const fu_real *const *a, fu_real *const *out)
+{
+    modal_anchor_force(a[0], a[1], a[2], a[3], a[4], out[0]);
+}
+static void call_modal_anchor_mode_force(const fu_real *const *a, fu_real *const *out)
+{
+    modal_anchor_mode_force(a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1]);
+}
+static void call_modal_anchor_pair_force(const fu_real *const *a, fu_real *const *out)
+{
+    modal_anchor_pair_force(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], out[0]);
+}
+static void call_planar_modal_inertia_force(const fu_real *const *a, fu_real *const *out)
+{
+    planar_modal_inertia_force(a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0]);
+}
+static void call_planar_modal_mass_matrix(const fu_real *const *a, fu_real *const *out)
+{
+    planar_modal_mass_matrix(a[0], *a[1], a[2], a[3], out[0]);
+}
+static void call_planar_modal_inertia_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    planar_modal_inertia_tangent(a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0], out[1]);
+}
+static void call_planar_modal_mode_force(const fu_real *const *a, fu_real *const *out)
+{
+    planar_modal_mode_force(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0]);
+}
+static void call_planar_modal_mode_mass(const fu_real *const *a, fu_real *const *out)
+{
+    planar_modal_mode_mass(a[0], a[1], a[2], out[0]);
+}
+static void call_planar_modal_mode_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    planar_modal_mode_tangent(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3]);
+}
+static void call_planar_modal_pair_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    planar_modal_pair_tangent(a[0], a[1], a[2], a[3], a[4], out[0], out[1]);
+}
+static void call_planar_modal_kinetic_energy(const fu_real *const *a, fu_real *const *out)
+{
+    planar_modal_kinetic_energy(a[0], a[1], *a[2], a[3], a[4], a[5], a[6], *a[7], out[0]);
+}
+static void call_planar_modal_potential_energy(const fu_real *const *a, fu_real *const *out)
+{
+    planar_modal_potential_energy(a[0], a[1], *a[2], a[3], out[0]);
+}
+static void call_planar_modal_anchor(const fu_real *const *a, fu_real *const *out)
+{
+    planar_modal_anchor(a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7]);
+}
+static void call_planar_modal_anchor_mode(const fu_real *const *a, fu_real *const *out)
+{
+    planar_modal_anchor_mode(a[0], a[1], a[2], a[3], a[4], out[0], out[1]);
+}
+static void call_planar_modal_anchor_force(const fu_real *const *a, fu_real *const *out)
+{
+    planar_modal_anchor_force(a[0], a[1], a[2], a[3], a[4], out[0]);
+}
+static void call_planar_modal_anchor_mode_force(const fu_real *const *a, fu_real *const *out)
+{
+    planar_modal_anchor_mode_force(a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1]);
+}
+static void call_planar_modal_anchor_pair_force(const fu_real *const *a, fu_real *const *out)
+{
+    planar_modal_anchor_pair_force(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], out[0]);
+}
 static void call_slide_beam24_rigid_constraint(const fu_real *const *a, fu_real *const *out)
 {
     slide_beam24_rigid_constraint(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]);
@@ -2039,6 +2188,34 @@ const fu_kernel fu_kernels[] = {
     {"planar_rigid_inertia_tangent", call_planar_rigid_inertia_tangent},
     {"planar_rigid_kinetic_energy", call_planar_rigid_kinetic_energy},
     {"planar_rigid_discrete_point", call_planar_rigid_discrete_point},
+    {"modal_inertia_force", call_modal_inertia_force},
+    {"modal_mass_matrix", call_modal_mass_matrix},
+    {"modal_inertia_tangent", call_modal_inertia_tangent},
+    {"modal_mode_force", call_modal_mode_force},
+    {"modal_mode_mass", call_modal_mode_mass},
+    {"modal_mode_tangent", call_modal_mode_tangent},
+    {"modal_pair_tangent", call_modal_pair_tangent},
+    {"modal_kinetic_energy", call_modal_kinetic_energy},
+    {"modal_potential_energy", call_modal_potential_energy},
+    {"modal_anchor", call_modal_anchor},
+    {"modal_anchor_mode", call_modal_anchor_mode},
+    {"modal_anchor_force", call_modal_anchor_force},
+    {"modal_anchor_mode_force", call_modal_anchor_mode_force},
+    {"modal_anchor_pair_force", call_modal_anchor_pair_force},
+    {"planar_modal_inertia_force", call_planar_modal_inertia_force},
+    {"planar_modal_mass_matrix", call_planar_modal_mass_matrix},
+    {"planar_modal_inertia_tangent", call_planar_modal_inertia_tangent},
+    {"planar_modal_mode_force", call_planar_modal_mode_force},
+    {"planar_modal_mode_mass", call_planar_modal_mode_mass},
+    {"planar_modal_mode_tangent", call_planar_modal_mode_tangent},
+    {"planar_modal_pair_tangent", call_planar_modal_pair_tangent},
+    {"planar_modal_kinetic_energy", call_planar_modal_kinetic_energy},
+    {"planar_modal_potential_energy", call_planar_modal_potential_energy},
+    {"planar_modal_anchor", call_planar_modal_anchor},
+    {"planar_modal_anchor_mode", call_planar_modal_anchor_mode},
+    {"planar_modal_anchor_force", call_planar_modal_anchor_force},
+    {"planar_modal_anchor_mode_force", call_planar_modal_anchor_mode_force},
+    {"planar_modal_anchor_pair_force", call_planar_modal_anchor_pair_force},
     {"slide_beam24_rigid_constraint", call_slide_beam24_rigid_constraint},
     {"slide_beam24_rigid_terms", call_slide_beam24_rigid_terms},
     {"slide_beam24_rigid_residual", call_slide_beam24_rigid_residual},
@@ -2144,6 +2321,7 @@ const fu_tables fu_all = {
     5, elements,
     18, laws,
     2, bodys,
+    2, modals,
     10, slides,
     2, frames,
     20, pairs,

@@ -99,7 +99,7 @@ class Actions:
                 self._along_cable(load.on, number, points, value, load.follower)
         else:
             kind = BODY_MOMENT if isinstance(load, Moment) else BODY_FOLLOWER if load.follower else BODY_FORCE
-            at = (0.0, 0.0, 0.0) if isinstance(load, Moment) else load.at
+            at = (0.0, 0.0, 0.0) if isinstance(load, Moment) else self.scene.bodies[load.on].arm(load.at)
             self.turning.append(LoadModel(kind, number, self.body_index[load.on], 0, 0.0, at, tuple(value)))
 
     def _distributed(self, load: DistributedForce, number: int, value: np.ndarray) -> None:

@@ -32,7 +32,8 @@ def _inertia(value: Any) -> tuple[Vector, Vector, Vector]:
     return tuple(map(tuple, matrix.tolist()))
 
 
-def _unit_quaternion(value: Any) -> Quaternion:
+def unit_quaternion(value: Any) -> Quaternion:
+    """A unit quaternion, rounded to one."""
     quaternion = vector(value, size=4)
     norm = math.hypot(*quaternion)
     if abs(norm - 1) > 1e-3:
@@ -49,8 +50,9 @@ class RigidBody(Part):
     """A rigid body.
 
     mass in kg; inertia about its centre of mass in body axes, 3 principal moments or 3x3, in kg m²; position
-    of the centre of mass in m; orientation: the unit quaternion (w, x, y, z) from body axes to the ground's;
-    velocity in m/s; angular_velocity in body axes, in rad/s.
+    of its origin in m; orientation: the unit quaternion (w, x, y, z) from body axes to the ground's; centre: of mass, a
+    point in body axes, in m: the origin if not given; velocity of the origin in m/s; angular_velocity in body axes, in
+    rad/s. All points of the body count from the origin.
     """
 
     kind: ClassVar[str] = "rigid_body"
@@ -58,9 +60,19 @@ class RigidBody(Part):
     mass: Annotated[float, positive("kg")]
     inertia: Annotated[tuple[Vector, Vector, Vector], PlainValidator(_inertia)]
     position: Annotated[Vector, xyz("m")]
-    orientation: Annotated[Quaternion, PlainValidator(_unit_quaternion)] = (1.0, 0.0, 0.0, 0.0)
+    orientation: Annotated[Quaternion, PlainValidator(unit_quaternion)] = (1.0, 0.0, 0.0, 0.0)
+    centre: Annotated[Vector, xyz("m")] = (0.0, 0.0, 0.0)
     velocity: Annotated[Vector, xyz("m/s")] = (0.0, 0.0, 0.0)
     angular_velocity: Annotated[Vector, xyz("rad/s")] = (0.0, 0.0, 0.0)
+
+    @property
+    def axes(self) -> np.ndarray:
+        """(3, 3): its axes at the start, as columns."""
+        return rotate(self.orientation, np.eye(3)).T
+
+    def arm(self, at: Vector) -> tuple[float, float, float]:
+        """The point ``at`` from the centre of mass, in body axes, in m: what the engine knows it by."""
+        return tuple(a - c for a, c in zip(at, self.centre, strict=True))
 
     def point(self, at: Vector) -> np.ndarray:
         """(3,): where the body's point ``at`` (m, body axes) starts, in m."""

@@ -64,6 +64,9 @@ class Cable(Part):
     given: a shorter one makes the drawn cable taut, a longer one slack (or compressed, where it is straight).
     All arc-lengths s are of the undeformed cable.
 
+    At the start it moves as a rigid body would: its first point with ``velocity`` (m/s), and turning about that with
+    ``angular_velocity`` (rad/s, along the ground's axes), but for what supports hold.
+
     ``up`` is the direction of the section's height at the start; only its part across the axis counts, and from there
     on the section turns with the curve, about its tangent nowhere. Planar elements lie in the plane z = 0, with the
     height in it. ``law``: for beams "continuum" (the default), "poisson_split" or "structural"; for cables
@@ -91,6 +94,8 @@ class Cable(Part):
     up: Annotated[Vector, xyz()] = (0.0, 1.0, 0.0)
     rest: Annotated[str, one_of(("drawn", "straight"))] = "drawn"
     rest_length: Annotated[float, positive("m")] | None = None
+    velocity: Annotated[Vector, xyz("m/s")] = (0.0, 0.0, 0.0)
+    angular_velocity: Annotated[Vector, xyz("rad/s")] = (0.0, 0.0, 0.0)
 
     @model_validator(mode="before")
     @classmethod
@@ -140,6 +145,10 @@ class Cable(Part):
                 where = f"point {number + 1}" if self.points else ("start", "end")[number]
                 raise ValueError(f"{self.element} is planar, but {where} leaves the plane z = 0: {show(point, 'm')}",
                                  "draw it with z = 0, or take " + _others(3))
+        if self.velocity[2] != 0 or any(self.angular_velocity[:2]):
+            raise ValueError(f"{self.element} is planar, but it starts with velocity {show(self.velocity, 'm/s')} and "
+                             f"angular_velocity {show(self.angular_velocity, 'rad/s')}",
+                             "let it move in the plane z = 0 and turn about z, or take " + _others(3))
         if self.up[2] != 0:
             raise ValueError(f"{self.element} is planar, but up leaves the plane z = 0: {show(self.up)}",
                              "leave it out: the height lies in the plane")
@@ -280,12 +289,18 @@ class Cable(Part):
         """(3,): along the section's height at ``s``: r_y as the elements draw it, the axis there if they have none."""
         if self._shape.straight or not self.kind_of_element.director:
             return self.axes_at(s)[1]
-        return self._off_axis(s, 1.0) - self._off_axis(s, 0.0)
+        return self._off_axis(s, y=1.0) - self._off_axis(s)
 
-    def _off_axis(self, s: float, y: float) -> np.ndarray:
-        """(3,): the point at height ``y`` of the section at ``s``, in m."""
+    def width(self, s: float) -> np.ndarray:
+        """(3,): along the section's width at ``s``: r_z as the elements draw it, the axis there if they have none."""
+        if self._shape.straight or "r_z" not in self.kind_of_element.nodal_vectors:
+            return self.axes_at(s)[2]
+        return self._off_axis(s, z=1.0) - self._off_axis(s)
+
+    def _off_axis(self, s: float, y: float = 0.0, z: float = 0.0) -> np.ndarray:
+        """(3,): the point at height ``y`` and width ``z`` of the section at ``s``, in m."""
         length, x, e = self._element_at(s)
-        _, r = self._kernel("position")(length, np.array([x, y, 0]), e)
+        _, r = self._kernel("position")(length, np.array([x, y, z]), e)
         return np.pad(r, (0, 3 - self.dim))
 
     def _element_at(self, s: float) -> tuple[float, float, np.ndarray]:
@@ -321,6 +336,15 @@ class Cable(Part):
         drawn, stretch = self.node_s * self.stretch, self.stretch
         return self._vectors(self._shape.point(drawn), self.axes_at(self.node_s), stretch,
                              stretch**2 * self._shape.curvature(drawn))
+
+    @property
+    def nodal_rates(self) -> np.ndarray:
+        """(nodes, vectors, 3): rates of `nodal_vectors` at the start, of a rigid motion."""
+        vectors, place = self.nodal_vectors, self.kind_of_element.nodal_vectors.index("r")
+        vectors[:, place] -= vectors[0, place]
+        rates = np.cross(self.angular_velocity, vectors)
+        rates[:, place] += self.velocity
+        return rates
 
     @property
     def reference(self) -> np.ndarray | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from funicular.redundancy import redundant
 
 if TYPE_CHECKING:
     from funicular.model import CableModel, Model
@@ -14,9 +15,6 @@ KEPT = "what was computed up to there is kept"
 
 FOLDED, STRETCHED = 0.8, 3.0
 """Elements shorter or longer than this part of their undeformed length are named."""
-
-SAME, NEARLY = 1e-12, 1e-8
-"""Constraints whose compliance H M^-1 H' has eigenvalues of such a ratio hold the same; or nearly, if a run failed."""
 
 QUIET_ERROR, QUIET_LOSS = 5e-3, 0.05
 """Of the largest motion, of the energy exchanged: errors of a fixed step beyond these are told."""
@@ -32,7 +30,7 @@ def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
         grown, _, exchanged = engine.books
         return (f"energy came from nowhere at {when}: {grown:.3g} J, where {exchanged:.3g} J were exchanged; fastest "
                 f"is {where} ({state}); {KEPT}. {_too_large(engine, settings)}")
-    if doubled := redundant(model, engine, NEARLY):
+    if doubled := redundant(model, engine):
         return (f"no step converged at {when}: {doubled} hold nearly the same; {KEPT}. "
                 "Leave one of them out, or hold the body at points farther apart")
     if status == "singular" or cause == "matrix":
@@ -61,26 +59,6 @@ def _too_large(engine, settings: RunSettings) -> str:
     others = "" if settings.step is None else ", or none, so that tol chooses it"
     stable = ', or integrator="genalpha"' if engine.integrator == "explicit" else ""
     return f'The {size} is too large for integrator "{engine.integrator}": take a smaller one{others}{stable}'
-
-
-def redundant(model: Model, engine, ratio: float = SAME) -> str:
-    """Names of slides of one body that hold the same at the time reached; empty where there are none.
-
-    Slides of different bodies never do: each acts on its own body, whose mass is not zero.
-    """
-    riders = [(joint.rider.body, joint.rider.cable) for joint in model.joints]
-    shared = sorted({rider for rider in riders if riders.count(rider) > 1})
-    S = engine.compliance() if shared else None
-    names = []
-    for rider in shared:
-        joints = [joint for joint in model.joints if (joint.rider.body, joint.rider.cable) == rider]
-        rows = np.concatenate([joint.multiplier + np.arange(model.dim - 1) for joint in joints])
-        scale = 1 / np.sqrt(np.diag(S)[rows])
-        values, vectors = np.linalg.eigh(scale[:, None] * S[np.ix_(rows, rows)] * scale)
-        idle = values < ratio * values[-1]
-        share = np.linalg.norm(vectors[:, idle], axis=1).reshape(len(joints), -1).max(axis=1)
-        names += [f'"{joint.name}"' for joint, part in zip(joints, share, strict=True) if part > 1e-3]
-    return " and ".join(filter(None, ["slides " * bool(names) + ", ".join(names[:-1]), *names[-1:]]))
 
 
 def place(model: Model, dof: int, joint: int | None = None) -> str:

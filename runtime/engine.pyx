@@ -71,6 +71,16 @@ cdef const fu_body *_body(list tables, str name) except NULL:
     raise ValueError(f"no kernels for body {name}")
 
 
+cdef const fu_modal *_modal(list tables, str name) except NULL:
+    cdef int k
+    for address in tables:
+        table = <const fu_tables *><size_t>address
+        for k in range(table.n_modals):
+            if table.modals[k].name == name.encode():
+                return &table.modals[k]
+    raise ValueError(f"no kernels for {name}")
+
+
 cdef const fu_slide *_slide(list tables, str name) except NULL:
     cdef int k
     for address in tables:
@@ -111,28 +121,6 @@ cdef const fu_brake *_brake(list tables, str name) except NULL:
     raise ValueError(f"no kernels for {name}")
 
 
-cdef void _end(fu_end *to, end, list tables):
-    cdef int k
-    to.cable, to.body, to.element, to.slide = end.cable, end.body, end.element, end.slide
-    to.frame = NULL
-    for k in range(len(end.u)):
-        to.u[k] = end.u[k]
-    for k in range(len(end.N)):
-        to.N[k] = end.N[k]
-    if end.axes is None:
-        return
-    if end.frame:
-        to.frame = _frame(tables, end.frame)
-    for k in range(2):
-        to.slopes[k] = end.slopes[k]
-    for k in range(3):
-        to.up[k] = end.up[k]
-    for k in range(end.S.size):
-        to.S[k] = end.S.flat[k]
-    for k in range(end.axes.size):
-        to.axes[k] = end.axes.flat[k]
-
-
 cdef double _call(void *context, int which, const fu_state *state) noexcept with gil:
     """The function of an event of the user's; what it raises waits in the engine."""
     engine = <Engine>context
@@ -153,6 +141,7 @@ cdef class Engine:
 
     cdef fu_cable *cables
     cdef fu_rigid *rigids
+    cdef fu_shape *shapes
     cdef fu_joint *joints
     cdef fu_link *links
     cdef fu_spring *springs
@@ -161,7 +150,7 @@ cdef class Engine:
     cdef fu_load *loads
     cdef fu_signal *signals
     cdef fu_watch *watches
-    cdef object watcher, error
+    cdef object watcher, error, spreads
     cdef fu_model model
     cdef fu_run run
     cdef list kept
@@ -170,6 +159,7 @@ cdef class Engine:
     def __cinit__(self, model, blocks=True):
         self.cables = <fu_cable *>PyMem_Calloc(len(model.cables) + 1, sizeof(fu_cable))
         self.rigids = <fu_rigid *>PyMem_Calloc(len(model.rigids) + 1, sizeof(fu_rigid))
+        self.shapes = <fu_shape *>PyMem_Calloc(len(model.rigids) + 1, sizeof(fu_shape))
         self.joints = <fu_joint *>PyMem_Calloc(len(model.joints) + 1, sizeof(fu_joint))
         self.links = <fu_link *>PyMem_Calloc(len(model.links) + 1, sizeof(fu_link))
         self.springs = <fu_spring *>PyMem_Calloc(len(model.springs) + 1, sizeof(fu_spring))
@@ -177,12 +167,14 @@ cdef class Engine:
         self.dead_loads = <fu_dead_load *>PyMem_Calloc(len(model.dead_loads) + 1, sizeof(fu_dead_load))
         self.loads = <fu_load *>PyMem_Calloc(len(model.loads) + 1, sizeof(fu_load))
         self.signals = <fu_signal *>PyMem_Calloc(len(model.signals) + 1, sizeof(fu_signal))
-        if not (self.cables and self.rigids and self.joints and self.links and self.springs and self.motions and self.dead_loads
+        if not (self.cables and self.rigids and self.shapes and self.joints and self.links and self.springs
+                and self.motions and self.dead_loads
                 and self.loads and self.signals):
             raise MemoryError
 
     def __dealloc__(self):
-        for pointer in (<size_t>self.cables, <size_t>self.rigids, <size_t>self.joints, <size_t>self.links, <size_t>self.springs,
+        for pointer in (<size_t>self.cables, <size_t>self.rigids, <size_t>self.shapes, <size_t>self.joints,
+                        <size_t>self.links, <size_t>self.springs,
                         <size_t>self.motions, <size_t>self.dead_loads, <size_t>self.loads, <size_t>self.signals, <size_t>self.watches):
             PyMem_Free(<void *><size_t>pointer)
 
@@ -203,6 +195,7 @@ cdef class Engine:
         m.threads, m.parts = 1, NULL
         m.gravity, m.zero = self._doubles(model.gravity), self._doubles(np.zeros(model.n_dof))
         self._work_space(model)
+        self.spreads = None
 
     def _bodies_and_cables(self, model, list tables, blocks):
         cdef int i, k, memory = 0
@@ -225,10 +218,74 @@ cdef class Engine:
             r = &self.rigids[i]
             r.kernel = _body(tables, body.kernel)
             r.configuration, r.dof, r.mass = body.configuration, body.dof, body.mass
+            r.matter, r.modes, r.shape = &fu_rigid_matter, 0, NULL
             for k in range(9):
                 r.J[k] = body.inertia.flat[k]
+            if body.shape is not None:
+                self._shape(r, &self.shapes[i], body, tables)
         self.model.n_cables, self.model.n_rigids = len(model.cables), len(model.rigids)
         self.model.cables, self.model.rigids = self.cables, self.rigids
+
+    cdef int _shape(self, fu_rigid *r, fu_shape *h, body, list tables) except -1:
+        shape, n = body.shape, body.modes
+        cdef int k
+        r.matter, r.modes, r.shape = &fu_modal_matter, n, h
+        h.kernel = _modal(tables, body.modal_kernel)
+        h.S, h.X = self._doubles(shape.S), self._doubles(shape.X)
+        h.mass = self._doubles(np.einsum("klii->kl", shape.X)[1:, 1:])
+        h.stiffness, h.damping = self._doubles(shape.stiffness), self._doubles(shape.damping)
+        dofs = r.kernel.velocity + n
+        h.zero, h.matrices = self._doubles(np.zeros(dofs)), self._doubles(np.zeros(3 * dofs * dofs))
+        h.sums = self._doubles(np.zeros(3 * (n + 1) * r.kernel.dim * r.kernel.dim))
+        for k in range(len(shape.gravity)):
+            h.g[k] = shape.gravity[k]
+        return 0
+
+    def anchor(self, int index, x, phi, psi, b, w, f, m):
+        """A point of modal body `index` with its axes, as engine/modal.c has it; for tests.
+
+        x (dim,), phi (modes, dim), psi (modes, turns); b, w: the body's entries of q and v. Returns what `fu_modal_point`
+        holds, P, T, and K for a force f and a moment m on the point.
+        """
+        cdef fu_rigid *r = &self.rigids[index]
+        cdef fu_spot spot
+        cdef fu_modal_point out
+        cdef int n = fu_body_dofs(r), dim = r.kernel.dim, turns = r.kernel.velocity - r.kernel.dim
+        spot.x, spot.phi, spot.psi = self._doubles(x), self._doubles(phi), self._doubles(psi)
+        P, T, K = np.zeros((dim, n)), np.zeros((turns, n)), np.zeros((n, n))
+        cdef double[:, ::1] P_view = P, T_view = T, K_view = K
+        fu_modal_anchor(r, &spot, self._doubles(b), self._doubles(w), &out, &P_view[0, 0], &T_view[0, 0])
+        fu_modal_anchor_force(r, &spot, self._doubles(b), self._doubles(f), self._doubles(m), &K_view[0, 0])
+        return {"p": np.array(out.p)[:dim], "axes": np.array(out.axes)[:dim * dim].reshape(dim, dim), "P": P, "T": T, "K": K,
+                "velocity": np.array(out.velocity)[:dim], "omega": np.array(out.omega)[:turns],
+                "bias": np.array(out.bias)[:dim], "omega_bias": np.array(out.omega_bias)[:turns]}
+
+    cdef int _end(self, fu_end *to, end, list tables) except -1:
+        cdef int k
+        to.cable, to.body, to.element, to.slide = end.cable, end.body, end.element, end.slide
+        to.frame = NULL
+        for k in range(len(end.u)):
+            to.u[k] = end.u[k]
+        for k in range(len(end.N)):
+            to.N[k] = end.N[k]
+        if end.spot is not None:
+            to.spot.x, to.spot.phi = self._doubles(end.spot[0]), self._doubles(end.spot[1])
+            to.spot.psi = self._doubles(end.spot[2])
+            if fu_body_dofs(&self.rigids[end.body]) > FU_END_COORDINATES:
+                raise ValueError(f"more modes than the engine's {FU_END_COORDINATES - 6}")
+        if end.axes is None:
+            return 0
+        if end.frame:
+            to.frame = _frame(tables, end.frame)
+        for k in range(2):
+            to.slopes[k] = end.slopes[k]
+        for k in range(3):
+            to.up[k] = end.up[k]
+        for k in range(end.S.size):
+            to.S[k] = end.S.flat[k]
+        for k in range(end.axes.size):
+            to.axes[k] = end.axes.flat[k]
+        return 0
 
     def _joints_and_springs(self, model, list tables):
         cdef int i, k, brakes = 0
@@ -240,7 +297,7 @@ cdef class Engine:
             j.cable, j.native, j.room, j.drive = joint.cable, joint.native, joint.room, joint.drive
             j.unknown, j.multiplier, j.carries_director = joint.unknown, joint.multiplier, joint.carries_director
             j.mass = joint.mass
-            _end(&j.rider, joint.rider, tables)
+            self._end(&j.rider, joint.rider, tables)
             j.brake = _brake(tables, joint.brake) if joint.brake else NULL
             brakes += bool(joint.brake)
             j.velocity = 1.0  # of no friction
@@ -261,13 +318,13 @@ cdef class Engine:
             for k in range(link.rows):
                 l.scale[k] = link.scale[k]
             for k in range(2):
-                _end(&l.ends[k], link.ends[k], tables)
+                self._end(&l.ends[k], link.ends[k], tables)
         for i, spring in enumerate(model.springs):
             p = &self.springs[i]
             p.dim, p.unknown, p.mass = spring.dim, spring.unknown, spring.mass
             p.stiffness, p.damping, p.length = spring.stiffness, spring.damping, spring.length
             for k in range(2):
-                _end(&p.ends[k], spring.ends[k], tables)
+                self._end(&p.ends[k], spring.ends[k], tables)
         m = &self.model
         m.n_joints, m.n_links, m.n_springs = len(model.joints), len(model.links), len(model.springs)
         m.n_brakes = brakes
@@ -559,7 +616,42 @@ cdef class Engine:
         cdef fu_weights weights
         weights.inertia, weights.rate, weights.stiffness = inertia, rate, stiffness
         fu_matrix(&self.run, weights)
-        return self._matrix()
+        return self._matrix() + stiffness * self._between_cables() if stiffness and self.model.n_links else self._matrix()
+
+    def _between_cables(self):
+        """(n, n) sparse: what joints between two cables add to the stiffness and Newton in time does without."""
+        from scipy.sparse import coo_array, csr_array
+
+        cdef int[::1] at = np.zeros(2 * FU_END_COORDINATES, dtype=np.intc)
+        cdef double[::1] J = np.zeros(6 * 2 * FU_END_COORDINATES), K = np.zeros(4 * FU_END_COORDINATES ** 2)
+        cdef int k, i, n, first, n_dof = self.model.n_dof, total = self.run.newton.n + self.run.newton.m
+        whole = n_dof + self.model.n_extra
+        stiffness = csr_array((whole, whole))
+        for k in range(self.model.n_links):
+            if not fu_between_cables(&self.links[k]):
+                continue
+            first = fu_end_coordinates(&self.model, &self.links[k].ends[0], &self.run.next, &at[0])
+            n = fu_link_tangent(&self.model, &self.links[k], &self.run.next, &at[0], &J[0], &K[0])
+            block = np.array(K[:n * n]).reshape(n, n)
+            block[:first, :first] = block[first:, first:] = 0
+            places = np.array([at[i] for i in range(n)])
+            for i in range(n):  # an s that is held has no equilibrium of its own
+                if places[i] >= n_dof and self._is_held(places[i] - n_dof):
+                    block[i] = block[:, i] = 0
+            rows, columns = np.repeat(places, n), np.tile(places, n)
+            stiffness = stiffness + coo_array((block.ravel(), (rows, columns)), shape=(whole, whole)).tocsr()
+        if not stiffness.nnz:
+            return csr_array((total, total))
+        if self.spreads is None:
+            unit = [self.spread(x) for x in np.eye(total)[:total - self.model.n_extra]]
+            dofs = np.array(unit).reshape(-1, n_dof).T
+            self.spreads = csr_array(np.block([[dofs, np.zeros((n_dof, self.model.n_extra))],
+                                               [np.zeros((self.model.n_extra, dofs.shape[1])), np.eye(self.model.n_extra)]]))
+        return self.spreads.T @ stiffness @ self.spreads
+
+    def _is_held(self, int extra):
+        return any([self.joints[j].unknown == extra and self.run.next.mode[j] != FU_SLIDES
+                    for j in range(self.model.n_joints)])
 
     def elastic_energy(self):
         """J, of the static state."""
@@ -794,8 +886,47 @@ cdef class Engine:
         cdef int n = self.model.n_multipliers
         cdef double[:, ::1] S = np.zeros((max(n, 1), max(n, 1)))
         if fu_compliance(&self.model, &self.run.now, &self.run.accelerator, &S[0, 0]):
-            raise ValueError("the mass matrix is singular")
+            raise ArithmeticError("the mass matrix is singular")
         return np.asarray(S)[:n, :n]
+
+    def prepare(self):
+        """What `compliance` needs before `start`; whether there are consistent slides and a mass matrix."""
+        return fu_prepare(&self.run) == FU_RUNNING
+
+    def idle(self, rows):
+        """Let no multiplier stand for these rows of joints, (link, row) each, which others imply."""
+        for link, row in rows:
+            self.links[link].idle |= 1 << row
+
+    def wander(self, along):
+        """What is left of the joints' equations, (links, 6), after a small way `along` (n_dof,) the freedom that they
+        leave; None where no way leads back onto them. See fu_wander.
+        """
+        cdef double[::1] way = np.ascontiguousarray(along, dtype=float)
+        cdef double[::1] left = np.zeros(6 * self.model.n_links + 1)
+        if fu_wander(&self.run, &way[0], &left[0]):
+            return None
+        return np.asarray(left)[:6 * self.model.n_links].reshape(-1, 6)
+
+    def held(self):
+        """(links, FU_LINK_OUTPUTS): force and moment of joints on their second ends, and residual, in the static state."""
+        cdef int k, r
+        cdef double[::1] out = np.zeros(FU_LINK_OUTPUTS * self.model.n_links + 1)
+        for k in range(self.model.n_links):
+            for r in range(self.links[k].kernel.rows):
+                self.run.accelerator.multipliers[self.links[k].multiplier + r] = self.run.next.multipliers[6 * k + r]
+        fu_link_outputs(&self.model, &self.run.next, &self.run.accelerator, <fu_link_output *>&out[0])
+        return np.asarray(out)[:FU_LINK_OUTPUTS * self.model.n_links].reshape(-1, FU_LINK_OUTPUTS)
+
+    @property
+    def extent(self):
+        """Largest size of what coordinates are, m."""
+        return self.run.extent
+
+    @property
+    def closed(self):
+        """How far, in m, things moved at the start to close the gaps of joints."""
+        return self.run.closed
 
     def now(self):
         """t, q, v, s at the time reached."""

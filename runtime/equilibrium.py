@@ -7,7 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from funicular.errors import SceneError, UnknownResultError, near
-from funicular.recording import body_state, join_force, spatial, spring_state, support_reaction
+from funicular.recording import (
+    body_state,
+    join_force,
+    link_state,
+    modal_state,
+    spatial,
+    spring_state,
+    support_reaction,
+)
 
 if TYPE_CHECKING:
     import xarray
@@ -19,7 +27,8 @@ if TYPE_CHECKING:
 def layout(scene: Scene) -> dict[str, list]:
     """What must be the same in two scenes for a state of one to be a state of the other."""
     return {"cables": [(c.name, c.element, c.elements, c.length) for c in scene.cables.values()],
-            "bodies": list(scene.bodies), "slides": list(scene.slides), "springs": list(scene.springs)}
+            "bodies": list(scene.bodies), "slides": list(scene.slides),
+            "joints": [(j.name, j.pair) for j in scene.joints.values()], "springs": list(scene.springs)}
 
 
 @dataclass
@@ -37,6 +46,7 @@ class Equilibrium:
     model: Model
     placed: dict
     reaction: np.ndarray
+    held: np.ndarray
     load_fraction: float
     iterations: int
     residual: float
@@ -49,7 +59,8 @@ class Equilibrium:
         """Read the static state of a path (static.py)."""
         left = path.off(fraction)
         units = np.where(path.weight > 0, path.weight, np.inf)
-        state = cls(scene, path.model, path.keep(), path.engine.reaction(), fraction, path.iterations,
+        engine = path.engine
+        state = cls(scene, path.model, path.keep(), engine.reaction(), engine.held(), fraction, path.iterations,
                     float(np.max(np.abs(left) / units, initial=0.0)))
         state.quantities = state._quantities()
         state.path, state.layout = [*path.history, state], layout(scene)
@@ -96,10 +107,16 @@ class Equilibrium:
             found[f"{cable.name}.nodal_vectors"] = vectors
             found[f"{cable.name}.position"] = vectors[:, cable.vectors.index("r")]
         for body in model.rigids:
-            found |= {f"{body.name}.{name}": value[0] for name, value in body_state(model, body, q).items()}
+            state = body_state(model, body, q)
+            state |= modal_state(model, body, state, q) if body.modes else {}
+            found |= {f"{body.name}.{name}": value[0] for name, value in state.items()}
         for k, joint in enumerate(model.joints):
             found[f"{joint.name}.s"] = self.placed["s"][k]
             found[f"{joint.name}.force"] = self.placed["force"][k]
+        for link, numbers in zip(model.links, self.held, strict=True):
+            values = link_state(numbers)
+            found |= {f"{link.name}.{name}": values[name]
+                      for name in (("force", "moment") if link.slide is None else ("moment",))}
         for part in scene.supports:
             given_ = support_reaction(model, scene, part, reaction, q)
             found |= {f"{part.label}.{name}": value[0] for name, value in given_.items()}

@@ -8,7 +8,6 @@ import numpy as np
 from funicular.anchors import Anchor
 from funicular.cables import Cable
 from funicular.joints import Joint
-from funicular.rotations import rotate
 from funicular.slides import Slide
 
 if TYPE_CHECKING:
@@ -18,7 +17,8 @@ if TYPE_CHECKING:
 class EndAxes(NamedTuple):
     """(3, 3) each: the axes of a joint as columns, in the frames of its two ends; equal in the ground's at the start.
 
-    Frame of an end: a body's axes, the ground's, or at a cable `cable_frame`. The joint's z is its axis.
+    Frame of an end: a body's axes, the ground's, or at a cable `section_frame`, else `cable_frame`.
+    The joint's z is its axis.
     """
 
     a: np.ndarray
@@ -42,6 +42,21 @@ def cable_frame(cable: Cable, s: float, up=None) -> np.ndarray:
     return np.column_stack([tangent, np.cross(width, tangent), width])
 
 
+def draws_section(cable: Cable) -> bool:
+    """Whether its elements have sections of their own, which shear turns away from the tangent."""
+    return {2: {"r_y"}, 3: {"r_y", "r_z"}}[cable.dim] <= set(cable.kind_of_element.nodal_vectors)
+
+
+def section_frame(cable: Cable, s: float) -> np.ndarray:
+    """(3, 3): normal, height and width of the section at ``s`` as the elements draw it, as columns; height along r_y.
+
+    What a joint holds: a moment on r_x alone bends a beam that shears sharply there, the more the finer its elements.
+    """
+    height = _unit(cable.height(s))
+    normal = _unit(np.cross(height, cable.width(s)))
+    return np.column_stack([normal, height, np.cross(normal, height)])
+
+
 def _unit(vector: np.ndarray) -> np.ndarray:
     return vector / np.linalg.norm(vector)
 
@@ -51,9 +66,9 @@ def end_frame(scene: Scene, end: Anchor, up=None) -> np.ndarray:
     if end.on is None:
         return np.eye(3)
     if end.on in scene.bodies:
-        return rotate(scene.bodies[end.on].orientation, np.eye(3)).T
+        return scene.bodies[end.on].axes
     cable = scene.cables[end.on]
-    return cable_frame(cable, end.s, None if has_section(cable) else up)
+    return section_frame(cable, end.s) if draws_section(cable) else cable_frame(cable, end.s, up)
 
 
 def joint_axes(scene: Scene, joint: Joint) -> EndAxes:
@@ -67,6 +82,8 @@ def slide_axes(scene: Scene, slide: Slide) -> EndAxes:
     z along the tangent, x along the height, y along the width. With roll "held" the cable's frame is that of
     `cable_frame` with the slide's up, at every s; with roll "free" the turn about z is free.
     """
-    frame = cable_frame(scene.cables[slide.along], slide.s, slide.up)
+    along = scene.cables[slide.along]
+    frame = (section_frame(along, slide.s) if slide.frame == "section" and draws_section(along)
+             else cable_frame(along, slide.s, slide.up))
     order = np.eye(3)[:, [1, 2, 0]]
     return EndAxes(order, end_frame(scene, slide.rider).T @ frame @ order)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from funicular.anchors import Anchor
-from funicular.frames import has_section, joint_axes, slide_axes
+from funicular.frames import draws_section, has_section, joint_axes, slide_axes
 from funicular.joints import DRIVEN, Joint
 from funicular.libraries import kernels_of
+from funicular.modal_bodies import ModalBody
 from funicular.placing import point_of
 from funicular.scene import Scene
 from funicular.slides import Slide
@@ -18,10 +19,16 @@ UP, CARRIED = -1, -2
 
 FRAMES = {2: "planar_frame", 3: "frame"}
 
+SECTIONS = {2: np.array([[0.0, 1.0], [-1.0, 0.0]]), 3: np.eye(3)[:, [2, 0, 1]]}
+"""`frames.section_frame` in the frame of r_y and r_z."""
+
 
 @dataclass
 class EndModel:
-    """fu_end of engine.h: -1 for what it is not on; mass and length are scales of it, kg and m."""
+    """fu_end of engine.h: -1 for what it is not on; mass and length are scales of it, kg and m.
+
+    spot: of a modal body's node, where it is undeformed, and its displacements and turns by modes.
+    """
 
     cable: int
     body: int
@@ -36,13 +43,14 @@ class EndModel:
     slopes: tuple[int, int] = (0, UP)
     up: tuple[float, ...] = (0.0, 0.0, 0.0)
     axes: np.ndarray | None = None
+    spot: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
 
 
 @dataclass
 class LinkModel:
     """A joint between two ends; unknown, multiplier: places of its rows; signal: that drives it, or -1.
 
-    slide: the one beside which it ties a rider's axes to the cable.
+    slide: the one beside which it ties a rider's axes to the cable; idle: rows that other joints imply (redundancy.py).
     """
 
     name: str
@@ -54,6 +62,7 @@ class LinkModel:
     base: float
     scale: np.ndarray
     slide: str | None = None
+    idle: set[int] = field(default_factory=set)
 
     @property
     def rows(self) -> int:
@@ -84,8 +93,13 @@ class Holder:
         if anchor.on in self.body_index:
             body = self.rigids[self.body_index[anchor.on]]
             length = float(np.sqrt(np.max(np.linalg.eigvalsh(body.inertia)) / body.mass))
-            return EndModel(-1, self.body_index[anchor.on], 0, -1, anchor.at, none, none, body.mass, length, axes=axes)
-        found = self._on_cable(anchor.on, axes, up)
+            part = self.scene.bodies[anchor.on]
+            if isinstance(part, ModalBody):
+                return EndModel(-1, self.body_index[anchor.on], 0, -1, (0.0,) * 3, none, none, body.mass, length,
+                                axes=axes, spot=self._spot(part.spot(anchor.at)))
+            return EndModel(-1, self.body_index[anchor.on], 0, -1, part.arm(anchor.at), none, none, body.mass, length,
+                            axes=axes)
+        found = self._on_cable(anchor.on, anchor.s, axes, up, draws_section(self.scene.cables[anchor.on]))
         found.element, x = self.element(anchor.on, anchor.s)
         model = self.cables[found.cable]
         found.N = model.kernel("on_axis")(model.length, x)[0]
@@ -96,20 +110,30 @@ class Holder:
 
     def on_slide(self, slide: Slide, number: int, axes: np.ndarray) -> EndModel:
         """The cable's frame where a slide is."""
-        found = self._on_cable(slide.along, self._axes(axes), slide.up)
+        section = slide.frame == "section" and draws_section(self.scene.cables[slide.along])
+        found = self._on_cable(slide.along, slide.s, self._axes(axes), slide.up, section)
         found.slide = number
-        if found.slopes[1] == UP and slide.roll == "free":
+        if not section and found.slopes[1] == UP and slide.roll == "free":
             found.slopes = (0, CARRIED)
         return found
 
-    def _on_cable(self, name: str, axes: np.ndarray | None, up) -> EndModel:
+    def _on_cable(self, name: str, s: float, axes: np.ndarray | None, up, section: bool) -> EndModel:
+        """An end with the frame of the section, or of the tangent with the director or up."""
         cable, index = self.scene.cables[name], self.cable_index[name]
         length = self.cables[index].length
         mass = cable.material.density * cable.section.area * length
         director = cable.kind_of_element.director
+        if up is None and not director:  # any direction does where the tangent is all that is held
+            up = cable.height(s)
         slopes = (0, "xyz".index(director[-1]) if director and up is None and cable.dim == 3 else UP)
+        if section:
+            slopes, axes = (1, 2 if cable.dim == 3 else UP), None if axes is None else SECTIONS[cable.dim] @ axes
         return EndModel(index, -1, 0, -1, (0.0,) * 3, np.zeros(0), np.zeros(0), mass, length,
                         FRAMES[self.scene.dim], slopes, (0.0,) * 3 if up is None else up, axes)
+
+    def _spot(self, spot) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        dim, (at, displacements, turns) = self.scene.dim, spot
+        return at[:dim], displacements[:, :dim], turns[:, 2:] if dim == 2 else turns
 
     def _axes(self, axes: np.ndarray | None) -> np.ndarray | None:
         """In the plane x is the joint's axis if that lies in it, y square to it; see derive/joints/pair.py."""

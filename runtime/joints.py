@@ -25,7 +25,8 @@ class Joint(Part):
     """A joint of ``kind`` between two ends.
 
     a, b: its ends: ("A", (x, y, z)), a point in body axes; "A", the body's centre; ("wire", s), the place of a cable
-    with its frame; or a point (x, y, z) of the ground, in m. Directions are the ground's, at the start.
+    with its section, or its tangent where the elements have no sections; or a point (x, y, z) of the ground, in m.
+    Directions are the ground's, at the start.
 
     | kind | holds | leaves |
     |---|---|---|
@@ -40,6 +41,8 @@ class Joint(Part):
     Driven, by a signal: ``angle`` (rad, of b about the axis as seen from a, from the start on) of revolute and
     cylindrical ones; ``distance`` (m), of prismatic ones the way of b along the axis from the start on, of distance
     ones the distance itself; or ``velocity``, the rate of that.
+
+    Equations that follow from those of joints before are left out, and the report tells which (a door on two hinges).
 
     up: where an element has no section axes (its tangent is all that a cable knows), a direction fixed in the ground
     that completes its frame, and against which it holds the turn about the tangent.

@@ -8,7 +8,9 @@ import numpy as np
 from funicular.equilibrium import Equilibrium
 from funicular.errors import SceneError
 from funicular.model import build
-from funicular.recording import spatial
+from funicular.recording import body_state, spatial
+from funicular.redundancy import settle
+from funicular.rotations import rotate
 from funicular.scene import Scene
 from scipy.linalg import eig, eigh, null_space
 from scipy.sparse import csc_array
@@ -28,7 +30,8 @@ class Modes:
 
     angular_frequency (n,) in rad/s, 0 where the state is not stable; frequency (n,) in Hz; growth_rate (n,) in 1/s, of
     what grows instead, 0 where it is stable. Shapes by name, largest displacement 1 m: ``modes["wire.nodal_vectors"]``
-    (n, node, vector, 3), ``modes["A.displacement"]``, ``modes["A.rotation"]`` (n, 3), about body axes.
+    (n, node, vector, 3), ``modes["A.displacement"]``, ``modes["A.rotation"]`` (n, 3), about body axes; of a modal body
+    these are the frame's, and ``modes["link.nodes"]`` (n, node, 3) what its nodes move by.
     """
 
     angular_frequency: np.ndarray
@@ -54,6 +57,7 @@ def modes(scene: Scene, n: int, about: Equilibrium | None = None) -> Modes:
 
     model = build(scene)
     engine = Engine(model)
+    settle(model, engine)
     engine.place(0.0, **({} if about is None else about.placed))
     K, constraints = condensed(engine.matrix(0.0, 0.0, 1.0), model)
     size = K.shape[0]
@@ -76,18 +80,20 @@ def fastest(K: csc_array, M: csc_array, unknowns=slice(None)) -> float:
 
 
 def condensed(full: csc_array, model) -> tuple[csc_array, csc_array]:
-    """Stiffness over coordinates and arc-lengths, springs' forces eliminated; the joints' constraints on them."""
+    """Stiffness over coordinates and free arc-lengths, springs' forces eliminated; the constraints on them."""
     n = model.n_band + model.n_border_dof
     dim = model.dim
-    arc = np.array([n + j.unknown for j in model.joints], dtype=int)
-    forces = np.array([n + j.unknown + 1 + d for j in model.joints for d in range(dim)], dtype=int)
+    arc = np.array([n + j.unknown for j in model.joints if j.drive < 0], dtype=int)
+    held = [n + j.unknown + 1 + d for j in model.joints for d in range(dim)]
+    held += [n + link.unknown + r for link in model.links for r in range(link.rows)
+             if r not in link.idle]
     springs = np.array([n + s.unknown + d for s in model.springs for d in range(dim)], dtype=int)
     kept = np.concatenate([np.arange(n), arc])
     full = full.tocsr()
     K = full[kept][:, kept]
     if len(springs):  # their rows are F - law(q): F = -C q
         K = K - full[kept][:, springs] @ full[springs][:, kept]
-    return K.tocsc(), full[forces][:, kept].tocsc()
+    return K.tocsc(), full[np.array(held, dtype=int)][:, kept].tocsc()
 
 
 def _solve(K: csc_array, M: csc_array, constraints: csc_array, n: int) -> tuple[np.ndarray, np.ndarray]:
@@ -125,9 +131,11 @@ def _solve(K: csc_array, M: csc_array, constraints: csc_array, n: int) -> tuple[
 def _named(model, squares: np.ndarray, dofs: np.ndarray) -> Modes:
     roots = np.sqrt(squares.astype(complex))
     shapes = {}
+    modal = [body for body in model.rigids if body.modes]
     for k, mode in enumerate(dofs):
         largest = max([np.abs(mode[list(node.dofs("r"))]).max() for nodes in model.nodes.values() for node in nodes]
-                      + [np.abs(mode[b.dof : b.dof + model.dim]).max() for b in model.rigids])
+                      + [np.abs(mode[b.dof : b.dof + model.dim]).max() for b in model.rigids]
+                      + [np.abs(_nodes(model, body, mode[None])).max() for body in modal])
         dofs[k] = mode / (largest or np.abs(mode).max() or 1.0)
     for cable in model.cables:
         vectors = spatial(dofs[:, cable.coordinates].reshape(len(dofs), *cable.shape))
@@ -137,4 +145,17 @@ def _named(model, squares: np.ndarray, dofs: np.ndarray) -> Modes:
         turn = dofs[:, body.dof + model.dim : body.dof + (6 if model.dim == 3 else 3)]
         shapes[f"{body.name}.displacement"] = spatial(dofs[:, body.dof : body.dof + model.dim])
         shapes[f"{body.name}.rotation"] = turn if model.dim == 3 else np.pad(turn, ((0, 0), (2, 0)))
+    for body in modal:
+        shapes[f"{body.name}.nodes"] = _nodes(model, body, dofs)
     return Modes(np.abs(roots.real), np.abs(roots.imag), shapes)
+
+
+def _nodes(model, body, dofs: np.ndarray) -> np.ndarray:
+    """(n, node, 3): what the nodes of a modal body are moved by."""
+    at = body.dof + model.dim
+    turn = dofs[:, at : at + 3] if model.dim == 3 else np.pad(dofs[:, at : at + 1], ((0, 0), (2, 0)))
+    at += 3 if model.dim == 3 else 1
+    fields, orientation = body.shape.fields, body_state(model, body, model.q[None])["orientation"][0]
+    strained = np.einsum("tk,kni->tni", dofs[:, at : at + body.modes], fields.modes)
+    frame = spatial(dofs[:, None, body.dof : body.dof + model.dim])
+    return frame + rotate(orientation, np.cross(turn[:, None], fields.nodes) + strained)

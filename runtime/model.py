@@ -14,7 +14,7 @@ from functools import partial
 import numpy as np
 from funicular.actions import Actions, DeadLoad, LoadModel, SignalModel, SpringModel
 from funicular.constants import constants
-from funicular.diagnosis import notes, redundant
+from funicular.diagnosis import notes
 from funicular.elements import gauge
 from funicular.ends import Buffer, HardStop, Stop
 from funicular.errors import FunicularWarning, SceneError
@@ -22,9 +22,12 @@ from funicular.friction import Friction
 from funicular.holding import EndModel, Holder, LinkModel, linked, tied
 from funicular.integrators import choose
 from funicular.libraries import kernels_of, tables_of
-from funicular.parts import Cable, RigidBody, Slide
+from funicular.modal_shape import Shape
+from funicular.parts import Cable, ModalBody, RigidBody, Slide
 from funicular.recording import Recording, named, recorded
-from funicular.reduction import Node, supports
+from funicular.reduction import Node, Reduction, supports
+from funicular.redundancy import settle
+from funicular.rotations import rotate
 from funicular.scene import Scene
 from funicular.settings import RunSettings
 from funicular.streaming import Stream, pauses
@@ -68,15 +71,42 @@ class CableModel:
 
 
 @dataclass
+class ShapeModel:
+    """Modes of a body as the engine takes them: S (n + 1, dim), X (n + 1, n + 1, dim, dim), gravity (dim,)."""
+
+    S: np.ndarray
+    X: np.ndarray
+    stiffness: np.ndarray
+    damping: np.ndarray
+    gravity: np.ndarray
+    fields: Shape
+
+
+@dataclass
 class RigidModel:
-    """One rigid body: kernels, inertia and where its coordinates are."""
+    """One body: kernels of its frame, inertia, where its coordinates are; `shape` is that of a modal one.
+
+    The engine's frame is at the mass centre of a rigid body, `centre` in its axes from the origin that the user sees.
+    """
 
     name: str
     kernel: str
     mass: float
     inertia: np.ndarray
+    centre: np.ndarray
     configuration: int
     dof: int
+    shape: ShapeModel | None = None
+
+    @property
+    def modes(self) -> int:
+        """Number of modes."""
+        return 0 if self.shape is None else len(self.shape.stiffness)
+
+    @property
+    def modal_kernel(self) -> str:
+        """Name of the kernels of its modes."""
+        return self.kernel.replace("rigid", "modal")
 
 
 @dataclass
@@ -150,7 +180,9 @@ class Model:
         """Names of the kernel families that the scene touches."""
         return sorted({c.element for c in self.cables} | {f"{c.element}_{c.law}" for c in self.cables}
                       | {j.kernel for j in self.joints} | {b.kernel for b in self.rigids}
-                      | {link.kernel for link in self.links} | {j.brake for j in self.joints if j.brake})
+                      | {link.kernel for link in self.links}
+                      | {j.brake for j in self.joints if j.brake}
+                      | {b.modal_kernel for b in self.rigids if b.modes})
 
 
 @dataclass
@@ -168,14 +200,12 @@ class MotionModel:
 def build(scene: Scene) -> Model:
     """Number the coordinates of a scene and evaluate the constants of its elements. Raises SceneError."""
     dim = scene.dim
-    kernel, n_configuration, n_velocity = BODIES[dim]
     cables, at = [], 0
     for cable in scene.cables.values():
         cables.append(_cable(cable, at))
         at = cables[-1].coordinates.stop
     n_flexible = at
-    rigids = [RigidModel(body.name, kernel, body.mass, np.array(body.inertia), n_flexible + n_configuration * k,
-                         n_flexible + n_velocity * k) for k, body in enumerate(scene.bodies.values())]
+    rigids = _bodies(scene, n_flexible)
     nodal = {c.name: part.nodal_vectors[..., :dim] for c, part in zip(cables, scene.cables.values(), strict=True)}
     nodes = {c.name: [Node(scene.cables[c.name].where, c.vectors,
                            c.first + k * int(np.prod(c.shape[1:])), vectors)
@@ -201,21 +231,22 @@ def build(scene: Scene) -> Model:
         used, held = used + links[-1].rows, held + links[-1].rows
     springs = [actions.spring(spring, used + dim * k) for k, spring in enumerate(scene.springs.values())]
     gravity = np.array(scene.gravity)[:dim]
+    n_of_bodies = sum(_dofs(body, dim) for body in rigids)
     return Model(
         dim, cables, rigids, joints, links, springs, actions.signals,
         [MotionModel(dof, p.signal, p.base, p.linear, p.cosine, p.sine) for dof, p in reduction.prescribed],
         actions.dead, actions.turning,
         q=np.concatenate([n.ravel() for n in nodal.values()] + [_attitude(b, dim) for b in scene.bodies.values()]
                          + [[]]),
-        v=np.concatenate([np.zeros(n_flexible)] + [_velocity(b, dim) for b in scene.bodies.values()]),
+        v=np.concatenate([_moving(scene, reduction)] + [_velocity(b, dim) for b in scene.bodies.values()]),
         weight=np.concatenate([_cable_weights(c) for c in scene.cables.values()]
-                              + [_rigid_weights(b, dim) for b in scene.bodies.values()] + [[]]),
+                              + [_body_weights(b, dim) for b in scene.bodies.values()] + [[]]),
         gravity=np.concatenate([_gravity(m, c, gravity) for m, c in zip(cables, scene.cables.values(), strict=True)]
-                               + [_rigid_gravity(b, gravity, n_velocity) for b in rigids] + [[]]),
-        place=np.concatenate([reduction.place, reduction.n_unknowns + np.arange(n_velocity * len(rigids))]).astype(int),
+                               + [_body_gravity(b, gravity) for b in rigids] + [[]]),
+        place=np.concatenate([reduction.place, reduction.n_unknowns + np.arange(n_of_bodies)]).astype(int),
         combinations=reduction.combinations,
         n_band=reduction.numbering.n_band,
-        n_border_dof=reduction.n_unknowns - reduction.numbering.n_band + n_velocity * len(rigids),
+        n_border_dof=reduction.n_unknowns - reduction.numbering.n_band + n_of_bodies,
         n_extra=used + dim * len(springs),
         n_multipliers=held,
         width=reduction.numbering.width,
@@ -245,6 +276,17 @@ def _gravity(model: CableModel, cable: Cable, gravity: np.ndarray) -> np.ndarray
     return weight.ravel()
 
 
+def _moving(scene: Scene, reduction: Reduction) -> np.ndarray:
+    """Rates of the cables' nodal vectors at the start, but for what supports hold."""
+    asked = np.concatenate([*(cable.nodal_rates[..., : scene.dim].ravel() for cable in scene.cables.values()), []])
+    unknowns, free, tied = np.zeros(reduction.combinations.shape[1]), reduction.place >= 0, reduction.place < -1
+    unknowns[reduction.place[free]] = asked[free]
+    given = np.zeros(len(asked))
+    given[free] = unknowns[reduction.place[free]]
+    given[tied] = (reduction.combinations @ unknowns)[-2 - reduction.place[tied]]
+    return given
+
+
 def _cable_weights(cable: Cable) -> np.ndarray:
     """How far a unit of each nodal vector moves a point: 1 for positions, and lengths for the slopes."""
     area, iyy, izz = cable.section.moments()[:3]
@@ -253,27 +295,65 @@ def _cable_weights(cable: Cable) -> np.ndarray:
     return np.repeat(np.tile(list(unit), cable.elements + 1), cable.dim)
 
 
-def _attitude(body: RigidBody, dim: int) -> np.ndarray:
-    """Its configuration."""
-    if dim == 3:
-        return np.array([*body.position, *body.orientation])
-    w, _, _, z = body.orientation
-    return np.array([*body.position[:2], w * w - z * z, 2 * w * z])
+def _bodies(scene: Scene, at: int) -> list[RigidModel]:
+    """Bodies in the scene's order, their coordinates from `at` on."""
+    dim, made, dof = scene.dim, [], at
+    kernel, n_configuration, n_velocity = BODIES[dim]
+    for body in scene.bodies.values():
+        shape = _shape(body, np.array(scene.gravity)[:dim]) if isinstance(body, ModalBody) else None
+        centre = np.zeros(3) if shape else np.array(body.centre)
+        made.append(RigidModel(body.name, kernel, body.mass, np.array(body.inertia), centre, at, dof, shape))
+        at += n_configuration + made[-1].modes
+        dof += n_velocity + made[-1].modes
+    return made
 
 
-def _velocity(body: RigidBody, dim: int) -> list[float]:
-    return [*body.velocity[:dim], *body.angular_velocity[(dim == 2 and 2) or 0 :]]
+def _shape(body: ModalBody, gravity: np.ndarray) -> ShapeModel:
+    shape, dim = body.shape, len(gravity)
+    return ShapeModel(shape.S[:, :dim], shape.X[:, :, :dim, :dim], shape.stiffness, shape.damping(body.damping_ratio),
+                      gravity, shape)
 
 
-def _rigid_weights(body: RigidBody, dim: int) -> np.ndarray:
-    """1 for the centre, the largest radius of gyration for rotations."""
+def _dofs(body: RigidModel, dim: int) -> int:
+    return BODIES[dim][2] + body.modes
+
+
+def _attitude(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
+    """Its configuration, undeformed."""
+    if isinstance(body, ModalBody):
+        (position, orientation), modes = body.frame, np.zeros(body.shape.n)
+    else:
+        position, orientation, modes = body.point(body.centre), body.orientation, np.zeros(0)
+    if dim == 2:
+        w, _, _, z = orientation
+        orientation = w * w - z * z, 2 * w * z
+    return np.array([*position[:dim], *orientation, *modes])
+
+
+def _velocity(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
+    turning = np.array(body.angular_velocity)
+    velocity, modes = np.array(body.velocity), np.zeros(0)
+    if isinstance(body, ModalBody):
+        modes = np.zeros(body.shape.n)
+    else:
+        velocity = velocity + rotate(body.orientation, np.cross(turning, body.centre))
+    return np.concatenate([velocity[:dim], turning[2 if dim == 2 else 0 :], modes])
+
+
+def _body_weights(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
+    """1 for the origin, the largest radius of gyration for turns, the root mean square of displacement for modes."""
     inertia = np.array(body.inertia)
     largest = inertia[2, 2] if dim == 2 else np.max(np.linalg.eigvalsh(inertia))
-    return np.repeat([1.0, np.sqrt(largest / body.mass)], [dim, 1 if dim == 2 else 3])
+    modes = np.sqrt(np.diag(body.shape.modal_mass) / body.mass) if isinstance(body, ModalBody) else np.zeros(0)
+    return np.concatenate([np.ones(dim), np.full(1 if dim == 2 else 3, np.sqrt(largest / body.mass)), modes])
 
 
-def _rigid_gravity(body: RigidModel, gravity: np.ndarray, n: int) -> np.ndarray:
-    return np.concatenate([body.mass * gravity, np.zeros(n - len(gravity))])
+def _body_gravity(body: RigidModel, gravity: np.ndarray) -> np.ndarray:
+    """Of a modal body nothing: its weight turns and deforms with it, and is among its forces."""
+    weight = np.zeros(_dofs(body, len(gravity)))
+    if not body.modes:
+        weight[: len(gravity)] = body.mass * gravity
+    return weight
 
 
 def _joint(slide: Slide, scene: Scene, holder: Holder, signal, number: int, multiplier: int) -> JointModel:
@@ -281,9 +361,10 @@ def _joint(slide: Slide, scene: Scene, holder: Holder, signal, number: int, mult
     axes = along.axes_at(slide.s)
     at = slide.s / along.length * along.elements
     node = along.node_at(slide.s)
-    native = slide.body in scene.bodies
+    body = scene.bodies.get(slide.body)
+    native = isinstance(body, RigidBody)
     if node is not None:  # on a node: the element that the rider moves into
-        forward = not native or np.dot(axes[0], scene.bodies[slide.body].velocity) >= 0
+        forward = body is None or np.dot(axes[0], body.velocity) >= 0
         at = node if forward else node - 1
     rider = holder.end(slide.rider)
     driven, ends, friction = slide.prescribed is not None, (slide.at_start, slide.at_end), slide.friction
@@ -327,7 +408,7 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
     pace = pauses(int(np.ceil(settings.duration / output_step)) + 1, _check_size(model, settings, stream))
     engine, watcher = Engine(model), Watcher(scene, model)
     engine.watch(watcher)
-    messages = []
+    messages = settle(model, engine)
     if settings.step is not None:
         step = output_step / np.ceil(output_step / settings.step * (1 - 1e-9))
         if step < settings.step * (1 - 1e-6):
@@ -347,16 +428,15 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
         first_step=min(output_step, 1e-3 * settings.duration),
         room=None if stream is None else pace.room,
     )
-    if doubled := redundant(model, engine):
-        raise SceneError("scene", f"is over-constrained: {doubled} hold the same",
-                         "leave one of them out, or hold the body at other points")
     if status == "singular" and engine.jammed >= 0:
         slide = list(scene.slides.values())[engine.jammed]
-        raise SceneError(slide.where, "friction jams it at the start: the more it holds, the more it presses it "
-                         "on the cable", "take a smaller coefficient, or the rider's point nearer to its centre of mass")
+        raise SceneError(slide.where, "friction jams it at the start: the more it holds, the more it presses it on the "
+                         "cable", "take a smaller coefficient, or the rider's point nearer to its centre of mass")
     if status == "singular":
         raise SceneError("scene", "the equations are singular at the start: a mass is zero, or a cable's director lies "
                          "along its tangent", "look at masses and inertias, and at up")
+    if engine.closed > 1e-9 * engine.extent:
+        messages.append(f"gaps of joints were closed at the start: things moved by up to {engine.closed:.3g} m")
     largest = float(np.max(np.abs(change) * model.weight, initial=0.0))  # rates of slopes and turns as those of points
     if largest > 1e-9 * (1.0 + np.max(np.abs(model.v) * model.weight, initial=0.0)):
         messages.append(f"initial velocities broke a joint: changed by up to {largest:.3g} m/s to keep it")
@@ -378,6 +458,10 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
 
 def _check_conserves(model: Model, scene: Scene, engine, method) -> None:
     """Raise SceneError for what has no discrete gradient, or lacks the algorithmic dissipation that is asked for."""
+    for body in model.rigids:
+        if body.modes:
+            raise SceneError(scene.bodies[body.name].where, 'integrator "energy" does not know modal bodies',
+                             'take "radau" with a small tol, or "genalpha"')
     for cable in model.cables:
         if not hasattr(kernels_of(cable.library), f"{cable.element}_{cable.law}_discrete_force"):
             raise SceneError(scene.cables[cable.name].where,

@@ -5,14 +5,16 @@ from funicular.cables import EXACT, Cable
 from funicular.events import Event
 from funicular.joints import Joint
 from funicular.loads import DistributedForce, Force, Moment
+from funicular.modal_bodies import ModalBody
 from funicular.slides import Slide
 from funicular.springs import Spring
 from funicular.supports import Clamp, Join, Motion, Pin
 
-KINDS = (Cable, Pin, Clamp, Motion, Join, RigidBody, Joint, Slide, Force, DistributedForce, Moment, Spring, Event)
+KINDS = (Cable, Pin, Clamp, Motion, Join, RigidBody, ModalBody, Joint, Slide, Force, DistributedForce,
+         Moment, Spring, Event)
 
 PARTS = {part.kind: part for part in KINDS}
 """The kinds of parts by their names in scene files and in messages."""
 
-__all__ = ["EXACT", "PARTS", "Cable", "Clamp", "DistributedForce", "Event", "Force", "Join", "Joint", "Moment",
-           "Motion", "Pin", "RigidBody", "Slide", "Spring"]
+__all__ = ["EXACT", "PARTS", "Cable", "Clamp", "DistributedForce", "Event", "Force", "Join", "Joint", "ModalBody",
+           "Moment", "Motion", "Pin", "RigidBody", "Slide", "Spring"]

@@ -10,6 +10,7 @@ from funicular.cables import EXACT, Cable
 from funicular.elements import built_in
 from funicular.errors import SceneError, near
 from funicular.loads import DistributedForce, Force, Moment
+from funicular.modal_bodies import ModalBody
 from funicular.springs import Spring
 from funicular.supports import Join, Support
 from funicular.validation import Part, show
@@ -155,12 +156,20 @@ def placed_end(scene: Scene, end: Anchor, where: str, prefix: str = "") -> Ancho
         cable = cable_at(scene, end.on, where, end.s, f"{prefix}s")
         return end.model_copy(update={"s": min(max(end.s, 0.0), cable.length)})
     if end.on in scene.bodies:
+        if isinstance(body := scene.bodies[end.on], ModalBody):
+            try:
+                at = body.located(end.at, end.s)
+                body.spot(at)
+            except ValueError as error:
+                cause, *remedy = error.args
+                raise SceneError(where, f'{prefix}modal_body "{end.on}": {cause}', *remedy) from None
+            return end.model_copy(update={"at": at, "s": None})
         if end.s is not None:
             raise SceneError(where, f'{prefix}acts on body "{end.on}" and takes no arc-length s',
-                             "give a point in body axes, or nothing for its centre of mass")
+                             "give a point in body axes, or nothing for its origin")
         return end.model_copy(update={"at": end.at or (0.0, 0.0, 0.0)})
     known = [*scene.cables, *scene.bodies]
-    raise SceneError(where, f'{prefix}there is no cable or rigid_body "{end.on}"', near(end.on, known))
+    raise SceneError(where, f'{prefix}there is no cable or body "{end.on}"', near(end.on, known))
 
 
 def point_of(scene: Scene, end: Anchor) -> np.ndarray:

@@ -6,6 +6,7 @@ import warnings
 from typing import TYPE_CHECKING
 
 import numpy as np
+from funicular.bodies import RigidBody
 from funicular.cables import EXACT, Cable
 from funicular.ends import Buffer
 from funicular.errors import FunicularWarning, SceneError
@@ -29,7 +30,8 @@ def placed_slide(scene: Scene, slide: Slide) -> Slide:
                          f'give body=("{slide.body}", s)')
     rider = placed_end(scene, slide.rider, slide.where, "body: ")
     cable = cable_at(scene, slide.along, slide.where, slide.s)
-    slide = slide.model_copy(update={"s": min(max(slide.s, 0.0), cable.length), "body_s": rider.s})
+    place = {"body_s": rider.s} if rider.at is None else {"body_s": None, "at": rider.at}
+    slide = slide.model_copy(update={"s": min(max(slide.s, 0.0), cable.length)} | place)
     _check_rider(scene, slide)
     slide = _framed(scene, slide, cable)
     _check_drive(slide, cable)
@@ -115,6 +117,7 @@ def _seat(scene: Scene, slide: Slide, cable: Cable) -> None:
         return
     start = point_of(scene, slide.rider)
     body, onto = scene.bodies.get(slide.body), cable.point(slide.s) - start
+    body = body if isinstance(body, RigidBody) else None
     if gap > MOVABLE * cable.length:
         remedy = f"slide from s = {cable.nearest_s(start):.6g} m"
         if body is not None:

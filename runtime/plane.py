@@ -11,6 +11,7 @@ from funicular.elements import built_in
 from funicular.errors import SceneError
 from funicular.joints import LINES, Joint
 from funicular.loads import DistributedForce, Force, Moment
+from funicular.modal_bodies import ModalBody
 from funicular.signals import Constant
 from funicular.slides import Slide
 from funicular.springs import Spring
@@ -38,9 +39,18 @@ def check_plane(scene: Scene, part: Part | None = None) -> None:
 def _off(part: Part) -> Iterator[str]:
     """The quantities of a part that leave the plane."""
     match part:
+        case ModalBody():
+            position, orientation = part.frame
+            yield from _across("position", position, "m")
+            yield from _in_plane("orientation", orientation[1:], orientation)
+            if part.shape.modes[..., 2].any():
+                yield f"mode {1 + int(np.argmax(part.shape.modes[..., 2].any(axis=1)))}"
+            yield from _across("velocity", part.velocity, "m/s")
+            yield from _in_plane("angular_velocity", part.angular_velocity, part.angular_velocity, "rad/s")
         case RigidBody():
             yield from _across("position", part.position, "m")
             yield from _in_plane("orientation", part.orientation[1:], part.orientation)
+            yield from _across("centre", part.centre, "m")
             yield from _across("velocity", part.velocity, "m/s")
             yield from _in_plane("angular_velocity", part.angular_velocity, part.angular_velocity, "rad/s")
         case Slide():

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from funicular.errors import ResultFileError
+from funicular.modal_bodies import ModalBody
 from funicular.results import ENERGIES
 from funicular.rotations import rotate
 from funicular.section_forces import PLACES, section_forces
@@ -15,6 +16,7 @@ from funicular.section_forces import PLACES, section_forces
 if TYPE_CHECKING:
     import os
 
+    from funicular.anchors import Anchor
     from funicular.results import Run
     from funicular.scene import Scene
     from matplotlib.cm import ScalarMappable
@@ -113,8 +115,32 @@ def centreline(nodal_vectors: np.ndarray, node_s: np.ndarray) -> np.ndarray:
 
 def rider_path(run: Run, slide: str) -> np.ndarray:
     """(time, 3): where the rider's point of ``slide`` was, in m."""
-    joint = run.scene.slides[slide]
-    return run[f"{joint.body}.position"] + rotate(run[f"{joint.body}.orientation"], joint.at)
+    return anchor_path(run, run.scene.slides[slide].rider)
+
+
+def anchor_path(run: Run, anchor: Anchor) -> np.ndarray:
+    """(time, 3): where an anchor was, in m."""
+    if anchor.on is None:
+        return np.broadcast_to(anchor.at, (len(run.time), 3))
+    body = run.scene.bodies.get(anchor.on)
+    if isinstance(body, ModalBody):
+        node = np.argmin(np.linalg.norm(body.shape.nodes - anchor.at, axis=1))
+        return run[f"{anchor.on}.nodes"][:, node]
+    if body is not None:
+        return run[f"{anchor.on}.position"] + rotate(run[f"{anchor.on}.orientation"], anchor.at)
+    points = centreline(run[f"{anchor.on}.nodal_vectors"], run.coords[f"{anchor.on}.node"].values)
+    return points[:, round(anchor.s / run.scene.cables[anchor.on].length * (points.shape[1] - 1))]
+
+
+def held_points(run: Run) -> dict[str, np.ndarray]:
+    """(time, points, 3) by body: where slides and joints hold it, of those that are held at more than one place."""
+    held: dict[str, list] = {}
+    ends = [slide.rider for slide in run.scene.slides.values()]
+    ends += [end for joint in run.scene.joints.values() for end in (joint.a, joint.b)]
+    for end in ends:
+        if end.on in run.scene.bodies:
+            held.setdefault(end.on, []).append(anchor_path(run, end))
+    return {name: np.stack(paths, axis=1) for name, paths in held.items() if len(paths) > 1}
 
 
 def _snapshots(run: Run) -> tuple[np.ndarray, ScalarMappable]:
@@ -142,6 +168,9 @@ def draw_shape(run: Run) -> Figure | None:
         shapes = centreline(run[f"{name}.nodal_vectors"][shown], run.coords[f"{name}.node"].values) @ plane.T
         for index, shape in zip(shown, shapes, strict=True):
             axes.plot(*shape.T, color=colour.to_rgba(run.time[index]), zorder=2)
+    for points in held_points(run).values():
+        for index in shown:
+            axes.plot(*(points[index] @ plane.T).T, color=colour.to_rgba(run.time[index]), linewidth=2.2, zorder=2)
     for number, name in enumerate(scene.slides):
         path = rider_path(run, name) @ plane.T
         axes.plot(
@@ -193,17 +222,17 @@ def _set_scales(axes, view: View) -> None:
 
 
 def draw_acceleration(run: Run) -> Figure | None:
-    """The riders' accelerations upwards over time, the paper's Fig. 5; None without a slide."""
+    """The bodies' accelerations upwards over time, the paper's Fig. 5; None without a slide or a body."""
     from matplotlib.figure import Figure
 
-    riders = list(dict.fromkeys(slide.body for slide in run.scene.slides.values()))
-    if not riders:
+    bodies = list(run.scene.bodies)
+    if not (bodies and run.scene.slides):
         return None
     view = view_of(run.scene)
     marker = "." if len(run.time) <= 200 else ""  # a coarse output should look like one
     figure = Figure(figsize=(7, 3.4))
     axes = figure.add_subplot()
-    for body in riders:
+    for body in bodies:
         axes.plot(run.time, run[f"{body}.acceleration"] @ view.up, marker=marker, markersize=4, label=f"body {body}")
     axes.set_xlabel("time / s")
     axes.set_ylabel(f"{view.names[1]}-acceleration / (m/s²)")

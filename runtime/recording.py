@@ -24,6 +24,7 @@ class Rows:
     time: np.ndarray
     cables: dict[str, dict]
     bodies: dict[str, dict]
+    modal: dict[str, dict]
     slides: dict[str, dict]
     pins: dict[str, dict]
     clamps: dict[str, dict]
@@ -87,11 +88,43 @@ def body_state(model: Model, body, q: np.ndarray) -> dict[str, np.ndarray]:
     """position, orientation of a body from configurations (time, n_q)."""
     b = body.configuration
     if model.dim == 3:
-        return {"position": q[:, b : b + 3], "orientation": q[:, b + 3 : b + 7]}
-    half = np.arctan2(q[:, b + 3], q[:, b + 2]) / 2
-    zero = np.zeros_like(half)
-    return {"position": spatial(q[:, b : b + 2]),
-            "orientation": np.stack([np.cos(half), zero, zero, np.sin(half)], axis=1)}
+        centre, orientation = q[:, b : b + 3], q[:, b + 3 : b + 7]
+    else:
+        half = np.arctan2(q[:, b + 3], q[:, b + 2]) / 2
+        zero = np.zeros_like(half)
+        centre, orientation = spatial(q[:, b : b + 2]), np.stack([np.cos(half), zero, zero, np.sin(half)], axis=1)
+    return {"position": centre - rotate(orientation, body.centre) if body.centre.any() else centre,
+            "orientation": orientation}
+
+
+def body_rates(model: Model, body, orientation: np.ndarray, v: np.ndarray, a: np.ndarray | None = None) -> dict:
+    """velocity of a body's origin, angular_velocity, and with accelerations theirs, from rates (time, n_dof)."""
+    at = slice(body.dof, body.dof + model.dim)
+    turn = slice(at.stop, at.stop + (3 if model.dim == 3 else 1))
+    velocity, omega = spatial(v[:, at]), _turning(v[:, turn])
+    swing = np.cross(omega, body.centre)
+    found = {"velocity": velocity - rotate(orientation, swing) if body.centre.any() else velocity,
+             "angular_velocity": omega}
+    if a is not None:
+        acceleration, alpha = spatial(a[:, at]), _turning(a[:, turn])
+        if body.centre.any():
+            acceleration = acceleration - rotate(orientation, np.cross(alpha, body.centre) + np.cross(omega, swing))
+        found |= {"acceleration": acceleration, "angular_acceleration": alpha}
+    return found
+
+
+def modal_state(model: Model, body, state: dict[str, np.ndarray], q: np.ndarray, v: np.ndarray | None = None) -> dict:
+    """modal_coordinates (time, mode) and nodes (time, node, 3) of a modal body whose frame's `state` is known.
+
+    With v (time, n_dof) modal_velocities, too.
+    """
+    start = body.configuration + (7 if model.dim == 3 else 4)
+    eta, fields = q[:, start : start + body.modes], body.shape.fields
+    place = fields.nodes + np.einsum("tk,kni->tni", eta, fields.modes)
+    rate = body.dof + (6 if model.dim == 3 else 3)
+    return {"modal_coordinates": eta,
+            "nodes": state["position"][:, None] + rotate(state["orientation"][:, None], place)} | (
+                {} if v is None else {"modal_velocities": v[:, rate : rate + body.modes]})
 
 
 def named(model: Model, scene: Scene, engine) -> Rows:
@@ -107,13 +140,12 @@ def named(model: Model, scene: Scene, engine) -> Rows:
             "node_s": cable.length * np.arange(cable.shape[0]),
             "vector_names": cable.vectors,
         }
-    bodies = {}
+    bodies, modal = {}, {}
     for body in model.rigids:
-        at = slice(body.dof, body.dof + model.dim)
-        turn = slice(body.dof + model.dim, body.dof + (6 if model.dim == 3 else 3))
-        bodies[body.name] = body_state(model, body, q) | {
-            "velocity": spatial(v[:, at]), "angular_velocity": _turning(v[:, turn]),
-            "acceleration": spatial(a[:, at]), "angular_acceleration": _turning(a[:, turn])}
+        state = body_state(model, body, q)
+        bodies[body.name] = state | body_rates(model, body, state["orientation"], v, a)
+        if body.modes:
+            modal[body.name] = modal_state(model, body, state, q, v)
     slides = {}
     for k, joint in enumerate(model.joints):
         slides[joint.name] = {"s": rows["s"][:, k], **engine.joint_row(rows["joint"][:, k])}
@@ -121,7 +153,7 @@ def named(model: Model, scene: Scene, engine) -> Rows:
 
     for k, link in enumerate(model.links):
         if link.slide is not None:
-            slides[link.slide]["moment"] = _joint_state(rows["link"][:, k])["moment"]
+            slides[link.slide]["moment"] = link_state(rows["link"][:, k])["moment"]
 
     def held(part) -> dict[str, np.ndarray]:
         return support_reaction(model, scene, part, rows["reaction"], q)
@@ -130,12 +162,13 @@ def named(model: Model, scene: Scene, engine) -> Rows:
         time=rows["time"],
         cables=cables,
         bodies=bodies,
+        modal=modal,
         slides=slides,
         pins={pin.label: {"force": held(pin)["force"]} for pin in scene.pins},
         clamps={clamp.label: held(clamp) for clamp in scene.clamps},
         motions={motion.label: held(motion) for motion in scene.motions},
         joins={name: join_force(model, scene, join, rows["reaction"], q) for name, join in scene.joins.items()},
-        joints={link.name: _joint_state(rows["link"][:, k])
+        joints={link.name: link_state(rows["link"][:, k])
                 for k, link in enumerate(model.links) if link.slide is None},
         springs={spring.name: spring_state(model, spring, rows["spring"][:, k], q)
                  for k, spring in enumerate(model.springs)},
@@ -169,9 +202,9 @@ def recorded(model: Model, scene: Scene, engine, settings: RunSettings, status: 
     )
 
 
-def _joint_state(numbers: np.ndarray) -> dict[str, np.ndarray]:
-    """From the engine's numbers (time, FU_LINK_OUTPUTS) of a joint."""
-    return {"force": numbers[:, :3], "moment": numbers[:, 3:6], "residual": numbers[:, 6]}
+def link_state(numbers: np.ndarray) -> dict[str, np.ndarray]:
+    """From the engine's numbers (..., FU_LINK_OUTPUTS) of a joint."""
+    return {"force": numbers[..., :3], "moment": numbers[..., 3:6], "residual": numbers[..., 6]}
 
 
 def _turning(rates: np.ndarray) -> np.ndarray:
@@ -196,7 +229,7 @@ def end_points(model: Model, end, q: np.ndarray) -> np.ndarray:
         return spatial(np.einsum("k,tkd->td", end.N, vectors))
     if end.body >= 0:
         state = body_state(model, model.rigids[end.body], q)
-        return state["position"] + np.array([rotate(o, end.u) for o in state["orientation"]]).reshape(-1, 3)
+        return state["position"] + rotate(state["orientation"], model.rigids[end.body].centre + end.u)
     return np.broadcast_to(np.array(end.u), (len(q), 3))
 
 

@@ -21,7 +21,7 @@ PARALLEL = 1e-9
 """Tangents whose cross product is smaller than this are parallel."""
 
 SOLVES = 30
-"""That a factored matrix serves, about: ten, whose numbers come from memory and take three times as long each."""
+"""That a factored matrix serves: about ten, times three since their numbers come from memory and not from the cache."""
 
 
 @dataclass
@@ -274,7 +274,7 @@ def _strung(touches: csr_array) -> tuple[np.ndarray, int]:
 
 
 def _counted(touches: csr_array, number: np.ndarray, n_band: int) -> Numbering:
-    """What is to be known of a numbering: see linear.c for the operations, of one factorisation and its solves."""
+    """A numbering's band, and the operations of a factorisation and its solves as linear.c does them."""
     entry = touches.tocoo()
     element, at = entry.row, number[entry.col]
     inside = at < n_band

@@ -32,11 +32,11 @@ _SUPPORT = {"force": (_XYZ, "N", "force on the cable"), "moment": (_XYZ, "N m", 
 
 QUANTITIES = {
     "bodies": {
-        "position": (_XYZ, "m", "position of the centre of mass"),
+        "position": (_XYZ, "m", "position of the body's origin"),
         "orientation": (("time", "wxyz"), "1", "unit quaternion from body axes to the ground's"),
-        "velocity": (_XYZ, "m/s", "velocity of the centre of mass"),
+        "velocity": (_XYZ, "m/s", "velocity of the body's origin"),
         "angular_velocity": (_XYZ, "rad/s", "angular velocity in body axes"),
-        "acceleration": (_XYZ, "m/s2", "acceleration of the centre of mass"),
+        "acceleration": (_XYZ, "m/s2", "acceleration of the body's origin"),
         "angular_acceleration": (_XYZ, "rad/s2", "angular acceleration in body axes"),
     },
     "slides": {
@@ -272,6 +272,15 @@ def labelled(rows) -> tuple[dict[str, Variable], dict[str, Variable]]:
         variables[f"{name}.nodal_velocity"] = Variable(
             dims, cable["nodal_velocity"], "m/s (r), 1/s (its gradients)", "rates of the nodal vectors"
         )
+    for name, body in getattr(rows, "modal", {}).items():
+        mode, node = f"{name}.mode", f"{name}.node"
+        eta, places = body["modal_coordinates"], body["nodes"]
+        coords[mode] = Variable((mode,), np.arange(1, eta.shape[1] + 1), "1", "mode")
+        coords[node] = Variable((node,), np.arange(places.shape[1]), "1", "node")
+        variables[f"{name}.modal_coordinates"] = Variable(("time", mode), eta, "as the modes are", "modal coordinates")
+        variables[f"{name}.modal_velocities"] = Variable(("time", mode), body["modal_velocities"],
+                                                         "as the modes are, 1/s", "rates of the modal coordinates")
+        variables[f"{name}.nodes"] = Variable(("time", node, "xyz"), places, "m", "places of the deformed body's nodes")
     for group, quantities in QUANTITIES.items():
         for name, arrays in getattr(rows, group, {}).items():
             for quantity, values in arrays.items():

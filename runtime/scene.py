@@ -21,6 +21,7 @@ from funicular.parts import (
     Force,
     Join,
     Joint,
+    ModalBody,
     Moment,
     Motion,
     Pin,
@@ -65,7 +66,7 @@ class Scene:
         self.clamps: list[Clamp] = []
         self.motions: list[Motion] = []
         self.joins: dict[str, Join] = {}
-        self.bodies: dict[str, RigidBody] = {}
+        self.bodies: dict[str, RigidBody | ModalBody] = {}
         self.joints: dict[str, Joint] = {}
         self.slides: dict[str, Slide] = {}
         self.loads: dict[str, Force | DistributedForce | Moment] = {}
@@ -94,6 +95,8 @@ class Scene:
         up=(0, 1, 0),
         rest: str = "drawn",
         rest_length: float | None = None,
+        velocity=(0, 0, 0),
+        angular_velocity=(0, 0, 0),
     ) -> Cable:
         """Add a cable of equal elements: straight, through points, or along a curve; see `Cable`. Raises SceneError."""
         shape = {"start": start, "end": end, "points": points, "curve": curve, "law": law, "strain": strain,
@@ -108,6 +111,8 @@ class Scene:
                 material=material,
                 up=up,
                 rest=rest,
+                velocity=velocity,
+                angular_velocity=angular_velocity,
                 **{keyword: value for keyword, value in shape.items() if value is not None},
             )
         )
@@ -120,6 +125,7 @@ class Scene:
         inertia,
         position,
         orientation=(1, 0, 0, 0),
+        centre=(0, 0, 0),
         velocity=(0, 0, 0),
         angular_velocity=(0, 0, 0),
     ) -> RigidBody:
@@ -132,9 +138,40 @@ class Scene:
                 position=position,
                 velocity=velocity,
                 orientation=orientation,
+                centre=centre,
                 angular_velocity=angular_velocity,
             )
         )
+
+    def modal_body(
+        self,
+        name: str,
+        *,
+        start=None,
+        end=None,
+        section: Section | None = None,
+        material: Material | None = None,
+        up=(0, 1, 0),
+        elements: int = 10,
+        element: str = "beam24",
+        law: str | None = None,
+        modes: int = 5,
+        boundary: str = "free",
+        data: str | os.PathLike | None = None,
+        orthogonal: bool = True,
+        position=None,
+        orientation=(1, 0, 0, 0),
+        damping_ratio: float = 0.0,
+        velocity=(0, 0, 0),
+        angular_velocity=(0, 0, 0),
+    ) -> ModalBody:
+        """Add a body that deforms in a few modes: a beam, or what a file says; see `ModalBody`. Raises SceneError."""
+        described = {"start": start, "end": end, "section": section, "material": material, "law": law, "data": data,
+                     "position": position}
+        return self.add(ModalBody(
+            name=name, up=up, elements=elements, element=element, modes=modes, boundary=boundary, orthogonal=orthogonal,
+            orientation=orientation, damping_ratio=damping_ratio, velocity=velocity, angular_velocity=angular_velocity,
+            **{keyword: value for keyword, value in described.items() if value is not None}))
 
     def pin(self, cable: Cable | str, *, s: float) -> Pin:
         """Hold the node of ``cable`` at arc-length ``s`` (m) in its place. Raises SceneError."""
@@ -246,7 +283,7 @@ class Scene:
         match part:
             case Cable():
                 self._add_cable(part)
-            case RigidBody():
+            case RigidBody() | ModalBody():
                 self.bodies[part.name] = part
             case Pin() | Clamp() | Motion():
                 check_support(self, part)
@@ -292,6 +329,10 @@ class Scene:
         check_plane(self)
         for joint in self.joints.values():
             check_joint(self, joint)
+        for body in self.bodies.values():
+            if isinstance(body, ModalBody) and (idle := body.shape.indefinite(self.dim)):
+                raise SceneError(body.where, f"its mass matrix is not positive definite: {idle}",
+                                 "leave such a mode out, or give masses off the line that the others are on")
         for slide in self.slides.values():
             check_on_cable(self, slide)
 
@@ -384,6 +425,7 @@ class Scene:
     def modes(self, n: int, about: Equilibrium | None = None) -> Modes:
         """The ``n`` lowest natural frequencies and shapes, about the scene as drawn or a state from `equilibrium`.
 
+        As drawn, joints and slides bear nothing yet: what swings by its weight does so about its equilibrium alone.
         Raises SceneError.
         """
         settings = ModeSettings(n=n)

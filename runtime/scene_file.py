@@ -93,9 +93,9 @@ def _array(tables: dict, kind: str) -> list:
 
 
 def _placed(table: dict, directory: str | os.PathLike) -> dict:
-    """A table with its library seen from the working directory, and not from the scene file's."""
-    library = table.get("library")
-    return table | {"library": os.path.join(directory, library)} if isinstance(library, str) else table
+    """A table with its library or data seen from the working directory, and not from the scene file's."""
+    return table | {name: os.path.join(directory, table[name]) for name in ("library", "data")
+                    if isinstance(table.get(name), str)}
 
 
 def _part(part: type[Part], table: dict, index: int) -> Part:

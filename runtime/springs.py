@@ -12,7 +12,7 @@ from pydantic import model_validator
 class Spring(Part):
     """A linear spring with a damper between two points of cables, bodies or the ground.
 
-    a, b: its ends: ("wire", s), ("A", (x, y, z) in body axes), "A" for its centre of mass, or a point (x, y, z) of the
+    a, b: its ends: ("wire", s), ("A", (x, y, z) in body axes), "A" for its origin, or a point (x, y, z) of the
     ground, in m; stiffness in N/m; damping in N s/m; length: where it is free of force, in m, that at the start if
     not given.
     """

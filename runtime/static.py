@@ -15,6 +15,7 @@ from funicular.errors import EquilibriumError
 from funicular.modal import condensed, fastest
 from funicular.model import build
 from funicular.recording import end_points
+from funicular.redundancy import settle
 from funicular.scene import Scene
 from funicular.settings import EquilibriumSettings
 from scipy.sparse import csc_array
@@ -39,6 +40,7 @@ class Path:
         self.scene, self.settings = scene, settings
         self.model = build(scene)
         self.engine = Engine(self.model)
+        settle(self.model, self.engine)
         self.engine.place(0.0)
         self.start = self.residual()
         place = self.model.place
@@ -50,9 +52,15 @@ class Path:
         stiffness, _ = condensed(self.engine.matrix(0.0, 0.0, 1.0), self.model)
         # rad²/s²: what is left free (a rider that may turn about its rope) has no stiffness. Of points, not of
         # directors: a thin beam's section vibrates so fast that its share of mass would stop the beam
-        self.fastest = fastest(stiffness, self.mass, np.flatnonzero(self.weight == 1.0))
+        points = np.flatnonzero(self.weight == 1.0)
+        self.fastest = max(fastest(stiffness, self.mass, points), self._falls(points))
         self.iterations = 0
         self.history: list[Equilibrium] = []
+
+    def _falls(self, points: np.ndarray) -> float:
+        """rad²/s², of pendulums: where nothing is elastic, weight is all that holds."""
+        inertia = self.mass.diagonal()[points]
+        return float(np.max(np.abs(self.start[points]) / inertia, initial=0.0, where=inertia > 0)) / self.size
 
     def _extent(self) -> float:
         """The scene's size in m."""

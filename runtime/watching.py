@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from funicular.errors import SceneError, near
 from funicular.events import Event
 from funicular.placing import node_at
-from funicular.recording import body_state, spatial
+from funicular.recording import body_rates, body_state, spatial
 
 if TYPE_CHECKING:
     from funicular.model import Model
     from funicular.scene import Scene
 
 AXES = ("x", "y", "z")
-WATCHABLE = {"rigid_body": ("position", "velocity"), "cable": ("position", "velocity"), "slide": ("s",)}
+WATCHABLE = {"rigid_body": ("position", "velocity"), "modal_body": ("position", "velocity"),
+             "cable": ("position", "velocity"), "slide": ("s",)}
 """Quantities that a threshold can be set on, by kind of part."""
 
 
@@ -59,6 +61,9 @@ class Watch:
             return
         of = "configuration" if what == "position" else "dof"
         self.kind = "q" if what == "position" else "v"
+        if name in scene.bodies and np.any(getattr(scene.bodies[name], "centre", 0.0)):
+            self.kind, self.index = "function", 0  # the engine knows the mass centre, and not the body's origin
+            return
         if name in scene.bodies:
             start = getattr(model.rigids[list(scene.bodies).index(name)], of)
         else:
@@ -92,11 +97,9 @@ class State:
         model = self._model
         for body in model.rigids:
             if body.name == name:
-                at, turn = body.dof + np.arange(model.dim), slice(body.dof + model.dim, body.dof + 3 * (model.dim - 1))
-                rate = self._v[turn]
-                return {k: v[0] for k, v in body_state(model, body, self._q[None]).items()} | {
-                    "velocity": spatial(self._v[at]),
-                    "angular_velocity": rate if model.dim == 3 else np.array([0.0, 0.0, rate[0]])}
+                state = body_state(model, body, self._q[None])
+                state |= body_rates(model, body, state["orientation"], self._v[None])
+                return {name: values[0] for name, values in state.items()}
         for cable in model.cables:
             if cable.name == name:
                 return {"nodal_vectors": spatial(self._q[cable.coordinates].reshape(cable.shape)),
@@ -118,13 +121,18 @@ class Watcher:
         """The function of an event at a state. Raises SceneError where it fails or gives no number."""
         event = self.watches[which].event
         try:
-            value = float(event.function(time, State(self.model, q, v, s)))
+            value = float((event.function or self._of_quantity(event))(time, State(self.model, q, v, s)))
         except Exception as error:
             raise SceneError(event.where, f"its function failed at t = {time:.6g} s: {type(error).__name__}: {error}",
                              "it gets (time, state) and must give a number") from error
         if not np.isfinite(value):
             raise SceneError(event.where, f"its function gave {value} at t = {time:.6g} s", "it must give a number")
         return value
+
+    def _of_quantity(self, event: Event) -> Callable[[float, State], float]:
+        """The function that a threshold on a body's origin stands for."""
+        name, axis = event.quantity.rsplit(".", 1)
+        return lambda time, state: state[name][AXES.index(axis)] - event.value
 
     def acts(self, which: int, what: str, time: float, s: float) -> None:
         """Note what a slide has done of itself: stuck, struck the end, and so on."""

@@ -5,28 +5,28 @@ on purpose.
 CEILINGS = {
     "beam24": {
         "mass": 58, "gravity": 26, "inertia_force": 120, "position": 70,
-        "on_axis": 35, "follower_force": 620, "moment": 1161
+        "on_axis": 35, "follower_force": 620, "moment": 1161, "slopes": 43
     },
     "cable12": {
         "mass": 40, "gravity": 26, "inertia_force": 84, "position": 40,
-        "on_axis": 35, "follower_force": 330, "moment": 305
+        "on_axis": 35, "follower_force": 330, "moment": 305, "slopes": 41
     },
     "cable18": {
         "mass": 105, "gravity": 42, "inertia_force": 198, "position": 85,
-        "on_axis": 95, "follower_force": 636, "moment": 548
+        "on_axis": 95, "follower_force": 636, "moment": 548, "slopes": 117
     },
     "beam12p": {
         "mass": 49, "gravity": 22, "inertia_force": 68, "position": 44,
-        "on_axis": 35, "follower_force": 170, "moment": 63
+        "on_axis": 35, "follower_force": 170, "moment": 63, "slopes": 42
     },
     "cable8p": {
         "mass": 40, "gravity": 22, "inertia_force": 56, "position": 33,
-        "on_axis": 35, "follower_force": 170, "moment": 143
+        "on_axis": 35, "follower_force": 170, "moment": 143, "slopes": 41
     },
     "beam24_continuum": {
         "stiffness": 217, "energy": 486, "elastic_force": 757, "elastic_tangent": 5125, "damping_force": 992,
         "damping_tangent": 8798, "dissipation": 693, "section_forces": 490,
-        "discrete_force": 1110, "step_stiffness": 751
+        "discrete_force": 1110, "step_stiffness": 751, "algorithmic_force": 1020
     },
     "beam24_continuum_curved": {
         "stiffness_at": 1953, "energy": 1858, "elastic_force": 2129, "elastic_tangent": 12611, "section_forces": 4578,
@@ -47,7 +47,7 @@ CEILINGS = {
     "cable12_green_exact": {
         "stiffness": 0, "energy": 251, "elastic_force": 476, "elastic_tangent": 1681, "damping_force": 561,
         "damping_tangent": 3501, "dissipation": 301, "section_forces": 258,
-        "discrete_force": 892, "step_stiffness": 161
+        "discrete_force": 892, "step_stiffness": 161, "algorithmic_force": 577
     },
     "cable12_green_linear": {
         "stiffness": 0, "energy": 150, "elastic_force": 222, "elastic_tangent": 661, "section_forces": 156,
@@ -56,7 +56,7 @@ CEILINGS = {
     "cable12_engineering_exact": {
         "stiffness": 0, "energy": 266, "elastic_force": 501, "elastic_tangent": 1741, "damping_force": 594,
         "damping_tangent": 3759, "dissipation": 325, "section_forces": 260,
-        "discrete_force": 907, "step_stiffness": 161
+        "discrete_force": 907, "step_stiffness": 161, "algorithmic_force": 610
     },
     "cable12_engineering_linear": {
         "stiffness": 0, "energy": 165, "elastic_force": 257, "elastic_tangent": 746, "section_forces": 161,
@@ -65,22 +65,22 @@ CEILINGS = {
     "cable18_green_exact": {
         "stiffness": 0, "energy": 410, "elastic_force": 788, "elastic_tangent": 5134, "damping_force": 1776,
         "damping_tangent": 12942, "dissipation": 1023, "section_forces": 516,
-        "discrete_force": 1363, "step_stiffness": 980
+        "discrete_force": 1363, "step_stiffness": 980, "algorithmic_force": 1808
     },
     "cable18_engineering_exact": {
         "stiffness": 0, "energy": 425, "elastic_force": 813, "elastic_tangent": 5194, "damping_force": 1831,
         "damping_tangent": 13372, "dissipation": 1063, "section_forces": 518,
-        "discrete_force": 1378, "step_stiffness": 980
+        "discrete_force": 1378, "step_stiffness": 980, "algorithmic_force": 1863
     },
     "beam12p_continuum": {
         "stiffness": 94, "energy": 219, "elastic_force": 303, "elastic_tangent": 1295, "damping_force": 396,
         "damping_tangent": 2126, "dissipation": 297, "section_forces": 144,
-        "discrete_force": 455, "step_stiffness": 337
+        "discrete_force": 455, "step_stiffness": 337, "algorithmic_force": 411
     },
     "cable8p_green_exact": {
         "stiffness": 0, "energy": 194, "elastic_force": 356, "elastic_tangent": 990, "damping_force": 338,
         "damping_tangent": 1374, "dissipation": 205, "section_forces": 182,
-        "discrete_force": 685, "step_stiffness": 127
+        "discrete_force": 685, "step_stiffness": 127, "algorithmic_force": 350
     },
     "cable8p_green_linear": {
         "stiffness": 0, "energy": 112, "elastic_force": 154, "elastic_tangent": 351, "section_forces": 102,
@@ -89,7 +89,7 @@ CEILINGS = {
     "cable8p_engineering_exact": {
         "stiffness": 0, "energy": 209, "elastic_force": 381, "elastic_tangent": 1050, "damping_force": 362,
         "damping_tangent": 1506, "dissipation": 223, "section_forces": 184,
-        "discrete_force": 700, "step_stiffness": 127
+        "discrete_force": 700, "step_stiffness": 127, "algorithmic_force": 374
     },
     "cable8p_engineering_linear": {
         "stiffness": 0, "energy": 127, "elastic_force": 189, "elastic_tangent": 436, "section_forces": 107,
@@ -105,11 +105,21 @@ CEILINGS = {
     },
     "rigid": {
         "point": 207, "point_force": 183, "inertia_force": 45, "inertia_tangent": 48, "kinetic_energy": 31,
-        "discrete_point": 230
+        "discrete_point": 230, "frame": 78
     },
     "planar_rigid": {
         "point": 40, "point_force": 23, "inertia_force": 3, "inertia_tangent": 0, "kinetic_energy": 9,
-        "discrete_point": 18
+        "discrete_point": 18, "frame": 0
+    },
+    "modal": {
+        "inertia_force": 312, "mass_matrix": 105, "inertia_tangent": 675, "mode_force": 137, "mode_mass": 66,
+        "mode_tangent": 459, "pair_tangent": 55, "kinetic_energy": 135, "potential_energy": 74, "anchor": 836,
+        "anchor_mode": 151, "anchor_force": 183, "anchor_mode_force": 310, "anchor_pair_force": 164
+    },
+    "planar_modal": {
+        "inertia_force": 71, "mass_matrix": 13, "inertia_tangent": 80, "mode_force": 31, "mode_mass": 7,
+        "mode_tangent": 94, "pair_tangent": 14, "kinetic_energy": 32, "potential_energy": 13, "anchor": 107,
+        "anchor_mode": 11, "anchor_force": 9, "anchor_mode_force": 18, "anchor_pair_force": 10
     },
     "slide_beam24_rigid": {"constraint": 599, "terms": 1646, "residual": 209, "tangent": 286, "discrete_gradient": 397},
     "slide_cable12_rigid": {
@@ -128,4 +138,43 @@ CEILINGS = {
         "constraint": 156, "terms": 569, "residual": 97, "tangent": 113,
         "discrete_gradient": 193
     },
+    "slide_beam24_point": {
+        "constraint": 536, "terms": 1373, "residual": 104, "tangent": 121, "discrete_gradient": 152
+    },
+    "slide_cable12_point": {
+        "constraint": 409, "terms": 1156, "residual": 104, "tangent": 121, "discrete_gradient": 152
+    },
+    "slide_cable18_point": {
+        "constraint": 635, "terms": 1925, "residual": 227, "tangent": 347, "discrete_gradient": 422
+    },
+    "slide_beam12p_planar_point": {
+        "constraint": 150, "terms": 518, "residual": 82, "tangent": 98, "discrete_gradient": 136
+    },
+    "slide_cable8p_planar_point": {
+        "constraint": 150, "terms": 518, "residual": 82, "tangent": 98, "discrete_gradient": 136
+    },
+    "frame": {"axes": 98, "motion": 458, "moment": 1238},
+    "planar_frame": {"axes": 13, "motion": 50, "moment": 55},
+    "joint_spherical": {"force": 0, "motion": 0},
+    "joint_revolute": {"force": 274, "motion": 142},
+    "joint_revolute_angle": {"force": 647, "motion": 447},
+    "joint_universal": {"force": 119, "motion": 71},
+    "joint_cylindrical": {"force": 404, "motion": 224},
+    "joint_cylindrical_angle": {"force": 777, "motion": 529},
+    "joint_cylindrical_distance": {"force": 476, "motion": 266},
+    "joint_prismatic": {"force": 559, "motion": 295},
+    "joint_prismatic_distance": {"force": 631, "motion": 337},
+    "joint_weld": {"force": 429, "motion": 213},
+    "joint_distance": {"force": 52, "motion": 30},
+    "joint_aligned": {"force": 274, "motion": 142},
+    "joint_locked": {"force": 429, "motion": 213},
+    "joint_planar_spherical": {"force": 0, "motion": 0},
+    "joint_planar_revolute_angle": {"force": 73, "motion": 141},
+    "joint_planar_prismatic": {"force": 40, "motion": 38},
+    "joint_planar_prismatic_distance": {"force": 60, "motion": 54},
+    "joint_planar_weld": {"force": 25, "motion": 23},
+    "joint_planar_distance": {"force": 27, "motion": 21},
+    "joint_planar_locked": {"force": 25, "motion": 23},
+    "brake": {"force": 338},
+    "planar_brake": {"force": 207},
 }

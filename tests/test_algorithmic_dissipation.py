@@ -170,3 +170,19 @@ def test_crossing_nodes_keeps_the_books():
     assert run.report["element_crossings"] > 0
     assert balance(run) < 1e-12
     assert run["energy.dissipated"].min() >= 0
+
+
+def test_the_engine_does_what_the_oscillator_does():
+    """A wire rings along itself at h omega of 79 and more, so little that it is linear."""
+    step, speed = 0.01, np.sqrt(2e11 / 7850)
+    scene = Scene(gravity=(0, 0, 0))
+    scene.cable("wire", start=(0, 0, 0), end=(1, 0, 0), elements=1, element="cable8p", rest_length=1 / (1 + 1e-8),
+                section=Circle(radius=1e-3), material=Material(youngs_modulus=2e11, poisson_ratio=0, density=7850))
+    scene.pin("wire", s=0.0)
+    run = scene.run(duration=10 * step, step=step, output_step=step, integrator="energy", spectral_radius=0.5)
+    oscillator, state, squares = Oscillator(0.5, step * speed * np.pi / 2), np.array([1.0, 0, 0]), []
+    for _ in run.time:
+        squares.append(state[0] ** 2)
+        state = oscillator.step @ state
+    assert squares[-1] < 2e-3
+    np.testing.assert_allclose(run["energy.elastic"] / run["energy.elastic"][0], squares, rtol=0.03)

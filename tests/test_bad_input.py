@@ -225,7 +225,7 @@ def test_pin_twice_or_nowhere():
 def test_slide_without_cable_or_body():
     with refused('slide "t": there is no cable "wirr"; did you mean "wire"?'):
         scene().slide("A", along="wirr", s=0.25, name="t")
-    with refused('slide "t": body: there is no cable or rigid_body "B"; known: wire, A'):
+    with refused('slide "t": body: there is no cable or body "B"; known: wire, A'):
         scene().slide("B", along="wire", s=0.25, name="t")
     with refused('slide "t": there is no cable "wire"; there is none yet'):
         made = Scene()

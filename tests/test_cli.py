@@ -136,7 +136,9 @@ def test_warnings_are_notes(engine, tmp_path):
 def test_scenes():
     result = funicular("scenes")
     assert result.exit_code == 0
-    assert result.stdout.startswith("paper51\t") and result.stdout.endswith("paper51.toml\n")
+    names = [line.partition("\t")[0] for line in result.stdout.splitlines()]
+    assert {"paper51", "paper52_rigid", "cable_car"} <= set(names)
+    assert all(line.endswith(f"{name}.toml") for name, line in zip(names, result.stdout.splitlines(), strict=True))
 
 
 @pytest.mark.parametrize("code", [0, 1])

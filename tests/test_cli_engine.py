@@ -26,6 +26,21 @@ def test_first_scene(tmp_path):
     assert len(list(tmp_path.glob("paper51-*.png"))) == 4
 
 
+@pytest.mark.parametrize("from_file", [True, False])
+def test_algorithmic_dissipation_is_asked_for(tmp_path, from_file):
+    scene = load_scene("paper51")
+    settings = {"duration": 0.02, "tol": 1e-3}
+    asked = {"integrator": "energy", "spectral_radius": 0.5}
+    scene.run_settings = settings | (asked if from_file else {})
+    (tmp_path / "scene.toml").write_text(scene.to_toml())
+    options = () if from_file else ("--integrator", "energy", "--spectral-radius", "0.5")
+    done = funicular("run", "scene.toml", *options, cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    run = load_run(tmp_path / "scene.nc")
+    assert {name: run.report[name] for name in asked} == asked
+    assert run["energy.dissipated"][-1] > 0
+
+
 def near_the_end():
     """The body starts 0.1 m before the end and gets there after about 0.1 s."""
     scene = load_scene("paper51")

@@ -167,7 +167,7 @@ BARE = ('section axes of cable "rope", but cable12 has a tangent only, (1, 0, 0)
     ({"kind": "weld", "a": (0, 0, 0)}, "joint: has both ends on the ground; let one of them hold a cable or a body"),
     ({"kind": "weld", "a": 3}, 'joint: a must be an end, got 3; give a point (x, y, z), a body, ("body", (x, y, z)) or '
      '("cable", s)'),
-    ({"kind": "weld", "a": "C"}, 'joint "joint_1": a: there is no cable or rigid_body "C"; known: beam, rope, A, B'),
+    ({"kind": "weld", "a": "C"}, 'joint "joint_1": a: there is no cable or body "C"; known: beam, rope, A, B'),
     ({"kind": "weld", "a": ("rope", 3)}, 'joint "joint_1": a: s must lie on the cable, in [0, 2] m, got 3 m'),
     ({"kind": "prismatic"}, "joint: axis is missing: a prismatic joint needs it"),
     ({"kind": "revolute"}, 'joint "joint_1": axis is missing: a revolute joint needs it'),

@@ -91,6 +91,83 @@ def star() -> Scene:
     return scene
 
 
+def modal() -> Scene:
+    """Two bodies that spin fast and vibrate, one damped, beside a rider."""
+    scene = rider()
+    rubber = Material(youngs_modulus=2e5, poisson_ratio=0.3, density=1100)
+    scene.modal_body("link", start=(0, 1, 0), end=(0.3, 1.4, 0.2), section=Rectangle(height=0.1, width=0.08),
+                     material=rubber, elements=4, modes=4, damping_ratio=0.05, velocity=(1, 2, 3),
+                     angular_velocity=(5, -15, 10))
+    scene.modal_body("arm", start=(1, 1, 0), end=(1.5, 1, 0), section=Rectangle(height=0.1, width=0.08), elements=4,
+                     material=rubber, modes=3, boundary="attached", velocity=(-1, 0, 1), angular_velocity=(1, 2, -2))
+    return scene
+
+
+def modal_in_the_plane() -> Scene:
+    """A modal body beside planar parts."""
+    scene = planar()
+    scene.modal_body("arm", start=(1, 1, 0), end=(1.5, 1, 0), section=Rectangle(height=0.1, width=0.08), elements=4,
+                     element="beam12p", material=Material(youngs_modulus=2e5, poisson_ratio=0.3, density=1100), modes=3,
+                     velocity=(-1, 0, 0), angular_velocity=(0, 0, 15))
+    return scene
+
+
+def jointed() -> Scene:
+    """Every kind of joint in a chain of bodies that turn, some driven; its ends on the ground and on a cable."""
+    scene = Scene()
+    scene.cable("wire", start=(0, 0, 0), end=(1.5, 0, 0), elements=3, section=Rectangle(height=0.05, width=0.04),
+                material=Material(youngs_modulus=0.4e9, poisson_ratio=0.3, density=4200))
+    scene.pin("wire", s=0.0)
+    oblique = {"axis": (1, 0.2, 0.1)}
+    kinds = [("weld", {}), ("spherical", {}), ("revolute", oblique), ("cylindrical", oblique | {"velocity": 2.0}),
+             ("universal", {"axis": (0, 0, 1), "second_axis": (1, 1, 0)}), ("prismatic", oblique),
+             ("revolute", oblique | {"angle": Harmonic(amplitude=0.5, frequency=2.0)}), ("distance", {}),
+             ("prismatic", oblique | {"distance": Ramp(start=0, end=1)})]
+    at, last = np.array([0.7, 0, 0]), ("wire", 0.7)
+    for k, (kind, given) in enumerate(kinds):
+        gap = np.array([0, 0, 0.3]) if kind == "distance" else 0
+        scene.rigid_body(f"A{k}", mass=1.3, inertia=(0.02, 0.03, 0.04), position=at + gap + (0.1, -0.2, 0.1),
+                         velocity=(0.1, 0.2, -0.3), angular_velocity=(3, -2, 4))
+        scene.joint(kind, last, (f"A{k}", (-0.1, 0.2, -0.1)), **given)
+        at, last = at + gap + (0.2, 0.1, 0.3), (f"A{k}", (0.1, 0.3, 0.2))
+    return scene
+
+
+def jointed_plane() -> Scene:
+    """The same in the plane; the bodies hang from an end and from the middle of a cable."""
+    scene = planar()
+    scene.rigid_body("B", mass=1.0, inertia=(0.02, 0.03, 0.04), position=(1.5, -0.2, 0), angular_velocity=(0, 0, 5))
+    scene.rigid_body("C", mass=1.0, inertia=(0.02, 0.03, 0.04), position=(0.9, -0.3, 0), angular_velocity=(0, 0, -5))
+    scene.joint("weld", ("wire", 1.5), ("B", (0, 0.2, 0)))
+    scene.joint("revolute", ("wire", 0.8), ("C", (-0.1, 0.3, 0)), angle=Harmonic(amplitude=0.5, frequency=2.0))
+    scene.joint("prismatic", ("C", (0.2, 0, 0)), ("A", (0.1, 0.1, 0)), axis=(-0.75, 0.3, 0))
+    scene.joint("distance", ("C", (0.2, 0.1, 0)), ("B", (0.1, 0, 0)))
+    return scene
+
+
+def tied() -> Scene:
+    """Riders tied to the tangent, its roll held, and to the section, one driven; cables that ride by end and middle."""
+    scene = Scene()
+    made = {"section": Rectangle(height=0.05, width=0.05),
+            "material": Material(youngs_modulus=0.4e9, poisson_ratio=0.3, density=4200)}
+    for name, element, z in (("beam", "beam24", 0.0), ("rope", "cable12", 1.0)):
+        scene.cable(name, start=(0, 0, z), end=(1.5, 0, z), elements=3, element=element, **made)
+        scene.pin(name, s=0.0)
+    for k, (along, frame, given) in enumerate([
+            ("beam", "section", {}), ("beam", "tangent", {"velocity": 2.0}), ("rope", "tangent", {}),
+            ("rope", "tangent", {"roll": "held"}), ("rope", "point", {"velocity": 2.0})]):
+        s = 0.25 + 0.17 * k
+        scene.rigid_body(f"A{k}", mass=1.3, inertia=(0.02, 0.03, 0.04), position=(s, -0.1, (along == "rope") + 0.05),
+                         velocity=(0.1, 0.2, -0.3), angular_velocity=(3, -2, 4))
+        scene.slide(f"A{k}", along=along, s=s, at=(0, 0.1, -0.05), frame=frame, **given)
+    for name, along, x, s in (("link", "beam", 1.1, 0.0), ("tail", "rope", 1.2, 0.3)):
+        z = float(along == "rope")
+        scene.cable(name, start=(x, s, z), end=(x, s - 1, z), elements=2, up=(1, 0, 0), **made,
+                    element="beam24" if along == "beam" else "cable12")
+        scene.slide((name, s), along=along, s=x)
+    return scene
+
+
 def braked() -> Scene:
     """Friction and buffers pressed, of a body off its centre and of a cable that rides, which do not stick."""
     scene = loaded()
@@ -107,7 +184,8 @@ def braked() -> Scene:
     return scene
 
 
-SCENES = {f.__name__: f for f in (rider, loaded, planar, frame, star, braked)}
+SCENES = {f.__name__: f for f in (rider, loaded, planar, frame, star, jointed, jointed_plane, tied, modal,
+                                 modal_in_the_plane, braked)}
 
 
 @pytest.fixture(params=list(SCENES))
@@ -137,19 +215,44 @@ def test_matrix_is_the_derivative_of_the_residual(engine, h):
 def test_conditioning_does_not_depend_on_the_step(engine):
     """Small steps leave that of the mass matrix with the joints: unscaled rows would add (1/h)^2 a power of ten."""
     n = engine.unknowns
-    numbers = [np.linalg.cond(engine.linearise(h, np.zeros(n))[1]) for h in (1e-2, 1e-5, 1e-6, 1e-7)]
+    numbers = [np.linalg.cond(engine.linearise(h, np.zeros(n))[1]) for h in (3e-3, 1e-5, 1e-6, 1e-7)]
     assert max(numbers[1:]) < 1.5 * min(numbers[1:])  # measured: 1.1 at most
-    assert numbers[0] < 7 * numbers[-1]  # measured: 5.9
+    assert numbers[0] < 4 * numbers[-1]  # measured: 2.6; beyond that step stiffness outweighs the mass, scene by scene
 
 
-def test_static_matrix_is_the_derivative_of_the_static_residual(engine):
-    n = engine.unknowns
+def welded() -> Scene:
+    """Cables joined to cables: fixed to one another, and tied to the section where one rides the other."""
+    scene = Scene()
+    made = {"section": Rectangle(height=0.05, width=0.05), "elements": 2,
+            "material": Material(youngs_modulus=0.4e9, poisson_ratio=0.3, density=4200)}
+    scene.cable("beam", start=(0, 0, 0), end=(1.5, 0, 0), **made)
+    scene.pin("beam", s=0.0)
+    scene.cable("cross", start=(0.5, 0, -0.5), end=(0.5, 0, 0.5), element="cable12", **made)
+    scene.joint("weld", ("beam", 0.5), ("cross", 0.5), up=(1, 0, 0))
+    scene.cable("link", start=(1, 0, 0), end=(1, -1, 0), up=(1, 0, 0), **made)
+    scene.slide(("link", 0.0), along="beam", s=1.0, frame="section")
+    return scene
+
+
+def moved(engine, forces: float) -> dict:
+    """A static state off the drawn one, with multipliers and forces of about this size."""
     rng = np.random.default_rng(2)
     engine.place(0.3)
-    engine.move(1e-3 * rng.standard_normal(n))
+    engine.move(1e-3 * rng.standard_normal(engine.unknowns))
     kept = engine.placed()
+    for name in ("force", "multipliers"):
+        kept[name] = forces * rng.standard_normal(kept[name].shape)
+    return kept
+
+
+@pytest.mark.parametrize("scene", [*SCENES.values(), welded])
+def test_static_matrix_is_the_derivative_of_the_static_residual(scene):
+    engine = Engine(build(scene()))
+    n, kept = engine.unknowns, None
+    kept = moved(engine, 1e3)
+    engine.place(0.3, **kept)
     matrix = engine.matrix(0.0, 0.0, 1.0).toarray()
-    # a unit of each unknown, in residuals of very different sizes: column by column
+    # a unit of each unknown, in residuals of very different sizes
     worst = []
     for step in (1e-5, 1e-6, 1e-7):
         columns = []
@@ -160,5 +263,6 @@ def test_static_matrix_is_the_derivative_of_the_static_residual(engine):
                 engine.move(sign * d)
                 ends.append(engine.static_residual())
             columns.append((ends[0] - ends[1]) / (2 * step))
-        worst.append(np.abs(np.array(columns).T - matrix).max() / np.abs(matrix).max())
-    assert min(worst) < 1e-9
+        error = np.abs(np.array(columns).T - matrix)
+        worst.append((error / np.abs(matrix).max(axis=0).clip(1.0)).max())
+    assert min(worst) < 1e-7  # measured: 4e-8, of 1e-3 N/m in rows of 1e4; without what is between two cables 3e-3

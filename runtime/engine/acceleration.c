@@ -21,6 +21,7 @@ static void evaluate(const fu_model *model, const fu_state *state, fu_accelerato
         fu_rows *rows = &work->rows[j];
         rows->first = joint->multiplier;
         rows->room = joint->room;
+        rows->idle = 0;
         for (int c = 0; c < rows->room; ++c) rows->scale[c] = joint->mass;
         fu_slide_terms(model, state, j, rows, &work->slides[j]);
     }
@@ -50,13 +51,14 @@ double fu_slide_rate(const fu_model *model, const fu_state *state, int j)
     return slide.s_rate;
 }
 
-/* M is constant, that of the bodies by body axes: its band is factored once, and its border's columns are solved. */
+/* M is constant, that of rigid bodies by body axes: its band is factored once, and its border's columns are solved. */
 int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
     s->constant = s->constant_columns = s->constant_rows = 0;
     fu_system_clear(s);
     fu_dynamic_matrix(model, model->zero, model->zero, 1.0, 0.0, 0.0, s);
+    fu_bodies_mass(model, model->zero, 1, s);
     memcpy(work->corner, s->D, sizeof(double) * (size_t)(s->m * s->m));
     if (fu_system_factor_band(s, model->lapack)) return 1;
     fu_system_keep_border(s, model->lapack, model->n_border_dof);
@@ -64,25 +66,27 @@ int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
 }
 
 /* The border of M. */
-static void border(const fu_model *model, fu_accelerator *work)
+static void border(const fu_model *model, const double *q, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
     const int n = model->n_border_dof, whole = n + model->n_multipliers;
     fu_system_clear_border(s);
     for (int k = 0; k < n; ++k)
         memcpy(s->D + (long)k * s->m, work->corner + (long)k * whole, sizeof(double) * (size_t)n);
+    fu_bodies_mass(model, q, 0, s);
 }
 
 /* Border of [M H'; H 0] at a state whose terms are evaluated. */
-static int factor_border(const fu_model *model, fu_accelerator *work)
+static int factor_border(const fu_model *model, const fu_state *state, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
-    border(model, work);
+    border(model, state->q, work);
     for (int r = 0; r < n_rows(model); ++r) {
         const fu_rows *rows = &work->rows[r];
         for (int c = 0; c < rows->room; ++c) {
             const int row = fu_extra(model, rows->first + c);
-            if (c >= rows->rows) fu_add(model, s, row, row, rows->scale[c]); /* not in use: its multiplier is nil */
+            if (c >= rows->rows || rows->idle >> c & 1)
+                fu_add(model, s, row, row, rows->scale[c]); /* not in use: its multiplier is nil */
             else
                 for (int k = 0; k < rows->n; ++k) { /* rows in kg, so that the border is of one scale */
                     fu_add(model, s, row, rows->at[k], rows->scale[c] * rows->H[c * rows->n + k]);
@@ -212,7 +216,7 @@ int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *
     const int n = model->n_multipliers, whole = s->m;
     evaluate(model, state, work);
     s->m = model->n_border_dof; /* M alone */
-    border(model, work);
+    border(model, state->q, work);
     const int info = fu_system_factor_border(s, model->lapack);
     for (int r = 0; r < n_rows(model) && !info; ++r) {
         const fu_rows *rows = &work->rows[r];
@@ -239,7 +243,7 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
     double *lambda = work->rhs + model->n_band + model->n_border_dof, *prescribed = work->prescribed;
     work->jammed = -1;
     evaluate(model, state, work);
-    const int info = factor_border(model, work);
+    const int info = factor_border(model, state, work);
     if (info) return info;
     for (int i = 0; i < model->n_dof; ++i) work->force[i] = prescribed[i] = work->work[i] = 0.0;
     fu_internal_forces(model, state->q, state->v, work->force);
@@ -247,7 +251,7 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
     fu_external_forces(model, state->t, state->q, work->force);
     for (int k = 0; k < model->n_motions; ++k)
         prescribed[model->motions[k].dof] = state->acceleration[model->motions[k].dof];
-    if (model->n_motions) fu_mass_times(model, prescribed, work->work);
+    if (model->n_motions) fu_mass_times(model, state->q, prescribed, work->work);
     for (int i = 0; i < model->n_dof; ++i) work->work[i] = -work->force[i] - work->work[i];
     if (settle(model, state, work, acceleration)) return 1;
     for (int i = 0; i < model->n_dof; ++i) acceleration[i] += prescribed[i];
@@ -274,7 +278,7 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
             if (square > 0.0) out->traction = pull / sqrt(square);
         }
     if (reaction) {
-        fu_mass_times(model, acceleration, work->work);
+        fu_mass_times(model, state->q, acceleration, work->work);
         for (int i = 0; i < model->n_dof; ++i) reaction[i] = work->work[i] + work->force[i];
         for (int r = 0; r < n_rows(model); ++r) {
             const fu_rows *rows = &work->rows[r];
@@ -296,7 +300,7 @@ static int project(const fu_model *model, const fu_state *state, fu_accelerator 
 {
     double *lambda = work->rhs + model->n_band + model->n_border_dof;
     evaluate(model, state, work);
-    const int info = factor_border(model, work);
+    const int info = factor_border(model, state, work);
     if (info) return info;
     if (struck >= 0)
         work->rows[struck].rate[model->dim - 1] =

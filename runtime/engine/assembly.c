@@ -1,4 +1,4 @@
-/* Sums over elements and bodies: forces, energies, and the band and body blocks of a Newton matrix. */
+/* Sums over elements, and over bodies by way of bodies.c: forces, energies, and the band of a Newton matrix. */
 #include "engine.h"
 
 #include <string.h>
@@ -91,7 +91,7 @@ static void add_forces(const fu_cable *cable, int k, int n, const double *part, 
 }
 
 /* f = M a */
-void fu_mass_times(const fu_model *model, const double *a, double *f)
+void fu_mass_times(const fu_model *model, const double *q, const double *a, double *f)
 {
     double part[FU_MAX_COORDINATES];
     for (int i = 0; i < model->n_dof; ++i) f[i] = 0.0;
@@ -102,14 +102,10 @@ void fu_mass_times(const fu_model *model, const double *a, double *f)
             for (int i = 0; i < cable->coordinates; ++i) f[at + i] += part[i];
         }
     }
-    const double rest[6] = {0};
-    for (int b = 0; b < model->n_rigids; ++b) {
-        const fu_rigid *body = &model->rigids[b];
-        body->kernel->inertia_force(body->mass, body->J, rest, a + body->dof, f + body->dof);
-    }
+    fu_bodies_mass_times(model, q, a, f);
 }
 
-/* f += elastic, damping and gyroscopic forces, as they stand on the left of the equations of motion; not springs */
+/* f += elastic, damping and bodies' forces, as they stand on the left of the equations of motion; not springs */
 void fu_internal_forces(const fu_model *model, const double *q, const double *v, double *f)
 {
     double part[CHUNK * FU_MAX_COORDINATES];
@@ -143,7 +139,7 @@ void fu_discrete_forces(const fu_model *model, const double *q, const double *q_
     }
 }
 
-/* f += damping and gyroscopic forces */
+/* f += damping and bodies' forces */
 void fu_rate_forces(const fu_model *model, const double *q, const double *v, double *f)
 {
     double part[CHUNK * FU_MAX_COORDINATES];
@@ -167,12 +163,7 @@ void fu_rate_forces(const fu_model *model, const double *q, const double *v, dou
             }
         }
     }
-    const double none[6] = {0};
-    for (int b = 0; b < model->n_rigids; ++b) {
-        const fu_rigid *body = &model->rigids[b];
-        body->kernel->inertia_force(body->mass, body->J, v + body->dof, none, part);
-        for (int i = body->kernel->dim; i < body->kernel->velocity; ++i) f[body->dof + i] += part[i];
-    }
+    fu_bodies_forces(model, q, v, f);
 }
 
 /* K += mass M of an element */
@@ -203,7 +194,7 @@ static void add_matrix(const fu_model *model, int first, int n, const double *K,
     }
 }
 
-/* inertia M + stiffness d(forces)/dq + stiffness rate d(forces)/dv, added to a cleared system */
+/* inertia M + stiffness d(forces)/dq + stiffness rate d(forces)/dv of the cables, added to a cleared system */
 void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, double inertia, double rate,
                        double stiffness, fu_system *system)
 {
@@ -234,18 +225,9 @@ void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, 
             add_matrix(model, cable->first + k * cable->per_node, cable->coordinates, K, system);
         }
     }
-    for (int b = 0; b < model->n_rigids; ++b) {
-        const fu_rigid *body = &model->rigids[b];
-        const int size = body->kernel->velocity;
-        body->kernel->inertia_tangent(body->mass, body->J, v + body->dof, every, Q);
-        for (int i = 0; i < size; ++i)
-            for (int j = 0; j < size; ++j)
-                fu_add(model, system, body->dof + i, body->dof + j,
-                       inertia * every[size * i + j] + stiffness * rate * Q[size * i + j]);
-    }
 }
 
-double fu_kinetic_energy(const fu_model *model, const double *v)
+double fu_kinetic_energy(const fu_model *model, const double *q, const double *v)
 {
     double total = 0.0, part[FU_MAX_COORDINATES];
     for (int c = 0; c < model->n_cables; ++c) {
@@ -255,11 +237,7 @@ double fu_kinetic_energy(const fu_model *model, const double *v)
             for (int i = 0; i < cable->coordinates; ++i) total += 0.5 * part[i] * v[at + i];
         }
     }
-    for (int b = 0; b < model->n_rigids; ++b) {
-        model->rigids[b].kernel->kinetic_energy(model->rigids[b].mass, model->rigids[b].J, v + model->rigids[b].dof, part);
-        total += part[0];
-    }
-    return total;
+    return total + fu_bodies_kinetic_energy(model, q, v);
 }
 
 double fu_elastic_energy(const fu_model *model, const double *q)
@@ -272,7 +250,7 @@ double fu_elastic_energy(const fu_model *model, const double *q)
             total += part;
         }
     }
-    return total + fu_spring_energy(model, q);
+    return total + fu_bodies_elastic_energy(model, q) + fu_spring_energy(model, q);
 }
 
 /* of gravity */
@@ -284,18 +262,13 @@ double fu_potential_energy(const fu_model *model, const double *q)
         const int end = cable->first + (cable->n_elements + 1) * cable->per_node;
         for (int i = cable->first; i < end; ++i) total -= model->gravity[i] * q[i];
     }
-    for (int b = 0; b < model->n_rigids; ++b) {
-        const fu_rigid *body = &model->rigids[b];
-        for (int i = 0; i < body->kernel->dim; ++i)
-            total -= model->gravity[body->dof + i] * q[body->configuration + i];
-    }
-    return total;
+    return total + fu_bodies_potential_energy(model, q);
 }
 
 /* power taken out by damping */
 double fu_dissipation(const fu_model *model, const double *q, const double *v)
 {
-    double total = fu_spring_dissipation(model, q, v), part[FU_MAX_COORDINATES];
+    double total = fu_spring_dissipation(model, q, v) + fu_bodies_dissipation(model, q, v), part[FU_MAX_COORDINATES];
     for (int c = 0; c < model->n_cables; ++c) {
         const fu_cable *cable = &model->cables[c];
         if (cable->tau <= 0.0 && cable->mass_damping <= 0.0) continue;

@@ -78,8 +78,9 @@ int fu_end_coordinates(const fu_model *model, const fu_end *end, const fu_state 
 {
     if (end->body >= 0) {
         const fu_rigid *body = &model->rigids[end->body];
-        for (int i = 0; i < body->kernel->velocity; ++i) at[i] = body->dof + i;
-        return body->kernel->velocity;
+        const int n = fu_body_dofs(body);
+        for (int i = 0; i < n; ++i) at[i] = body->dof + i;
+        return n;
     }
     if (end->cable < 0) return 0;
     const fu_cable *cable = &model->cables[end->cable];
@@ -141,11 +142,33 @@ static void axes_of(const fu_model *model, const fu_end *end, const fu_state *st
     multiply(dim, dim, dim, A, end->axes, place->A);
 }
 
+/* The node of a modal body: all at once. */
+static void of_modes(const fu_model *model, const fu_end *end, const fu_state *state, fu_place *place)
+{
+    const fu_rigid *body = &model->rigids[end->body];
+    const int dim = model->dim;
+    fu_modal_point at;
+    fu_modal_anchor(body, &end->spot, state->q + body->configuration, state->v + body->dof, &at, place->P, place->T);
+    memset(place->p, 0, sizeof place->p);
+    memset(place->v, 0, sizeof place->v);
+    memset(place->bias, 0, sizeof place->bias);
+    memcpy(place->p, at.p, sizeof(double) * (size_t)dim);
+    memcpy(place->v, at.velocity, sizeof(double) * (size_t)dim);
+    memcpy(place->bias, at.bias, sizeof(double) * (size_t)dim);
+    memcpy(place->omega, at.omega, sizeof place->omega);
+    memcpy(place->alpha, at.omega_bias, sizeof place->alpha);
+    multiply(dim, dim, dim, at.axes, end->axes, place->A);
+}
+
 /* Where an end stands and how it moves: its point, its axes, or both; s_rate: of its slide, where velocities count. */
 void fu_end_place(const fu_model *model, const fu_end *end, const fu_state *state, double s_rate, int what,
                   fu_place *place)
 {
     place->n = fu_end_coordinates(model, end, state, place->at);
+    if (end->body >= 0 && model->rigids[end->body].modes) {
+        of_modes(model, end, state, place);
+        return;
+    }
     if (what & FU_POINT) point_of(model, end, state, place);
     if (what & FU_AXES) axes_of(model, end, state, s_rate, place);
 }
@@ -158,7 +181,13 @@ void fu_end_curvature(const fu_model *model, const fu_end *end, const fu_state *
     if (end->body >= 0) {
         const fu_rigid *body = &model->rigids[end->body];
         const double *b = state->q + body->configuration;
-        double p[3], A[9], P[18], part[36];
+        double p[3], A[9], P[18], part[FU_END_COORDINATES * FU_END_COORDINATES];
+        if (body->modes) {
+            const double none[3] = {0.0};
+            fu_modal_anchor_force(body, &end->spot, b, f ? f : none, m ? m : none, part);
+            for (int i = 0; i < n * n; ++i) K[i] += part[i];
+            return;
+        }
         if (f) {
             body->kernel->point_force(b, end->u, f, p, P, part);
             for (int i = 0; i < n * n; ++i) K[i] += part[i];

@@ -74,7 +74,7 @@ static void residual(fu_run *run, double h)
     const fu_state *now = &run->now, *next = &run->next;
     const middle_view m = middle(run);
     double *extra = run->rhs + model->n_band + model->n_border_dof;
-    fu_mass_times(model, next->acceleration, run->force);
+    fu_mass_times(model, m.q, next->acceleration, run->force);
     fu_discrete_forces(model, now->q, next->q, run->force);
     fu_algorithmic_forces(run, m.q, run->force);
     fu_rate_forces(model, m.q, m.v, run->force);
@@ -169,7 +169,9 @@ static void matrix(fu_run *run, double h)
     const double rate = 2.0 / h, stiffness = 0.5 * sigma(h); /* the middle moves by half of psi */
     const fu_state state = {.q = m.q, .v = m.v, .spring = run->next.spring};
     fu_system_clear(&run->newton);
-    fu_dynamic_matrix(model, m.q, m.v, 1.0, rate, stiffness * (1.0 + 2.0 * run->algorithmic.weight), &run->newton);
+    const double stiffer = 1.0 + 2.0 * run->algorithmic.weight;
+    fu_dynamic_matrix(model, m.q, m.v, 1.0, rate / stiffer, stiffness * stiffer, &run->newton);
+    fu_bodies_matrix(model, &state, 0, (fu_weights){1.0, rate, stiffness}, &run->newton);
     mean_stress(run, stiffness);
     fu_loads_matrix(model, run->now.t + 0.5 * h, m.q, 0, stiffness, &run->newton);
     for (int j = 0; j < model->n_joints; ++j) joint_matrix(run, j, stiffness);
@@ -232,7 +234,7 @@ static void book(fu_run *run, double h)
     if (!model->n_motions) return;
     /* of the motions: velocities there are given, so that their mean is not quite psi/h */
     residual(run, h);
-    fu_mass_times(model, next->acceleration, m.force);
+    fu_mass_times(model, m.q, next->acceleration, m.force);
     for (int k = 0; k < model->n_motions; ++k) {
         const int i = model->motions[k].dof;
         if (model->motions[k].first)

@@ -1,13 +1,13 @@
 /* The engine: what is integrated, and the work space of integrating it.
  *
  * Coordinates. q is the configuration: for each cable its nodal vectors node by node, then for each body position and
- * attitude (unit quaternion; in the plane unit complex number). v, accelerations and increments have one entry a degree
- * of freedom (dof): the cables' as in q, then the bodies' (translation; rotation about body axes).
+ * attitude (unit quaternion; in the plane unit complex number) and, of a modal one, the coordinates of its modes. v, accelerations and increments have one entry a degree
+ * of freedom (dof): the cables' as in q, then the bodies' (translation; rotation about body axes; modes).
  *
- * Unknowns of a linear system: the free coordinates of the cables ("band"), then the border: those where cables meet, if
- * that is cheaper (reduction.py), those of the bodies, then what each joint and spring adds. Supports make dofs linear in the unknowns, dofs = T unknowns + what motions prescribe;
- * place[dof] is the place of the unknown that the dof is, -1 where it is held or prescribed, -2 - k where it is the k-th
- * combination of unknowns (reduce.c).
+ * Unknowns of a linear system: the free coordinates of the cables ("band"), then the border: those of nodes where cables
+ * meet, if that is cheaper (reduction.py), those of the bodies, then what each joint and spring adds. Supports make dofs
+ * linear in the unknowns, dofs = T unknowns + what motions prescribe; place[dof] is the place of the unknown that the dof
+ * is, -1 where it is held or prescribed, -2 - k where it is the k-th combination of unknowns (reduce.c).
  *
  * Every array belongs to the caller; nothing here allocates.
  */
@@ -41,13 +41,55 @@ typedef struct {
     int memory;       /* first number in the memory of algorithmic dissipation: law->rates + 1 an element */
 } fu_cable;
 
+/* A body as seen at an instant: its part of q, of v, of the accelerations. */
 typedef struct {
-    const fu_body *kernel;
-    int configuration; /* first entry in q */
-    int dof;           /* first dof */
+    const double *b, *w, *a;
+} fu_instant;
+
+/* What bodies are made of: bodies.c, modal.c. b, w, a and f begin with the body's own entries. */
+typedef struct fu_rigid fu_rigid;
+typedef struct {
+    int constant; /* its M is, in body axes, and it has no K */
+    void (*mass_times)(const fu_rigid *body, const double *b, const double *a, double *f); /* f = M a */
+    void (*forces)(const fu_rigid *body, const double *b, const double *w, double *f); /* f += what is left without a */
+    void (*mass)(const fu_rigid *body, const double *b, double *M);
+    void (*tangent)(const fu_rigid *body, const fu_instant *at, double *D, double *K);
+    double (*kinetic_energy)(const fu_rigid *body, const double *b, const double *w);
+    double (*elastic_energy)(const fu_rigid *body, const double *b);
+    double (*potential_energy)(const fu_rigid *body, const double *b); /* less what model->gravity gives */
+    double (*dissipation)(const fu_rigid *body, const double *b, const double *w);
+} fu_matter;
+extern const fu_matter fu_rigid_matter, fu_modal_matter;
+
+/* Modes of a body; index 0 of S and X is the undeformed place (derive/bodies/modal.py). */
+typedef struct {
+    const fu_modal *kernel;
+    const double *S, *X;               /* (n + 1) x dim; (n + 1) x (n + 1) x dim x dim */
+    const double *mass, *stiffness, *damping; /* n x n */
+    const double *zero;                /* as many as it has dofs */
+    double *sums, *matrices;           /* work space: 3 (n + 1) dim^2; 3 dofs^2 (mass_times takes the first) */
+    double g[3];
+} fu_shape;
+
+/* A body with a frame: rigid, or modal with so many modes. */
+struct fu_rigid {
+    const fu_body *kernel; /* of its frame */
+    const fu_matter *matter;
+    int configuration; /* first entry in q: the frame's, then the modes' */
+    int dof;           /* first dof: likewise */
+    int modes;
     double mass;
     double J[9];
-} fu_rigid;
+    const fu_shape *shape; /* of the modes; null without */
+};
+
+/* A point of a modal body: where it is undeformed, and the modes' displacements and turns there. */
+typedef struct {
+    const double *x, *phi, *psi; /* dim; modes x dim; modes x turns */
+} fu_spot;
+typedef struct {
+    double p[3], axes[9], velocity[3], omega[3], bias[3], omega_bias[3];
+} fu_modal_point;
 
 /* One end of a spring or a joint: a point with axes of the ground (cable and body -1), of a cable's element, of a body; or
  * axes alone, of the cable where a slide is. */
@@ -61,6 +103,7 @@ typedef struct {
     double S[2 * FU_MAX_COORDINATES]; /* derivatives of the shape functions for both, unless on a slide */
     double up[3];
     double axes[9]; /* in those of what carries it, by columns */
+    fu_spot spot;   /* the point of a modal body, instead of u */
 } fu_end;
 
 /* Where an end stands and how it moves with its own n coordinates (numbers for fu_add in `at`): dp = P dq, and axes turn
@@ -103,6 +146,7 @@ typedef struct {
     const fu_pair *kernel;
     fu_end ends[2];
     int unknown, multiplier, signal;
+    int idle; /* bits of the rows that other joints' imply: their multipliers are nil */
     double base, scale[6]; /* scale of its rows, kg or kg m */
 } fu_link;
 
@@ -164,7 +208,7 @@ typedef struct {
     int first, end;
 } fu_span;
 
-/* What column k of X, or row k of C, has in half a chain. */
+/* What column k of X, or row k of C, has in half a chain: of what closes a ring, both ends count and not the middle. */
 typedef struct {
     int k;
     fu_span rows;
@@ -175,9 +219,9 @@ typedef struct {
     int n, width;      /* band part: size, half bandwidth */
     int m;             /* border */
     int n_chains;
-    int constant, constant_columns, constant_rows; /* of the border, from the first on, that stay; pieces of those */
+    int constant, constant_columns, constant_rows; /* of the border, from the first on, that stay; their pieces */
     int definite;      /* the band is factored in L (band.c), else in K (dgbtrf) */
-    int n_columns, n_rows;
+    int n_columns, n_rows; /* pieces */
     const int *chains; /* n_chains + 1: the first row of each, and n */
     const int *half;   /* of each row of the band: 2 chain, and 1 more from the middle on */
     double *K;         /* LAPACK band storage, (3 width + 1) x n; of all systems of a run the same */
@@ -186,7 +230,7 @@ typedef struct {
     double *C;         /* the border's rows, transposed: n x m */
     double *D;         /* m x m, column by column */
     double *X;         /* K^-1 B in the chains that B touches, FU_BAND_LENGTH a column */
-    fu_span *span_B, *span_C; /* 2 n_chains x m: by halves, since what closes a ring touches both ends of a chain */
+    fu_span *span_B, *span_C; /* 2 n_chains x m: rows of each half that are not zero; end 0 where none is */
     fu_piece *columns, *rows; /* of X and C */
     int *pivot_band, *pivot_border;
 } fu_system;
@@ -260,18 +304,40 @@ double fu_size(const fu_model *model, const double *dofs);
 
 /* assembly.c */
 int fu_has_threads(void);
-void fu_mass_times(const fu_model *model, const double *a, double *f);
+void fu_mass_times(const fu_model *model, const double *q, const double *a, double *f);
 void fu_internal_forces(const fu_model *model, const double *q, const double *v, double *f);
 void fu_rate_forces(const fu_model *model, const double *q, const double *v, double *f);
 void fu_discrete_forces(const fu_model *model, const double *q, const double *q_next, double *f);
 void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, double inertia, double rate,
                        double stiffness, fu_system *system);
-double fu_kinetic_energy(const fu_model *model, const double *v);
+double fu_kinetic_energy(const fu_model *model, const double *q, const double *v);
 double fu_elastic_energy(const fu_model *model, const double *q);
 double fu_potential_energy(const fu_model *model, const double *q);
 double fu_dissipation(const fu_model *model, const double *q, const double *v);
 double fu_length(const fu_model *model, int joint);
 double fu_element_start(const fu_model *model, int joint, int element);
+
+/* Newton matrix = inertia M + stiffness (K + rate D); statics has no inertia */
+typedef struct {
+    double inertia, rate, stiffness;
+} fu_weights;
+
+/* bodies.c: rigid and modal */
+int fu_body_dofs(const fu_rigid *body);
+void fu_bodies_mass_times(const fu_model *model, const double *q, const double *a, double *f);
+void fu_bodies_forces(const fu_model *model, const double *q, const double *v, double *f);
+void fu_bodies_matrix(const fu_model *model, const fu_state *at, const double *psi, fu_weights weights, fu_system *system);
+void fu_bodies_mass(const fu_model *model, const double *q, int constant, fu_system *system);
+double fu_bodies_kinetic_energy(const fu_model *model, const double *q, const double *v);
+double fu_bodies_elastic_energy(const fu_model *model, const double *q);
+double fu_bodies_potential_energy(const fu_model *model, const double *q);
+double fu_bodies_dissipation(const fu_model *model, const double *q, const double *v);
+
+/* modal.c: points */
+void fu_modal_anchor(const fu_rigid *body, const fu_spot *spot, const double *b, const double *w, fu_modal_point *out,
+                     double *P, double *T);
+void fu_modal_anchor_force(const fu_rigid *body, const fu_spot *spot, const double *b, const double *f, const double *m,
+                           double *K);
 
 /* motions.c */
 double fu_signal_at(const fu_signal *signal, double t, double *rate, double *second);
@@ -291,9 +357,9 @@ void fu_end_curvature(const fu_model *model, const fu_end *end, const fu_state *
                       int n, double *K);
 
 /* Constraints H q'' = W over the dofs `at`, with what is left of them C, and their rate at rest: `rows` of them now, from
- * the multiplier `first` on, which has `room` for some more. */
+ * the multiplier `first` on, which has `room` for some more; those of the bits `idle` are nil. */
 typedef struct {
-    int first, room, rows, n, at[FU_ROW_COORDINATES];
+    int first, room, rows, idle, n, at[FU_ROW_COORDINATES];
     double H[6 * FU_ROW_COORDINATES], W[6], C[6], rate[6], scale[6];
 } fu_rows;
 
@@ -327,6 +393,7 @@ void fu_brake_rows(const fu_model *model, const fu_state *state, int j, const do
 /* links.c */
 int fu_link_is_idle(const fu_link *link, const fu_state *state);
 int fu_link_residual(const fu_model *model, const fu_link *link, const fu_state *state, double *phi, int *at, double *J);
+int fu_between_cables(const fu_link *link);
 int fu_link_tangent(const fu_model *model, const fu_link *link, const fu_state *state, int *at, double *J, double *K);
 double fu_link_driving(const fu_model *model, const fu_link *link, const fu_state *state);
 void fu_link_terms(const fu_model *model, const fu_link *link, const fu_state *state, const fu_slide_state *slides,
@@ -531,6 +598,7 @@ struct fu_run {
     double recorded; /* s: time of the last row */
     double motion, least_motion, extent; /* m: largest so far, assumed at least, largest coordinate of a position */
     double allowed; /* m: error of the step */
+    double closed;  /* m: gaps at the start */
     double ceiling; /* s: that steps stay below, after one that failed */
     double newton_tolerance, round_off; /* of increments, m: where Newton may stop, and where it cannot go on */
     int factored, stopped_joint, turned;
@@ -542,10 +610,6 @@ struct fu_run {
     int rest_start; /* for order.py only: start the scheme from zero accelerations */
 };
 
-/* Newton matrix = inertia M + stiffness (K + rate D); statics has no inertia */
-typedef struct {
-    double inertia, rate, stiffness;
-} fu_weights;
 void fu_linearise(fu_run *run, double h, const double *change);
 void fu_static_move(fu_run *run, const double *change);
 void fu_static_residual(fu_run *run);
@@ -568,7 +632,9 @@ double fu_algorithmic_book(fu_run *run, const double *q);
 
 /* projection.c */
 int fu_find_slides(fu_run *run);
-int fu_return_to_joints(fu_run *run);
+int fu_close(fu_run *run);
+int fu_return_to_joints(fu_run *run, fu_state *state);
+int fu_wander(fu_run *run, const double *along, double *left);
 int fu_complete(fu_run *run, fu_state *state);
 
 /* books.c */
@@ -605,6 +671,7 @@ int fu_reach_end(fu_run *run, int joint, int side, int *what);
 int fu_act(fu_run *run, const fu_watch *watch, int side, int *what);
 
 /* run.c: the time loop */
+int fu_prepare(fu_run *run);
 int fu_start(fu_run *run);
 int fu_advance(fu_run *run, double seconds);
 int fu_stop(fu_run *run);

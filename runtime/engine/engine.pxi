@@ -7,6 +7,8 @@ cdef extern from "kernels.h" nogil:
     ctypedef struct fu_body:
         const char *name
         int dim, configuration, velocity
+    ctypedef struct fu_modal:
+        const char *name
     ctypedef struct fu_slide:
         const char *name
         int coordinates, dim
@@ -22,10 +24,11 @@ cdef extern from "kernels.h" nogil:
     ctypedef struct fu_brake:
         const char *name
     ctypedef struct fu_tables:
-        int n_elements, n_laws, n_bodys, n_slides, n_frames, n_pairs, n_brakes
+        int n_elements, n_laws, n_bodys, n_modals, n_slides, n_frames, n_pairs, n_brakes
         const fu_element *elements
         const fu_law *laws
         const fu_body *bodys
+        const fu_modal *modals
         const fu_slide *slides
         const fu_frame *frames
         const fu_pair *pairs
@@ -54,11 +57,31 @@ cdef extern from "engine.h" nogil:
         double length, tau, mass_damping
         const double *m
         const double *A
+    ctypedef struct fu_matter:
+        pass
+    const fu_matter fu_rigid_matter, fu_modal_matter
+    ctypedef struct fu_shape:
+        const fu_modal *kernel
+        const double *S
+        const double *X
+        const double *mass
+        const double *stiffness
+        const double *damping
+        const double *zero
+        double *sums
+        double *matrices
+        double g[3]
     ctypedef struct fu_rigid:
         const fu_body *kernel
-        int configuration, dof
+        const fu_matter *matter
+        int configuration, dof, modes
         double mass
         double J[9]
+        const fu_shape *shape
+    ctypedef struct fu_spot:
+        const double *x
+        const double *phi
+        const double *psi
     ctypedef struct fu_end:
         int cable, body, element, slide
         double u[3]
@@ -68,6 +91,19 @@ cdef extern from "engine.h" nogil:
         double S[64]
         double up[3]
         double axes[9]
+        fu_spot spot
+    ctypedef struct fu_modal_point:
+        double p[3]
+        double axes[9]
+        double velocity[3]
+        double omega[3]
+        double bias[3]
+        double omega_bias[3]
+    int fu_body_dofs(const fu_rigid *body)
+    void fu_modal_anchor(const fu_rigid *body, const fu_spot *spot, const double *b, const double *w,
+                         fu_modal_point *out, double *P, double *T)
+    void fu_modal_anchor_force(const fu_rigid *body, const fu_spot *spot, const double *b, const double *f,
+                               const double *m, double *K)
     ctypedef struct fu_terminal:
         int kind
         double restitution, length, stiffness, damping
@@ -83,7 +119,7 @@ cdef extern from "engine.h" nogil:
     ctypedef struct fu_link:
         const fu_pair *kernel
         fu_end ends[2]
-        int unknown, multiplier, signal
+        int unknown, multiplier, signal, idle
         double base
         double scale[6]
     ctypedef struct fu_signal:
@@ -194,6 +230,8 @@ cdef extern from "engine.h" nogil:
         double *braking
         int jammed
         double *joints
+    ctypedef struct fu_link_output:
+        double residual
     ctypedef struct fu_genalpha:
         double alpha_m, alpha_f, beta, gamma
     ctypedef struct fu_algorithmic:
@@ -289,7 +327,7 @@ cdef extern from "engine.h" nogil:
         double *before
         double *first
         double *s_slope
-        double h, h_factored, contraction, motion
+        double h, h_factored, contraction, motion, extent, closed
         int factored, stopped_joint, rest_start
         fu_failure failure
         fu_books books
@@ -309,6 +347,12 @@ cdef extern from "engine.h" nogil:
     double fu_brake_energy(const fu_model *model, const fu_state *state)
     int fu_moves(const fu_run *run)
     int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S)
+    int fu_prepare(fu_run *run)
+    int fu_wander(fu_run *run, const double *along, double *left)
+    void fu_link_outputs(const fu_model *model, const fu_state *state, const fu_accelerator *work, fu_link_output *out)
+    int fu_between_cables(const fu_link *link)
+    int fu_link_tangent(const fu_model *model, const fu_link *link, const fu_state *state, int *at, double *J, double *K)
+    int fu_end_coordinates(const fu_model *model, const fu_end *end, const fu_state *state, int *at)
     int fu_start(fu_run *run)
     int fu_advance(fu_run *run, double seconds)
     void fu_pause(fu_run *run)

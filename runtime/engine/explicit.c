@@ -23,6 +23,8 @@ static void rates(const fu_model *model, const fu_state *state, double *rate)
     for (int b = 0; b < model->n_rigids; ++b) {
         const fu_rigid *body = &model->rigids[b];
         fu_body_rate(body->kernel, state->q + body->configuration, state->v + body->dof, rate + body->configuration);
+        memcpy(rate + body->configuration + body->kernel->configuration, state->v + body->dof + body->kernel->velocity,
+               sizeof(double) * (size_t)body->modes);
     }
     memcpy(rate + model->n_q, state->acceleration, sizeof(double) * (size_t)model->n_dof);
 }
@@ -90,7 +92,7 @@ static int step(fu_run *run, double h)
         keep(run, k, next);
     }
     if (move_to(run, tableau->b, n, run->now.t + h, h)) return 1;
-    if (fu_return_to_joints(run)) return 1;
+    if (fu_return_to_joints(run, next)) return 1;
     if (fu_complete(run, next)) return fu_fail_eq38(run);
     keep(run, n, next);
     run->statistics.evaluations += n;
@@ -112,6 +114,8 @@ static double estimate(fu_run *run, const double *row, double h)
         const fu_rigid *body = &model->rigids[b];
         fu_body_increment(body->kernel, run->next.q + body->configuration, q + body->configuration,
                           run->work + body->dof);
+        memcpy(run->work + body->dof + body->kernel->velocity, q + body->configuration + body->kernel->configuration,
+               sizeof(double) * (size_t)body->modes);
     }
     for (int k = 0; k < model->n_motions; ++k) run->work[model->motions[k].dof] = v[model->motions[k].dof] = 0.0;
     for (int i = 0; i < model->n_dof; ++i) v[i] *= h;

@@ -68,7 +68,7 @@ static void residual(fu_run *run, double inertia, double scale)
     const fu_state *next = &run->next;
     double phi[3], g[FU_SLIDE_COORDINATES], *extra = run->rhs + model->n_band + model->n_border_dof;
     int at[2 * FU_SLIDE_COORDINATES];
-    if (inertia != 0.0) fu_mass_times(model, next->acceleration, run->force);
+    if (inertia != 0.0) fu_mass_times(model, next->q, next->acceleration, run->force);
     else
         for (int i = 0; i < model->n_dof; ++i) run->force[i] = 0.0;
     fu_internal_forces(model, next->q, next->v, run->force);
@@ -102,6 +102,7 @@ static void residual(fu_run *run, double inertia, double scale)
         }
         const int n = fu_link_residual(model, link, next, equations, at, J);
         for (int r = 0; r < link->kernel->rows; ++r) {
+            if (link->idle >> r & 1) equations[r] = 0.0;
             extra[link->unknown + r] = -fu_row_unit(inertia, link->scale[r]) * equations[r];
             for (int i = 0; i < n; ++i) {
                 const double pull = J[r * n + i] * multipliers[r];
@@ -161,6 +162,7 @@ static void matrix(fu_run *run, fu_weights w, const double *psi)
     int at[2 * FU_SLIDE_COORDINATES];
     fu_system_clear(system);
     fu_dynamic_matrix(model, next->q, next->v, w.inertia, w.rate, w.stiffness, system);
+    fu_bodies_matrix(model, next, psi, w, system);
     if (w.stiffness == 0.0) return;
     fu_loads_matrix(model, next->t, next->q, psi, w.stiffness, system);
     for (int j = 0; j < model->n_joints; ++j) {
@@ -196,6 +198,11 @@ static void matrix(fu_run *run, fu_weights w, const double *psi)
             continue;
         }
         from[1] = fu_end_coordinates(model, &link->ends[0], next, unused);
+        for (int r = 0; r < rows; ++r) {
+            if (!(link->idle >> r & 1)) continue;
+            memset(J + r * n, 0, sizeof(double) * (size_t)n);
+            fu_add(model, system, first + r, first + r, fu_row_unit(w.inertia, link->scale[r]));
+        }
         for (int r = 0; r < rows; ++r)
             for (int i = 0; i < n; ++i)
                 if (at[i] < model->n_dof || slides(model, next, at[i]))
@@ -208,8 +215,11 @@ static void matrix(fu_run *run, fu_weights w, const double *psi)
             for (int r = 0; r < rows; ++r)
                 fu_add(model, system, first + r, at[i], fu_row_unit(w.inertia, link->scale[r]) * J[r * n + i]);
             if (at[i] >= model->n_dof && !slides(model, next, at[i])) continue;
-            for (int m = 0; m < n; ++m)
-                if (K[i * n + m] != 0.0) fu_add(model, system, at[i], at[m], w.stiffness * K[i * n + m]);
+            for (int m = 0; m < n; ++m) {
+                /* what is between two cables would widen the band: Newton converges without */
+                if (K[i * n + m] == 0.0 || (fu_between_cables(link) && (i < from[1]) != (m < from[1]))) continue;
+                fu_add(model, system, at[i], at[m], w.stiffness * K[i * n + m]);
+            }
         }
     }
     for (int k = 0; k < model->n_springs; ++k)

@@ -82,8 +82,8 @@ static void solve_chain(const fu_system *s, const fu_lapack *lapack, int chain, 
     int n = size_of(s, chain), start = s->chains[chain], width = s->width, rows = 3 * width + 1, one = 1, info;
     if (s->definite) fu_band_solve(n, width, factor_of(s, chain), first - start, x + start);
     else
-        lapack->dgbtrs("N", &n, &width, &width, &one, s->K + (long)start * rows, &rows, s->pivot_band + start, x + start,
-                       &n, &info);
+        lapack->dgbtrs("N", &n, &width, &width, &one, s->K + (long)start * rows, &rows, s->pivot_band + start,
+                       x + start, &n, &info);
 }
 
 /* piece of a row of C, times the rows `of` a column */

@@ -83,8 +83,12 @@ int fu_link_residual(const fu_model *model, const fu_link *link, const fu_state 
     return coordinates(&view, at);
 }
 
-/* the same with K, the derivative of J' multipliers, but for the part between two cables: that would widen the band,
- * Newton converges without */
+int fu_between_cables(const fu_link *link)
+{
+    return link->ends[0].cable >= 0 && link->ends[1].cable >= 0;
+}
+
+/* the same with K, the derivative of J' multipliers */
 int fu_link_tangent(const fu_model *model, const fu_link *link, const fu_state *state, int *at, double *J, double *K)
 {
     const int rows = link->kernel->rows, dim = model->dim, turns = dim == 3 ? 3 : 1;
@@ -99,11 +103,9 @@ int fu_link_tangent(const fu_model *model, const fu_link *link, const fu_state *
     over_coordinates(&view, view.moves, of_moves, half);
     for (int r = 0; r < rows; ++r)
         for (int m = 0; m < view.moves; ++m) g[m] += by_moves[r * view.moves + m] * multipliers[r];
-    const int apart = link->ends[0].cable >= 0 && link->ends[1].cable >= 0;
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j) {
             K[i * n + j] = 0.0;
-            if (apart && (i < n1) != (j < n1)) continue;
             for (int m = 0; m < view.moves; ++m) K[i * n + j] += view.B[m * n + i] * half[m * n + j];
         }
     for (int e = 0; e < 2; ++e) {
@@ -177,6 +179,12 @@ void fu_link_terms(const fu_model *model, const fu_link *link, const fu_state *s
         }
         to += of->n;
     }
+    rows->idle = link->idle;
+    for (int r = 0; r < m; ++r)
+        if (link->idle >> r & 1) {
+            memset(rows->H + r * rows->n, 0, sizeof(double) * (size_t)rows->n);
+            rows->W[r] = rows->C[r] = rows->rate[r] = 0.0;
+        }
 }
 
 /* what each joint puts on its second end, from the multipliers that fu_accelerations left */

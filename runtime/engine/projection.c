@@ -29,26 +29,64 @@ static void normalise(const fu_model *model, double *q)
     }
 }
 
-/* `next` back onto its joints, after attitudes: positions, s, velocities; 0 when that converged */
-int fu_return_to_joints(fu_run *run)
+/* Positions of a state back onto its joints, and s with them, until a correction is small enough; 0 when that converged */
+static int close_gaps(fu_run *run, fu_state *state, double enough)
+{
+    const fu_model *model = run->model;
+    for (int i = 0;; ++i) {
+        if (fu_project_positions(model, state, &run->accelerator, run->work))
+            return fu_fail(run, FU_MATRIX, state->v, -1);
+        const double size = fu_size(model, run->work);
+        if (!(size < 1e30) || i == MOST_PROJECTIONS) return fu_fail(run, FU_ITERATION, run->work, -1);
+        fu_move(model, state->q, run->work);
+        for (int j = 0; j < model->n_joints; ++j)
+            if (state->mode[j] != FU_LEFT && fu_find_arc_length(model, state, j, &state->s[j]))
+                return fu_fail(run, FU_LOST_RIDER, state->v, j);
+        if (size <= enough) return 0;
+    }
+}
+
+/* A start with small gaps onto its joints, if it is not there; run->closed is how large they are. 0 when that converged. */
+int fu_close(fu_run *run)
+{
+    const double rounding = 1e-13 * run->extent;
+    if (fu_project_positions(run->model, &run->now, &run->accelerator, run->work)) return 1;
+    run->closed = fu_size(run->model, run->work);
+    return run->closed > rounding && close_gaps(run, &run->now, rounding);
+}
+
+/* a state back onto its joints, after attitudes: positions, s, velocities; 0 when that converged */
+int fu_return_to_joints(fu_run *run, fu_state *state)
+{
+    const fu_model *model = run->model;
+    normalise(model, state->q);
+    if (!model->n_multipliers) return 0;
+    if (close_gaps(run, state, fmax(run->round_off, run->newton_tolerance))) return 1;
+    if (fu_project_velocities(model, state, &run->accelerator, run->work)) return fu_fail(run, FU_MATRIX, state->v, -1);
+    for (int i = 0; i < model->n_dof; ++i) state->v[i] += run->work[i];
+    return 0;
+}
+
+/* Go from `now` along these dofs, made ones that joints allow and no longer than given, and back onto the joints: what is
+ * `left` of all rows of links then (6 a link), idle ones too. Not zero where there is no way back. */
+int fu_wander(fu_run *run, const double *along, double *left)
 {
     const fu_model *model = run->model;
     fu_state *next = &run->next;
-    normalise(model, next->q);
-    if (!model->n_multipliers) return 0;
-    for (int i = 0;; ++i) {
-        if (fu_project_positions(model, next, &run->accelerator, run->work))
-            return fu_fail(run, FU_MATRIX, next->v, -1);
-        const double size = fu_size(model, run->work);
-        if (!(size < 1e30) || i == MOST_PROJECTIONS) return fu_fail(run, FU_ITERATION, run->work, -1);
-        fu_move(model, next->q, run->work);
-        for (int j = 0; j < model->n_joints; ++j)
-            if (next->mode[j] != FU_LEFT && fu_find_arc_length(model, next, j, &next->s[j]))
-                return fu_fail(run, FU_LOST_RIDER, next->v, j);
-        if (size <= fmax(run->round_off, run->newton_tolerance)) break;
-    }
-    if (fu_project_velocities(model, next, &run->accelerator, run->work)) return fu_fail(run, FU_MATRIX, next->v, -1);
-    for (int i = 0; i < model->n_dof; ++i) next->v[i] += run->work[i];
+    int at[2 * FU_SLIDE_COORDINATES];
+    double J[6 * 2 * FU_END_COORDINATES];
+    fu_predict_extra(run, 0.0);
+    memcpy(next->q, run->now.q, sizeof(double) * (size_t)model->n_q);
+    memcpy(next->v, along, sizeof(double) * (size_t)model->n_dof);
+    if (fu_project_velocities(model, next, &run->accelerator, run->work)) return 1;
+    for (int i = 0; i < model->n_dof; ++i) run->work[i] += along[i];
+    const double size = fu_size(model, run->work), most = fu_size(model, along);
+    for (int i = 0; i < model->n_dof && size > most; ++i) run->work[i] *= most / size;
+    fu_move(model, next->q, run->work);
+    for (int j = 0; j < model->n_joints; ++j)
+        if (fu_find_arc_length(model, next, j, &next->s[j])) return 1;
+    if (close_gaps(run, next, 1e-12 * run->extent)) return 1;
+    for (int k = 0; k < model->n_links; ++k) fu_link_residual(model, &model->links[k], next, left + 6 * k, at, J);
     return 0;
 }
 

@@ -21,7 +21,7 @@ typedef double _Complex complex_;
 #define MOST_ITERATIONS 10
 #define SLOW 0.3          /* contraction above which the matrix is made anew for the next step */
 #define SAFE 3e-3         /* of the allowed error: what Newton may leave */
-#define SWEEPS 2          /* of the attitudes' quadrature for each iteration */
+#define SWEEPS 4          /* of the attitudes' quadrature for each iteration */
 
 enum { STAGES = 3 };
 
@@ -73,7 +73,7 @@ static int is_damped(const fu_model *model)
     int damped = 0;
     for (int c = 0; c < model->n_cables; ++c) damped |= model->cables[c].tau > 0.0 || model->cables[c].mass_damping > 0.0;
     for (int k = 0; k < model->n_springs; ++k) damped |= model->springs[k].damping > 0.0;
-    return damped || model->n_brakes || model->n_rigids; /* a body's gyroscopic moment goes with its velocity */
+    return damped || model->n_brakes || model->n_rigids; /* forces of inertia go with the velocity of a body */
 }
 
 /* column k of X, and the rows of it that count; not if B has none */
@@ -184,19 +184,33 @@ static void keep_row(fu_run *run, int first, int rows, const double *unknowns)
 static void right_side(fu_run *run, const double *r, double *unknowns)
 {
     const fu_model *model = run->model;
-    const fu_system *s = &run->newton;
     const int beyond = model->n_band + model->n_border_dof;
     for (int i = 0; i < model->n_dof; ++i)
         if (model->place[i] >= 0) unknowns[model->place[i]] = r[i];
     for (int i = 0; i < model->n_dof; ++i) run->work[i] = r[i];
     for (int k = 0; k < model->n_motions; ++k) run->work[model->motions[k].dof] = 0.0;
-    fu_mass_times(model, run->work, run->psi);
+    fu_mass_times(model, run->next.q, run->work, run->psi);
     fu_gather(model, run->psi, run->rhs);
     for (int i = 0; i < model->n_extra; ++i) run->rhs[beyond + i] = 0.0;
     for (int j = 0; j < model->n_joints; ++j)
         keep_row(run, model->joints[j].unknown + 1, model->joints[j].kernel->dim, unknowns);
     for (int k = 0; k < model->n_links; ++k)
         keep_row(run, model->links[k].unknown, model->links[k].kernel->rows, unknowns);
+}
+
+/* Entries of the stages' q that have n dofs for rates, moved by the quadrature of velocities. */
+static void integrate(fu_run *run, workspace w, double h, int at, int dof, int n)
+{
+    const fu_model *model = run->model;
+    const fu_collocation *method = &run->collocation;
+    const double *Z = w.Z + dof, *v = run->now.v + dof;
+    for (int k = 0; k < STAGES; ++k) {
+        double *q = w.q + (long)k * model->n_q + at;
+        const double *row = method->A + STAGES * k;
+        for (int i = 0; i < n; ++i)
+            q[i] = run->now.q[at + i] + h * (method->c[k] * v[i] + row[0] * Z[i] + row[1] * Z[model->n_dof + i] +
+                                             row[2] * Z[2 * model->n_dof + i]);
+    }
 }
 
 /* A stage's dofs, moved by the quadrature of velocities; attitudes by sweeps over those at hand. */
@@ -206,12 +220,11 @@ static void configure(fu_run *run, workspace w, double h)
     const fu_collocation *method = &run->collocation;
     const fu_state *now = &run->now;
     const int n = model->n_dof, n_flexible = model->n_rigids ? model->rigids[0].dof : n;
-    for (int k = 0; k < STAGES; ++k) {
-        double *q = w.q + (long)k * model->n_q;
-        const double *row = method->A + STAGES * k;
-        for (int i = 0; i < n_flexible; ++i)
-            q[i] = now->q[i] + h * (method->c[k] * now->v[i] + row[0] * w.Z[i] + row[1] * w.Z[n + i] +
-                                    row[2] * w.Z[2 * n + i]);
+    integrate(run, w, h, 0, 0, n_flexible);
+    for (int b = 0; b < model->n_rigids; ++b) {
+        const fu_rigid *body = &model->rigids[b];
+        integrate(run, w, h, body->configuration + body->kernel->configuration, body->dof + body->kernel->velocity,
+                  body->modes);
     }
     for (int sweep = 0; sweep < SWEEPS; ++sweep)
         for (int b = 0; b < model->n_rigids; ++b) {
@@ -404,7 +417,7 @@ static int step(fu_run *run, double h)
         }
     }
     configure(run, w, h);
-    if (place_stage(run, w, STAGES - 1, h) || fu_return_to_joints(run)) return 1;
+    if (place_stage(run, w, STAGES - 1, h) || fu_return_to_joints(run, &run->next)) return 1;
     return fu_complete(run, &run->next) ? fu_fail_eq38(run) : 0;
 }
 

@@ -1,4 +1,4 @@
-/* Finite rotations of rigid bodies: the exponential map and its derivative, with their limits at zero. */
+/* Finite rotations of bodies: the exponential map and its derivative, with their limits at zero. */
 #include "engine.h"
 
 /* sin(a)/a, (1 - cos a)/a^2, (a - sin a)/a^3: series where the quotients lose digits */
@@ -33,6 +33,14 @@ static void times(const double *p, double w, double x, double y, double z, doubl
     q[3] = p[0] * z + p[1] * y - p[2] * x + p[3] * w;
 }
 
+/* Coordinates that a body has beyond its frame's: increments add to them. */
+static void move_modes(const fu_rigid *body, double *q, const double *dofs)
+{
+    double *eta = q + body->configuration + body->kernel->configuration;
+    const double *increment = dofs + body->dof + body->kernel->velocity;
+    for (int k = 0; k < body->modes; ++k) eta[k] += increment[k];
+}
+
 /* b = (R, quaternion) moves by (translation, rotation vector in body axes); in the plane (R, unit complex number). */
 static void move_body(const fu_body *kernel, double *b, const double *increment)
 {
@@ -65,6 +73,7 @@ void fu_move(const fu_model *model, double *q, const double *dofs)
     for (int b = 0; b < model->n_rigids; ++b) {
         const fu_rigid *body = &model->rigids[b];
         move_body(body->kernel, q + body->configuration, dofs + body->dof);
+        move_modes(body, q, dofs);
     }
 }
 
@@ -86,6 +95,7 @@ void fu_cayley_move(const fu_model *model, double *q, const double *psi)
             moved[1] = p[1] * c + p[0] * s;
         } else times(p, 1.0, 0.5 * turn[0], 0.5 * turn[1], 0.5 * turn[2], moved);
         normalised(moved, dim == 2 ? 2 : 4, p);
+        move_modes(body, q, psi);
     }
 }
 

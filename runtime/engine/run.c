@@ -66,7 +66,7 @@ static int record_row(fu_run *run)
     memcpy(r->s + row * model->n_joints, now->s, sizeof(double) * (size_t)model->n_joints);
     const int info = fu_accelerations(model, now, &run->accelerator, r->acceleration + row * model->n_dof, joints,
                                       r->reaction + row * model->n_dof);
-    r->kinetic[row] = fu_kinetic_energy(model, now->v);
+    r->kinetic[row] = fu_kinetic_energy(model, now->q, now->v);
     r->elastic[row] = fu_elastic_energy(model, now->q);
     if (model->n_brakes) r->elastic[row] += fu_brake_energy(model, now);
     r->potential[row] = fu_potential_energy(model, now->q);
@@ -101,11 +101,19 @@ static int start_scheme(fu_run *run, int project)
     return run->integrator->start(run);
 }
 
-int fu_start(fu_run *run)
+/* whether a start can be off its joints by a small gap: bodies are put on their cables when they are drawn */
+static int closes(const fu_run *run)
+{
+    int held = run->model->n_links;
+    for (int j = 0; j < run->model->n_joints; ++j) held |= run->now.mode[j] == FU_HELD || !run->model->joints[j].native;
+    return held;
+}
+
+/* What the first evaluation needs: a state on its cables, the mass matrix. */
+int fu_prepare(fu_run *run)
 {
     const fu_model *model = run->model;
     fu_state *now = &run->now;
-    run->ceiling = run->duration;
     fu_prescribe(model, now);
     fu_carry_directors(model, now);
     for (int j = 0; j < model->n_joints; ++j)
@@ -113,6 +121,16 @@ int fu_start(fu_run *run)
     if (fu_accelerator_prepare(model, &run->accelerator)) return FU_SINGULAR;
     memset(run->first, 0, sizeof(double) * (size_t)model->n_q);
     run->extent = extent(model, run->first, now->q);
+    return FU_RUNNING;
+}
+
+int fu_start(fu_run *run)
+{
+    const fu_model *model = run->model;
+    fu_state *now = &run->now;
+    run->ceiling = run->duration;
+    if (fu_prepare(run)) return FU_SINGULAR;
+    if (closes(run) && fu_close(run)) return FU_SINGULAR;
     memcpy(run->first, now->q, sizeof(double) * (size_t)model->n_q);
     if (start_scheme(run, 1)) return FU_SINGULAR;
     if (fu_has_stops(model)) {

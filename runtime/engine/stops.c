@@ -138,7 +138,7 @@ static int strike(fu_run *run, int j, int side)
     const fu_model *model = run->model;
     const fu_joint_output *joint = (const fu_joint_output *)run->accelerator.joints + j;
     fu_state *now = &run->now;
-    const double energy = fu_kinetic_energy(model, now->v);
+    const double energy = fu_kinetic_energy(model, now->q, now->v);
     now->contact[j] = side;
     if (side * fu_slide_rate(model, now, j) > 0.0) {
         now->mode[j] = FU_HELD;
@@ -154,7 +154,7 @@ static int strike(fu_run *run, int j, int side)
         if (settle(run, j)) return FU_SINGULAR;
     }
     find_ways(run);
-    run->dissipated += energy - fu_kinetic_energy(model, now->v);
+    run->dissipated += energy - fu_kinetic_energy(model, now->q, now->v);
     return FU_RUNNING;
 }
 

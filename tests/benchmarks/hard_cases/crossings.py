@@ -50,7 +50,8 @@ def slowly(integrator):
 
 
 @HERE.case("crossing nodes at 100 m/s", crossings=(5, 5),
-           error={"genalpha": 1.5e-5, "energy": 3e-6, "explicit": 3e-6, "radau": 3e-6}, balance=BALANCE, residual=HELD, gap=HELD)
+           error={"genalpha": 1.5e-5, "energy": 3e-6, "explicit": 3e-6, "radau": 3e-6},
+           balance=BALANCE, residual=HELD, gap=HELD)
 def fast(integrator):
     found = simulate(rider(0.1, 100.0), 0.0135, integrator=integrator)
     return figures(found, reference(0.1, 100.0, 0.0135))

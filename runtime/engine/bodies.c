@@ -1,0 +1,160 @@
+/* Bodies with a frame, whatever they are made of: sums over them, and what a rigid one is. */
+#include "engine.h"
+
+#define RIGID_DOFS 6
+
+static void of_rigid_mass_times(const fu_rigid *body, const double *b, const double *a, double *f)
+{
+    const double rest[RIGID_DOFS] = {0};
+    (void)b;
+    body->kernel->inertia_force(body->mass, body->J, rest, a, f);
+}
+
+/* the gyroscopic moment */
+static void of_rigid_forces(const fu_rigid *body, const double *b, const double *w, double *f)
+{
+    const double none[RIGID_DOFS] = {0};
+    double part[RIGID_DOFS];
+    (void)b;
+    body->kernel->inertia_force(body->mass, body->J, w, none, part);
+    for (int i = body->kernel->dim; i < body->kernel->velocity; ++i) f[i] += part[i];
+}
+
+static void of_rigid_mass(const fu_rigid *body, const double *b, double *M)
+{
+    const double rest[RIGID_DOFS] = {0};
+    double unused[RIGID_DOFS * RIGID_DOFS];
+    (void)b;
+    body->kernel->inertia_tangent(body->mass, body->J, rest, M, unused);
+}
+
+static void of_rigid_tangent(const fu_rigid *body, const fu_instant *at, double *D, double *K)
+{
+    double unused[RIGID_DOFS * RIGID_DOFS];
+    (void)K; /* none: in body axes it does not depend on the attitude */
+    body->kernel->inertia_tangent(body->mass, body->J, at->w, unused, D);
+}
+
+static double of_rigid_kinetic_energy(const fu_rigid *body, const double *b, const double *w)
+{
+    double energy;
+    (void)b;
+    body->kernel->kinetic_energy(body->mass, body->J, w, &energy);
+    return energy;
+}
+
+static double none_at(const fu_rigid *body, const double *b)
+{
+    (void)body, (void)b;
+    return 0.0;
+}
+
+static double none_along(const fu_rigid *body, const double *b, const double *w)
+{
+    (void)body, (void)b, (void)w;
+    return 0.0;
+}
+
+const fu_matter fu_rigid_matter = {1,       of_rigid_mass_times,     of_rigid_forces, of_rigid_mass, of_rigid_tangent,
+                                   of_rigid_kinetic_energy, none_at, none_at,         none_along};
+
+int fu_body_dofs(const fu_rigid *body)
+{
+    return body->kernel->velocity + body->modes;
+}
+
+/* f = M a, on the bodies' dofs */
+void fu_bodies_mass_times(const fu_model *model, const double *q, const double *a, double *f)
+{
+    for (int k = 0; k < model->n_rigids; ++k) {
+        const fu_rigid *body = &model->rigids[k];
+        body->matter->mass_times(body, q + body->configuration, a + body->dof, f + body->dof);
+    }
+}
+
+/* f += what stands on the left of the equations of motion at zero accelerations */
+void fu_bodies_forces(const fu_model *model, const double *q, const double *v, double *f)
+{
+    for (int k = 0; k < model->n_rigids; ++k) {
+        const fu_rigid *body = &model->rigids[k];
+        body->matter->forces(body, q + body->configuration, v + body->dof, f + body->dof);
+    }
+}
+
+/* system += weights.inertia M + weights.stiffness (K + weights.rate D) of a body at a state; psi: what moved it there, or
+ * null. Without acceleration K is that of rest. */
+static void add_body(const fu_model *model, const fu_rigid *body, const fu_state *at, const double *psi, fu_weights weights,
+                     fu_system *system)
+{
+    double few[3 * RIGID_DOFS * RIGID_DOFS];
+    const int n = fu_body_dofs(body), turns = !body->matter->constant && weights.stiffness != 0.0;
+    double *M = body->modes ? body->shape->matrices : few, *D = M + n * n, *K = D + n * n;
+    const double *a = at->acceleration ? at->acceleration : model->zero;
+    const fu_instant instant = {at->q + body->configuration, at->v + body->dof, a + body->dof};
+    if (weights.inertia != 0.0) body->matter->mass(body, instant.b, M);
+    if (weights.stiffness != 0.0) body->matter->tangent(body, &instant, D, K);
+    if (turns && psi) fu_turn_columns(body->kernel, K, n, n, 0, psi + body->dof);
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+            double value = 0.0;
+            if (weights.inertia != 0.0) value += weights.inertia * M[n * i + j];
+            if (weights.stiffness != 0.0) value += weights.stiffness * weights.rate * D[n * i + j];
+            if (turns) value += weights.stiffness * K[n * i + j];
+            fu_add(model, system, body->dof + i, body->dof + j, value);
+        }
+}
+
+void fu_bodies_matrix(const fu_model *model, const fu_state *at, const double *psi, fu_weights weights, fu_system *system)
+{
+    for (int k = 0; k < model->n_rigids; ++k) add_body(model, &model->rigids[k], at, psi, weights, system);
+}
+
+/* system += M of the bodies in which it is constant, or of the others */
+void fu_bodies_mass(const fu_model *model, const double *q, int constant, fu_system *system)
+{
+    const fu_state at = {.q = (double *)q, .v = (double *)model->zero};
+    for (int k = 0; k < model->n_rigids; ++k)
+        if (model->rigids[k].matter->constant == constant)
+            add_body(model, &model->rigids[k], &at, 0, (fu_weights){1.0, 0.0, 0.0}, system);
+}
+
+double fu_bodies_kinetic_energy(const fu_model *model, const double *q, const double *v)
+{
+    double total = 0.0;
+    for (int k = 0; k < model->n_rigids; ++k) {
+        const fu_rigid *body = &model->rigids[k];
+        total += body->matter->kinetic_energy(body, q + body->configuration, v + body->dof);
+    }
+    return total;
+}
+
+double fu_bodies_elastic_energy(const fu_model *model, const double *q)
+{
+    double total = 0.0;
+    for (int k = 0; k < model->n_rigids; ++k)
+        total += model->rigids[k].matter->elastic_energy(&model->rigids[k], q + model->rigids[k].configuration);
+    return total;
+}
+
+/* of gravity: what model->gravity says, and what depends on the attitude */
+double fu_bodies_potential_energy(const fu_model *model, const double *q)
+{
+    double total = 0.0;
+    for (int k = 0; k < model->n_rigids; ++k) {
+        const fu_rigid *body = &model->rigids[k];
+        const double *b = q + body->configuration;
+        for (int i = 0; i < body->kernel->dim; ++i) total -= model->gravity[body->dof + i] * b[i];
+        total += body->matter->potential_energy(body, b);
+    }
+    return total;
+}
+
+double fu_bodies_dissipation(const fu_model *model, const double *q, const double *v)
+{
+    double total = 0.0;
+    for (int k = 0; k < model->n_rigids; ++k) {
+        const fu_rigid *body = &model->rigids[k];
+        total += body->matter->dissipation(body, q + body->configuration, v + body->dof);
+    }
+    return total;
+}
