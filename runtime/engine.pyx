@@ -231,6 +231,7 @@ cdef class Engine:
             self._end(&j.rider, joint.rider, tables)
             j.brake = <const fu_brake *>_found(tables, "brake", joint.brake) if joint.brake else NULL
             brakes += bool(joint.brake)
+            j.velocity = 1.0  # of no friction
             if joint.friction is not None:
                 j.sticks, j.viscous, j.velocity = joint.friction.sticks, joint.friction.viscous, joint.friction.velocity
                 j.friction, j.holding = joint.friction.sliding, joint.friction.holding
