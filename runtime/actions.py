@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from funicular.anchors import Anchor
 from funicular.holding import EndModel, Holder
 from funicular.parts import DistributedForce, Force, Moment
+from funicular.placing import placed_end
 from funicular.scene import Scene
 from funicular.signals import Constant
 
@@ -39,7 +41,7 @@ class DeadLoad:
 
 @dataclass
 class LoadModel:
-    """A load that turns with what it acts on."""
+    """A load that turns with what it acts on; spot: of a modal body, as of an `EndModel`."""
 
     kind: int
     signal: int
@@ -48,6 +50,7 @@ class LoadModel:
     x: float
     u: tuple[float, float, float]
     c: tuple[float, float, float]
+    spot: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
 
 
 @dataclass
@@ -99,8 +102,9 @@ class Actions:
                 self._along_cable(load.on, number, points, value, load.follower)
         else:
             kind = BODY_MOMENT if isinstance(load, Moment) else BODY_FOLLOWER if load.follower else BODY_FORCE
-            at = (0.0, 0.0, 0.0) if isinstance(load, Moment) else self.scene.bodies[load.on].arm(load.at)
-            self.turning.append(LoadModel(kind, number, self.body_index[load.on], 0, 0.0, at, tuple(value)))
+            anchor = Anchor(on=load.on, s=load.s, at=getattr(load, "at", None))
+            end = self.holder.end(placed_end(self.scene, anchor, load.where))
+            self.turning.append(LoadModel(kind, number, end.body, 0, 0.0, end.u, tuple(value), end.spot))
 
     def _distributed(self, load: DistributedForce, number: int, value: np.ndarray) -> None:
         model = self.cables[self.cable_index[load.cable]]

@@ -191,6 +191,12 @@ cdef class Engine:
                 "velocity": np.array(out.velocity)[:dim], "omega": np.array(out.omega)[:turns],
                 "bias": np.array(out.bias)[:dim], "omega_bias": np.array(out.omega_bias)[:turns]}
 
+    cdef int _spot(self, fu_spot *to, int body, spot) except -1:
+        to.x, to.phi, to.psi = self._doubles(spot[0]), self._doubles(spot[1]), self._doubles(spot[2])
+        if fu_body_dofs(&self.rigids[body]) > FU_END_COORDINATES:
+            raise ValueError(f"more modes than the engine's {FU_END_COORDINATES - 6}")
+        return 0
+
     cdef int _end(self, fu_end *to, end, list tables) except -1:
         cdef int k
         to.cable, to.body, to.element, to.slide = end.cable, end.body, end.element, end.slide
@@ -200,10 +206,7 @@ cdef class Engine:
         for k in range(len(end.N)):
             to.N[k] = end.N[k]
         if end.spot is not None:
-            to.spot.x, to.spot.phi = self._doubles(end.spot[0]), self._doubles(end.spot[1])
-            to.spot.psi = self._doubles(end.spot[2])
-            if fu_body_dofs(&self.rigids[end.body]) > FU_END_COORDINATES:
-                raise ValueError(f"more modes than the engine's {FU_END_COORDINATES - 6}")
+            self._spot(&to.spot, end.body, end.spot)
         if end.axes is None:
             return 0
         if end.frame:
@@ -289,6 +292,8 @@ cdef class Engine:
             n.kind, n.signal, n.on, n.element, n.x = load.kind, load.signal, load.on, load.element, load.x
             for k in range(3):
                 n.u[k], n.c[k] = load.u[k], load.c[k]
+            if load.spot is not None:
+                self._spot(&n.spot, load.on, load.spot)
         m = &self.model
         m.n_motions, m.n_dead_loads, m.n_loads = len(model.motions), len(model.dead_loads), len(model.loads)
         m.motions, m.dead_loads, m.loads, m.signals = self.motions, self.dead_loads, self.loads, self.signals

@@ -22,9 +22,10 @@ class Load(Part):
 class Force(Load):
     """A force of ``value`` (N) at a point of a cable or of a body.
 
-    on: the cable or the body; s: of a cable the arc-length in m; at: of a body the point in body axes, in m, its
-    centre of mass if not given. follower: the components are along the local axes, of a cable (tangent, height, width)
-    of a body its own; else along the ground's.
+    on: the cable or the body; s: of a cable or a modal beam the arc-length in m; at: of a body the point in body axes,
+    in m, its origin (a modal body's first node) if not given. follower: the components are along the local axes, of a
+    cable (tangent, height, width), of a body its own, of a modal one those of the section there; else along the
+    ground's.
     """
 
     kind: ClassVar[str] = "force"
@@ -58,7 +59,7 @@ class DistributedForce(Load):
 class Moment(Load):
     """A moment of ``value`` (N m), along the ground's axes, on a section of a cable or on a body.
 
-    on: the cable or the body; s: of a cable the arc-length in m.
+    on: the cable or the body; s: of a cable or a modal beam the arc-length in m, its start if not given.
     """
 
     kind: ClassVar[str] = "moment"

@@ -120,7 +120,8 @@ def placed_load(scene: Scene, load: Force | DistributedForce | Moment) -> Part:
     else:
         at = getattr(load, "at", None)
         end = placed_end(scene, Anchor(on=load.on, s=load.s, at=at), load.where)
-        update = {"s": end.s} | ({"at": end.at} if isinstance(load, Force) else {})
+        update = {} if isinstance(scene.bodies.get(load.on), ModalBody) else {"s": end.s}  # a moment's s says all
+        update |= {"at": end.at, "s": end.s} if isinstance(load, Force) else {}
         load = load.model_copy(update=update)
         cable = scene.cables.get(load.on)
     if cable is not None and cable.dim == 3 and not cable.kind_of_element.director:

@@ -11,6 +11,7 @@ too heavy, and so are they here to meet its numbers. With the right mass the ang
 from __future__ import annotations
 
 import numpy as np
+from funicular import Scene
 from funicular.generated import kernels
 from scipy.integrate import solve_ivp
 
@@ -82,12 +83,53 @@ class Rod:
         system = np.block([[M, P[1][:, None]], [P[1][None], np.zeros((1, 1))]])
         return np.linalg.solve(system, -np.append(force, bias[1]))[:5]
 
-    def run(self, duration: float = 0.1, tol: float = 1e-11) -> dict[str, np.ndarray]:
+    def run(self, duration: float = 0.1, tol: float = 1e-11, start=START) -> dict[str, np.ndarray]:
         """Angle, slider and modes at the end, from the published start; velocities made to keep the constraint."""
-        q, v = np.array(START["q"]), np.array(START["v"])
+        q, v = np.array(start["q"]), np.array(start["v"])
         v[0] = -CRANK * SPEED / (ROD + q[4])
         found = solve_ivp(lambda t, y: np.concatenate([y[5:], self.accelerations(t, y[:5], y[5:])]), (0, duration),
                           np.concatenate([q, v]), method="DOP853", rtol=tol, atol=tol * 1e-4)
         end = found.y[:, -1]
         place = CRANK * np.exp(1j * SPEED * duration) + (ROD + end[4]) * np.exp(1j * end[0])
         return {"angle": end[0], "slider": place.real, "off": place.imag, "modes": end[1:5]}
+
+
+def arrays(axial_mass: float = 15.0) -> dict[str, np.ndarray]:
+    """The rod as a user gives it: four points across at each of some along, its start and its end, without mass.
+
+    What axial modes have of mass beyond the rod's is in pairs of points at the start that these modes alone move, and
+    apart, so that nothing but their own inertia has it; the start's is the crank's matter.
+    """
+    rod, (x, weight) = Rod(axial_mass), np.polynomial.legendre.leggauss(24)
+    x, weight = (x + 1) / 2, weight / 2
+    r = SIDE / np.sqrt(12)
+    off = r * np.array([(1, 1), (1, -1), (-1, 1), (-1, -1)])
+    n = 4 * len(x)
+    nodes, modes = np.zeros((n + 2, 3)), np.zeros((4, n + 2, 3))
+    at = np.repeat(x, 4)
+    nodes[:n] = np.column_stack([ROD * at, np.tile(off, (len(x), 1))])
+    nodes[n + 1, 0] = ROD
+    modes[0, :n, 1], modes[1, :n, 1] = np.sin(PI * at), np.sin(2 * PI * at)
+    modes[2, :n, 0], modes[3, :n, 0] = 4 * at * (1 - at), at * (2 * at - 1)
+    modes[3, n + 1, 0] = 1.0
+    masses = np.append(np.repeat(MASS * weight / 4, 4), [0.0, 0.0])
+    for sign in (1, -1) if axial_mass > 1 else ():
+        apart = modes[:, :n] * (np.arange(4) > 1)[:, None, None] * sign
+        nodes, modes = np.concatenate([nodes, np.zeros((n, 3))]), np.concatenate([modes, apart], axis=1)
+        masses = np.append(masses, (axial_mass - 1) / 2 * masses[:n])
+    return {"nodes": nodes, "modes": modes, "masses": masses, "stiffness": rod.stiffness}
+
+
+def machine(folder, axial_mass: float = 15.0) -> Scene:
+    """Crank, rod and slider in space, held so that no equation is redundant."""
+    np.savez(folder / "rod.npz", **arrays(axial_mass))
+    scene = Scene(gravity=(0, 0, 0))
+    scene.rigid_body("crank", mass=0.36, inertia=(0.002727,) * 3, position=(0, 0, 0), angular_velocity=(0, 0, SPEED))
+    scene.modal_body("rod", data=folder / "rod.npz", orthogonal=False, position=(CRANK, 0, 0),
+                     velocity=(0, CRANK * SPEED, 0), angular_velocity=(0, 0, -CRANK * SPEED / ROD))
+    scene.rigid_body("slider", mass=SLIDER, inertia=(1e-4,) * 3, position=(CRANK + ROD, 0, 0))
+    scene.joint("revolute", (0, 0, 0), "crank", axis=(0, 0, 1), velocity=SPEED, name="shaft")
+    scene.joint("spherical", ("crank", (CRANK, 0, 0)), ("rod", (0, 0, 0)), name="crank_pin")
+    scene.joint("cylindrical", ("rod", (ROD, 0, 0)), "slider", axis=(0, 0, 1), name="piston_pin")
+    scene.joint("prismatic", (CRANK + ROD, 0, 0), "slider", axis=(1, 0, 0), name="cylinder")
+    return scene

@@ -184,8 +184,51 @@ def braked() -> Scene:
     return scene
 
 
+def modal_in_joints() -> Scene:
+    """Modal bodies in joints with the ground, a cable and each other, on a spring, loaded, as riders, one tied."""
+    scene = Scene()
+    made = {"section": Rectangle(height=0.1, width=0.08), "elements": 4,
+            "material": Material(youngs_modulus=2e5, poisson_ratio=0.3, density=1100)}
+    scene.cable("wire", start=(0, 0, 0), end=(1.5, 0, 0), elements=3, section=Rectangle(height=0.05, width=0.04),
+                material=Material(youngs_modulus=0.4e9, poisson_ratio=0.3, density=4200))
+    scene.pin("wire", s=0.0)
+    scene.modal_body("arm", start=(0, 1, 0), end=(0.5, 1.2, 0.1), modes=4, boundary="attached", **made)
+    scene.modal_body("link", start=(0.5, 1.2, 0.1), end=(1, 1, 0), modes=5, angular_velocity=(2, -3, 4), **made)
+    scene.joint("weld", (0, 1, 0), ("arm", 0.0))
+    scene.joint("universal", ("arm", scene.bodies["arm"].mesh.length), ("link", 0.0), axis=(0, 0, 1),
+                second_axis=(1, 1, 0))
+    for name, x, frame in (("rider", 0.4, "point"), ("tied", 1.1, "tangent")):
+        scene.modal_body(name, start=(x, 0, 0), end=(x, -0.4, 0.1), up=(1, 0, 0), modes=4, velocity=(1, 0, 0), **made)
+        scene.slide((name, 0.0), along="wire", s=x, frame=frame)
+    far = ("rider", 0.41231056256176607)
+    scene.joint("prismatic", ("tied", (0, 0, 0)), far, axis=(-0.7, -0.2, 0.05))
+    scene.spring(far, ("link", (0, 0.03, 0.02)), stiffness=300.0, damping=2.0)
+    scene.force("link", at=(0, 0.03, 0.02), value=(3, -20, 5), scale=Harmonic(amplitude=1.0, frequency=3.0, offset=2.0))
+    scene.force("arm", s=scene.bodies["arm"].mesh.length, value=(2, 4, -3), follower=True)
+    scene.moment("tied", s=0.0, value=(0.5, -0.2, 0.3))
+    return scene
+
+
+def modal_in_planar_joints() -> Scene:
+    """The same in the plane."""
+    scene = planar()
+    made = {"section": Rectangle(height=0.1, width=0.08), "elements": 4, "element": "beam12p",
+            "material": Material(youngs_modulus=2e5, poisson_ratio=0.3, density=1100)}
+    scene.modal_body("arm", start=(1, 1, 0), end=(1.5, 1, 0), modes=3, boundary="attached", **made)
+    scene.modal_body("link", start=(1.5, 1, 0), end=(1.8, 1.4, 0), modes=3, angular_velocity=(0, 0, 4), **made)
+    scene.modal_body("rider", start=(0.7, 0, 0), end=(0.7, -0.4, 0), modes=3, velocity=(1, 0, 0), **made)
+    scene.slide(("rider", 0.0), along="wire", s=0.7, frame="tangent")
+    scene.joint("weld", (1, 1, 0), ("arm", 0.0))
+    scene.joint("revolute", ("arm", 0.5), ("link", 0.0))
+    scene.spring(("rider", 0.4), ("link", 0.25), stiffness=300.0, damping=2.0)
+    scene.force("link", s=0.5, value=(3, -20, 0))
+    scene.force("arm", s=0.5, value=(2, 4, 0), follower=True)
+    scene.moment("rider", s=0.2, value=(0, 0, 0.3))
+    return scene
+
+
 SCENES = {f.__name__: f for f in (rider, loaded, planar, frame, star, jointed, jointed_plane, tied, modal,
-                                 modal_in_the_plane, braked)}
+                                 modal_in_the_plane, modal_in_joints, modal_in_planar_joints, braked)}
 
 
 @pytest.fixture(params=list(SCENES))

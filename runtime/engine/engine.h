@@ -170,12 +170,13 @@ typedef struct {
     int signal, first, n;
 } fu_dead_load;
 
-/* A load that turns with what it acts on: at x of a cable's element, or at the point u of a body. */
+/* A load that turns with what it acts on: at x of a cable's element, at the point u of a body, at that of a modal one. */
 enum { FU_CABLE_FOLLOWER, FU_CABLE_MOMENT, FU_BODY_FORCE, FU_BODY_FOLLOWER, FU_BODY_MOMENT, FU_BODY_MOMENT_FOLLOWER };
 typedef struct {
     int kind, signal, on; /* `on`: the cable or the body */
     int element;
     double x, u[3], c[3]; /* c: components, N or N m */
+    fu_spot spot;
 } fu_load;
 
 typedef struct {

@@ -130,6 +130,7 @@ cdef extern from "engine.h" nogil:
         double x
         double u[3]
         double c[3]
+        fu_spot spot
     ctypedef struct fu_spring:
         fu_end ends[2]
         int dim, unknown

@@ -1,9 +1,48 @@
 /* Forces and moments from outside, and their derivatives where they turn with what they act on. */
 #include "engine.h"
 
+#include <string.h>
+
 static double scale_at(const fu_model *model, int signal, double t)
 {
     return signal < 0 ? 1.0 : fu_signal_at(&model->signals[signal], t, 0, 0);
+}
+
+/* The same as below on a point of a modal body; what follows turns with the section there. */
+static int on_modes(const fu_model *model, const fu_load *load, const double *q, double *g, double *K)
+{
+    const fu_rigid *body = &model->rigids[load->on];
+    const int dim = model->dim, turns = dim == 3 ? 3 : 1, n = fu_body_dofs(body), in_plane = dim == 2;
+    const double *b = q + body->configuration, *c = load->c;
+    double P[3 * FU_END_COORDINATES], T[3 * FU_END_COORDINATES], f[3] = {0.0}, m[3] = {0.0};
+    fu_modal_point at;
+    fu_modal_anchor(body, &load->spot, b, model->zero, &at, P, T);
+    if (load->kind == FU_BODY_MOMENT) memcpy(m, c + (in_plane ? 2 : 0), sizeof(double) * (size_t)turns);
+    else if (load->kind == FU_BODY_FORCE) memcpy(f, c, sizeof(double) * (size_t)dim);
+    else
+        for (int d = 0; d < dim; ++d)
+            for (int e = 0; e < dim; ++e) f[d] += at.axes[d * dim + e] * c[e];
+    for (int i = 0; i < n; ++i) {
+        g[i] = 0.0;
+        for (int d = 0; d < dim; ++d) g[i] += P[d * n + i] * f[d];
+        for (int d = 0; d < turns; ++d) g[i] += T[d * n + i] * m[d];
+    }
+    fu_modal_anchor_force(body, &load->spot, b, f, m, K);
+    if (load->kind != FU_BODY_FOLLOWER) return n;
+    for (int j = 0; j < n; ++j) {
+        double turned[3]; /* T dq x f */
+        if (in_plane) {
+            turned[0] = -T[j] * f[1];
+            turned[1] = T[j] * f[0];
+        } else
+            for (int d = 0; d < 3; ++d) {
+                const int e = (d + 1) % 3, l = (d + 2) % 3;
+                turned[d] = T[e * n + j] * f[l] - T[l * n + j] * f[e];
+            }
+        for (int i = 0; i < n; ++i)
+            for (int d = 0; d < dim; ++d) K[i * n + j] += P[d * n + i] * turned[d];
+    }
+    return n;
 }
 
 /* Generalised force g of a load at unit signal, its derivative K by the dofs (row by row); returns their number, and the
@@ -22,6 +61,7 @@ static int generalised(const fu_model *model, const fu_load *load, const double 
     const double *b = q + body->configuration, *c = load->c, *u = load->u;
     double p[3], p_q[18], unused[36];
     *first = body->dof;
+    if (body->modes) return on_modes(model, load, q, g, K);
     for (int i = 0; i < n; ++i) g[i] = 0.0;
     for (int i = 0; i < n * n; ++i) K[i] = 0.0;
     switch (load->kind) {
@@ -64,7 +104,7 @@ static int generalised(const fu_model *model, const fu_load *load, const double 
 /* f -= loads other than gravity */
 void fu_loads(const fu_model *model, double t, const double *q, double *f)
 {
-    double g[FU_MAX_COORDINATES], K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
+    double g[FU_END_COORDINATES], K[FU_END_COORDINATES * FU_END_COORDINATES];
     for (int k = 0; k < model->n_dead_loads; ++k) {
         const fu_dead_load *load = &model->dead_loads[k];
         const double scale = scale_at(model, load->signal, t);
@@ -90,7 +130,7 @@ void fu_external_forces(const fu_model *model, double t, const double *q, double
 void fu_loads_matrix(const fu_model *model, double t, const double *q, const double *psi, double stiffness,
                      fu_system *system)
 {
-    double g[FU_MAX_COORDINATES], K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
+    double g[FU_END_COORDINATES], K[FU_END_COORDINATES * FU_END_COORDINATES];
     for (int k = 0; k < model->n_loads; ++k) {
         const fu_load *load = &model->loads[k];
         const double scale = stiffness * scale_at(model, load->signal, t);
