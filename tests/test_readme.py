@@ -52,8 +52,8 @@ def test_rest_vibrations_and_section_forces(tmp_path, monkeypatch):
 
 
 def test_its_trolley_runs():
-    (example,) = re.findall(r"^```python\n(.*?)^```", README.split("## What rides, and what joins")[1].split("\n## ")[0],
-                            re.MULTILINE | re.DOTALL)
+    section = README.split("## What rides, and what joins")[1].split("\n## ")[0]
+    (example,) = re.findall(r"^```python\n(.*?)^```", section, re.MULTILINE | re.DOTALL)
     space = {}
     exec(example, space)
     run = space["run"]
