@@ -211,7 +211,7 @@ def brake_relations(family: Family) -> list[Relation]:
     def moved(name, at=0):
         return from_kernel("force", "R", **{name: lambda s, j: np.eye(len(s[name]), dtype=int)[j + at]})
 
-    return [Relation("force", "R", "at 50 digits; see what it is along and across the cable", 0, from_kernel("force", "R")),
+    return [Relation("force", "R", "at 50 digits; see friction and buffer below", 0, from_kernel("force", "R")),
             *(Relation("force", f"R_{name}", f"dR by {name}", 1, moved(name), dim) for name in "tuf"),
             Relation("force", "R_x", "dR by x", 1, moved("buffer", 2), 1)]
 
@@ -227,7 +227,7 @@ def brake_invariances(family: Family, k: Numbers, s: State) -> Iterator[tuple[st
         yield "friction with a way is the coefficient's", abs(R + way * 0.4 * N * length), 64 * EPS
     fast = k("force", {**s, "friction": np.array([0.4, 0.0, 1e-12 * abs(v), 0.0, 1e-30]), "buffer": none})["R"][0]
     yield "fast friction has the way of the motion", abs(fast + np.sign(v) * 0.4 * N * length), 64 * EPS
-    slow = k("force", {**s, "friction": np.zeros(5) + [0.0, 0.7, 0.3, 0.0, 1e-30], "buffer": none})["R"][0]
+    slow = k("force", {**s, "friction": np.array([0.0, 0.7, 0.3, 0.0, 1e-30]), "buffer": none})["R"][0]
     yield "viscous friction goes with the speed", abs(slow + 0.7 * v * length), 64 * EPS
     held = k("force", {**s, "u": 0 * i, "friction": np.array([0.4, 0.7, 0.3, 0.0, 1e-30])})["R"][0]
     yield "at rest there is the buffer's spring alone", abs(held - 5.0 * 0.2), 64 * EPS

@@ -25,8 +25,9 @@ def sample(random: np.random.Generator, dim: int) -> dict[str, np.ndarray]:
     made = {"points": random.normal(size=(POINTS, dim)), "modes": random.normal(size=(MODES, POINTS, dim)) / 2,
             "masses": random.uniform(0.5, 1.5, POINTS), "g": random.normal(size=dim),
             "place": random.normal(size=dim), "phis": random.normal(size=(MODES, dim)),
-            "psis": random.normal(size=(MODES, turns)), "m": random.normal(size=turns)}
-    made |= {name: random.normal(size=MODES) / 2 for name in RATES}
+            "psis": random.uniform(0.5, 1.5, (MODES, turns)), "m": random.normal(size=turns)}
+    # of one sign: what cancels by chance would be held to digits that it has not
+    made |= {name: random.uniform(-0.8, -0.2, MODES) for name in RATES}
     return made | integrals(made)
 
 

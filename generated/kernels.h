@@ -29,6 +29,7 @@ typedef double fu_real;
 #endif
 
 #ifndef FU_BLOCK
+#include <string.h>
 #define FU_KERNEL
 #define FU_NUMBER(x) (x)
 
@@ -618,6 +619,28 @@ typedef struct {
     const fu_brake *brakes;
 } fu_tables;
 extern const fu_tables fu_all;
+
+/* An entry of a role's table by name; null where there is none. */
+static inline const void *fu_find(const fu_tables *tables, const char *role, const char *name)
+{
+    for (int i = 0; i < tables->n_elements && !strcmp(role, "element"); ++i)
+        if (!strcmp(tables->elements[i].name, name)) return &tables->elements[i];
+    for (int i = 0; i < tables->n_laws && !strcmp(role, "law"); ++i)
+        if (!strcmp(tables->laws[i].name, name)) return &tables->laws[i];
+    for (int i = 0; i < tables->n_bodys && !strcmp(role, "body"); ++i)
+        if (!strcmp(tables->bodys[i].name, name)) return &tables->bodys[i];
+    for (int i = 0; i < tables->n_modals && !strcmp(role, "modal"); ++i)
+        if (!strcmp(tables->modals[i].name, name)) return &tables->modals[i];
+    for (int i = 0; i < tables->n_slides && !strcmp(role, "slide"); ++i)
+        if (!strcmp(tables->slides[i].name, name)) return &tables->slides[i];
+    for (int i = 0; i < tables->n_frames && !strcmp(role, "frame"); ++i)
+        if (!strcmp(tables->frames[i].name, name)) return &tables->frames[i];
+    for (int i = 0; i < tables->n_pairs && !strcmp(role, "pair"); ++i)
+        if (!strcmp(tables->pairs[i].name, name)) return &tables->pairs[i];
+    for (int i = 0; i < tables->n_brakes && !strcmp(role, "brake"); ++i)
+        if (!strcmp(tables->brakes[i].name, name)) return &tables->brakes[i];
+    return 0;
+}
 
 /* Every kernel by name, behind one signature: pointers to its inputs (scalars too) and to its outputs, in order. */
 typedef struct {

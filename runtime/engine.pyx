@@ -41,84 +41,14 @@ ENDS = {"error": FU_END_IS_ERROR, "leave": FU_END_IS_OPEN, "hard": FU_END_IS_HAR
 JOINT_OUTPUTS = ("s_rate", "s_acceleration", "force", "multiplier", "traction", "residual")
 
 
-cdef const fu_element *_element(list tables, str name) except NULL:
-    cdef int k
+cdef const void *_found(list tables, str role, str name) except NULL:
+    """Kernels of a role by name, from the first of the tables (addresses) that has them."""
+    cdef const void *entry
     for address in tables:
-        table = <const fu_tables *><size_t>address
-        for k in range(table.n_elements):
-            if table.elements[k].name == name.encode():
-                return &table.elements[k]
-    raise ValueError(f"no kernels for element {name}")
-
-
-cdef const fu_law *_law(list tables, str name) except NULL:
-    cdef int k
-    for address in tables:
-        table = <const fu_tables *><size_t>address
-        for k in range(table.n_laws):
-            if table.laws[k].name == name.encode():
-                return &table.laws[k]
-    raise ValueError(f"no kernels for law {name}")
-
-
-cdef const fu_body *_body(list tables, str name) except NULL:
-    cdef int k
-    for address in tables:
-        table = <const fu_tables *><size_t>address
-        for k in range(table.n_bodys):
-            if table.bodys[k].name == name.encode():
-                return &table.bodys[k]
-    raise ValueError(f"no kernels for body {name}")
-
-
-cdef const fu_modal *_modal(list tables, str name) except NULL:
-    cdef int k
-    for address in tables:
-        table = <const fu_tables *><size_t>address
-        for k in range(table.n_modals):
-            if table.modals[k].name == name.encode():
-                return &table.modals[k]
-    raise ValueError(f"no kernels for {name}")
-
-
-cdef const fu_slide *_slide(list tables, str name) except NULL:
-    cdef int k
-    for address in tables:
-        table = <const fu_tables *><size_t>address
-        for k in range(table.n_slides):
-            if table.slides[k].name == name.encode():
-                return &table.slides[k]
-    raise ValueError(f"no kernels for {name}")
-
-
-cdef const fu_frame *_frame(list tables, str name) except NULL:
-    cdef int k
-    for address in tables:
-        table = <const fu_tables *><size_t>address
-        for k in range(table.n_frames):
-            if table.frames[k].name == name.encode():
-                return &table.frames[k]
-    raise ValueError(f"no kernels for {name}")
-
-
-cdef const fu_pair *_pair(list tables, str name) except NULL:
-    cdef int k
-    for address in tables:
-        table = <const fu_tables *><size_t>address
-        for k in range(table.n_pairs):
-            if table.pairs[k].name == name.encode():
-                return &table.pairs[k]
-    raise ValueError(f"no kernels for {name}")
-
-
-cdef const fu_brake *_brake(list tables, str name) except NULL:
-    cdef int k
-    for address in tables:
-        table = <const fu_tables *><size_t>address
-        for k in range(table.n_brakes):
-            if table.brakes[k].name == name.encode():
-                return &table.brakes[k]
-    raise ValueError(f"no kernels for {name}")
+        entry = fu_find(<const fu_tables *><size_t>address, role.encode(), name.encode())
+        if entry != NULL:
+            return entry
+    raise ValueError(f"no kernels for the {role} {name}")
 
 
 cdef double _call(void *context, int which, const fu_state *state) noexcept with gil:
@@ -201,7 +131,8 @@ cdef class Engine:
         cdef int i, k, memory = 0
         for i, cable in enumerate(model.cables):
             c = &self.cables[i]
-            c.kernel, c.law = _element(tables, cable.element), _law(tables, f"{cable.element}_{cable.law}")
+            c.kernel = <const fu_element *>_found(tables, "element", cable.element)
+            c.law = <const fu_law *>_found(tables, "law", f"{cable.element}_{cable.law}")
             c.blocks = fu_blocks_of(c.law.name) if blocks and cable.library is None else NULL
             c.n_elements, c.first, c.length = cable.n_elements, cable.first, cable.length
             c.tau, c.mass_damping = cable.tau, cable.mass_damping
@@ -216,7 +147,7 @@ cdef class Engine:
             c.memory, memory = memory, memory + c.n_elements * (c.law.rates + 1)
         for i, body in enumerate(model.rigids):
             r = &self.rigids[i]
-            r.kernel = _body(tables, body.kernel)
+            r.kernel = <const fu_body *>_found(tables, "body", body.kernel)
             r.configuration, r.dof, r.mass = body.configuration, body.dof, body.mass
             r.matter, r.modes, r.shape = &fu_rigid_matter, 0, NULL
             for k in range(9):
@@ -230,7 +161,7 @@ cdef class Engine:
         shape, n = body.shape, body.modes
         cdef int k
         r.matter, r.modes, r.shape = &fu_modal_matter, n, h
-        h.kernel = _modal(tables, body.modal_kernel)
+        h.kernel = <const fu_modal *>_found(tables, "modal", body.modal_kernel)
         h.S, h.X = self._doubles(shape.S), self._doubles(shape.X)
         h.mass = self._doubles(np.einsum("klii->kl", shape.X)[1:, 1:])
         h.stiffness, h.damping = self._doubles(shape.stiffness), self._doubles(shape.damping)
@@ -279,7 +210,7 @@ cdef class Engine:
         if end.axes is None:
             return 0
         if end.frame:
-            to.frame = _frame(tables, end.frame)
+            to.frame = <const fu_frame *>_found(tables, "frame", end.frame)
         for k in range(2):
             to.slopes[k] = end.slopes[k]
         for k in range(3):
@@ -294,15 +225,16 @@ cdef class Engine:
         cdef int i, k, brakes = 0
         for i, joint in enumerate(model.joints):
             j = &self.joints[i]
-            j.kernel = _slide(tables, joint.kernel)
+            j.kernel = <const fu_slide *>_found(tables, "slide", joint.kernel)
             if j.kernel.coordinates + 1 > FU_MAX_COORDINATES:
                 raise ValueError(f"{joint.kernel}: more coordinates than the engine's {FU_MAX_COORDINATES}")
             j.cable, j.native, j.room, j.drive = joint.cable, joint.native, joint.room, joint.drive
             j.unknown, j.multiplier, j.carries_director = joint.unknown, joint.multiplier, joint.carries_director
             j.mass = joint.mass
             self._end(&j.rider, joint.rider, tables)
-            j.brake = _brake(tables, joint.brake) if joint.brake else NULL
+            j.brake = <const fu_brake *>_found(tables, "brake", joint.brake) if joint.brake else NULL
             brakes += bool(joint.brake)
+            j.velocity = 1.0  # of no friction
             if joint.friction is not None:
                 j.sticks, j.viscous, j.velocity = joint.friction.sticks, joint.friction.viscous, joint.friction.velocity
                 j.friction, j.holding = joint.friction.sliding, joint.friction.holding
@@ -315,7 +247,7 @@ cdef class Engine:
                     e.length, e.stiffness, e.damping = end.length, end.stiffness, end.damping
         for i, link in enumerate(model.links):
             l = &self.links[i]
-            l.kernel = _pair(tables, link.kernel)
+            l.kernel = <const fu_pair *>_found(tables, "pair", link.kernel)
             l.unknown, l.multiplier, l.signal, l.base = link.unknown, link.multiplier, link.signal, link.base
             for k in range(link.rows):
                 l.scale[k] = link.scale[k]

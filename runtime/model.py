@@ -430,8 +430,8 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
     )
     if status == "singular" and engine.jammed >= 0:
         slide = list(scene.slides.values())[engine.jammed]
-        raise SceneError(slide.where, "friction jams it at the start: the more it holds, the more it presses the rider "
-                         "on the cable", "take a smaller coefficient, or the rider's point nearer to its centre of mass")
+        raise SceneError(slide.where, "friction jams it at the start: the more it holds, the more it presses it on the "
+                         "cable", "take a smaller coefficient, or the rider's point nearer to its centre of mass")
     if status == "singular":
         raise SceneError("scene", "the equations are singular at the start: a mass is zero, or a cable's director lies "
                          "along its tangent", "look at masses and inertias, and at up")

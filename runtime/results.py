@@ -121,7 +121,11 @@ class Run:
 
     @property
     def events(self) -> list[dict]:
-        """What the scene's events found: each with name, time (s), and the state of bodies and slides there."""
+        """What has happened. Of the scene's events: name, time (s), and the state of bodies and slides there.
+
+        Of slides: name, time (s), s (m), and what: "stuck", "broke loose", "turned round" (friction); "struck the end",
+        "came to rest at the end", "left the end" (hard stops); "entered the buffer", "left the buffer"; "left".
+        """
         return self.report["events"]
 
     @cached_property

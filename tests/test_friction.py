@@ -5,7 +5,7 @@ Tolerances without another reason are what the wire's own motion leaves (see wir
 
 import numpy as np
 import pytest
-from funicular import Buffer, Friction, FunicularError, HardStop, Scene, SceneError, Table, streaming
+from funicular import Buffer, Friction, HardStop, Scene, SceneError, Table, streaming
 from funicular.results import load_run
 from scenery import add_cable, largest
 from test_streaming import Killed, content, failing
@@ -109,17 +109,17 @@ def test_two_that_stop_at_one_instant(integrator):
 
 @pytest.mark.parametrize("model", ["stick", "regularised"])
 def test_integrators_agree_on_a_cable_that_gives_way(model):
-    """And their books close. Measured: 2e-4 m and 2e-5 m of 0.4 m, 1e-5, 2e-6 and 1e-8 of the energy."""
+    """And their books close, to tol. The normal force vibrates with the cable: at tol = 1e-5 genalpha is 3e-4 m off."""
     runs = {}
     for integrator in INTEGRATORS:
         scene = Scene()
         add_cable(scene, material={"youngs_modulus": 4e8, "poisson_ratio": 0.0, "density": 4200, "damping_time": 1e-4})
         scene.rigid_body("A", mass=1.0, inertia=(1e-3,) * 3, position=(0.25, 0, 0), velocity=(1.5, 0, 0))
         scene.slide("A", along="wire", s=0.25, name="trolley", friction=Friction(coefficient=0.2, model=model))
-        runs[integrator] = scene.run(0.4, integrator=integrator, tol=1e-5)
-    for integrator, most in (("genalpha", 1e-4), ("radau", 1e-4)):
-        np.testing.assert_allclose(runs[integrator]["trolley.s"], runs["explicit"]["trolley.s"], atol=most)
-    for integrator, most in (("genalpha", 1e-4), ("radau", 1e-4), ("explicit", 1e-6)):
+        runs[integrator] = scene.run(0.4, integrator=integrator, tol=1e-6)
+    for integrator in ("genalpha", "radau"):
+        np.testing.assert_allclose(runs[integrator]["trolley.s"], runs["explicit"]["trolley.s"], atol=1e-5)
+    for integrator, most in (("genalpha", 5e-6), ("radau", 1e-6), ("explicit", 1e-7)):
         assert unbalanced(runs[integrator]) < most
         assert runs[integrator]["energy.dissipated"][-1] > 0.5
 

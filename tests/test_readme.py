@@ -51,6 +51,18 @@ def test_rest_vibrations_and_section_forces(tmp_path, monkeypatch):
     assert abs(run["rope.nodal_vectors"][-1] - rest["rope.nodal_vectors"]).max() < 1e-8
 
 
+def test_its_trolley_runs():
+    (example,) = re.findall(r"^```python\n(.*?)^```", README.split("## What rides, and what joins")[1].split("\n## ")[0],
+                            re.MULTILINE | re.DOTALL)
+    space = {}
+    exec(example, space)
+    run = space["run"]
+    assert run["trolley.s"][-1] > 4
+    mean = run["hinge.force"][run.time > 0.5].mean(axis=0)
+    assert 0.3 * 60 * 9.81 < mean[1] < 3 * 60 * 9.81, "the rope bears the load, which falls on it"
+    assert run["energy.dissipated"][-1] > 0
+
+
 def test_its_scene_is_the_bundled_one():
     scene, bundled = loads(block("toml"), "README.md"), funicular.load_scene("paper51")
     for parts in ("pins", "bodies", "slides"):

@@ -263,12 +263,3 @@ def test_in_a_file():
         loads(FILE.replace("static_coefficient", "static_coeficient"), "x.toml")
     with refused("x.toml: [[slide]] 1: along is missing"):
         loads(FILE.replace('along = "wire"\n', ""), "x.toml")
-
-
-@pytest.mark.parametrize(("given", "what"), [
-    ({"friction": Friction()}, "friction"), ({"at_end": "leave"}, "at_end")])
-def test_until_the_engine_has_them(scene, given, what):
-    scene.slide("A", along="beam", s=0.5, name="t", **given)
-    for ask in (lambda: scene.run(1.0), scene.equilibrium, lambda: scene.modes(1)):
-        with refused(f'slide "t": {what} is not in the engine yet'):
-            ask()

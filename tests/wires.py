@@ -19,7 +19,8 @@ def wire(dim=3, elements=4, length=LENGTH) -> Scene:
     return scene
 
 
-def block(s, speed=0.0, *, weight=MASS * G, slope=SLOPE, dim=3, scene=None, name="A", slide="trolley", **given) -> Scene:
+def block(s, speed=0.0, *, weight=MASS * G, slope=SLOPE, dim=3, scene=None, name="A", slide="trolley",
+          **given) -> Scene:
     """A block of MASS on a wire that falls towards its end by `slope`, in rad: its weight is turned, not the wire."""
     scene = scene or wire(dim)
     scene.rigid_body(name, mass=MASS, inertia=(1e-2, 1e-2, 1e-2), position=(s, 0, 0), velocity=(speed, 0, 0))

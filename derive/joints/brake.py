@@ -1,8 +1,8 @@
 """What acts along the cable on a slide that slides: friction, and the buffer that it has run into.
 
-R is the generalised force of s: r_x times a force on the rider. The speed v and the normal force N are those of the whole
-joint force f on the rider; friction is Coulomb's, its direction either given (``way`` 1 or -1) or the smooth function of
-the speed v/sqrt(v^2 + v0^2) (``way`` 0).
+R is the generalised force of s: the length of r_x times a force on the rider along it. The normal force N is the part
+across of the whole force f of the joint. Friction is Coulomb's: its direction is given (``way`` 1 or -1), or the smooth
+function v/sqrt(v^2 + v0^2) of the speed (``way`` 0).
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def force(dim: int) -> Program:
     mu, viscous, v0, way, least = p.input("friction", len(FRICTION), "1, N s/m, m/s, 1, N",
                                           "coefficient, viscous, v0, way, and what N is not below")
     stiffness, damping, x, side = p.input("buffer", len(BUFFER), "N/m, N s/m, m, 1",
-                                          "stiffness, damping, compression, and the end where it is: 1, at the start -1")
+                                          "stiffness, damping, compression, its end of the cable: 1, the start -1")
     p.stage("tangent and speed")
     length = p.define("len_t", sp.sqrt(t.dot(t)))
     inverse = p.define("inv_t", 1 / length)

@@ -24,15 +24,8 @@ cdef extern from "kernels.h" nogil:
     ctypedef struct fu_brake:
         const char *name
     ctypedef struct fu_tables:
-        int n_elements, n_laws, n_bodys, n_modals, n_slides, n_frames, n_pairs, n_brakes
-        const fu_element *elements
-        const fu_law *laws
-        const fu_body *bodys
-        const fu_modal *modals
-        const fu_slide *slides
-        const fu_frame *frames
-        const fu_pair *pairs
-        const fu_brake *brakes
+        pass
+    const void *fu_find(const fu_tables *tables, const char *role, const char *name)
 
 cdef extern from "blocks.h" nogil:
     ctypedef struct fu_law_blocks:

@@ -1,0 +1,41 @@
+"""The machines among the scenes: a cable car over a support, a zip line into its buffer."""
+
+import numpy as np
+import pytest
+from funicular import load_scene
+
+G = 9.81
+
+
+def test_a_cable_car_climbs_over_the_support():
+    scene = load_scene("cable_car")
+    run = scene.run(duration=24.0, tol=1e-3)
+    weight = G * sum(body.mass for body in scene.bodies.values())
+    assert np.abs(run["cabin.velocity"][0]).max() == 0
+    assert np.abs(run["cabin.acceleration"][0]).max() < 0.5, "it hangs from the hinge: the drive takes the carriage alone"
+    w, _, _, z = run["carriage.orientation"][0]
+    rest = weight * np.sin(2 * np.arctan2(z, w))
+    pull = weight / G * 1.5  # of 6 m/s in 4 s; the rope gives way at first, and the cabin hangs back
+    assert rest < run["upper_wheel.traction"][0] < rest + pull
+    np.testing.assert_allclose(run["upper_wheel.s_rate"][run.time.searchsorted([10, 19])], [6, 2.5], rtol=1e-6)
+    support = scene.cables["track"].length / 2
+    assert run["lower_wheel.s"][0] < support < run["lower_wheel.s"][-1]
+    wheels = run["upper_wheel.s"] - run["lower_wheel.s"]
+    np.testing.assert_allclose(wheels, 1.2, rtol=3e-3)  # of the carriage, along a rope that bends and stretches
+    assert np.abs(run.energy_balance().relative).max() < 2e-3
+    assert max(run["hinge.residual"].max(), run["upper_wheel.residual"].max()) < 1e-9 * 200  # metres of rope
+
+
+def test_a_zip_line_ends_in_its_buffer():
+    scene = load_scene("zip_line")
+    run = scene.run()
+    length, buffer = scene.cables["rope"].length, scene.slides["wheels"].at_end
+    entered, left = run.events[:2]
+    assert (entered["what"], left["what"]) == ("entered the buffer", "left the buffer")
+    assert entered["s"] == pytest.approx(length - buffer.length)
+    assert length - buffer.length < run["wheels.s"].max() < length, "it stops before the end"
+    drop = scene.bodies["rider"].position[1] - run["rider.position"][:, 1].min()
+    before = run.time < entered["time"]
+    assert 0.7 * np.sqrt(2 * G * drop) < run["wheels.s_rate"][before].max() < np.sqrt(2 * G * drop)
+    assert (np.diff(run["energy.dissipated"]) > -1e-9).all()
+    assert np.abs(run.energy_balance().relative).max() < 1e-3  # measured: 5e-5
