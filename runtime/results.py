@@ -89,7 +89,10 @@ class Run:
     """Results by name: ``run["A.position"]`` is a NumPy array (time, 3); `keys` lists the names."""
 
     def __init__(self, variables: Mapping[str, Variable], coords: dict[str, Variable], report: dict, scene_toml: str):
-        """report: how the run went, status, message and messages among it; scene_toml: the scene as text."""
+        """report: how the run went, status, message and messages among it; scene_toml: the scene as text.
+
+        report["us_per_step"] tells what each slide and joint takes of a step in µs, without solving for its forces.
+        """
         self.variables, self.coords = variables, coords
         self.report, self.scene_toml = report, scene_toml
 
