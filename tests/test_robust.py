@@ -89,5 +89,6 @@ def test_radau_at_loose_tolerances_gains_no_energy():
     scene = one_rider(elements=12, element="cable12", strain="engineering")
     fine, *loose = (scene.run(1.0, integrator="radau", tol=tol, output_step=0.02)
                     for tol in (1e-5, *np.geomspace(0.02, 0.25, 25)))
-    assert max(np.abs(run["A.position"] - fine["A.position"]).max() for run in loose) < 0.01  # measured: 1e-3 m
+    off = [np.abs(run["A.position"] - fine["A.position"]).max() for run in loose]
+    assert max(off) < 0.01  # measured: 1e-3 m
     assert max(np.abs(run.energy_balance().relative).max() for run in loose) < 0.3  # measured: 0.08
