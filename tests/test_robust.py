@@ -84,7 +84,7 @@ def test_devices_are_no_results_and_links_stay_links(tmp_path):
 
 @pytest.mark.filterwarnings("ignore:the integration added energy")
 def test_radau_at_loose_tolerances_gains_no_energy():
-    """Where the ratio of two corrections was small by chance, Newton had stopped 0.4 mm off the cable: closed, that held
+    """A ratio of two corrections small by chance had stopped Newton 0.4 mm off the cable: closed, that held
     5 J. One run in eight ended with it."""
     scene = one_rider(elements=12, element="cable12", strain="engineering")
     fine, *loose = (scene.run(1.0, integrator="radau", tol=tol, output_step=0.02)
