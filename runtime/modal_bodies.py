@@ -31,6 +31,8 @@ class ModalBody(Part):
     axes are along the beam, the height and the width. ``boundary`` "free": free-free modes, the frame at the mass
     centre (the coupling M_rf vanishes undeformed), for a body that flies, or is held at points that its modes move.
     "attached": the frame fixed to the section at ``start``, modes of the cantilever, for a body that is held there.
+    What modes left out cost a frequency falls with about the third power of their number where joints hold points; with
+    the first where they hold sections that the modes do not bend, as those of a free end.
     What tension stiffens is not in the modes' stiffness: they are no model of a beam that spins about as fast as it
     vibrates. Cables' elements have no torsion: their modes bend and stretch, and the frame alone turns them.
 

@@ -62,7 +62,7 @@ def started(folder) -> tuple:
 def test_the_scene_starts_with_the_published_accelerations(tmp_path):
     engine, rod, _ = started(tmp_path)
     found = engine.rows()["acceleration"][0][rod.dof + 5 : rod.dof + 10]
-    # to the joints its velocities keep to nine digits
+    # the velocities, given to nine digits, are brought onto the joints
     np.testing.assert_allclose(found, ACCELERATIONS, rtol=1e-6, atol=1e-6)
 
 

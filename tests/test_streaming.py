@@ -168,7 +168,7 @@ def test_every_integrator_goes_on_exactly(tmp_path, monkeypatch, method):
     assert content(tmp_path / "x.nc") == content(tmp_path / "whole.nc")
     again, whole = run.report, load_run(tmp_path / "whole.nc").report
     assert len(whole["events"]) > len(seen) > 0 and whole["events"][: len(seen)] == seen
-    differ = {"time_s", "solve_cpu_s", "resumed_at_s", "settings"}
+    differ = {"time_s", "us_per_step", "solve_cpu_s", "resumed_at_s", "settings"}
     assert {name: value for name, value in again.items() if name not in differ} == {
         name: value for name, value in whole.items() if name not in differ}
 

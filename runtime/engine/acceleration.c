@@ -16,6 +16,7 @@ static int n_rows(const fu_model *model)
 
 static void evaluate(const fu_model *model, const fu_state *state, fu_accelerator *work)
 {
+    ++work->evaluated;
     for (int j = 0; j < model->n_joints; ++j) {
         const fu_joint *joint = &model->joints[j];
         fu_rows *rows = &work->rows[j];

@@ -54,6 +54,7 @@ static void copy_all(copier *c, fu_run *run)
     copy(c, run->late, sizeof(int) * (size_t)run->n_watches);
     copy(c, &run->record.n, sizeof run->record.n);
     copy(c, &run->statistics, sizeof run->statistics);
+    copy(c, &run->accelerator.evaluated, sizeof run->accelerator.evaluated);
     copy(c, (char *)run + numbers, sizeof *run - numbers);
 }
 

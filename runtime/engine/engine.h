@@ -436,6 +436,7 @@ typedef struct {
     double *braking;      /* per slide: R; then the power that brakes take; then of each slide's R the last step and its cause */
     int jammed;           /* slide whose R was not found, -1 */
     double *joints;       /* FU_JOINT_OUTPUTS a joint */
+    long evaluated;       /* how often it was */
 } fu_accelerator;
 typedef struct {
     double s_rate, s_acceleration, force[3], multiplier[2], traction, residual[3]; /* traction: force along the cable */
@@ -644,6 +645,9 @@ double fu_external_power(fu_run *run, const fu_state *state, const double *react
 void fu_book_trapezoid(fu_run *run, double h);
 int fu_moves(const fu_run *run);
 int fu_check_books(fu_run *run, const double energies[FU_ENERGIES], int first);
+
+/* costs.c */
+void fu_costs(const fu_run *run, double *seconds);
 
 /* failure.c: why a step failed */
 int fu_fail(fu_run *run, int cause, const double *dofs, int joint);

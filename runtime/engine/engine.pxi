@@ -224,6 +224,7 @@ cdef extern from "engine.h" nogil:
         double *braking
         int jammed
         double *joints
+        long evaluated
     ctypedef struct fu_link_output:
         double residual
     ctypedef struct fu_genalpha:
@@ -353,3 +354,4 @@ cdef extern from "engine.h" nogil:
     long fu_save(const fu_run *run, char *bytes)
     void fu_restore(fu_run *run, const char *bytes)
     int fu_stop(fu_run *run)
+    void fu_costs(const fu_run *run, double *seconds)

@@ -357,7 +357,7 @@ static void predict(fu_run *run, workspace w, double h)
 
 static int iterate(fu_run *run, workspace w, double h)
 {
-    double last = 0.0;
+    double last = 0.0, before = 0.0;
     const double enough = fmax(run->fixed_step > 0.0 ? run->newton_tolerance : SAFE * run->allowed, run->round_off);
     predict(run, w, h);
     for (int i = 0; i < MOST_ITERATIONS; ++i) {
@@ -370,7 +370,11 @@ static int iterate(fu_run *run, workspace w, double h)
             ratio = size / last;
             if (ratio >= 2.0 || (ratio >= 1.0 && size > 100.0 * run->round_off && i > 2))
                 return fu_fail(run, FU_ITERATION, run->work, -1);
-            run->contraction = ratio < 1e-3 ? 1e-3 : ratio > 0.9 ? 0.9 : ratio;
+            /* the mean of two, as in RADAU5: one may be small by chance, where corrections of what is stiff and of what
+             * constraints hold take turns */
+            const double mean = i > 1 ? sqrt(ratio * before) : ratio;
+            run->contraction = mean < 1e-3 ? 1e-3 : mean > 0.9 ? 0.9 : mean;
+            before = ratio;
         }
         if (size * run->contraction / (1.0 - run->contraction) <= enough || size <= run->round_off) {
             if (run->contraction > SLOW) run->factored = 0;

@@ -1,0 +1,60 @@
+"""What slides and joints cost, as the report tells."""
+
+import time
+
+import numpy as np
+import pytest
+from funicular import Scene
+from funicular.engine import Engine
+from funicular.integrators import GeneralisedAlpha
+from funicular.model import build
+from scenery import one_rider
+from test_joints import INTEGRATORS, of_bodies
+from test_newton_matrix import tied
+
+
+@pytest.mark.filterwarnings("ignore:initial velocities broke a joint")
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_each_slide_and_joint_is_in_the_report(integrator):
+    scene = tied()
+    scene.joint("distance", ("link", 1.0), (1.1, -1, 1), name="stay")
+    run = scene.run(0.01, output_step=0.01, tol=1e-3, integrator=integrator)
+    costs, report = run.report["us_per_step"], run.report
+    assert set(costs) == {*scene.slides, *scene.joints}
+    assert min(costs.values()) > 0
+    assert sum(costs.values()) < 1e6 * report["time_s"]["solve_cpu"] / report["steps"]
+    text = dict(run.summary_rows())["slides and joints"]
+    assert text.startswith(f"{sum(costs.values()):.3g} µs of a step: ")
+    assert max(costs, key=costs.__getitem__) in text and text.endswith("and 2 more")
+
+
+def test_a_conserving_run_has_them_too():
+    run = one_rider().run(0.02, step=1e-3, integrator="energy")
+    assert run.report["us_per_step"]["trolley"] > 0
+
+
+def test_without_slides_and_joints_there_is_none():
+    scene = Scene()
+    scene.rigid_body("A", mass=1.0, inertia=(1, 1, 1), position=(0, 0, 0))
+    run = scene.run(0.1)
+    assert run.report["us_per_step"] == {}
+    assert "slides and joints" not in run.summary()
+
+
+def test_timing_takes_little_and_changes_nothing():
+    """A run that is timed step by step goes on bit for bit."""
+    ends, taken = [], []
+
+    def look(_):
+        begin = time.perf_counter()
+        assert engine.costs().min() > 0
+        taken.append(time.perf_counter() - begin)
+
+    for after_each in (lambda _: None, look):
+        engine = Engine(build(of_bodies("universal", axis=(0, 0, 1), second_axis=(1, 1, 0))))
+        engine.start(duration=0.02, output_step=0.01, tol=1e-4, step=0.0, method=GeneralisedAlpha(0.8), first_step=1e-4)
+        assert engine.advance(after_each, interval=0.0) == "completed"
+        rows = engine.rows()
+        ends.append(np.concatenate([rows[name][-1].ravel() for name in ("q", "v", "acceleration", "link")]))
+    assert (ends[0] == ends[1]).all()
+    assert len(taken) > 10 and min(taken) < 1e-3  # measured: 0.25 ms
