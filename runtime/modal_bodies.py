@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import os
 from functools import cached_property
-from typing import Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
 from funicular.bodies import Quaternion, unit_quaternion
 from funicular.cables import EXACT, Cable
 from funicular.materials import Material
-from funicular.modal_shape import Shape, of_file, of_mesh
 from funicular.rotations import rotate
 from funicular.sections import AnySection
 from funicular.validation import Count, Flag, Name, Part, Vector, not_negative, one_of, show, xyz
 from pydantic import PlainValidator, model_validator
+
+if TYPE_CHECKING:
+    from funicular.modal_shape import Shape
 
 
 def _path(value: Any) -> str | None:
@@ -103,6 +105,8 @@ class ModalBody(Part):
     @cached_property
     def shape(self) -> Shape:
         """Its modes and inertia."""
+        from funicular.modal_shape import of_file, of_mesh
+
         return of_mesh(self) if self.data is None else of_file(self.data, self.orthogonal)
 
     @property

@@ -30,8 +30,6 @@ from funicular.parts import (
     Spring,
 )
 from funicular.placing import check_join, check_support, placed_load, placed_spring
-from funicular.placing_joints import check_drive, check_joint, placed_joint
-from funicular.placing_slides import check_on_cable, placed_slide
 from funicular.plane import check_plane
 from funicular.progress import progress_bar
 from funicular.results import Run
@@ -292,8 +290,12 @@ class Scene:
                 check_join(self, part)
                 self.joins[part.name] = part
             case Joint():
+                from funicular.placing_joints import placed_joint
+
                 self.joints[part.name] = part = placed_joint(self, part)
             case Slide():
+                from funicular.placing_slides import placed_slide
+
                 self.slides[part.name] = part = placed_slide(self, part)
             case Event():
                 from funicular.watching import check_event
@@ -324,6 +326,9 @@ class Scene:
 
     def check(self) -> None:
         """Check the scene as a whole, as `run` does first. Raises SceneError."""
+        from funicular.placing_joints import check_joint
+        from funicular.placing_slides import check_on_cable
+
         if not self.cables and not self.bodies:
             raise SceneError("scene", "is empty: there is nothing to simulate", "add a cable or a rigid body")
         check_plane(self)
@@ -378,6 +383,8 @@ class Scene:
         self.check()
         if settings.initial == "drawn":
             self._check_motions_start_at_zero()
+            from funicular.placing_joints import check_drive
+
             for joint in self.joints.values():
                 check_drive(self, joint)
         if resume and settings.save is None:
