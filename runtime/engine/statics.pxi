@@ -1,0 +1,173 @@
+# Statics, and the matrices that tests look at: `next` is the state, moved by unknowns.
+
+cdef class Statics(Translation):
+    """Residual and matrix of a state."""
+
+    cdef object spreads
+
+    cdef _matrix(self):
+        """The unfactored Newton matrix, (unknowns, unknowns) sparse."""
+        from scipy.sparse import coo_array
+
+        cdef fu_system *system = &self.run.newton
+        cdef int n = system.n, width = system.width, m = system.m
+        band = np.asarray(<double[:n * (3 * width + 1)]>system.K).reshape(n, 3 * width + 1).copy() if n else np.zeros((0, 1))
+        columns, diagonals = np.nonzero(band)
+        entries = [(columns + diagonals - 2 * width, columns, band[columns, diagonals])]
+        if m:
+            corner = np.asarray(<double[:m * m]>system.D).reshape(m, m)
+            rows, at = np.nonzero(corner.T)
+            entries.append((n + rows, n + at, corner.T[rows, at]))
+        if n and m:
+            right = np.asarray(<double[:m * n]>system.B).reshape(m, n)
+            below = np.asarray(<double[:m * n]>system.C).reshape(m, n)
+            at, rows = np.nonzero(right)
+            entries.append((rows, n + at, right[at, rows]))
+            rows, at = np.nonzero(below)
+            entries.append((n + rows, at, below[rows, at]))
+        row, column, value = (np.concatenate(part) for part in zip(*entries))
+        return coo_array((value, (row, column)), shape=(n + m, n + m)).tocsc()
+
+    def linearise(self, double h, change):
+        """Residual and Newton matrix of a step h after moving its prediction by `change`; for tests.
+
+        change (unknowns,): psi of the free dofs, then s and the scaled force of each slide.
+        Returns (unknowns,) and (unknowns, unknowns), d residual/d change.
+        """
+        cdef double[::1] moved = np.ascontiguousarray(change, dtype=float)
+        cdef int i, total = self.run.newton.n + self.run.newton.m
+        if moved.shape[0] != total:
+            raise ValueError(f"change must have {total} entries")
+        fu_linearise(&self.run, h, &moved[0])
+        return -np.array([self.run.rhs[i] for i in range(total)]), self._matrix().toarray()
+
+    def solve(self, right):
+        """Solve with the matrix that `linearise` has left, once: (unknowns,) to (unknowns,); and whether the band was
+        positive definite. For tests.
+
+        Raises ArithmeticError where the matrix is singular.
+        """
+        cdef double[::1] given = np.ascontiguousarray(right, dtype=float)
+        cdef int i, total = self.run.newton.n + self.run.newton.m
+        if given.shape[0] != total:
+            raise ValueError(f"right must have {total} entries")
+        for i in range(total):
+            self.run.rhs[i] = given[i]
+        if fu_system_factor_band(&self.run.newton, &LAPACK) or fu_system_factor_border(&self.run.newton, &LAPACK):
+            raise ArithmeticError("singular")
+        fu_system_solve(&self.run.newton, &LAPACK, self.run.rhs)
+        return np.array([self.run.rhs[i] for i in range(total)]), bool(self.run.newton.definite)
+
+    def place(self, double t=0.0, q=None, s=None, force=None, multipliers=None, spring=None):
+        """Set the static state: time, configuration (n_q,), arc-lengths, forces of slides (n, 3), multipliers of joints
+        (n, 6), forces of springs (n, 3); None: as built.
+
+        Prescribed dofs take their values at t.
+        """
+        cdef fu_state *state = &self.run.next
+        cdef int i
+        state.t = t
+        for i in range(self.model.n_dof):
+            state.v[i] = state.acceleration[i] = 0.0
+        for i in range(self.model.n_q):
+            state.q[i] = self.run.now.q[i] if q is None else q[i]
+        fu_prescribe(&self.model, state)
+        for i in range(self.model.n_dof):
+            state.v[i] = state.acceleration[i] = 0.0
+        for i in range(self.model.n_joints):
+            state.s[i] = self.run.now.s[i] if s is None else s[i]
+            n, length = self.cables[self.joints[i].cable].n_elements, self.cables[self.joints[i].cable].length
+            if not length * state.element[i] <= state.s[i] <= length * (state.element[i] + 1):
+                state.element[i] = min(max(int(state.s[i] // length), 0), n - 1)
+            for k in range(3):
+                state.f[3 * i + k] = 0.0 if force is None else force[i][k]
+        if self.model.n_brakes:
+            fu_touch_buffers(&self.model, state)
+        for i in range(self.model.n_links):
+            for k in range(6):
+                state.multipliers[6 * i + k] = 0.0 if multipliers is None else multipliers[i][k]
+        for i in range(self.model.n_springs):
+            for k in range(3):
+                state.spring[3 * i + k] = 0.0 if spring is None else spring[i][k]
+
+    def placed(self):
+        """The static state as the arguments of `place` (but t)."""
+        cdef fu_state *state = &self.run.next
+        cdef int i, joints = self.model.n_joints, links = self.model.n_links, springs = self.model.n_springs
+        return {"q": np.array([state.q[i] for i in range(self.model.n_q)]),
+                "s": np.array([state.s[i] for i in range(joints)]),
+                "force": np.array([state.f[i] for i in range(3 * joints)]).reshape(joints, 3),
+                "multipliers": np.array([state.multipliers[i] for i in range(6 * links)]).reshape(links, 6),
+                "spring": np.array([state.spring[i] for i in range(3 * springs)]).reshape(springs, 3)}
+
+    def move(self, change):
+        """Move the static state by unknowns (n,): coordinates and rotations, s, forces."""
+        cdef double[::1] moved = np.ascontiguousarray(change, dtype=float)
+        if moved.shape[0] != self.run.newton.n + self.run.newton.m:
+            raise ValueError(f"change must have {self.run.newton.n + self.run.newton.m} entries")
+        fu_static_move(&self.run, &moved[0])
+
+    def static_residual(self):
+        """(n,): left side of equilibrium over the unknowns: internal minus external forces; constraints."""
+        cdef int i
+        fu_static_residual(&self.run)
+        return -np.array([self.run.rhs[i] for i in range(self.run.newton.n + self.run.newton.m)])
+
+    def reaction(self):
+        """(n_dof,): after `static_residual`, what supports give to each dof, the residual where it is free."""
+        cdef int i
+        return np.array([self.run.force[i] for i in range(self.model.n_dof)])
+
+    def matrix(self, double inertia, double rate, double stiffness):
+        """inertia M + stiffness (K + rate D) at the static state, (n, n) sparse; constraints where stiffness is not 0."""
+        cdef fu_weights weights
+        weights.inertia, weights.rate, weights.stiffness = inertia, rate, stiffness
+        fu_matrix(&self.run, weights)
+        return self._matrix() + stiffness * self._between_cables() if stiffness and self.model.n_links else self._matrix()
+
+    def _between_cables(self):
+        """(n, n) sparse: what joints between two cables add to the stiffness and Newton in time does without."""
+        from scipy.sparse import coo_array, csr_array
+
+        cdef int[::1] at = np.zeros(2 * FU_END_COORDINATES, dtype=np.intc)
+        cdef double[::1] J = np.zeros(6 * 2 * FU_END_COORDINATES), K = np.zeros(4 * FU_END_COORDINATES ** 2)
+        cdef int k, i, n, first, n_dof = self.model.n_dof, total = self.run.newton.n + self.run.newton.m
+        whole = n_dof + self.model.n_extra
+        stiffness = csr_array((whole, whole))
+        for k in range(self.model.n_links):
+            if not fu_between_cables(&self.links[k]):
+                continue
+            first = fu_end_coordinates(&self.model, &self.links[k].ends[0], &self.run.next, &at[0])
+            n = fu_link_tangent(&self.model, &self.links[k], &self.run.next, &at[0], &J[0], &K[0])
+            block = np.array(K[:n * n]).reshape(n, n)
+            block[:first, :first] = block[first:, first:] = 0
+            places = np.array([at[i] for i in range(n)])
+            for i in range(n):  # an s that is held has no equilibrium of its own
+                if places[i] >= n_dof and self._is_held(places[i] - n_dof):
+                    block[i] = block[:, i] = 0
+            rows, columns = np.repeat(places, n), np.tile(places, n)
+            stiffness = stiffness + coo_array((block.ravel(), (rows, columns)), shape=(whole, whole)).tocsr()
+        if not stiffness.nnz:
+            return csr_array((total, total))
+        if self.spreads is None:
+            unit = [self.spread(x) for x in np.eye(total)[:total - self.model.n_extra]]
+            dofs = np.array(unit).reshape(-1, n_dof).T
+            self.spreads = csr_array(np.block([[dofs, np.zeros((n_dof, self.model.n_extra))],
+                                               [np.zeros((self.model.n_extra, dofs.shape[1])), np.eye(self.model.n_extra)]]))
+        return self.spreads.T @ stiffness @ self.spreads
+
+    def _is_held(self, int extra):
+        return any([self.joints[j].unknown == extra and self.run.next.mode[j] != FU_SLIDES
+                    for j in range(self.model.n_joints)])
+
+    def elastic_energy(self):
+        """J, of the static state."""
+        cdef double buffers = fu_brake_energy(&self.model, &self.run.next) if self.model.n_brakes else 0.0
+        return fu_elastic_energy(&self.model, self.run.next.q) + buffers
+
+    def spread(self, unknowns):
+        """(n_dof,): what unknowns move the dofs by."""
+        cdef double[::1] x = np.ascontiguousarray(unknowns, dtype=float)
+        cdef double[::1] dofs = np.zeros(max(1, self.model.n_dof))
+        fu_spread(&self.model, &x[0], &dofs[0])
+        return np.asarray(dofs)[:self.model.n_dof]
