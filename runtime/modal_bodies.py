@@ -110,6 +110,16 @@ class ModalBody(Part):
         return of_mesh(self) if self.data is None else of_file(self.data, self.orthogonal)
 
     @property
+    def modes_in_words(self) -> str:
+        """Which modes it has, for a run's report."""
+        squares, _ = self.shape.vibrations
+        hertz = np.sqrt(np.maximum(squares, 0)) / (2 * np.pi)
+        kind = "of a file" if self.data is not None else {
+            "free": "free-free", "attached": "of the beam attached at its start"}[self.boundary]
+        mesh = "" if self.data is not None else f" on {self.elements} elements {self.element}"
+        return f"{self.shape.n} modes, {kind}{mesh}, {hertz.min(initial=np.inf):.4g} to {hertz.max(initial=0):.4g} Hz"
+
+    @property
     def frame(self) -> tuple[np.ndarray, np.ndarray]:
         """Where the frame's origin starts, (3,) in m, and its attitude, (4,) unit quaternion."""
         if self.data is not None:

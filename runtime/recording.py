@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from funicular.diagnosis import stopped
+from funicular.modal_bodies import ModalBody
 from funicular.placing import ends_of, joined, node_of
 from funicular.rotations import rotate
 from funicular.scene import Scene
@@ -194,6 +195,7 @@ def recorded(model: Model, scene: Scene, engine, settings: RunSettings, status: 
         "events": watcher.happened,
         **statistics,
         "us_per_step": _costs(model, engine),
+        "modes": {body.name: body.modes_in_words for body in scene.bodies.values() if isinstance(body, ModalBody)},
     }
     return Recording(
         **vars(named(model, scene, engine)),

@@ -234,6 +234,7 @@ class Run:
             rows.append(("wall time", f"{total:.3g} s: " + ", ".join(f"{p} {s:.2g}" for p, s in parts.items())))
         if costs := report.get("us_per_step"):
             rows.append(("slides and joints", _dearest(costs)))
+        rows += [(f"modes of {name}", text) for name, text in report.get("modes", {}).items()]
         rows.append(
             (
                 "energy balance",

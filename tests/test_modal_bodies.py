@@ -30,6 +30,16 @@ def tumbling(folder, gravity=(0, 0, 0), **more) -> Scene:
     return scene
 
 
+def test_a_run_says_which_modes_a_body_has():
+    scene = Scene()
+    scene.modal_body("bar", start=(0, 0, 0), end=(0.5, 0, 0), section=BAR, material=RUBBER, modes=3)
+    scene.modal_body("arm", start=(0, 1, 0), end=(0.5, 1, 0), section=BAR, material=RUBBER, boundary="attached")
+    run = scene.run(duration=0.01)
+    assert "3 modes, free-free on 10 elements beam24" in run.report["modes"]["bar"]
+    assert "5 modes, of the beam attached at its start" in run.report["modes"]["arm"]
+    assert "modes of bar: 3 modes" in run.summary()
+
+
 def momenta(run, arrays) -> tuple[np.ndarray, np.ndarray]:
     """Linear and angular momentum (time, 3), summed over the mass points."""
     turn, omega = run["body.orientation"][:, None], run["body.angular_velocity"][:, None]
