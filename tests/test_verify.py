@@ -45,6 +45,7 @@ def break_output(folder: Path, file: str, kernel: str, entry: str) -> None:
     (folder / file).write_text((folder / file).read_text().replace(old, new))
 
 
+@pytest.mark.slow  # a minute and a half: CI does it by itself as well
 def test_what_is_checked_in_passes(capsys):
     assert verify.main([]) == 0
     out = capsys.readouterr().out
