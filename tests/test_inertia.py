@@ -1,0 +1,74 @@
+"""The inertia of constrained stiffnesses against dense eigenvalues: random, banded, repeated, singular, redundant."""
+
+import numpy as np
+import pytest
+from funicular.inertia import Inertia, inertia
+from scipy.linalg import eigvalsh, null_space
+from scipy.sparse import csc_array, random_array
+
+
+def banded(n, negatives, rng, width=6):
+    """A banded symmetric matrix, shifted so that so many of its eigenvalues are negative."""
+    A = rng.standard_normal((n, n))
+    A = np.triu(np.tril(A + A.T, width), -width)
+    values = np.linalg.eigvalsh(A)
+    return A - np.eye(n) * (values[negatives] + values[negatives - 1]) / 2
+
+
+def constraints(n, m, rng):
+    return random_array((m, n), density=6 / n, rng=rng).toarray()
+
+
+@pytest.mark.parametrize("n", [30, 350])
+@pytest.mark.parametrize("m", [0, 1, 9])
+def test_counts_what_dense_eigenvalues_say(n, m):
+    rng = np.random.default_rng(n + m)
+    for negatives in (1, 2, n // 3, n - 1):
+        K, C = banded(n, negatives, rng), constraints(n, m, rng)
+        free = null_space(C) if m else np.eye(n)
+        expected = int(np.count_nonzero(eigvalsh(free.T @ K @ free) < 0))
+        found = inertia(csc_array(K), csc_array(C))
+        assert found == Inertia(expected, 0, free.shape[1] - expected)
+
+
+@pytest.mark.parametrize("n", [40, 400])
+def test_redundant_constraints_count_once(n):
+    rng = np.random.default_rng(1)
+    K, C = banded(n, 5, rng), constraints(n, 6, rng)
+    twice = np.vstack([C, C[0] + C[1], 2 * C[2], np.zeros(n)])
+    assert inertia(K, twice) == inertia(K, C)
+    assert sum(inertia(K, C)) == n - np.linalg.matrix_rank(C)
+
+
+@pytest.mark.parametrize("n", [60, 600])
+def test_a_chain_that_is_free_has_zero_directions(n):
+    """Three free chains of springs, of 1 N/m, of 1e8 N/m, and pressed, with two unknowns that nothing holds."""
+    chain = 2 * np.eye(n // 3) - np.eye(n // 3, k=1) - np.eye(n // 3, k=-1)
+    chain[0, 0] = chain[-1, -1] = 1
+    K = np.zeros((n + 2, n + 2))
+    for k, stiffness in enumerate((1.0, 1e4, -1e2)):
+        part = slice(k * (n // 3), (k + 1) * (n // 3))
+        K[part, part] = stiffness * chain
+    assert inertia(csc_array(K)) == Inertia(n // 3 - 1, 5, 2 * (n // 3 - 1))
+
+
+def test_rounding_in_a_free_direction_is_no_stiffness():
+    K = np.diag([1e9, 1e9, -1e-11])
+    assert inertia(K) == Inertia(0, 1, 2)
+    assert inertia(np.diag([1e9, 1e9, -1e-2])) == Inertia(1, 0, 2)
+
+
+def test_saddle_points_without_diagonal():
+    """A diagonal of zeros cannot be factored without exchanges: LAPACK's blocks of two are counted instead."""
+    n = 500
+    K = np.zeros((n, n))
+    for k in range(0, n, 2):
+        K[k, k + 1] = K[k + 1, k] = 1.0
+    assert inertia(K) == Inertia(n // 2, 0, n // 2)
+
+
+def test_refused():
+    with pytest.raises(ValueError, match="not symmetric"):
+        inertia(np.array([[1.0, 1.0], [0.0, 1.0]]))
+    with pytest.raises(ValueError, match="not finite"):
+        inertia(np.array([[np.nan]]))
