@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from funicular.cables import Cable
     from funicular.model import Model
     from funicular.scene import Scene
+    from funicular.stability import Stability
+    from funicular.static_problem import StaticProblem
 
 
 def layout(scene: Scene) -> dict[str, list]:
@@ -32,14 +34,29 @@ def layout(scene: Scene) -> dict[str, list]:
 
 
 @dataclass
+class CriticalPoint:
+    """A point of a load path at which stability changes or the load turns.
+
+    load_fraction: of the loads; kind: "limit", where the load stops rising or falling, or "bifurcation", where another
+    path of equilibria crosses this one; directions: how many more directions are unstable beyond it; state: there.
+    """
+
+    load_fraction: float
+    kind: str
+    directions: int
+    state: Equilibrium = field(repr=False)
+
+
+@dataclass
 class Equilibrium:
-    """A state of rest of a scene; whether it is a stable one, the growth rates of `Scene.modes` about it tell.
+    """A state of rest of a scene.
 
     Quantities by name as in a `Run`, without the time: ``state["wire.nodal_vectors"]`` (node, vector, 3),
     ``state["A.position"]``, ``state["trolley.s"]``, ``state["wire@0.force"]`` ... load_fraction: how much of the load
-    is on, 1 but in the `EquilibriumError` that says how far it got; iterations of Newton; residual: the largest force
-    left over, in N; path: the states of rest on the way, in their order, this one last: what a curve of load and
-    displacement is drawn from.
+    is on, 1 but in the `EquilibriumError` that says how far it got, and along a path; iterations of Newton; residual:
+    the largest force left over, in N; stability: see `Stability`; path: the states of rest on the way, each under its
+    load_fraction of all loads, in their order, this one last: what a curve of load and displacement is drawn from;
+    critical_points of that path; messages: what the search passed, adjusted or left out.
     """
 
     scene: Scene
@@ -50,21 +67,40 @@ class Equilibrium:
     load_fraction: float
     iterations: int
     residual: float
+    stability: Stability
+    heading: np.ndarray | None = field(default=None, repr=False)
     quantities: dict[str, np.ndarray] = field(default_factory=dict)
     path: list[Equilibrium] = field(default_factory=list, repr=False)
+    critical_points: list[CriticalPoint] = field(default_factory=list)
+    messages: list[str] = field(default_factory=list)
     layout: dict[str, list] = field(default_factory=dict, repr=False)
 
     @classmethod
-    def of(cls, scene: Scene, path, fraction: float) -> Equilibrium:
-        """Read the static state of a path (static.py)."""
-        left = path.off(fraction)
-        units = np.where(path.weight > 0, path.weight, np.inf)
-        engine = path.engine
-        state = cls(scene, path.model, path.keep(), engine.reaction(), engine.held(), fraction, path.iterations,
-                    float(np.max(np.abs(left) / units, initial=0.0)))
+    def of(cls, problem: StaticProblem, stability: Stability, heading: np.ndarray | None = None) -> Equilibrium:
+        """Read the static state of a problem, under the load that is on; heading: of the path there."""
+        left = problem.residual()
+        units = np.where(problem.weight > 0, problem.weight, np.inf)
+        engine = problem.engine
+        state = cls(problem.scene, problem.model, problem.keep(), engine.reaction(), engine.held(), problem.fraction,
+                    problem.iterations, float(np.max(np.abs(left) / units, initial=0.0)), stability, heading)
         state.quantities = state._quantities()
-        state.path, state.layout = [*path.history, state], layout(scene)
+        state.path, state.layout = [state], layout(problem.scene)
         return state
+
+    @property
+    def unstable_directions(self) -> int:
+        """How many independent directions lower the energy; of loads that turn: in how many the state diverges."""
+        return self.stability.unstable
+
+    @property
+    def neutral_directions(self) -> int:
+        """How many independent directions leave the energy as it is: what is free to move."""
+        return self.stability.neutral
+
+    @property
+    def stable(self) -> bool:
+        """Whether no direction lowers the energy."""
+        return self.stability.unstable == 0
 
     def keys(self) -> list[str]:
         """Names of all quantities."""

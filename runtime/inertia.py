@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import eigvalsh, ldl, null_space, qr
-from scipy.sparse import csc_array, diags_array, eye_array
+from scipy.sparse import csc_array, csr_array, diags_array, eye_array
 from scipy.sparse.linalg import splu
 
 DENSE = 200
@@ -43,16 +43,22 @@ def inertia(K, C=None, units: np.ndarray | None = None, zero: float = ZERO) -> I
     """
     K = csc_array(K, dtype=float)
     n = K.shape[0]
-    C = csc_array((0, n)) if C is None else csc_array(C, dtype=float)
     _check(K)
-    scale = diags_array(_scale(K, np.ones(n) if units is None else np.asarray(units, dtype=float)))
-    K = (scale @ ((K + K.T) / 2) @ scale).tocsc()
-    C = _independent((C @ scale).tocsr())
+    K, C, _ = scaled((K + K.T) / 2, C, units)
     if n <= DENSE:
         return _by_eigenvalues(K.toarray(), C.toarray(), zero)
     below = _negative(K + zero * eye_array(n, format="csc"), C)
     at = _negative(K - zero * eye_array(n, format="csc"), C) - below
     return Inertia(below, at, n - C.shape[0] - below - at)
+
+
+def scaled(K: csc_array, C=None, units: np.ndarray | None = None) -> tuple[csc_array, csr_array, np.ndarray]:
+    """D K D with a diagonal of about one, independent rows of C D of unit length, and D's diagonal (n,)."""
+    n = K.shape[0]
+    C = csr_array((0, n)) if C is None else csr_array(C, dtype=float)
+    scale = _scale(K, np.ones(n) if units is None else np.asarray(units, dtype=float))
+    D = diags_array(scale)
+    return (D @ K @ D).tocsc(), _independent((C @ D).tocsr()), scale
 
 
 def _check(K: csc_array) -> None:
@@ -72,7 +78,7 @@ def _scale(K: csc_array, units: np.ndarray) -> np.ndarray:
     return 1.0 / (units * np.sqrt(np.maximum(stiffness, FLOOR * largest)))
 
 
-def _independent(C):
+def _independent(C: csr_array) -> csr_array:
     """Rows of unit length that span what C does."""
     length = np.sqrt(np.asarray(C.multiply(C).sum(axis=1)).ravel())
     C = (diags_array(1.0 / np.where(length > 0, length, 1.0)) @ C).tocsr()[length > 0]
@@ -93,7 +99,7 @@ def _by_eigenvalues(K: np.ndarray, C: np.ndarray, zero: float) -> Inertia:
     return Inertia(below, len(values) - below - above, above)
 
 
-def _negative(K: csc_array, C) -> int:
+def _negative(K: csc_array, C: csr_array) -> int:
     """Negative eigenvalues of K on the null space of C, neither singular.
 
     Of [[K, C'], [C, 0]] as many are negative as of K on the null space, and one more for each row of C (Gould 1985). K

@@ -415,19 +415,27 @@ class Scene:
         tolerance: float | None = None,
         max_iterations: int | None = None,
         method: str | None = None,
+        largest_step: float | None = None,
+        scale_gravity: bool | None = None,
+        start: Equilibrium | None = None,
     ) -> Equilibrium:
         """Find the static equilibrium under all loads at t = 0; see `EquilibriumSettings` for the defaults.
 
-        Settings not given here are the scene file's, if it gave them. Raises SceneError; EquilibriumError, which keeps
-        the state that was reached.
+        Settings not given here are the scene file's, if it gave them. The state is stable unless it says otherwise, in
+        ``stable``, in ``messages`` and by a `FunicularWarning`; friction of slides is left out. start: a state of this
+        scene, under the same loads or others, from which the search begins instead of as drawn; method "arc_length"
+        goes on from its load_fraction in its sense, or, from a state under all its loads, anew from rest without loads.
+        Raises SceneError; EquilibriumError, which keeps the state that was reached.
         """
-        given = {"load_steps": load_steps, "tolerance": tolerance, "max_iterations": max_iterations, "method": method}
+        given = {"load_steps": load_steps, "tolerance": tolerance, "max_iterations": max_iterations, "method": method,
+                 "largest_step": largest_step, "scale_gravity": scale_gravity}
+        begin = None if start is None else _equilibrium_state(self, start)
         settings = EquilibriumSettings(**self.equilibrium_settings | {k: v for k, v in given.items() if v is not None})
         self.check()
 
         from funicular.static import equilibrium
 
-        return equilibrium(self, settings)
+        return equilibrium(self, settings, begin)
 
     def modes(self, n: int, about: Equilibrium | None = None) -> Modes:
         """The ``n`` lowest natural frequencies and shapes, about the scene as drawn or a state from `equilibrium`.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar
 
-from funicular.validation import Count, Part, one_of, positive, within
+from funicular.validation import Count, Flag, Part, one_of, positive, within
 from pydantic import Field, model_validator
 
 INTEGRATORS = ("auto", "genalpha", "explicit", "radau", "energy")
@@ -52,7 +52,10 @@ class EquilibriumSettings(Part):
 
     load_steps: in how many steps the loads are raised from 0, more where one does not converge; tolerance: of the
     last correction of positions, relative to the size of the scene; max_iterations of a load step; method: "newton",
-    or "arc_length", which also follows a path on which the load falls again.
+    which ends in a stable state, or "arc_length", which follows the path of equilibria, also where the load falls again
+    and where they are unstable; largest_step of such a path: what two states that follow each other differ by at most,
+    of the load fraction, and of positions relative to the size of the scene; scale_gravity: whether a load fraction p
+    is p times gravity, too, or whether gravity is whole from the start.
     """
 
     kind: ClassVar[str] = "equilibrium"
@@ -60,6 +63,8 @@ class EquilibriumSettings(Part):
     tolerance: Annotated[float, within(0, 1, ends=False)] = 1e-9
     max_iterations: Count = 50
     method: Annotated[str, one_of(("newton", "arc_length"))] = "newton"
+    largest_step: Annotated[float, within(0, 1, ends=False)] = 0.1
+    scale_gravity: Flag = True
 
 
 class ModeSettings(Part):

@@ -1,190 +1,42 @@
-"""Equilibrium: a scene's rest under its loads, by Newton and relaxation in load steps, or along the equilibrium path.
+"""Equilibrium: a scene's rest under its loads, found at once, in load steps, or along the path of equilibria.
 
-R(x) is what forces and constraints leave over. From the drawn state x0 the path R(x) = (1 - p) R(x0) leads from p = 0
-to equilibrium at p = 1: for a drawn state without stress that is loading in proportion, and any other state will do
-too.
+A state at the load fraction p is at rest under p times all loads (static_problem.py): a scene drawn with stress first
+comes to rest without them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import warnings
 
-import numpy as np
-from funicular.equilibrium import Equilibrium
-from funicular.errors import EquilibriumError
-from funicular.modal import condensed, fastest
-from funicular.model import build
-from funicular.recording import end_points
-from funicular.redundancy import settle
+from funicular.equilibrium import CriticalPoint, Equilibrium
+from funicular.errors import EquilibriumError, FunicularWarning
+from funicular.path_following import Critical, Point, follow
 from funicular.scene import Scene
 from funicular.settings import EquilibriumSettings
-from scipy.sparse import csc_array
-from scipy.sparse.linalg import splu
+from funicular.stability import stability
+from funicular.stable_search import find_rest
+from funicular.static_problem import StaticProblem
 
-GROWTH = 1e3
-"""Of a correction over the least one before: Newton diverges."""
 SMALLEST_STEP = 1e-3
-"""Of the load: where smaller steps do not converge either, the path has ended."""
-MOST_PATH_STEPS = 2000
-MOST_RELAXATIONS = 1000
-FREE = 1e-14
-"""Of the fastest vibration's square: a stiffness this small is none."""
+"""Of the load: where smaller steps do not converge either, the search ends."""
+MOVED = 1e-9
+"""Of the scene's size: what rounding may move."""
 
 
-class Path:
-    """The engine's static state, and the path that leads from where it was drawn."""
+def equilibrium(scene: Scene, settings: EquilibriumSettings, start: Equilibrium | None = None) -> Equilibrium:
+    """The scene at rest under gravity, its loads at t = 0 and its springs; start: a state to begin from, else as drawn.
 
-    def __init__(self, scene: Scene, settings: EquilibriumSettings):
-        from funicular.engine import Engine
-
-        self.scene, self.settings = scene, settings
-        self.model = build(scene)
-        self.engine = Engine(self.model)
-        settle(self.model, self.engine)
-        self.engine.place(0.0)
-        self.start = self.residual()
-        place = self.model.place
-        free = place >= 0
-        self.weight = np.zeros(len(self.start))  # forces and arc-lengths do not count in the size of a correction
-        self.weight[place[free]] = self.model.weight[free]
-        self.size = self._extent()
-        self.mass = self.engine.matrix(1.0, 0.0, 0.0)
-        stiffness, _ = condensed(self.engine.matrix(0.0, 0.0, 1.0), self.model)
-        # rad²/s²: what is left free (a rider that may turn about its rope) has no stiffness. Of points, not of
-        # directors: a thin beam's section vibrates so fast that its share of mass would stop the beam
-        points = np.flatnonzero(self.weight == 1.0)
-        self.fastest = max(fastest(stiffness, self.mass, points), self._falls(points))
-        self.iterations = 0
-        self.history: list[Equilibrium] = []
-
-    def _falls(self, points: np.ndarray) -> float:
-        """rad²/s², of pendulums: where nothing is elastic, weight is all that holds."""
-        inertia = self.mass.diagonal()[points]
-        return float(np.max(np.abs(self.start[points]) / inertia, initial=0.0, where=inertia > 0)) / self.size
-
-    def _extent(self) -> float:
-        """The scene's size in m."""
-        model = self.model
-        lengths = [cable.length * cable.n_elements for cable in model.cables]
-        lengths += [np.linalg.norm(model.q[b.configuration : b.configuration + model.dim]) for b in model.rigids]
-        gaps = [end_points(model, s.ends[1], model.q[None]) - end_points(model, s.ends[0], model.q[None])
-                for s in model.springs]
-        return max([*lengths, *(np.linalg.norm(gap) for gap in gaps)], default=0.0) or 1.0
-
-    def residual(self) -> np.ndarray:
-        """R at the static state."""
-        return self.engine.static_residual()
-
-    def off(self, fraction: float) -> np.ndarray:
-        """R - (1 - fraction) R0."""
-        return self.residual() - (1.0 - fraction) * self.start
-
-    def factor(self, inertia: float = 0.0) -> Callable[[np.ndarray], np.ndarray]:
-        """Solver of the tangent, with some mass added."""
-        return _solver(self.engine.matrix(0.0, 0.0, 1.0) + (inertia or FREE * self.fastest) * self.mass)
-
-    def length(self, change: np.ndarray) -> float:
-        """Size of a correction in m."""
-        size = float(np.linalg.norm(self.weight * change))
-        return size if np.isfinite(size) else np.inf
-
-    def keep(self) -> dict:
-        """The static state."""
-        return self.engine.placed()
-
-    def restore(self, kept: dict) -> None:
-        """Back to a state."""
-        self.engine.place(0.0, **kept)
-
-    def move(self, change: np.ndarray) -> None:
-        """Move the state; slides that leave their element enter the next."""
-        self.engine.move(change)
-        if self.model.joints:
-            self.engine.place(0.0, **self.engine.placed())
-
-    def remember(self, fraction: float) -> None:
-        """Add a state of rest to the history."""
-        if fraction < 1.0:
-            self.history.append(Equilibrium.of(self.scene, self, fraction))
-
-    def newton(self, fraction: float) -> bool:
-        """Newton at a load fraction, full steps.
-
-        Corrections may grow for a while: the second order of a turn stretches what is stiff along its axis, and the
-        next correction takes that back. A line search makes hundreds of small steps of it; `relax` does better.
-        """
-        least = np.inf
-        for _ in range(self.settings.max_iterations):
-            self.iterations += 1
-            try:
-                change = self.factor()(-self.off(fraction))
-            except RuntimeError:  # an exactly singular tangent
-                return False
-            size = self.length(change)
-            if not size < min(GROWTH * least, 10.0 * self.size):
-                return False
-            least = min(least, size)
-            self.move(change)
-            if size <= self.settings.tolerance * self.size:
-                return self.on_cables()
-        return False
-
-    def on_cables(self) -> bool:
-        """Whether no slide is past an end of its cable, where the last element would go on for ever."""
-        ends = np.array([self.model.cables[j.cable].length * self.model.cables[j.cable].n_elements
-                         for j in self.model.joints])
-        s = self.engine.placed()["s"]
-        past = np.maximum(-s, s - ends)
-        return bool(np.all(past <= self.settings.tolerance * self.size))
-
-    def relax(self, fraction: float) -> bool:
-        """Pseudo-transient continuation: implicit Euler without regard to accuracy, its step growing as R falls
-        (Kelley & Keyes 1998). It finds the stable equilibria that Newton misses: far turns of stiff cables, slack ones.
-        """
-        mass, near, kept = 1e-3 * self.fastest, 1e-5, self.keep()
-        for _ in range(MOST_RELAXATIONS):
-            self.iterations += 1
-            try:
-                change = self.factor(mass)(-self.off(fraction))
-            except RuntimeError:
-                break
-            size = self.length(change)
-            if not size < 0.2 * self.size:
-                mass *= 10.0
-                if not mass < 1e30:
-                    break
-                continue
-            self.move(change)
-            now = float(np.linalg.norm(self.off(fraction)))
-            if not np.isfinite(now):
-                self.restore(kept)
-                mass *= 100.0
-                continue
-            kept = self.keep()
-            mass *= 0.5 if size < 0.02 * self.size else 1.0
-            if mass < 1e-10 * self.fastest or size < near * self.size:
-                if self.newton(fraction):
-                    return True
-                self.restore(kept)
-                near *= 1e-2
-                if near < 1e-10:
-                    break
-        return False
-
-
-def _solver(matrix: csc_array) -> Callable[[np.ndarray], np.ndarray]:
-    if not matrix.shape[0]:
-        return lambda right: right
-    return splu(matrix.tocsc(), permc_spec="COLAMD").solve
-
-
-def equilibrium(scene: Scene, settings: EquilibriumSettings) -> Equilibrium:
-    """The scene at rest under gravity, its loads at t = 0 and its springs. Raises SceneError, EquilibriumError."""
-    path = Path(scene, settings)
-    reached = _follow(path) if settings.method == "arc_length" else _load(path)
-    state = Equilibrium.of(scene, path, reached)
+    Raises SceneError, EquilibriumError.
+    """
+    problem = StaticProblem(scene, settings)
+    if start is not None:
+        problem.restore(start.placed)
+    search = _Search(problem)
+    reached = search.along_path(start) if settings.method == "arc_length" else search.in_steps()
+    state = search.state
+    _note(problem, state)
     if reached < 1.0:
-        remedy = ('; take method="newton", which also relaxes, or draw the scene nearer to its rest'
+        remedy = ('; take method="newton", which goes on to any stable state, or draw the scene nearer to its rest'
                   if settings.method == "arc_length" else
                   "; smaller steps of the load do not converge either: something may be free to move away, or it is a "
                   'limit point, which method="arc_length" passes; or take more load_steps or max_iterations')
@@ -194,86 +46,109 @@ def equilibrium(scene: Scene, settings: EquilibriumSettings) -> Equilibrium:
     return state
 
 
-def _load(path: Path) -> float:
-    """Load steps, halved where neither Newton nor relaxation ends; returns the fraction of the load reached."""
-    reached = 0.0
-    step = largest = 1.0 / path.settings.load_steps
-    while reached < 1.0:
-        kept, target = path.keep(), reached + step
-        if target > 1.0 - SMALLEST_STEP / 2:  # a sum of steps is not 1 to the last digit
-            target = 1.0
-        for solve in (path.newton, path.relax):
-            if solve(target):
+def _note(problem: StaticProblem, state: Equilibrium) -> None:
+    """Complete a state's messages; what a user must know is a warning, too."""
+    if rubbing := [name for name, slide in problem.scene.slides.items() if slide.friction is not None]:
+        problem.messages.append(f"friction of {', '.join(map(repr, rubbing))} is left out: at rest slides move freely")
+    if not state.stable:
+        problem.messages.append(f"the state is {state.stability}; a small disturbance leaves it")
+    state.messages = problem.messages
+    for message in problem.messages:
+        warnings.warn(message, FunicularWarning, stacklevel=4)
+
+
+class _Search:
+    """The states of rest found so far, and the ways to the next ones; the last one is `state`."""
+
+    def __init__(self, problem: StaticProblem):
+        self.problem = problem
+        self.state: Equilibrium | None = None
+        self.path: list[Equilibrium] = []
+        self.critical: list[CriticalPoint] = []
+
+    def remember(self, state: Equilibrium) -> None:
+        """Add a state to the path."""
+        self.state = state
+        self.path.append(state)
+        state.path, state.critical_points = list(self.path), list(self.critical)
+
+    def in_steps(self) -> float:
+        """Load steps, halved where no state of rest is found; returns the fraction of the load reached.
+
+        One step needs no path: the state at rest is sought under all loads at once.
+        """
+        problem, steps = self.problem, self.problem.settings.load_steps
+        begin, reached, step = problem.keep(), 0.0, 1.0 / steps
+        if steps == 1:
+            if (found := find_rest(problem)) is not None:
+                self.remember(Equilibrium.of(problem, found))
+                return 1.0
+            step = 0.5
+            problem.restore(begin)
+        if not self.without_loads():
+            return 0.0
+        largest = step
+        while reached < 1.0:
+            kept, target = problem.keep(), reached + step
+            if target > 1.0 - SMALLEST_STEP / 2:  # a sum of steps is not 1 to the last digit
+                target = 1.0
+            problem.load(target)
+            if (found := find_rest(problem)) is not None:
                 reached, step = target, min(2 * step, largest)
-                path.remember(reached)
-                break
-            path.restore(kept)
-        else:
+                self.remember(Equilibrium.of(problem, found))
+                continue
+            problem.restore(kept)
+            problem.load(reached)
             step = 0.5 * (target - reached)
             if step < SMALLEST_STEP:
                 break
-    return reached
+        return reached
 
+    def without_loads(self) -> bool:
+        """Bring the static state to rest without loads; returns whether that was found."""
+        problem = self.problem
+        drawn = problem.keep()
+        problem.load(0.0)
+        found = find_rest(problem)
+        if found is None:
+            problem.restore(drawn)
+        self.state = Equilibrium.of(problem, found or stability(problem))
+        moved = problem.distance(drawn)
+        if found is not None and moved > MOVED * problem.size:
+            what = "loads" if problem.settings.scale_gravity else "loads, under its weight"
+            problem.messages.append(f"the scene is drawn with stress: it first came to rest without {what}, which "
+                                    f"moved points by up to {moved:.3g} m")
+        return found is not None
 
-def _follow(path: Path) -> float:
-    """Arc-length continuation (Riks 1979; Crisfield 1981): the load fraction is an unknown more, so that limit points
-    are passed; returns the fraction reached, 1 where the path got there.
-    """
-    reached, tangent_before = 0.0, None
-    step = None
-    for _ in range(MOST_PATH_STEPS):
-        kept = path.keep()
-        try:
-            solve = path.factor()
-        except RuntimeError:
-            return reached
-        forward = solve(-path.start)
-        direction = np.append(forward * path.weight / path.size, 1.0)
-        direction /= np.linalg.norm(direction)
-        if tangent_before is not None and direction @ tangent_before < 0:
-            direction = -direction
-        step = step if step is not None else 1.0 / path.settings.load_steps * np.linalg.norm(
-            np.append(forward * path.weight / path.size, 1.0))
-        step = min(step, 0.5)
-        while True:
-            rate = step * direction[-1]
-            if reached + rate >= 1.0 and path.newton(1.0):
-                return 1.0
-            path.restore(kept)
-            fraction = _correct(path, reached, rate, forward, direction)
-            if fraction is not None and fraction < 1.0:
-                break
-            path.restore(kept)
-            step *= 0.25
-            if step < 1e-8:
+    def along_path(self, start: Equilibrium | None) -> float:
+        """The path from rest without loads, or from a state of rest on it; returns the fraction of the load reached."""
+        problem = self.problem
+        if start is None or start.load_fraction >= 1.0:
+            reached, heading = 0.0, None
+            if not self.without_loads():
                 return reached
-        reached, tangent_before, step = fraction, direction, 1.5 * step
-        path.remember(reached)
-    return reached
+        else:
+            reached, heading = start.load_fraction, start.heading
+            problem.load(reached)
+            if not problem.newton():
+                self.state = Equilibrium.of(problem, stability(problem))
+                return reached
+            self.state = Equilibrium.of(problem, stability(problem))
+        for point in follow(problem, reached, heading):
+            if isinstance(point, Critical):
+                self.critical.append(CriticalPoint(point.point.fraction, point.kind, point.directions,
+                                                   self.at(point.point)))
+            else:
+                self.remember(self.at(point))
+                reached = point.fraction
+        return min(reached, 1.0)
 
-
-def _correct(path: Path, reached: float, rate: float, forward: np.ndarray, direction: np.ndarray) -> float | None:
-    """Predict along the tangent, then Newton in the plane normal to it; returns the new load fraction."""
-    scale = path.weight / path.size
-    path.move(rate * forward)
-    fraction, last = reached + rate, np.inf
-    for _ in range(12):
-        path.iterations += 1
-        try:
-            solve = path.factor()
-        except RuntimeError:
-            return None
-        by_force, by_load = solve(-path.off(fraction)), solve(-path.start)
-        below = direction[:-1] @ (scale * by_load) + direction[-1]
-        load = -(direction[:-1] @ (scale * by_force)) / below if below else np.inf
-        change = by_force + load * by_load
-        size = path.length(change)
-        if not size < 2.0 * last:
-            return None
-        path.move(change)
-        fraction, last = fraction + load, size
-        if size <= 1e-6 * path.size and abs(load) <= 1e-6:
-            return fraction
-    return None
-
-
+    def at(self, point: Point) -> Equilibrium:
+        """A point of the path as a state."""
+        fraction, kept = self.problem.fraction, self.problem.keep()
+        self.problem.restore(point.kept)
+        self.problem.load(point.fraction)
+        state = Equilibrium.of(self.problem, point.stability, point.heading)
+        self.problem.restore(kept)
+        self.problem.load(fraction)
+        return state

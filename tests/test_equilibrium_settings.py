@@ -19,7 +19,7 @@ def solvers(monkeypatch):
         def check_fits(self, scene):
             pass
 
-    def equilibrium(scene, settings):
+    def equilibrium(scene, settings, start):
         calls.static.append(settings)
         return Equilibrium()
 

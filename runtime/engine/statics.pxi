@@ -4,6 +4,7 @@ cdef class Statics(Translation):
     """Residual and matrix of a state."""
 
     cdef object spreads
+    cdef dict full  # the loads as the model has them
 
     cdef _matrix(self):
         """The unfactored Newton matrix, (unknowns, unknowns) sparse."""
@@ -99,6 +100,43 @@ cdef class Statics(Translation):
                 "force": np.array([state.f[i] for i in range(3 * joints)]).reshape(joints, 3),
                 "multipliers": np.array([state.multipliers[i] for i in range(6 * links)]).reshape(links, 6),
                 "spring": np.array([state.spring[i] for i in range(3 * springs)]).reshape(springs, 3)}
+
+    def load(self, double fraction, gravity=True):
+        """Apply this fraction of all loads at `place`d states; gravity: of the weight, too, which else stays whole.
+
+        Loads are forces and moments on cables and bodies. Prescribed motions, springs and stresses at rest are none.
+        """
+        cdef fu_model *m = &self.model
+        cdef double weight = fraction if gravity else 1.0
+        cdef int i, k
+        if self.full is None:
+            self.full = {"gravity": [m.gravity[i] for i in range(m.n_dof)],
+                         "of shapes": [[self.shapes[i].g[k] for k in range(3)] for i in range(m.n_rigids)],
+                         "fixed": [m.dead_value[i] for i in range(self._fixed_values())],
+                         "turning": [[self.loads[i].c[k] for k in range(3)] for i in range(m.n_loads)]}
+        cdef double *own_weight = <double *>m.gravity
+        cdef double *fixed = <double *>m.dead_value
+        for i, value in enumerate(self.full["gravity"]):
+            own_weight[i] = weight * value
+        for i, value in enumerate(self.full["fixed"]):
+            fixed[i] = fraction * value
+        for k in range(3):
+            for i in range(m.n_rigids):
+                self.shapes[i].g[k] = weight * self.full["of shapes"][i][k]
+            for i in range(m.n_loads):
+                self.loads[i].c[k] = fraction * self.full["turning"][i][k]
+
+    def stiffen(self, int cable, A):
+        """Give a cable other constants of its law: A (1 or elements, constants), as in the model."""
+        cdef fu_cable *c = &self.cables[cable]
+        cdef double[::1] given = np.ascontiguousarray(A, dtype=float).ravel()
+        cdef double *own = <double *>c.A
+        cdef int i
+        for i in range(given.shape[0]):
+            own[i] = given[i]
+
+    def _fixed_values(self):
+        return sum([self.dead_loads[i].n for i in range(self.model.n_dead_loads)])
 
     def move(self, change):
         """Move the static state by unknowns (n,): coordinates and rotations, s, forces."""
