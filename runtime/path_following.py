@@ -15,8 +15,10 @@ from funicular.stability import Stability, stability
 from funicular.static_problem import StaticProblem, solver
 from scipy.sparse import block_array
 
-MOST_STATES = 2000
+MOST_STATES = 1000
 MOST_CORRECTIONS = 12
+GROWTH = 10.0
+"""Of a correction over the least one before: it does not converge."""
 SMALLEST_STEP = 1e-8
 """Of the path, in units of the load fraction or of the scene's size: shorter steps make no way."""
 TURN = 0.8
@@ -121,7 +123,7 @@ def _advance(problem: StaticProblem, point: Point, way: float) -> Point | None:
     problem.restore(point.kept)
     problem.move(way * point.along)
     problem.load(point.fraction + way * point.rate)
-    tolerance, last = problem.settings.tolerance, np.inf
+    tolerance, least = problem.settings.tolerance, np.inf
     for _ in range(MOST_CORRECTIONS):
         problem.iterations += 1
         try:
@@ -129,11 +131,11 @@ def _advance(problem: StaticProblem, point: Point, way: float) -> Point | None:
         except RuntimeError:
             return None
         size = problem.length(change[:-1])
-        if not size < 2.0 * last:
+        if not size < min(GROWTH * least, problem.size):
             return None
         problem.move(change[:-1])
         problem.load(problem.fraction + float(change[-1]))
-        last = max(size, tolerance * problem.size)
+        least = max(min(size, least), tolerance * problem.size)
         if size <= tolerance * problem.size and abs(change[-1]) <= tolerance * max(abs(problem.fraction), way):
             return _point(problem, point.heading, way) if problem.on_cables() else None
     return None
@@ -159,8 +161,10 @@ def _critical(problem: StaticProblem, point: Point, following: Point) -> list[Cr
         if near.kind == far.kind:
             continue
         start = 0.0 if near is point else near.way
-        way = 0.5 * (start + far.way)
-        between = _advance(problem, point, way) if not _sharp(near, far, start) else None
+        between = None
+        if not _sharp(near, far, start):
+            tries = (_advance(problem, point, start + part * (far.way - start)) for part in (0.5, 0.4, 0.65))
+            between = next((each for each in tries if each is not None), None)
         if between is None:
             _add(found, near, far)
         else:
@@ -173,7 +177,7 @@ def _sharp(near: Point, far: Point, start: float) -> bool:
     than the arc-length between them times its rate at either end.
     """
     width, rate = far.way - start, max(abs(near.rate), abs(far.rate))
-    return width < 1e-12 or width * rate <= SHARP * abs(far.fraction)
+    return width < SMALLEST_STEP or width * rate <= SHARP * max(abs(far.fraction), SHARP)
 
 
 def _add(found: list[Critical], near: Point, far: Point) -> None:

@@ -19,6 +19,8 @@ from funicular.static_problem import StaticProblem
 
 SMALLEST_STEP = 1e-3
 """Of the load: where smaller steps do not converge either, the search ends."""
+FEW = 1e-3
+"""Of the load: what moves things that are free without loads to their place."""
 MOVED = 1e-9
 """Of the scene's size: what rounding may move."""
 
@@ -120,6 +122,19 @@ class _Search:
                                     f"moved points by up to {moved:.3g} m")
         return found is not None
 
+    def lightly_loaded(self) -> float:
+        """Where something is free to move without loads, the loads say where it rests: the path begins with a few."""
+        problem = self.problem
+        free = problem.keep()
+        problem.load(FEW)
+        if (found := find_rest(problem)) is None:
+            problem.restore(free)
+            problem.load(0.0)
+            return 0.0
+        self.remember(Equilibrium.of(problem, found))
+        problem.messages.append(f"without loads something is free to move: the path begins at {100 * FEW:g} % of them")
+        return FEW
+
     def along_path(self, start: Equilibrium | None) -> float:
         """The path from rest without loads, or from a state of rest on it; returns the fraction of the load reached."""
         problem = self.problem
@@ -127,6 +142,8 @@ class _Search:
             reached, heading = 0.0, None
             if not self.without_loads():
                 return reached
+            if self.state.neutral_directions:
+                reached = self.lightly_loaded()
         else:
             reached, heading = start.load_fraction, start.heading
             problem.load(reached)
