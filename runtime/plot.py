@@ -11,7 +11,7 @@ from funicular.errors import ResultFileError
 from funicular.modal_bodies import ModalBody
 from funicular.results import ENERGIES
 from funicular.rotations import rotate
-from funicular.section_forces import PLACES, section_forces
+from funicular.section_forces import PLACES, jumps, of_run, with_sides
 
 if TYPE_CHECKING:
     import os
@@ -39,7 +39,6 @@ STYLE = {
 }
 SNAPSHOTS = 11
 POINTS_PER_ELEMENT = 24
-INSIDE = 1e-8
 
 
 class View(NamedTuple):
@@ -265,20 +264,21 @@ def draw_slide(run: Run) -> Figure | None:
 
 
 def draw_section_forces(run: Run, cable: str) -> Figure:
-    """Tension and size of the moment along a cable, at a few times, coloured by time."""
+    """Tension and size of the moment along a cable, at a few times, coloured by time; both sides of jumps."""
     from matplotlib.figure import Figure
 
     described = run.scene.cables[cable]
-    # up to both ends of each element, just inside: forces may jump at nodes
-    inside = np.linspace(INSIDE, 1 - INSIDE, PLACES + 1)
-    s = (np.arange(described.elements)[:, None] + inside).ravel() * (described.length / described.elements)
+    even = np.linspace(0, described.length, PLACES * described.elements + 1)
+    fixed = jumps(run.scene, cable)
+    riders = [run[f"{name}.s"] for name, slide in run.scene.slides.items() if slide.along == cable]
     shown, colour = _snapshots(run)
-    forces = section_forces(described, run[f"{cable}.nodal_vectors"][shown], s)
     figure = Figure(figsize=(7, 4.8))
     tension, moment = figure.subplots(2, sharex=True)
-    for time, pull, turn in zip(run.time[shown], forces["tension"], forces["moment"], strict=True):
-        tension.plot(s, pull, color=colour.to_rgba(time))
-        moment.plot(s, np.linalg.norm(turn, axis=-1), color=colour.to_rgba(time))
+    for number in shown:
+        s = with_sides(described, even, np.append(fixed, [rider[number] for rider in riders]))
+        forces = of_run(run, cable, s[None], slice(number, number + 1))
+        tension.plot(s, forces["tension"][0], color=colour.to_rgba(run.time[number]))
+        moment.plot(s, np.linalg.norm(forces["moment"][0], axis=-1), color=colour.to_rgba(run.time[number]))
     tension.set_ylabel("tension / N")
     moment.set_ylabel("moment / (N m)")
     moment.set_xlabel(f"arc-length s of {cable} / m")
