@@ -240,8 +240,12 @@ def end_points(model: Model, end, q: np.ndarray) -> np.ndarray:
         vectors = q[:, start : start + len(end.N) * model.dim].reshape(len(q), -1, model.dim)
         return spatial(np.einsum("k,tkd->td", end.N, vectors))
     if end.body >= 0:
-        state = body_state(model, model.rigids[end.body], q)
-        return state["position"] + rotate(state["orientation"], model.rigids[end.body].centre + end.u)
+        body = model.rigids[end.body]
+        state, arm = body_state(model, body, q), body.centre + end.u
+        if end.spot is not None:
+            eta = modal_state(model, body, state, q)["modal_coordinates"]
+            arm = spatial(end.spot[0] + eta @ end.spot[1])
+        return state["position"] + rotate(state["orientation"], arm)
     return np.broadcast_to(np.array(end.u), (len(q), 3))
 
 
