@@ -11,12 +11,13 @@ from funicular.libraries import kernels_of
 from funicular.model import CableModel, Model
 from funicular.parts import DistributedForce, Moment
 from funicular.recording import end_points, spatial
+from funicular.rotations import rotate
 from funicular.scene import Scene
 
 
 @dataclass
 class Instants:
-    """A scene at T instants: q (T, n_q), v (T, n_dof) over the model's coordinates, and quantities of its parts.
+    """A scene at T instants: q (T, n_q), v (T, n_dof) of the cables, nil of bodies, and quantities of its parts.
 
     value(name): a result by name, (T, ...); load: how much of the loads is on.
     """
@@ -172,13 +173,21 @@ class CableActions:
             if link.slide is not None or all(end.cable < 0 for end in link.ends):
                 continue
             force, moment = self.at.value(f"{link.name}.force"), self.at.value(f"{link.name}.moment")
-            self._on_end(link.ends[1], force, moment)
-            if link.ends[0].cable >= 0:  # its couple balances the other end's, and the forces where these stand apart
-                gap = self._end_point(link.ends[1]) - self._end_point(link.ends[0])
-                self._on_end(link.ends[0], -force, -moment - np.cross(gap, force))
+            one, other = link.ends[::-1] if link.reversed else link.ends
+            self._on_end(other, force, moment)
+            if one.cable >= 0:  # its moment balances the other end's, and the forces where these stand apart
+                gap = self._end_point(other) - self._end_point(one)
+                self._on_end(one, -force, -moment - np.cross(gap, force))
 
     def _end_point(self, end: EndModel) -> np.ndarray:
-        return end_points(self.model, end, self.at.q)
+        """(T, 3): where an end is."""
+        if end.body < 0:
+            return end_points(self.model, end, self.at.q)
+        body = self.model.rigids[end.body]
+        arm = body.centre + end.u
+        if end.spot is not None:
+            arm = spatial(end.spot[0] + self.at.value(f"{body.name}.modal_coordinates") @ end.spot[1])
+        return self.at.value(f"{body.name}.position") + rotate(self.at.value(f"{body.name}.orientation"), arm)
 
     def _springs(self) -> None:
         for spring in self.model.springs:
@@ -238,7 +247,7 @@ def positions(cable: CableModel) -> np.ndarray:
 
 
 def across(tangent: np.ndarray) -> np.ndarray:
-    """(T, 3): unit vectors square to others."""
-    least = np.eye(3)[np.argmin(np.abs(tangent), axis=-1)]
+    """(T, dim): unit vectors square to others."""
+    least = np.eye(tangent.shape[-1])[np.argmin(np.abs(tangent), axis=-1)]
     part = least - tangent * (np.sum(least * tangent, axis=-1) / np.sum(tangent**2, axis=-1))[:, None]
     return part / np.linalg.norm(part, axis=-1)[:, None]

@@ -118,7 +118,7 @@ class Equilibrium:
             found[f"{joint.name}.s"] = self.placed["s"][k]
             found[f"{joint.name}.force"] = self.placed["force"][k]
         for link, numbers in zip(model.links, self.held, strict=True):
-            values = link_state(numbers)
+            values = link_state(link, numbers)
             found |= {f"{link.name}.{name}": values[name]
                       for name in (("force", "moment") if link.slide is None else ("moment",))}
         for part in scene.supports:
