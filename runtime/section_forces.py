@@ -12,6 +12,7 @@ from funicular.errors import FunicularError, UnknownResultError, near
 from funicular.libraries import kernels_of
 from funicular.nodal_forces import element_forces
 from funicular.section_balance import Cuts, balanced
+from funicular.section_components import balanced_components, components, labels
 from funicular.stiffness import section_stiffness
 from funicular.validation import show
 
@@ -34,28 +35,6 @@ GLOBAL = {
     "force": ("N", "force on the part before the cut"),
     "moment": ("N m", "moment on the part before the cut"),
 }
-CABLE = {
-    "tension": ("N", "force along the cable"),
-    "shear": ("N", "size of the force across it"),
-    "strain": ("1", "axial strain of the mesh"),
-    "curvature": ("1/m", "size of the curvature strain of the mesh"),
-}
-BEAM = {
-    "tension": ("N", "force along the tangent"),
-    "shear": ("N", "size of the force across the tangent"),
-    "shear_y": ("N", "force along the section's height"),
-    "shear_z": ("N", "force along the section's width"),
-    "torque": ("N m", "moment about the tangent"),
-    "moment_y": ("N m", "moment about the section's height"),
-    "moment_z": ("N m", "moment about the section's width"),
-    "strain": ("1", "axial strain"),
-    "shear_strain_y": ("1", "shear strain along the height"),
-    "shear_strain_z": ("1", "shear strain along the width"),
-    "twist": ("1/m", "torsion strain"),
-    "curvature_y": ("1/m", "curvature strain about the height"),
-    "curvature_z": ("1/m", "curvature strain about the width"),
-}
-
 
 def constitutive(cable: Cable, nodal_vectors: np.ndarray, cuts: Cuts) -> tuple[np.ndarray, ...]:
     """The elastic law at cuts: force, moment (T, n, 3), axes of the section (T, n, 3, 3), strains (T, n, 6).
@@ -79,7 +58,7 @@ def cut_forces(scene, model: Model, at: Instants, name: str, s: np.ndarray, *, m
     """Forces in sections of the cable ``name`` at instants.
 
     s: (1 or T, n) arc-lengths in m. Returns force and moment (T, n, 3), along the ground's axes, and the components
-    that `CABLE` or `BEAM` lists (T, n). at_rest: accelerations are nil.
+    of `section_components.labels` (T, n). at_rest: accelerations are nil.
     """
     cable, number = scene.cables[name], list(scene.cables).index(name)
     of = model.cables[number]
@@ -87,44 +66,11 @@ def cut_forces(scene, model: Model, at: Instants, name: str, s: np.ndarray, *, m
     nodal = at.value(f"{name}.nodal_vectors")
     force, moment, axes, strain = constitutive(cable, nodal, cuts)
     if method == "constitutive":
-        return {"force": force, "moment": moment} | _components(cable, force, moment, axes, strain)
+        return {"force": force, "moment": moment} | components(cable, force, moment, axes, strain)
     actions = CableActions(scene, model, at)
     forces = element_forces(scene, model, at, actions, number, at_rest)
-    by_law = force, moment
-    force, moment = balanced(cable, of, forces, actions, number, cuts)
-    if not cable.kind_of_element.director:
-        return _of_cable(cable, force, moment, *by_law, axes[..., 0, :], strain)
-    return {"force": force, "moment": moment} | _components(cable, force, moment, axes, strain)
-
-
-def _of_cable(cable: Cable, force, moment, force_by_law, moment_by_law, tangent, strain) -> dict[str, np.ndarray]:
-    """Components of a cable without directors.
-
-    The elements draw a kink as an arc as long as an element, while a taut cable bends over sqrt(E I / N) alone. Where
-    that is shorter than an element, the force's part across the drawn tangent is no shear, and its moment about points
-    of the drawn line is none of bending: both come from the line's place. So much of them as the elements cannot show is
-    therefore taken from the elastic law: w = N l^2 / (N l^2 + 12 E I), all in a rope, nothing in a stout cantilever.
-    """
-    size, length = np.linalg.norm(force, axis=-1), cable.length / cable.elements
-    bending = 12 * section_stiffness(cable.stiffness_law, cable.section, cable.material, cable.dim)[1]
-    total = size * length**2 + bending
-    w = (size * length**2 / np.where(total > 0, total, 1.0))[..., None]
-    along = np.einsum("tsi,tsi->ts", force, tangent)
-    by_law = force_by_law - np.einsum("tsi,tsi->ts", force_by_law, tangent)[..., None] * tangent
-    shear = np.linalg.norm((1 - w) * (force - along[..., None] * tangent) + w * by_law, axis=-1)
-    tension = np.copysign(np.sqrt(np.maximum(size**2 - shear**2, 0.0)), along)
-    return {"force": force, "moment": (1 - w) * moment + w * moment_by_law, "tension": tension, "shear": shear,
-            "strain": strain[..., 0], "curvature": strain[..., 5]}
-
-
-def _components(cable: Cable, force, moment, axes, strain) -> dict[str, np.ndarray]:
-    tension, shear_y, shear_z = np.moveaxis(np.einsum("tsij,tsj->tsi", axes, force), -1, 0)
-    across = np.linalg.norm(force - tension[..., None] * axes[..., 0, :], axis=-1)
-    strains = np.moveaxis(strain, -1, 0)
-    if not cable.kind_of_element.director:
-        return {"tension": tension, "shear": across, "strain": strains[0], "curvature": strains[5]}
-    moments = np.moveaxis(np.einsum("tsij,tsj->tsi", axes, moment), -1, 0)
-    return dict(zip(BEAM, (tension, across, shear_y, shear_z, *moments, *strains), strict=True))
+    balance = balanced(cable, of, forces, actions, number, cuts)
+    return balanced_components(cable, balance, (force, moment), axes, strain)
 
 
 def of_run(run: Run, name: str, s: np.ndarray, chosen=slice(None), *, method: str = "balance",
@@ -206,7 +152,7 @@ def dataset(state: Run | Equilibrium, name: str, s=None, *, method: str = "balan
     s, follows = _places(state, cable, s, over_time)
     compute: Callable = of_run if over_time else of_equilibrium
     values = compute(state, name, s, method=method, side=side)
-    labels = GLOBAL | (BEAM if cable.kind_of_element.director else CABLE)
+    label = GLOBAL | labels(cable)
     coords: dict = {"xyz": ["x", "y", "z"]}
     told = {"units": "m", "long_name": "undeformed arc-length"}
     if over_time:
@@ -218,7 +164,7 @@ def dataset(state: Run | Equilibrium, name: str, s=None, *, method: str = "balan
     dims = ("time",) * over_time + ("s",) * (not follows) + ("xyz",)
     index = (slice(None) if over_time else 0, 0 if follows else slice(None))
     return xarray.Dataset(
-        {key: (dims[: value[index].ndim], value[index], {"units": labels[key][0], "long_name": labels[key][1]})
+        {key: (dims[: value[index].ndim], value[index], {"units": label[key][0], "long_name": label[key][1]})
          for key, value in values.items()},
         coords, {"cable": name, "element": cable.element, "law": cable.law, "method": method, "side": side})
 
