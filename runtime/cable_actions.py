@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from funicular.actions import GAUSS
 from funicular.holding import CARRIED, UP, EndModel
 from funicular.libraries import kernels_of
-from funicular.model import CableModel, Model
 from funicular.parts import DistributedForce, Moment
 from funicular.recording import end_points, spatial
 from funicular.rotations import rotate
-from funicular.scene import Scene
+
+if TYPE_CHECKING:
+    from funicular.model import CableModel, Model
+    from funicular.scene import Scene
 
 
 @dataclass

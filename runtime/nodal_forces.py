@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from funicular.cable_actions import CableActions, Instants, element_coordinates, rows
-from funicular.model import CableModel, Model
-from funicular.scene import Scene
 from scipy.sparse import block_diag, coo_array, csc_array, kron
 from scipy.sparse.linalg import splu
+
+if TYPE_CHECKING:
+    from funicular.model import CableModel, Model
+    from funicular.scene import Scene
 
 
 @dataclass
@@ -93,7 +96,7 @@ def _external(model: Model, number: int, at: Instants, actions: CableActions) ->
 
 
 def _accelerations(model: Model, at: Instants, forces: dict[int, np.ndarray]) -> np.ndarray:
-    """(T, n_dof): nodal accelerations of these cables, whose forces (T, elements, vectors, dim) are internal less outer.
+    """(T, n_dof): nodal accelerations of these cables; forces (T, elements, vectors, dim) are internal less outer ones.
 
     M a = -forces on what is free, with what supports and joins hold and motions prescribe. Eq 38 gave the same at each
     of the instants: so a run need not keep them.
@@ -115,7 +118,7 @@ def _accelerations(model: Model, at: Instants, forces: dict[int, np.ndarray]) ->
     found = np.zeros_like(assembled)
     if T.shape[1]:
         solve = splu(csc_array(T.T @ M @ T)).solve
-        found[:, held] = (T @ solve(np.ascontiguousarray((T.T @ right.T)))).T
+        found[:, held] = (T @ solve(np.ascontiguousarray(T.T @ right.T))).T
     found[:, held] += prescribed
     return found
 

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from funicular.cables import Cable
     from funicular.model import Model
     from funicular.scene import Scene
-    from funicular.slides import Slide
     from funicular.settings import RunSettings
 
 FILE_FORMAT = 2

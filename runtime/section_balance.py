@@ -3,8 +3,8 @@
 An element's elastic and damping forces and its inertia, less the loads on it, leave what its two nodes give to it
 (nodal_forces.py). Shape functions of positions add up to one, so that these forces are in balance with loads and
 inertia; and nothing elastic changes when all turns, so that their moments are, too. The force at its first node is
-therefore known without the stress inside the element, which jumps from element to element and cannot follow a kink. From
-there on
+therefore known without the stress inside the element, which jumps from element to element and cannot follow a kink.
+From there on
 
     n' = rho A (a - g) - p,     m' = -r' x n + rate of spin of the section - moments a length,
 
@@ -14,12 +14,16 @@ cut. a, r and the section's slopes are those of the shape functions, for which t
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from funicular.cable_actions import CableActions, positions, rows, shape_on_axis
 from funicular.cables import EXACT, Cable
-from funicular.model import CableModel
-from funicular.nodal_forces import ElementForces
 from funicular.recording import spatial
+
+if TYPE_CHECKING:
+    from funicular.model import CableModel
+    from funicular.nodal_forces import ElementForces
 
 
 class Cuts:

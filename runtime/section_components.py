@@ -35,7 +35,7 @@ def labels(cable: Cable) -> dict[str, tuple[str, str]]:
 
 def components(cable: Cable, force: np.ndarray, moment: np.ndarray, axes: np.ndarray,
                strain: np.ndarray) -> dict[str, np.ndarray]:
-    """The components that `labels` names, (T, n): of force, moment (T, n, 3) along axes (T, n, 3, 3); of strain (.., 6)."""
+    """The components that `labels` names, (T, n): of force and moment (T, n, 3) along axes (T, n, 3, 3)."""
     along = np.einsum("tsi,tsi->ts", force, axes[..., 0, :])
     return _named(cable, along, force - along[..., None] * axes[..., 0, :], moment, axes, strain)
 
@@ -44,7 +44,8 @@ def unresolved(cable: Cable, force: np.ndarray) -> np.ndarray:
     """(T, n): how much of a kink the mesh draws as an arc, from 0, nothing, to 1, all.
 
     Under an axial force N a cable bends beside a point force over sqrt(E I / N) alone, a cubic over an element of
-    length l. Of the stiffness against it N l^2 is tension's, 12 E I bending's: x is their ratio, and this x^2/(1 + x^2).
+    length l. N l^2 is what tension has of the stiffness against a kink, 12 E I what bending has: with their ratio x it
+    is x^2/(1 + x^2).
     """
     yy, zz = cable.section.moments()[1:3]
     bending = 12 * cable.material.youngs_modulus * (yy if cable.dim == 2 else max(yy, zz))
