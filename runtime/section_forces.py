@@ -106,10 +106,13 @@ def _instants(run: Run, numbers: np.ndarray) -> Instants:
 def of_equilibrium(state: Equilibrium, name: str, s: np.ndarray, *, method: str = "balance",
                    side: str = "after") -> dict[str, np.ndarray]:
     """`cut_forces` of a state of rest: T = 1; s: (1, n)."""
-    model = state.model
-    at = Instants(np.zeros(1), state.placed["q"][None], np.zeros((1, model.n_dof)),
-                  lambda quantity: state[quantity][None], state.load_fraction)
-    return cut_forces(state.scene, model, at, name, s, method=method, side=side, at_rest=True)
+    return cut_forces(state.scene, state.model, rest_instants(state), name, s, method=method, side=side, at_rest=True)
+
+
+def rest_instants(state: Equilibrium) -> Instants:
+    """A state of rest as one instant, with as much of the loads as it has."""
+    return Instants(np.zeros(1), state.placed["q"][None], np.zeros((1, state.model.n_dof)),
+                    lambda quantity: state[quantity][None], state.load_fraction)
 
 
 def jumps(scene, name: str) -> np.ndarray:

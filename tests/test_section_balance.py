@@ -5,7 +5,8 @@ import pytest
 from funicular import Circle, General, Harmonic, Material, Rectangle, Scene, load_run, load_scene, recording
 from funicular.generated import kernels
 from funicular.nodal_forces import element_forces
-from funicular.section_forces import CableActions, _instants
+from funicular.section_balance import Cuts, balanced
+from funicular.section_forces import CableActions, _instants, jumps, rest_instants
 from numpy.testing import assert_allclose
 
 SOFT = {"youngs_modulus": 1e8, "poisson_ratio": 0.3, "density": 2000}
@@ -61,16 +62,16 @@ def driven():
 
 def cable_on_cable(frame):
     scene = scene_between_pins("cable12")
-    cable(scene, "link", "beam24", 3, (2, 0, 0), (2.2, -1, 0), up=(1, 0, 0))
-    scene.slide(("link", 0.0), along="rope", s=2.0, name="trolley", frame=frame)
+    cable(scene, "link", "beam24", 3, (2.5, 0, 0), (2.7, -1, 0), up=(1, 0, 0))
+    scene.slide(("link", 0.0), along="rope", s=2.5, name="trolley", frame=frame)
     return scene
 
 
 def modal_rider():
     scene = scene_between_pins("cable12")
-    scene.modal_body("A", start=(2, 0, 0), end=(2, -1, 0), section=Rectangle(height=0.02, width=0.02),
+    scene.modal_body("A", start=(2.5, 0, 0), end=(2.5, -1, 0), section=Rectangle(height=0.02, width=0.02),
                      material=Material(**SOFT), up=(1, 0, 0), modes=4)
-    scene.slide(("A", 0.0), along="rope", s=2.0, name="trolley", frame="tangent")
+    scene.slide(("A", 0.0), along="rope", s=2.5, name="trolley", frame="tangent")
     return scene
 
 
@@ -159,6 +160,47 @@ def test_accelerations_are_the_engines(name, engine_rows):
         a = a - cable.mass_damping * _of_elements(cable, at.v)
         expected = _of_elements(cable, engine_rows["acceleration"])
         assert_allclose(a, expected, atol=1e-9 * np.abs(engine_rows["acceleration"][:, : len(model.place)]).max())
+
+
+def gaps_at_nodes(scene, model, at, at_rest):
+    """Jumps of force and moment over inner nodes that nothing acts on, relative to the largest."""
+    actions = CableActions(scene, model, at)
+    for k, (name, cable) in enumerate(scene.cables.items()):
+        s = np.setdiff1d(np.round(cable.node_s, 9)[1:-1], np.round(jumps(scene, name), 9))[None]
+        elements = element_forces(scene, model, at, actions, k, at_rest)
+        places = (s, False), (s, True), (np.linspace(0, cable.length, 50)[None], True)
+        before, after, every = (balanced(cable, model.cables[k], elements, actions, k, Cuts(model.cables[k], at, side))
+                                for at, side in places)
+        yield from (np.abs(b - a).max(initial=0) / np.abs(e).max()
+                    for b, a, e in zip(before, after, every, strict=True))
+
+
+@pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
+@pytest.mark.parametrize("name", [name for name in SCENES if name != "motion"])
+def test_nothing_is_left_over_at_nodes(name):
+    """What an element passes on over its length, by integrals, is what its other node takes."""
+    scene = SCENES[name]()
+    run = scene.run(duration=0.1, output_step=0.1, tol=1e-4)
+    for gap in gaps_at_nodes(run.scene, run.model, _instants(run, np.arange(2)), at_rest=False):
+        assert gap < (1e-4 if name == "loads on cable18" else 1e-9)  # a turning load of the fifth degree, by 4 points
+
+
+RESTS = ["loads on cable12", "loads on beam24", "section of beam24", "cable tied to cable"]
+
+
+@pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
+@pytest.mark.parametrize("name", RESTS)
+def test_at_rest(name):
+    """A state of rest: riders are driven or their slides would go on to the lowest point."""
+    scene = SCENES[name]()
+    rest = scene.equilibrium()
+    for slide in scene.slides.values():
+        before, after = (rest.section_forces(slide.along, slide, side=side)["force"] for side in ("before", "after"))
+        assert_allclose(before - after, -rest[f"{slide.name}.force"], atol=1e-6)
+        s = rest.section_forces(slide.along)["s"].values
+        assert np.sum(np.abs(s - rest[f"{slide.name}.s"]) < 1e-7) >= 2
+    for gap in gaps_at_nodes(scene, rest.model, rest_instants(rest), at_rest=True):
+        assert gap < 1e-6
 
 
 def _of_elements(cable, values):
@@ -268,7 +310,7 @@ def test_many_times_go_in_pieces(monkeypatch):
 
 @pytest.mark.parametrize("elements", [12, 24, 25])
 def test_a_sharp_kink(elements):
-    """1000 N on a slack rope without weight: its size in each half is that of the triangle of forces, and its tension."""
+    """1000 N on a slack rope without weight: its tension in each half is the side of the triangle of forces."""
     scene = Scene(gravity=(0, 0, 0))
     scene.cable("rope", points=[(0, 0, 0), (5, -3.3, 0), (10, 0, 0)], rest="straight", rest_length=12,
                 elements=elements, element="cable8p", section=General(area=1e-4, second_moment_yy=1e-9),
@@ -346,7 +388,7 @@ def test_a_beam_that_spins():
 
 
 def test_a_force_that_crosses_a_beam():
-    """Case M1 at half the critical speed: the moment at three sections and under the force, against Fourier's series."""
+    """Case M1 at half the critical speed: moments at three sections and under the force, against Fourier's series."""
     F, EI, line = 1.0, 1e9 * DEPTH**4 / 12, 1000 * DEPTH**2
     v = 0.5 * np.pi / LENGTH * np.sqrt(EI / line)
     scene = beam("cable8p", None, 8)
