@@ -11,7 +11,7 @@ from funicular.errors import ResultFileError
 from funicular.modal_bodies import ModalBody
 from funicular.results import ENERGIES
 from funicular.rotations import rotate
-from funicular.section_forces import PLACES, jumps, of_run, with_sides
+from funicular.section_forces import even, jumps, of_run, with_sides
 
 if TYPE_CHECKING:
     import os
@@ -267,18 +267,17 @@ def draw_section_forces(run: Run, cable: str) -> Figure:
     """Tension and size of the moment along a cable, at a few times, coloured by time; both sides of jumps."""
     from matplotlib.figure import Figure
 
-    described = run.scene.cables[cable]
-    even = np.linspace(0, described.length, PLACES * described.elements + 1)
+    described, (shown, colour) = run.scene.cables[cable], _snapshots(run)
     fixed = jumps(run.scene, cable)
-    riders = [run[f"{name}.s"] for name, slide in run.scene.slides.items() if slide.along == cable]
-    shown, colour = _snapshots(run)
+    riders = [run[f"{name}.s"][shown] for name, slide in run.scene.slides.items() if slide.along == cable]
+    places = np.concatenate([np.broadcast_to(fixed, (len(shown), len(fixed))), *(s[:, None] for s in riders)], axis=1)
+    s = with_sides(described, even(described), places)
+    forces = of_run(run, cable, s, shown)
     figure = Figure(figsize=(7, 4.8))
     tension, moment = figure.subplots(2, sharex=True)
-    for number in shown:
-        s = with_sides(described, even, np.append(fixed, [rider[number] for rider in riders]))
-        forces = of_run(run, cable, s[None], slice(number, number + 1))
-        tension.plot(s, forces["tension"][0], color=colour.to_rgba(run.time[number]))
-        moment.plot(s, np.linalg.norm(forces["moment"][0], axis=-1), color=colour.to_rgba(run.time[number]))
+    for k, time in enumerate(run.time[shown]):
+        tension.plot(s[k], forces["tension"][k], color=colour.to_rgba(time))
+        moment.plot(s[k], np.linalg.norm(forces["moment"][k], axis=-1), color=colour.to_rgba(time))
     tension.set_ylabel("tension / N")
     moment.set_ylabel("moment / (N m)")
     moment.set_xlabel(f"arc-length s of {cable} / m")

@@ -27,7 +27,7 @@ PLACES = 8
 BESIDE = 4 * EXACT
 """Of the cable's length: how far from a jump its two sides are looked at."""
 AT_ONCE = 100_000
-"""Cuts, over all times, that are worked on together."""
+"""Cuts or elements, over all times, that are worked on together."""
 METHODS = ("balance", "constitutive")
 SIDES = ("after", "before")
 
@@ -79,7 +79,7 @@ def of_run(run: Run, name: str, s: np.ndarray, chosen=slice(None), *, method: st
     time = run.time[chosen]
     numbers = np.arange(len(run.time))[chosen]
     found: list[dict] = []
-    block = max(1, AT_ONCE // max(1, s.shape[1]))
+    block = max(1, AT_ONCE // max(1, s.shape[1], sum(cable.elements for cable in run.scene.cables.values())))
     for first in range(0, len(time), block):
         part = numbers[first : first + block]
         found.append(cut_forces(run.scene, run.model, _instants(run, part), name,
@@ -132,11 +132,16 @@ def jumps(scene, name: str) -> np.ndarray:
     return np.array(sorted({float(s) for s in places if s is not None and beside < s < cable.length - beside}))
 
 
+def even(cable: Cable) -> np.ndarray:
+    """Places along all of a cable, its nodes among them."""
+    return np.linspace(0, cable.length, PLACES * cable.elements + 1)
+
+
 def with_sides(cable: Cable, s: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """s with a point on either side of each place."""
+    """s (n,), in order, with a point on either side of each of the places (..., m): (..., n + 2 m)."""
     beside = BESIDE * cable.length
-    inside = places[(places > beside) & (places < cable.length - beside)]
-    return np.unique(np.concatenate([s, inside - beside, inside + beside]))
+    sides = np.clip(np.concatenate([places - beside, places + beside], axis=-1), 0.0, cable.length)
+    return np.sort(np.concatenate([np.broadcast_to(s, (*sides.shape[:-1], len(s))), sides], axis=-1), axis=-1)
 
 
 def dataset(state: Run | Equilibrium, name: str, s=None, *, method: str = "balance",
@@ -180,7 +185,7 @@ def _places(state: Run | Equilibrium, cable: Cable, s, over_time: bool) -> tuple
         if not over_time:
             riders = [state[f"{slide.name}.s"] for slide in scene.slides.values() if slide.along == name]
             places = np.append(places, riders)
-        return with_sides(cable, np.linspace(0, cable.length, PLACES * cable.elements + 1), places)[None], False
+        return np.unique(with_sides(cable, even(cable), places))[None], False
     slide = scene.slides.get(getattr(s, "name", s)) if isinstance(getattr(s, "name", s), str) else None
     if slide is not None:
         if slide.along != name:
