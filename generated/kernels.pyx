@@ -69,6 +69,19 @@ def _function(name, int place):
     kernel.__doc__ = "\n".join([f"{entry['doc']} ({entry['source']}).", "", *lines])
     kernel.__signature__ = signature
     kernel.shapes = {a["name"]: tuple(a["shape"]) for a in entry["inputs"] + entry["outputs"]}
+
+    def rows(n, *given):
+        if len(given) != len(inputs):
+            raise TypeError(f"{name} takes ({', '.join(argument for argument, _ in inputs)})")
+        arrays = [_rows(name, argument, shape, n, value) for (argument, shape), value in zip(inputs, given)]
+        results = [np.empty((n, *shape)) for shape in outputs]
+        steps = [0 if alike else a.nbytes // n for a, alike in arrays] + [8 * int(np.prod(shape)) for shape in outputs]
+        _call_rows(place, n, np.array([a.ctypes.data for a, _ in arrays] + [r.ctypes.data for r in results],
+                                      dtype=np.uintp), np.array(steps, dtype=np.uintp), len(arrays))
+        return results[0] if len(results) == 1 else tuple(results)
+
+    rows.__doc__ = (f"{name} n times: each argument once, or (n, ...) for each its own. Returns arrays (n, ...).")
+    kernel.rows = rows
     return kernel
 
 
@@ -77,6 +90,26 @@ def _array(kernel, name, shape, value):
     if array.size != np.prod(shape, dtype=int):
         raise ValueError(f"{kernel}: argument {name} must have shape {shape}, got {array.shape}")
     return array
+
+
+def _rows(kernel, name, shape, int n, value):
+    """An argument of n calls, and whether it is the same in all of them."""
+    array = np.asarray(value, dtype=float, order="C")  # a number keeps its shape ()
+    alike = array.shape == shape
+    if not alike and array.shape != (n, *shape):
+        raise ValueError(f"{kernel}: argument {name} must have shape {shape} or {(n, *shape)}, got {array.shape}")
+    return array, alike
+
+
+cdef _call_rows(int place, int n, pointers, steps, int n_inputs):
+    """Run a kernel n times; inputs and outputs go on by so many bytes each time."""
+    cdef size_t[::1] at = pointers, by = steps
+    cdef int k, i, every = at.shape[0]
+    with nogil:
+        for k in range(n):
+            fu_kernels[place].call(<const double *const *>&at[0], <double *const *>(&at[0] + n_inputs))
+            for i in range(every):
+                at[i] += by[i]
 
 
 cdef _call(int place, inputs, outputs):

@@ -10,7 +10,7 @@ from funicular.holding import EndModel, Holder
 from funicular.parts import DistributedForce, Force, Moment
 from funicular.placing import placed_end
 from funicular.scene import Scene
-from funicular.signals import Constant
+from funicular.signals import Constant, value_at
 
 CABLE_FOLLOWER, CABLE_MOMENT, BODY_FORCE, BODY_FOLLOWER, BODY_MOMENT = range(5)
 """Kinds of loads, in the order of engine.h."""
@@ -28,6 +28,10 @@ class SignalModel:
     amplitude: float
     angular_frequency: float
     phase: float
+
+    def value(self, time: np.ndarray, derivative: int = 0) -> np.ndarray:
+        """The signal, or a derivative of it, at the times ``time``, s."""
+        return value_at(self, self.breaks, self.coefficients, time, derivative)
 
 
 @dataclass

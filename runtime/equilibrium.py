@@ -119,11 +119,15 @@ class Equilibrium:
                 raise SceneError("scene", f"the state to start from is of another scene: its {kind} are "
                                  f"{self.layout[kind]}, here they are {here}", "take an equilibrium of this scene")
 
-    def section_forces(self, cable: Cable | str, s=None) -> xarray.Dataset:
-        """Forces and moments in sections of ``cable`` as `Run.section_forces` has them, over s alone."""
+    def section_forces(self, cable: Cable | str, s=None, *, method: str = "balance",
+                       side: str = "after") -> xarray.Dataset:
+        """Forces and moments in sections of ``cable`` as `Run.section_forces` has them, over s alone.
+
+        Where no s is given, both sides of riders are among the places.
+        """
         from funicular.section_forces import dataset
 
-        return dataset(self, cable, s)
+        return dataset(self, cable, s, method=method, side=side)
 
     def start(self, model: Model) -> None:
         """Put a freshly built model of the same scene into this state."""
@@ -150,7 +154,7 @@ class Equilibrium:
             found[f"{joint.name}.s"] = self.placed["s"][k]
             found[f"{joint.name}.force"] = self.placed["force"][k]
         for link, numbers in zip(model.links, self.held, strict=True):
-            values = link_state(numbers)
+            values = link_state(link, numbers)
             found |= {f"{link.name}.{name}": values[name]
                       for name in (("force", "moment") if link.slide is None else ("moment",))}
         for part in scene.supports:

@@ -50,7 +50,8 @@ class EndModel:
 class LinkModel:
     """A joint between two ends; unknown, multiplier: places of its rows; signal: that drives it, or -1.
 
-    slide: the one beside which it ties a rider's axes to the cable; idle: rows that other joints imply (redundancy.py).
+    slide: the one beside which it ties a rider's axes to the cable; idle: rows that other joints imply (redundancy.py);
+    reversed: the first end is the joint's b.
     """
 
     name: str
@@ -63,6 +64,7 @@ class LinkModel:
     scale: np.ndarray
     slide: str | None = None
     idle: set[int] = field(default_factory=set)
+    reversed: bool = False
 
     @property
     def rows(self) -> int:
@@ -151,20 +153,23 @@ def linked(holder: Holder, joint: Joint, signal, unknown: int, multiplier: int) 
     ends = [holder.end(anchor, axes if needs else None, None if anchor.on not in scene.cables
                        or has_section(scene.cables[anchor.on]) else joint.up)
             for anchor, axes in zip((joint.a, joint.b), at, strict=True)]
-    kind, driven = joint.pair, joint.is_driven
+    kind, driven, turned = joint.pair, joint.is_driven, False
     if scene.dim == 2:
         kind = {"revolute": "revolute" if driven else "spherical", "cylindrical": "prismatic"}.get(kind, kind)
     if driven and joint.pair != "distance":
         kind += f"_{DRIVEN[joint.pair]}"
         if scene.dim == 2 and joint.axes[2, 2] < -0.5:  # about -z: what a sees of b is what b sees of a about z
             ends.reverse()
+            turned = True
     base = 0.0
     if joint.pair == "distance":
         base = 0.0 if driven else joint.length
     elif driven and DRIVEN[joint.pair] == "distance":
         base = float(joint.axes[:, 2] @ (point_of(scene, joint.b) - point_of(scene, joint.a)))
-    return _link(joint.name, kind, scene.dim, ends, unknown, multiplier, signal(joint.prescribed) if driven else -1,
+    link = _link(joint.name, kind, scene.dim, ends, unknown, multiplier, signal(joint.prescribed) if driven else -1,
                  base)
+    link.reversed = turned
+    return link
 
 
 def tied(holder: Holder, slide: Slide, number: int, unknown: int, multiplier: int) -> LinkModel:

@@ -56,6 +56,23 @@ class Kernel:
         self._function(*(v.ctypes.data if isinstance(v, np.ndarray) else v for v in (*values, *outputs)))
         return outputs[0] if len(outputs) == 1 else tuple(outputs)
 
+    def rows(self, n: int, *given):
+        """The outputs (n, ...) of n calls; each argument once, or (n, ...) for each its own."""
+        if len(given) != len(self._inputs):
+            raise TypeError(f"{self.__name__} takes ({', '.join(name for name, _ in self._inputs)})")
+        arrays = [np.asarray(value, dtype=float) for value in given]
+        for (name, shape), array in zip(self._inputs, arrays, strict=True):
+            if array.shape not in (shape, (n, *shape)):
+                raise ValueError(f"{self.__name__}: argument {name} must have shape {shape} or {(n, *shape)}, "
+                                 f"got {array.shape}")
+        alike = [array.shape == shape for (_, shape), array in zip(self._inputs, arrays, strict=True)]
+        found = [np.empty((n, *shape)) for shape in self._outputs]
+        for k in range(n):
+            once = self(*(array if same else array[k] for array, same in zip(arrays, alike, strict=True)))
+            for into, value in zip(found, once if len(found) > 1 else (once,), strict=True):
+                into[k] = value
+        return found[0] if len(found) == 1 else tuple(found)
+
     def _array(self, value, shape: tuple[int, ...], name: str) -> np.ndarray:
         array = np.ascontiguousarray(value, dtype=float)
         if array.size != math.prod(shape):

@@ -11,7 +11,7 @@ from funicular.errors import ResultFileError
 from funicular.modal_bodies import ModalBody
 from funicular.results import ENERGIES
 from funicular.rotations import rotate
-from funicular.section_forces import PLACES, section_forces
+from funicular.section_forces import even, jumps, of_run, with_sides
 
 if TYPE_CHECKING:
     import os
@@ -39,7 +39,6 @@ STYLE = {
 }
 SNAPSHOTS = 11
 POINTS_PER_ELEMENT = 24
-INSIDE = 1e-8
 
 
 class View(NamedTuple):
@@ -265,20 +264,20 @@ def draw_slide(run: Run) -> Figure | None:
 
 
 def draw_section_forces(run: Run, cable: str) -> Figure:
-    """Tension and size of the moment along a cable, at a few times, coloured by time."""
+    """Tension and size of the moment along a cable, at a few times, coloured by time; both sides of jumps."""
     from matplotlib.figure import Figure
 
-    described = run.scene.cables[cable]
-    # up to both ends of each element, just inside: forces may jump at nodes
-    inside = np.linspace(INSIDE, 1 - INSIDE, PLACES + 1)
-    s = (np.arange(described.elements)[:, None] + inside).ravel() * (described.length / described.elements)
-    shown, colour = _snapshots(run)
-    forces = section_forces(described, run[f"{cable}.nodal_vectors"][shown], s)
+    described, (shown, colour) = run.scene.cables[cable], _snapshots(run)
+    fixed = jumps(run.scene, cable)
+    riders = [run[f"{name}.s"][shown] for name, slide in run.scene.slides.items() if slide.along == cable]
+    places = np.concatenate([np.broadcast_to(fixed, (len(shown), len(fixed))), *(s[:, None] for s in riders)], axis=1)
+    s = with_sides(described, even(described), places)
+    forces = of_run(run, cable, s, shown)
     figure = Figure(figsize=(7, 4.8))
     tension, moment = figure.subplots(2, sharex=True)
-    for time, pull, turn in zip(run.time[shown], forces["tension"], forces["moment"], strict=True):
-        tension.plot(s, pull, color=colour.to_rgba(time))
-        moment.plot(s, np.linalg.norm(turn, axis=-1), color=colour.to_rgba(time))
+    for k, time in enumerate(run.time[shown]):
+        tension.plot(s[k], forces["tension"][k], color=colour.to_rgba(time))
+        moment.plot(s[k], np.linalg.norm(forces["moment"][k], axis=-1), color=colour.to_rgba(time))
     tension.set_ylabel("tension / N")
     moment.set_ylabel("moment / (N m)")
     moment.set_xlabel(f"arc-length s of {cable} / m")

@@ -14,6 +14,7 @@ from funicular.scene import Scene
 from funicular.settings import RunSettings
 
 if TYPE_CHECKING:
+    from funicular.holding import LinkModel
     from funicular.model import Model
     from funicular.watching import Watcher
 
@@ -154,7 +155,7 @@ def named(model: Model, scene: Scene, engine) -> Rows:
 
     for k, link in enumerate(model.links):
         if link.slide is not None:
-            slides[link.slide]["moment"] = link_state(rows["link"][:, k])["moment"]
+            slides[link.slide]["moment"] = link_state(link, rows["link"][:, k])["moment"]
 
     def held(part) -> dict[str, np.ndarray]:
         return support_reaction(model, scene, part, rows["reaction"], q)
@@ -169,7 +170,7 @@ def named(model: Model, scene: Scene, engine) -> Rows:
         clamps={clamp.label: held(clamp) for clamp in scene.clamps},
         motions={motion.label: held(motion) for motion in scene.motions},
         joins={name: join_force(model, scene, join, rows["reaction"], q) for name, join in scene.joins.items()},
-        joints={link.name: link_state(rows["link"][:, k])
+        joints={link.name: link_state(link, rows["link"][:, k])
                 for k, link in enumerate(model.links) if link.slide is None},
         springs={spring.name: spring_state(model, spring, rows["spring"][:, k], q)
                  for k, spring in enumerate(model.springs)},
@@ -214,9 +215,10 @@ def _costs(model: Model, engine) -> dict[str, float]:
     return found
 
 
-def link_state(numbers: np.ndarray) -> dict[str, np.ndarray]:
-    """From the engine's numbers (..., FU_LINK_OUTPUTS) of a joint."""
-    return {"force": numbers[..., :3], "moment": numbers[..., 3:6], "residual": numbers[..., 6]}
+def link_state(link: LinkModel, numbers: np.ndarray) -> dict[str, np.ndarray]:
+    """Force and moment on the end b, and residual, from the engine's numbers (..., FU_LINK_OUTPUTS) of a joint."""
+    sign = -1.0 if link.reversed else 1.0  # that has its ends at one point
+    return {"force": sign * numbers[..., :3], "moment": sign * numbers[..., 3:6], "residual": numbers[..., 6]}
 
 
 def _turning(rates: np.ndarray) -> np.ndarray:
@@ -240,8 +242,12 @@ def end_points(model: Model, end, q: np.ndarray) -> np.ndarray:
         vectors = q[:, start : start + len(end.N) * model.dim].reshape(len(q), -1, model.dim)
         return spatial(np.einsum("k,tkd->td", end.N, vectors))
     if end.body >= 0:
-        state = body_state(model, model.rigids[end.body], q)
-        return state["position"] + rotate(state["orientation"], model.rigids[end.body].centre + end.u)
+        body = model.rigids[end.body]
+        state, arm = body_state(model, body, q), body.centre + end.u
+        if end.spot is not None:
+            eta = modal_state(model, body, state, q)["modal_coordinates"]
+            arm = spatial(end.spot[0] + eta @ end.spot[1])
+        return state["position"] + rotate(state["orientation"], arm)
     return np.broadcast_to(np.array(end.u), (len(q), 3))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import warnings
 from collections.abc import Mapping
 from functools import cached_property
 from operator import methodcaller
@@ -11,12 +12,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from funicular.errors import ResultFileError, UnknownResultError, near
+from funicular.errors import FunicularWarning, ResultFileError, UnknownResultError, near
 from funicular.netcdf import File, Stored, Variable, create, last_report
 
 if TYPE_CHECKING:
     import xarray
     from funicular.cables import Cable
+    from funicular.model import Model
     from funicular.scene import Scene
     from funicular.settings import RunSettings
 
@@ -136,7 +138,16 @@ class Run:
         """The scene that was run, read back from its text."""
         from funicular.scene_file import loads
 
-        return loads(self.scene_toml, "the scene of the run")
+        with warnings.catch_warnings():  # what it had to say it said before the run
+            warnings.simplefilter("ignore", FunicularWarning)
+            return loads(self.scene_toml, "the scene of the run")
+
+    @cached_property
+    def model(self) -> Model:
+        """The model of that scene, as it was drawn: numbers of its coordinates, what holds and joins them."""
+        from funicular.model import build
+
+        return build(self.scene)
 
     def keys(self) -> list[str]:
         """The names of all results."""
@@ -207,19 +218,29 @@ class Run:
         exchanged = float(np.abs(changes).sum(axis=0).max() / 2)
         return EnergyBalance(residual, exchanged, residual / (exchanged or 1.0))
 
-    def section_forces(self, cable: Cable | str, s=None) -> xarray.Dataset:
-        """Forces and moments in sections of ``cable``, at arc-lengths ``s`` (n,) in m; none given: along all of it.
+    def section_forces(self, cable: Cable | str, s=None, *, method: str = "balance",
+                       side: str = "after") -> xarray.Dataset:
+        """Forces and moments in sections of ``cable``.
 
-        Those of the elastic law: what Kelvin-Voigt damping adds is not in them.
+        s: arc-lengths (n,) in m; or the name of a slide on it, for the section where that is at each time. None given:
+        along all of the cable, with both sides of supports, joins and loads.
+        method: "balance", from what is in balance with the nodes' forces, loads, inertia and riders; "constitutive",
+        from the elastic law and the strains of the mesh, without what Kelvin-Voigt damping adds. Both go to the same
+        as the mesh is refined. Beside a point force, and wherever the force turns within an element, the second swings
+        about the first by up to a tenth and more on any mesh. It is what the elastic energy is made of.
+        side: "after" or "before", of a force or moment on one point the side of larger or of smaller s. At the ends of
+        the cable it is always the one inside.
 
         Returns a Dataset over (time, s): force and moment, on the part before the cut along the ground's axes (xyz), in
-        N and N m; tension, shear and strain; curvature of cables; components along the section's axes of beams. At a
-        node, where the forces of an element may jump, they are those of the element that begins there.
+        N and N m; tension, shear and strain; curvature of cables; components along the section's axes of beams. Strains
+        are those of the mesh. Where a cable's elements are longer than sqrt(E I / N), they cannot show how it bends
+        beside a point force: its tension is then the size of the force, its moment that of the mesh's curvature, which
+        is less than the true one within that length of the point.
         Raises UnknownResultError; FunicularError where s is off the cable.
         """
         from funicular.section_forces import dataset
 
-        return dataset(self, cable, s)
+        return dataset(self, cable, s, method=method, side=side)
 
     def summary_rows(self) -> list[tuple[str, str]]:
         """What to tell about the run in short: pairs of a heading and a text."""

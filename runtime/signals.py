@@ -55,15 +55,21 @@ class Signal(Part):
 
     def value(self, time, derivative: int = 0) -> np.ndarray:
         """The signal, or a derivative of it, at the times ``time`` (any shape, s)."""
-        time = np.asarray(time, dtype=float)
-        breaks, coefficients = self.pieces()
+        return value_at(self, *self.pieces(), time, derivative)
+
+
+def value_at(signal, breaks: np.ndarray, coefficients: np.ndarray, time, derivative: int = 0) -> np.ndarray:
+    """A derivative, at times of any shape, of such a piecewise polynomial with the sine of ``signal``."""
+    time = np.asarray(time, dtype=float)
+    result = np.zeros(time.shape)
+    if len(coefficients):
         piece = np.clip(np.searchsorted(breaks, time, side="right") - 1, 0, len(coefficients) - 1)
-        since, result = time - breaks[piece], np.zeros(time.shape)
+        since = time - breaks[piece]
         for power in range(DEGREE, derivative - 1, -1):
             factor = np.prod(np.arange(power - derivative + 1, power + 1))
             result = result * since + factor * coefficients[piece, power]
-        w = self.angular_frequency
-        return result + self.amplitude * w**derivative * np.sin(w * time + self.phase + derivative * pi / 2)
+    w = signal.angular_frequency
+    return result + signal.amplitude * w**derivative * np.sin(w * time + signal.phase + derivative * pi / 2)
 
 
 def _steps(times: list[float], values: list[float]) -> tuple[np.ndarray, np.ndarray]:

@@ -9,6 +9,7 @@ import pytest
 from fake_recording import fake_recording
 from funicular import ConvergenceError, EndOfCableError, FunicularWarning, load_run, load_scene
 from funicular.cli import app
+from funicular.model import build
 from typer.testing import CliRunner
 
 END = 'slide "trolley": reached the end of cable "wire" at t = 0.4 s'
@@ -26,7 +27,7 @@ def engine(monkeypatch, tmp_path):
         on_progress(settings.duration / 2)
         return fake_recording(scene, **module.outcome)
 
-    module.simulate = simulate
+    module.simulate, module.build = simulate, build
     monkeypatch.setitem(sys.modules, "funicular.model", module)
     monkeypatch.chdir(tmp_path)
     return module

@@ -8,9 +8,12 @@ import pytest
 from fake_recording import fake_recording
 from funicular import Circle, FunicularError, Material, Scene, UnknownResultError, load_scene
 from funicular.generated import kernels
+from funicular.model import build
 from funicular.plot import draw_section_forces, save_plots
 from funicular.results import Run
-from funicular.section_forces import BEAM, CABLE, section_forces
+from funicular.section_balance import Cuts
+from funicular.section_components import BEAM, CABLE, components
+from funicular.section_forces import constitutive
 from funicular.settings import RunSettings
 from funicular.stiffness import section_stiffness
 from numpy.testing import assert_allclose
@@ -24,14 +27,15 @@ def calls(monkeypatch):
     """Kernels that return the place of the cut as a tension, and keep what they were called with."""
     kept = []
 
-    def kernel(l, x, e, S, *e0):
+    def rows(n, l, x, e, S, *e0):
         kept.append(SimpleNamespace(l=l, x=x, e=e, S=S, e0=e0))
-        place = e[0, 0] + x
-        return AXES.T @ [place, 2, 3], AXES.T @ [4, 5, 6], AXES, np.arange(6) + 1.0
+        along = np.stack([e[:, 0, 0] + x, np.full(n, 2.0), np.full(n, 3.0)], axis=1)
+        return along @ AXES, np.tile(AXES.T @ [4, 5, 6], (n, 1)), np.tile(AXES, (n, 1, 1)), np.tile(np.arange(6) + 1.0,
+                                                                                                  (n, 1))
 
     for name in ("beam24_continuum", "beam24_continuum_curved", "beam24_structural", "cable12_green_exact",
                  "beam12p_continuum"):
-        monkeypatch.setattr(kernels, f"{name}_section_forces", kernel, raising=False)
+        monkeypatch.setattr(kernels, f"{name}_section_forces", SimpleNamespace(rows=rows), raising=False)
     return kept
 
 
@@ -41,54 +45,78 @@ def run():
     return Run.from_recording(fake_recording(scene, times=3), scene, RunSettings(duration=1.0))
 
 
+def by_law(scene: Scene, *s: float) -> dict[str, np.ndarray]:
+    """Components by the elastic law of the only cable as it is drawn."""
+    (wire,) = scene.cables.values()
+    cuts = Cuts(build(scene).cables[0], np.array([s]), after=True)
+    force, moment, axes, strain = constitutive(wire, wire.nodal_vectors[None], cuts)
+    return {"force": force, "moment": moment} | components(wire, force, moment, axes, strain)
+
+
 def test_a_cut_lies_in_its_element(run, calls):
     s = [0, 0.2, 0.5, 1.2, 1.5]
-    forces = run.section_forces("wire", s)
+    forces = run.section_forces("wire", s, method="constitutive")
     assert_allclose(forces["tension"], np.tile(s, (3, 1)), rtol=1e-12)  # r of the element's first node, and x
-    assert [(round(c.e[0, 0], 9), round(c.x, 9)) for c in calls[::3]] == [
-        (0, 0), (0, 0.2), (0.5, 0), (1, 0.2), (1, 0.5)]
-    assert calls[0].l == 0.5 and calls[0].e.shape == (8, 3) and calls[0].e0 == ()
+    (call,) = calls
+    assert_allclose(np.stack([call.e[:, 0, 0], call.x], axis=1)[:5],
+                    [(0, 0), (0, 0.2), (0.5, 0), (1, 0.2), (1, 0.5)], atol=1e-12)
+    assert call.l == 0.5 and call.e.shape == (15, 8, 3) and call.e0 == ()
     wire = run.scene.cables["wire"]
-    assert_allclose(calls[0].S, section_stiffness("continuum", wire.section, wire.material))
+    assert_allclose(call.S, section_stiffness("continuum", wire.section, wire.material))
+
+
+def test_a_node_has_two_sides(run, calls):
+    run.section_forces("wire", [0, 0.5, 1.5], method="constitutive", side="before")
+    assert_allclose(calls[0].x[:3], [0, 0.5, 0.5], atol=1e-12)
+    assert_allclose(calls[0].e[:3, 0, 0], [0, 0, 1], atol=1e-12)
 
 
 def test_components_and_labels_of_a_beam(run, calls):
-    forces = run.section_forces(run.scene.cables["wire"], s=0.25)
+    forces = run.section_forces(run.scene.cables["wire"], s=0.25, method="constitutive")
     assert dict(forces.sizes) == {"time": 3, "s": 1, "xyz": 3}
     assert_allclose(forces["force"].sel(s=0.25), np.tile(AXES.T @ [0.25, 2, 3], (3, 1)))
-    components = {name: float(forces[name][0, 0]) for name in BEAM}
-    assert_allclose(list(components.values()), [0.25, np.sqrt(13), 2, 3, 4, 5, 6, 1, 2, 3, 4, 5, 6])
+    values = {name: float(forces[name][0, 0]) for name in BEAM}
+    assert_allclose(list(values.values()), [0.25, np.sqrt(13), 2, 3, 4, 5, 6, 1, 2, 3, 4, 5, 6])
     assert forces["moment_y"].units == "N m" and forces["twist"].units == "1/m"
     assert_allclose(forces["time"], run.time)
-    assert forces.attrs == {"cable": "wire", "element": "beam24", "law": "continuum"}
+    assert forces.attrs == {"cable": "wire", "element": "beam24", "law": "continuum", "method": "constitutive",
+                            "side": "after"}
 
 
 def test_along_all_of_the_cable(run, calls):
     assert_allclose(run.section_forces("wire")["s"], np.linspace(0, 1.5, 25))
 
 
+def test_where_a_slide_is(run):
+    forces = run.section_forces("wire", run.scene.slides["trolley"])
+    assert dict(forces.sizes) == {"time": 3, "xyz": 3}
+    assert_allclose(forces["s"], run["trolley.s"])
+    one = [run.section_forces("wire", s)["tension"][k, 0] for k, s in enumerate(run["trolley.s"])]
+    assert_allclose(forces["tension"], one, rtol=1e-9)
+
+
 def straight(element, **given):
-    return Scene().cable("wire", **{"start": (0, 0, 0), "end": (2, 0, 0)} | given, elements=2, element=element,
-                         section=Circle(radius=0.1), material=SOFT)
+    scene = Scene()
+    scene.cable("wire", **{"start": (0, 0, 0), "end": (2, 0, 0)} | given, elements=2, element=element,
+                section=Circle(radius=0.1), material=SOFT)
+    return scene
 
 
 def test_components_of_a_cable(calls):
-    wire = straight("cable12")
-    forces = section_forces(wire, wire.nodal_vectors[None], np.array([0.5]))
+    forces = by_law(straight("cable12"), 0.5)
     assert set(forces) == {"force", "moment", *CABLE}
     assert_allclose([forces[name][0, 0] for name in CABLE], [0.5, np.sqrt(13), 1, 6])
 
 
 def test_a_planar_cable_gives_its_two_components(calls):
-    wire = straight("beam12p")
-    section_forces(wire, wire.nodal_vectors[None], np.array([0.5]))
-    assert calls[0].e.shape == (6, 2) and calls[0].S.shape == (4, 6)
+    by_law(straight("beam12p"), 0.5)
+    assert calls[0].e.shape == (1, 6, 2) and calls[0].S.shape == (4, 6)
 
 
 def test_curved_and_structural_laws_take_the_rest_shape(calls):
-    wire = straight("beam24", start=None, end=None, points=[(0, 0, 0), (1, 0.2, 0), (2, 0, 0)])
-    section_forces(wire, wire.nodal_vectors[None], np.array([1.9]))
-    assert_allclose(calls[0].e0[0], np.concatenate(wire.rest_nodal_vectors[1:]))
+    scene = straight("beam24", start=None, end=None, points=[(0, 0, 0), (1, 0.2, 0), (2, 0, 0)])
+    by_law(scene, 1.9)
+    assert_allclose(calls[0].e0[0][0], np.concatenate(scene.cables["wire"].rest_nodal_vectors[1:]))
 
 
 @pytest.mark.parametrize("element", ["beam24", "cable12", "cable18", "beam12p", "cable8p"])
@@ -98,7 +126,7 @@ def test_a_taut_cable_by_its_own_kernel(element):
     scene = Scene()
     wire = scene.cable("wire", start=(0, 0, 0), end=(2, 0, 0), elements=3, element=element, material=steel,
                        section=Circle(radius=0.1), rest_length=1.6)
-    forces = section_forces(wire, wire.nodal_vectors[None], np.array([0, 0.7, 1.6]))
+    forces = by_law(scene, 0, 0.7, 1.6)
     expected = 1e6 * wire.section.area * (1.25**2 - 1) / 2 * 1.25
     assert_allclose(forces["tension"], np.full((1, 3), expected), rtol=1e-12)
     assert_allclose(forces["force"], [[[expected, 0, 0]] * 3], atol=1e-9 * expected)
@@ -113,13 +141,19 @@ def test_what_is_not_there(run):
         message = f'section forces of "wire": s must lie on the cable, in [0, 1.5] m, got {shown}'
         with pytest.raises(FunicularError, match="^" + re.escape(message) + "$"):
             run.section_forces("wire", s)
+    for given, message in (({"method": "exact"}, 'method must be "balance" or "constitutive", got \'exact\''),
+                           ({"side": 1}, 'side must be "after" or "before", got 1'),
+                           ({"s": "trolly"}, "s must be arc-lengths in m, or a slide on it, got 'trolly'")):
+        with pytest.raises(FunicularError, match=re.escape(message)):
+            run.section_forces("wire", **given)
 
 
-def test_pictures_when_asked_for(run, calls, tmp_path):
+def test_pictures_when_asked_for(run, tmp_path):
     assert "forces-wire.png" not in [p.name for p in save_plots(run, tmp_path)]
     assert [p.name for p in save_plots(run, tmp_path, forces=True)][-1] == "forces-wire.png"
     tension, moment, _ = draw_section_forces(run, "wire").axes
     assert (tension.get_ylabel(), moment.get_ylabel()) == ("tension / N", "moment / (N m)")
-    # nine places on each element, its ends among them
-    assert_allclose(tension.lines[0].get_ydata(), np.linspace([0, 0.5, 1], [0.5, 1, 1.5], 9).T.ravel(), atol=1e-7)
-    assert_allclose(moment.lines[0].get_ydata(), np.sqrt(4**2 + 5**2 + 6**2))
+    # eight places on each element and its end, and both sides of the rider
+    assert_allclose(tension.lines[0].get_xdata(),
+                    np.sort([*np.linspace(0, 1.5, 25), 0.25 - 6e-9, 0.25 + 6e-9]), atol=1e-12)
+    assert len(moment.lines) == 3

@@ -439,7 +439,7 @@ typedef struct {
     long evaluated;       /* how often it was */
 } fu_accelerator;
 typedef struct {
-    double s_rate, s_acceleration, force[3], multiplier[2], traction, residual[3]; /* traction: force along the cable */
+    double s_rate, s_acceleration, force[3], multiplier[2], traction, residual[3]; /* traction: of what drives or brakes it */
 } fu_joint_output;
 typedef struct {
     double force[3], moment[3], residual; /* on the second end's carrier, at its point; the largest of phi */
@@ -448,6 +448,7 @@ int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work);
 int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerator *work, double *acceleration,
                      fu_joint_output *joints, double *reaction);
 void fu_link_outputs(const fu_model *model, const fu_state *state, const fu_accelerator *work, fu_link_output *out);
+void fu_frame_forces(const fu_model *model, const fu_state *state, const fu_accelerator *work, int joint, double *f);
 int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S);
 int fu_project_positions(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change);
 int fu_project_velocities(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change);
