@@ -395,6 +395,7 @@ void fu_brake_rows(const fu_model *model, const fu_state *state, int j, const do
 int fu_link_is_idle(const fu_link *link, const fu_state *state);
 int fu_link_residual(const fu_model *model, const fu_link *link, const fu_state *state, double *phi, int *at, double *J);
 int fu_between_cables(const fu_link *link);
+int fu_ties_a_frame(const fu_model *model, int joint);
 int fu_link_tangent(const fu_model *model, const fu_link *link, const fu_state *state, int *at, double *J, double *K);
 double fu_link_driving(const fu_model *model, const fu_link *link, const fu_state *state);
 void fu_link_terms(const fu_model *model, const fu_link *link, const fu_state *state, const fu_slide_state *slides,
@@ -643,6 +644,7 @@ int fu_complete(fu_run *run, fu_state *state);
 double fu_dissipated_power(const fu_run *run, const fu_state *state);
 double fu_external_power(fu_run *run, const fu_state *state, const double *reaction);
 void fu_book_trapezoid(fu_run *run, double h);
+void fu_impact(fu_run *run, const double *change, double restitution);
 int fu_moves(const fu_run *run);
 int fu_check_books(fu_run *run, const double energies[FU_ENERGIES], int first);
 

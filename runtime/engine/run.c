@@ -199,6 +199,13 @@ static int enter(fu_run *run, int j, int side)
         const int status = fu_reach_end(run, j, side, &what);
         return status ? status : acted(run, j, what);
     }
+    if (fu_ties_a_frame(model, j)) { /* what the step left goes first, lest it be taken for a loss */
+        if (fu_project_velocities(model, now, &run->accelerator, run->work)) return FU_SINGULAR;
+        for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->work[i];
+        now->element[j] = element;
+        if (fu_project_velocities(model, now, &run->accelerator, run->work)) return FU_SINGULAR;
+        fu_impact(run, run->work, 0.0);
+    }
     now->element[j] = element;
     ++run->statistics.crossings;
     fu_watch_now(run, (fu_event){FU_NO_EVENT, 0, 0});
@@ -284,7 +291,8 @@ static int step_towards(fu_run *run, double target)
     const fu_event none = {FU_NO_EVENT, 0, 0}, late = fu_late_event(run);
     double want = adaptive ? run->h : run->fixed_step;
     if (late.kind) return happened(run, late);
-    run->holds = !adaptive || !run->integrator->straddles || fu_has_stops(model);
+    run->holds = !adaptive || !run->integrator->straddles || fu_has_stops(model) ||
+                 fu_ties_a_frame(model, -1);
     for (;;) {
         const double remaining = target - run->now.t;
         double h = fitted(remaining, want);
