@@ -599,12 +599,14 @@ struct fu_run {
     double since; /* energy.c: how long before `now` the acceleration there belongs, s */
     double dissipated, dissipated_power, external, external_power; /* J, W */
     double recorded; /* s: time of the last row */
+    double usual; /* s: the step that is wanted, were it not for an event or an output time */
     double motion, least_motion, extent; /* m: largest so far, assumed at least, largest coordinate of a position */
     double allowed; /* m: error of the step */
     double closed;  /* m: gaps at the start */
     double ceiling; /* s: that steps stay below, after one that failed */
     double newton_tolerance, round_off; /* of increments, m: where Newton may stop, and where it cannot go on */
-    int factored, stopped_joint, turned;
+    double acted; /* s: when a slide has last stuck, broken loose, or come to an end of its cable */
+    int factored, stopped_joint, turned, acts;
     int holds; /* slides keep their elements in a step, which ends where one of these does */
     int struggle; /* steps rejected of late, less those taken */
     fu_failure failure; /* of the last step that failed */
@@ -639,6 +641,8 @@ int fu_close(fu_run *run);
 int fu_return_to_joints(fu_run *run, fu_state *state);
 int fu_wander(fu_run *run, const double *along, double *left);
 int fu_complete(fu_run *run, fu_state *state);
+int fu_is_short(const fu_run *run, double h);
+int fu_coast(fu_run *run, double h);
 
 /* books.c */
 double fu_dissipated_power(const fu_run *run, const fu_state *state);

@@ -174,6 +174,17 @@ static double locate(fu_run *run, fu_event event, double h)
         middle = h * root_of_parabola(g_low, g_high, h * rate);
     }
     if (g_high <= close) return h;
+    if (fabs(g_low) <= close) { /* it has just happened: from where it is off that zero again */
+        for (low = 0.5 * h; low > least; low *= 0.5) {
+            if (run->integrator->step(run, low)) return 0.0;
+            g_low = value(run, &run->next, event);
+            if (g_low < -close) break;
+            high = low;
+            g_high = g_low;
+        }
+        if (low <= least) return high < h || !run->integrator->step(run, high) ? high : 0.0;
+        middle = low + (high - low) * g_low / (g_low - g_high);
+    }
     for (int i = 0; i < MOST_TRIALS; ++i) {
         if (!(middle > low && middle < high) || (i > 10 && i % 2)) middle = 0.5 * (low + high); /* rounding may rule g */
         if (run->integrator->step(run, middle)) return 0.0;

@@ -7,10 +7,10 @@
 #define SMALLEST_STEP 1e-12 /* of the duration */
 #define FIRST_PART 1e-3     /* of the duration: errors in it share one allowance */
 #define SAFETY 0.5          /* what the logarithm costs */
-#define SHORT_STEP 1e-3     /* of the usual step */
 #define BEYOND 0.1          /* of a step: how far it may go on after a slide should have reached its boundary */
 #define MOST_STRUGGLE 10000 /* steps rejected beyond those taken */
 #define DIVISIONS 8         /* of a fixed step that do not count */
+#define MOST_ACTS 100       /* of slides at one instant: more is no motion */
 #define MOST_TURNS 2        /* of a slide on one boundary before a step is taken all the same: it rests there */
 
 /* largest distance that a node or a body's centre has moved, m */
@@ -180,6 +180,12 @@ static void accept(fu_run *run, double h, fu_event event)
 static int acted(fu_run *run, int j, int what)
 {
     const int status = start_scheme(run, 1);
+    run->acts = run->now.t - run->acted <= SMALLEST_STEP * run->duration ? run->acts + 1 : 0;
+    run->acted = run->now.t;
+    if (run->acts > MOST_ACTS) {
+        fu_fail(run, FU_JAM, run->now.v, j);
+        return FU_NO_CONVERGENCE;
+    }
     fu_watch_anew(run, j);
     run->event = (fu_event){FU_ACTED, j, what};
     return status ? status : FU_EVENT;
@@ -230,7 +236,8 @@ static int happened(fu_run *run, fu_event event)
  * in its accelerations: they must not go on. */
 static int refresh(fu_run *run, double h)
 {
-    return h < SHORT_STEP * (run->fixed_step > 0.0 ? run->fixed_step : run->h)
+    run->usual = run->fixed_step > 0.0 ? run->fixed_step : run->h;
+    return fu_is_short(run, h)
                ? start_scheme(run, !run->integrator->conserves) : FU_RUNNING;
 }
 
@@ -300,6 +307,7 @@ static int step_towards(fu_run *run, double target)
         if (run->holds) h = fmin(h, fu_time_to_boundary(run) + BEYOND * h);
         const double allowed = allow(run, h);
         run->failure.cause = FU_NO_FAILURE;
+        run->usual = want;
         if (run->integrator->step(run, h)) {
             if (!run->failure.cause) fu_fail(run, FU_ITERATION, run->next.v, -1);
             want = 0.5 * h;
