@@ -184,9 +184,7 @@ int fu_act(fu_run *run, const fu_watch *watch, int side, int *what)
     const int j = watch->index;
     *what = FU_NOTHING;
     if (watch->kind == FU_WATCH_BUFFER) {
-        const double energy = fu_brake_energy(run->model, now);
         now->contact[j] = side > 0 ? (int)watch->value : 0;
-        run->dissipated += energy - fu_brake_energy(run->model, now); /* of a spring that is let go of before its end */
         *what = side > 0 ? FU_ENTERED : FU_CAME_OUT;
         return FU_RUNNING;
     }
