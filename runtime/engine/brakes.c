@@ -23,21 +23,6 @@ static const fu_terminal *pressed(const fu_model *model, const fu_state *state, 
     return state->contact[j] && stop->kind == FU_END_IS_BUFFERED ? stop : 0;
 }
 
-/* The spring of a buffer that a slide is in: its generalised force on s and, J, what it keeps. It follows the slide back
- * to the buffer's beginning where its damper holds it back: the slide is let go then, and the damper takes what the spring
- * gives. */
-static void spring_of(const fu_model *model, const fu_state *state, int j, double *force, double *energy)
-{
-    *force = *energy = 0.0;
-    for (int side = -1; side <= 1 && state->mode[j] != FU_LEFT; side += 2) {
-        const fu_terminal *stop = &model->joints[j].stops[side > 0];
-        const double x = fu_compression(model, state, j, side);
-        if (stop->kind != FU_END_IS_BUFFERED || !(x > 0.0)) continue;
-        *force -= side * stop->stiffness * x;
-        *energy += 0.5 * stop->stiffness * x * x;
-    }
-}
-
 void fu_braking_of(const fu_model *model, const fu_state *state, int j, const double *t, const double *u, const double *f,
               fu_braking *braking)
 {
@@ -52,13 +37,15 @@ void fu_braking_of(const fu_model *model, const fu_state *state, int j, const do
     braking->by_s = side * by_x;
 }
 
-/* W that go to heat: all of R but the springs of buffers, which keep what they take */
+/* W that go to heat: all of R but the buffer's spring, which keeps what it takes */
 double fu_brake_power(const fu_model *model, const fu_state *state, int j, const double *t, const double *u,
                       const double *f)
 {
-    double spring, unused, along = 0.0, square = 0.0;
+    const fu_terminal *stop = pressed(model, state, j);
+    const int side = state->contact[j];
+    const double spring = stop ? -side * stop->stiffness * fu_compression(model, state, j, side) : 0.0;
+    double along = 0.0, square = 0.0;
     fu_braking braking;
-    spring_of(model, state, j, &spring, &unused);
     fu_braking_of(model, state, j, t, u, f, &braking);
     for (int d = 0; d < model->dim; ++d) {
         along += t[d] * u[d];
@@ -67,16 +54,35 @@ double fu_brake_power(const fu_model *model, const fu_state *state, int j, const
     return -(braking.R - spring) * along / square;
 }
 
+/* J in the springs of the buffers that a slide is in; those that do not touch it alone, or all */
+static double spring_energy(const fu_model *model, const fu_state *state, int j, int all)
+{
+    double energy = 0.0;
+    for (int side = -1; side <= 1 && state->mode[j] != FU_LEFT; side += 2) {
+        const fu_terminal *stop = &model->joints[j].stops[side > 0];
+        const double x = fu_compression(model, state, j, side);
+        if (stop->kind == FU_END_IS_BUFFERED && x > 0.0 && (all || state->contact[j] != side))
+            energy += 0.5 * stop->stiffness * x * x;
+    }
+    return energy;
+}
+
 /* J in the springs of the buffers */
 double fu_brake_energy(const fu_model *model, const fu_state *state)
 {
     double energy = 0.0;
-    for (int j = 0; j < model->n_joints; ++j) {
-        double unused, kept;
-        spring_of(model, state, j, &unused, &kept);
-        energy += kept;
-    }
+    for (int j = 0; j < model->n_joints; ++j) energy += spring_energy(model, state, j, 1);
     return energy;
+}
+
+/* J that dampers of buffers have taken in a step: a slide that a damper would hold back is let go, and the spring, which
+ * follows it to the buffer's beginning, gives the damper what it gives up. */
+double fu_lost_in_buffers(const fu_model *model, const fu_state *from, const fu_state *to)
+{
+    double lost = 0.0;
+    for (int j = 0; j < model->n_joints; ++j)
+        if (model->joints[j].brake) lost += spring_energy(model, from, j, 0) - spring_energy(model, to, j, 0);
+    return lost;
 }
 
 /* Statics: the buffers that slides are in. */

@@ -385,6 +385,7 @@ void fu_braking_of(const fu_model *model, const fu_state *state, int j, const do
 double fu_brake_power(const fu_model *model, const fu_state *state, int j, const double *t, const double *u,
                       const double *f);
 double fu_brake_energy(const fu_model *model, const fu_state *state);
+double fu_lost_in_buffers(const fu_model *model, const fu_state *from, const fu_state *to);
 void fu_touch_buffers(const fu_model *model, fu_state *state);
 double fu_compression(const fu_model *model, const fu_state *state, int j, int side);
 void fu_slide_motion(const fu_model *model, const fu_state *state, int j, const double *J, double *t, double *u);

@@ -122,6 +122,7 @@ fu_event fu_find_event(const fu_run *run, fu_event known)
     double worst = 0.0;
     for (int j = 0; j < run->model->n_joints; ++j) {
         int side;
+        if (run->next.mode[j] == FU_LEFT) continue; /* its s stays where it was */
         const double d = outside(run, &run->next, j, &side) - boundary_tolerance(run, j);
         if (d > worst && (known.kind != FU_CROSSING || known.which != j)) {
             worst = d;

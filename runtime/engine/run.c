@@ -161,6 +161,7 @@ static void accept(fu_run *run, double h, fu_event event)
     const fu_model *model = run->model;
     for (int j = 0; j < model->n_joints; ++j) run->s_slope[j] = (run->next.s[j] - run->now.s[j]) / h;
     run->integrator->book(run, h);
+    if (model->n_brakes) run->dissipated += fu_lost_in_buffers(model, &run->now, &run->next);
     run->statistics.crossings += fu_count_changes(run);
     const fu_state state = run->now;
     run->now = run->next;
