@@ -161,6 +161,11 @@ static double landing(const fu_run *run, fu_event event, double range)
     return fmax(PRECISE, fmin(LARGEST_MISS, LITTLE * run->allowed / range)) * cable->length;
 }
 
+static int is_of_a_slide(const fu_watch *watch)
+{
+    return watch->kind == FU_WATCH_GRIP || watch->kind == FU_WATCH_BUFFER;
+}
+
 /* Shorten the step until it ends where the event happens (Illinois); returns the step, 0 on failure. `next` is there
  * then. */
 static double locate(fu_run *run, fu_event event, double h)
@@ -175,7 +180,8 @@ static double locate(fu_run *run, fu_event event, double h)
         middle = h * root_of_parabola(g_low, g_high, h * rate);
     }
     if (g_high <= close) return h;
-    if (fabs(g_low) <= close) { /* it has just happened: from where it is off that zero again */
+    const int again = event.kind == FU_WATCHED && is_of_a_slide(&run->watches[event.which]) && fabs(g_low) <= close;
+    if (again) { /* it has just happened: from where it is off that zero again */
         for (low = 0.5 * h; low > least; low *= 0.5) {
             if (run->integrator->step(run, low)) return 0.0;
             g_low = value(run, &run->next, event);
@@ -239,7 +245,7 @@ void fu_watch_anew(fu_run *run, int joint)
 {
     for (int k = 0; k < run->n_watches; ++k) {
         const fu_watch *watch = &run->watches[k];
-        if (watch->kind != FU_WATCH_GRIP && watch->kind != FU_WATCH_BUFFER) continue;
+        if (!is_of_a_slide(watch)) continue;
         if (watch->index == joint) run->late[k] = 0;
         if (run->late[k]) continue;
         const int side = watch->kind == FU_WATCH_BUFFER && run->now.contact[watch->index] == (int)watch->value ? 1 : -1;
