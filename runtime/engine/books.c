@@ -4,6 +4,23 @@
 #define MOST_GROWTH 0.5    /* of the energy exchanged, or of motion: beyond it the result is none */
 #define LEAST_MOTION 1e-3  /* of the size of the scene: less is rounding, or how a motion begins */
 
+/* What joints whose frame goes with a slide put on its s: a moment does work where the frame turns along the cable. */
+static double force_of_links(const fu_model *model, const fu_state *state, int s)
+{
+    double force = 0.0;
+    for (int k = 0; k < model->n_links; ++k) {
+        const fu_link *link = &model->links[k];
+        double phi[6], J[6 * 2 * FU_END_COORDINATES];
+        int at[2 * FU_END_COORDINATES];
+        if ((link->ends[0].slide < 0 && link->ends[1].slide < 0) || fu_link_is_idle(link, state)) continue;
+        const int n = fu_link_residual(model, link, state, phi, at, J);
+        for (int i = 0; i < n; ++i)
+            for (int r = 0; r < link->kernel->rows && at[i] == s; ++r)
+                if (!(link->idle >> r & 1)) force += J[r * n + i] * state->multipliers[6 * k + r];
+    }
+    return force;
+}
+
 /* Power of what drives slides and joints: from the forces that a Newton method solves for, else from eq 38. */
 static double driving_power(const fu_run *run, const fu_state *state)
 {
@@ -22,7 +39,8 @@ static double driving_power(const fu_run *run, const fu_state *state)
         if (state->mode[j] != FU_HELD || model->joints[j].drive < 0) continue;
         fu_slide_held(model, state, j, &rate, &second);
         fu_slide_residual(model, state, j, phi, g);
-        power += g[fu_slide_coordinates(model, state, j, at)] * rate;
+        const int s = fu_slide_coordinates(model, state, j, at);
+        power += (g[s] + force_of_links(model, state, at[s])) * rate;
     }
     for (int k = 0; k < model->n_links; ++k)
         if (model->links[k].signal >= 0) power += fu_link_driving(model, &model->links[k], state);
@@ -73,6 +91,29 @@ void fu_book_trapezoid(fu_run *run, double h)
     run->external += 0.5 * h * (run->external_power + external);
     run->dissipated_power = dissipated;
     run->external_power = external;
+}
+
+/* whether anything outside can do work on the scene at an instant: what drives a slide or a joint, or moves a support */
+static int is_driven(const fu_model *model)
+{
+    int driven = model->n_motions > 0;
+    for (int j = 0; j < model->n_joints; ++j) driven |= model->joints[j].drive >= 0;
+    for (int k = 0; k < model->n_links; ++k) driven |= model->links[k].signal >= 0;
+    return driven;
+}
+
+/* An impact: velocities change at an instant so that constraints hold that they broke, M change = H' L. What is lost is
+ * (1 - e)/(1 + e) of the kinetic energy of the change (Carnot), with the restitution e of the constraint that was broken;
+ * the impulses of what drives the scene, whose constraints were not, have done the rest. */
+void fu_impact(fu_run *run, const double *change, double restitution)
+{
+    const fu_model *model = run->model;
+    fu_state *now = &run->now;
+    const double lost = (1.0 - restitution) / (1.0 + restitution) * fu_kinetic_energy(model, now->q, change);
+    const double before = fu_kinetic_energy(model, now->q, now->v);
+    for (int i = 0; i < model->n_dof; ++i) now->v[i] += change[i];
+    run->dissipated += lost;
+    if (is_driven(model)) run->external += fu_kinetic_energy(model, now->q, now->v) - before + lost;
 }
 
 /* Whether anything moves beyond rounding */

@@ -54,17 +54,35 @@ double fu_brake_power(const fu_model *model, const fu_state *state, int j, const
     return -(braking.R - spring) * along / square;
 }
 
+/* J in the springs of the buffers that a slide is in; those that do not touch it alone, or all */
+static double spring_energy(const fu_model *model, const fu_state *state, int j, int all)
+{
+    double energy = 0.0;
+    for (int side = -1; side <= 1 && state->mode[j] != FU_LEFT; side += 2) {
+        const fu_terminal *stop = &model->joints[j].stops[side > 0];
+        const double x = fu_compression(model, state, j, side);
+        if (stop->kind == FU_END_IS_BUFFERED && x > 0.0 && (all || state->contact[j] != side))
+            energy += 0.5 * stop->stiffness * x * x;
+    }
+    return energy;
+}
+
 /* J in the springs of the buffers */
 double fu_brake_energy(const fu_model *model, const fu_state *state)
 {
     double energy = 0.0;
-    for (int j = 0; j < model->n_joints; ++j) {
-        const fu_terminal *stop = pressed(model, state, j);
-        if (!stop) continue;
-        const double x = fu_compression(model, state, j, state->contact[j]);
-        energy += 0.5 * stop->stiffness * x * x;
-    }
+    for (int j = 0; j < model->n_joints; ++j) energy += spring_energy(model, state, j, 1);
     return energy;
+}
+
+/* J that dampers of buffers have taken in a step: a slide that a damper would hold back is let go, and the spring, which
+ * follows it to the buffer's beginning, gives the damper what it gives up. */
+double fu_lost_in_buffers(const fu_model *model, const fu_state *from, const fu_state *to)
+{
+    double lost = 0.0;
+    for (int j = 0; j < model->n_joints; ++j)
+        if (model->joints[j].brake) lost += spring_energy(model, from, j, 0) - spring_energy(model, to, j, 0);
+    return lost;
 }
 
 /* Statics: the buffers that slides are in. */

@@ -385,6 +385,7 @@ void fu_braking_of(const fu_model *model, const fu_state *state, int j, const do
 double fu_brake_power(const fu_model *model, const fu_state *state, int j, const double *t, const double *u,
                       const double *f);
 double fu_brake_energy(const fu_model *model, const fu_state *state);
+double fu_lost_in_buffers(const fu_model *model, const fu_state *from, const fu_state *to);
 void fu_touch_buffers(const fu_model *model, fu_state *state);
 double fu_compression(const fu_model *model, const fu_state *state, int j, int side);
 void fu_slide_motion(const fu_model *model, const fu_state *state, int j, const double *J, double *t, double *u);
@@ -395,6 +396,7 @@ void fu_brake_rows(const fu_model *model, const fu_state *state, int j, const do
 int fu_link_is_idle(const fu_link *link, const fu_state *state);
 int fu_link_residual(const fu_model *model, const fu_link *link, const fu_state *state, double *phi, int *at, double *J);
 int fu_between_cables(const fu_link *link);
+int fu_ties_a_frame(const fu_model *model, int joint);
 int fu_link_tangent(const fu_model *model, const fu_link *link, const fu_state *state, int *at, double *J, double *K);
 double fu_link_driving(const fu_model *model, const fu_link *link, const fu_state *state);
 void fu_link_terms(const fu_model *model, const fu_link *link, const fu_state *state, const fu_slide_state *slides,
@@ -599,12 +601,14 @@ struct fu_run {
     double since; /* energy.c: how long before `now` the acceleration there belongs, s */
     double dissipated, dissipated_power, external, external_power; /* J, W */
     double recorded; /* s: time of the last row */
+    double usual; /* s: the step that is wanted, were it not for an event or an output time */
     double motion, least_motion, extent; /* m: largest so far, assumed at least, largest coordinate of a position */
     double allowed; /* m: error of the step */
     double closed;  /* m: gaps at the start */
     double ceiling; /* s: that steps stay below, after one that failed */
     double newton_tolerance, round_off; /* of increments, m: where Newton may stop, and where it cannot go on */
-    int factored, stopped_joint, turned;
+    double acted; /* s: when a slide has last stuck, broken loose, or come to an end of its cable */
+    int factored, stopped_joint, turned, acts;
     int holds; /* slides keep their elements in a step, which ends where one of these does */
     int struggle; /* steps rejected of late, less those taken */
     fu_failure failure; /* of the last step that failed */
@@ -639,11 +643,14 @@ int fu_close(fu_run *run);
 int fu_return_to_joints(fu_run *run, fu_state *state);
 int fu_wander(fu_run *run, const double *along, double *left);
 int fu_complete(fu_run *run, fu_state *state);
+int fu_is_short(const fu_run *run, double h);
+int fu_coast(fu_run *run, double h);
 
 /* books.c */
 double fu_dissipated_power(const fu_run *run, const fu_state *state);
 double fu_external_power(fu_run *run, const fu_state *state, const double *reaction);
 void fu_book_trapezoid(fu_run *run, double h);
+void fu_impact(fu_run *run, const double *change, double restitution);
 int fu_moves(const fu_run *run);
 int fu_check_books(fu_run *run, const double energies[FU_ENERGIES], int first);
 

@@ -122,6 +122,7 @@ fu_event fu_find_event(const fu_run *run, fu_event known)
     double worst = 0.0;
     for (int j = 0; j < run->model->n_joints; ++j) {
         int side;
+        if (run->next.mode[j] == FU_LEFT) continue; /* its s stays where it was */
         const double d = outside(run, &run->next, j, &side) - boundary_tolerance(run, j);
         if (d > worst && (known.kind != FU_CROSSING || known.which != j)) {
             worst = d;
@@ -160,6 +161,11 @@ static double landing(const fu_run *run, fu_event event, double range)
     return fmax(PRECISE, fmin(LARGEST_MISS, LITTLE * run->allowed / range)) * cable->length;
 }
 
+static int is_of_a_slide(const fu_watch *watch)
+{
+    return watch->kind == FU_WATCH_GRIP || watch->kind == FU_WATCH_BUFFER;
+}
+
 /* Shorten the step until it ends where the event happens (Illinois); returns the step, 0 on failure. `next` is there
  * then. */
 static double locate(fu_run *run, fu_event event, double h)
@@ -174,6 +180,18 @@ static double locate(fu_run *run, fu_event event, double h)
         middle = h * root_of_parabola(g_low, g_high, h * rate);
     }
     if (g_high <= close) return h;
+    const int again = event.kind == FU_WATCHED && is_of_a_slide(&run->watches[event.which]) && fabs(g_low) <= close;
+    if (again) { /* it has just happened: from where it is off that zero again */
+        for (low = 0.5 * h; low > least; low *= 0.5) {
+            if (run->integrator->step(run, low)) return 0.0;
+            g_low = value(run, &run->next, event);
+            if (g_low < -close) break;
+            high = low;
+            g_high = g_low;
+        }
+        if (low <= least) return high < h || !run->integrator->step(run, high) ? high : 0.0;
+        middle = low + (high - low) * g_low / (g_low - g_high);
+    }
     for (int i = 0; i < MOST_TRIALS; ++i) {
         if (!(middle > low && middle < high) || (i > 10 && i % 2)) middle = 0.5 * (low + high); /* rounding may rule g */
         if (run->integrator->step(run, middle)) return 0.0;
@@ -227,7 +245,7 @@ void fu_watch_anew(fu_run *run, int joint)
 {
     for (int k = 0; k < run->n_watches; ++k) {
         const fu_watch *watch = &run->watches[k];
-        if (watch->kind != FU_WATCH_GRIP && watch->kind != FU_WATCH_BUFFER) continue;
+        if (!is_of_a_slide(watch)) continue;
         if (watch->index == joint) run->late[k] = 0;
         if (run->late[k]) continue;
         const int side = watch->kind == FU_WATCH_BUFFER && run->now.contact[watch->index] == (int)watch->value ? 1 : -1;

@@ -260,7 +260,7 @@ static const fu_newton newton = {predict, kinematics, step_residual, newton_matr
 
 static int step(fu_run *run, double h)
 {
-    return fu_newton_step(run, &newton, h);
+    return fu_is_short(run, h) ? fu_coast(run, h) : fu_newton_step(run, &newton, h);
 }
 
 /* Local error of positions, m: h^2 |beta + (alpha_m - alpha_f)/2 - 1/6| (q''_n+1 - q''_n). Where a slide has changed its
@@ -273,7 +273,7 @@ static double error(fu_run *run, double h)
     const double factor = h * h * (fu_count_changes(run) ? JUMP : smooth);
     for (int i = 0; i < run->model->n_dof; ++i)
         run->work[i] = factor * (run->next.acceleration[i] - run->now.acceleration[i]);
-    return fu_filtered_size(run);
+    return fu_is_short(run, h) ? fu_size(run->model, run->work) : fu_filtered_size(run);
 }
 
 static int start(fu_run *run)

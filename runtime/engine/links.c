@@ -83,6 +83,17 @@ int fu_link_residual(const fu_model *model, const fu_link *link, const fu_state 
     return coordinates(&view, at);
 }
 
+/* whether a slide, or any where `joint` is -1, ties its rider's axes to the cable: their turn jumps where its curvature does */
+int fu_ties_a_frame(const fu_model *model, int joint)
+{
+    for (int k = 0; k < model->n_links; ++k)
+        for (int e = 0; e < 2; ++e) {
+            const int slide = model->links[k].ends[e].slide;
+            if (slide >= 0 && (joint < 0 || slide == joint)) return 1;
+        }
+    return 0;
+}
+
 int fu_between_cables(const fu_link *link)
 {
     return link->ends[0].cable >= 0 && link->ends[1].cable >= 0;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #define MOST_PROJECTIONS 10
+#define SHORT_STEP 1e-3 /* of the usual step */
 
 /* s of `next` where C_l = 0 (eq 21), from what the last step's slope predicts; 0 when that was found */
 int fu_find_slides(fu_run *run)
@@ -104,5 +105,32 @@ int fu_complete(fu_run *run, fu_state *state)
         memcpy(state->multipliers + 6 * k, run->accelerator.multipliers + model->links[k].multiplier,
                sizeof(double) * (size_t)model->links[k].kernel->rows);
     fu_forces_of_springs(model, state, state->spring);
+    return 0;
+}
+
+/* Whether a step is so much shorter than usual, as one to an event or an output time can be, that the rounding of positions
+ * would rule a velocity or an acceleration that is made of them. */
+int fu_is_short(const fu_run *run, double h)
+{
+    return h < SHORT_STEP * run->usual;
+}
+
+/* Such a step, of any length: `next` from `now` by its accelerations, and back onto the joints; 0 when that converged. */
+int fu_coast(fu_run *run, double h)
+{
+    const fu_model *model = run->model;
+    const fu_state *now = &run->now;
+    fu_state *next = &run->next;
+    fu_predict_extra(run, h);
+    for (int i = 0; i < model->n_dof; ++i) {
+        run->psi[i] = h * (now->v[i] + 0.5 * h * now->acceleration[i]);
+        next->v[i] = now->v[i] + h * now->acceleration[i];
+    }
+    memcpy(next->q, now->q, sizeof(double) * (size_t)model->n_q);
+    fu_move(model, next->q, run->psi);
+    if (model->n_motions) fu_prescribe(model, next);
+    if (fu_find_slides(run) || fu_return_to_joints(run, next)) return 1;
+    if (fu_complete(run, next)) return fu_fail_eq38(run);
+    memcpy(next->a, next->acceleration, sizeof(double) * (size_t)model->n_dof);
     return 0;
 }

@@ -7,10 +7,10 @@
 #define SMALLEST_STEP 1e-12 /* of the duration */
 #define FIRST_PART 1e-3     /* of the duration: errors in it share one allowance */
 #define SAFETY 0.5          /* what the logarithm costs */
-#define SHORT_STEP 1e-3     /* of the usual step */
 #define BEYOND 0.1          /* of a step: how far it may go on after a slide should have reached its boundary */
 #define MOST_STRUGGLE 10000 /* steps rejected beyond those taken */
 #define DIVISIONS 8         /* of a fixed step that do not count */
+#define MOST_ACTS 100       /* of slides at one instant: more is no motion */
 #define MOST_TURNS 2        /* of a slide on one boundary before a step is taken all the same: it rests there */
 
 /* largest distance that a node or a body's centre has moved, m */
@@ -162,6 +162,7 @@ static void accept(fu_run *run, double h, fu_event event)
     const fu_model *model = run->model;
     for (int j = 0; j < model->n_joints; ++j) run->s_slope[j] = (run->next.s[j] - run->now.s[j]) / h;
     run->integrator->book(run, h);
+    if (model->n_brakes) run->dissipated += fu_lost_in_buffers(model, &run->now, &run->next);
     run->statistics.crossings += fu_count_changes(run);
     const fu_state state = run->now;
     run->now = run->next;
@@ -181,6 +182,12 @@ static void accept(fu_run *run, double h, fu_event event)
 static int acted(fu_run *run, int j, int what)
 {
     const int status = start_scheme(run, 1);
+    run->acts = run->now.t - run->acted <= SMALLEST_STEP * run->duration ? run->acts + 1 : 0;
+    run->acted = run->now.t;
+    if (run->acts > MOST_ACTS) {
+        fu_fail(run, FU_JAM, run->now.v, j);
+        return FU_NO_CONVERGENCE;
+    }
     fu_watch_anew(run, j);
     run->event = (fu_event){FU_ACTED, j, what};
     return status ? status : FU_EVENT;
@@ -199,6 +206,13 @@ static int enter(fu_run *run, int j, int side)
         int what;
         const int status = fu_reach_end(run, j, side, &what);
         return status ? status : acted(run, j, what);
+    }
+    if (fu_ties_a_frame(model, j)) { /* what the step left goes first, lest it be taken for a loss */
+        if (fu_project_velocities(model, now, &run->accelerator, run->work)) return FU_SINGULAR;
+        for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->work[i];
+        now->element[j] = element;
+        if (fu_project_velocities(model, now, &run->accelerator, run->work)) return FU_SINGULAR;
+        fu_impact(run, run->work, 0.0);
     }
     now->element[j] = element;
     ++run->statistics.crossings;
@@ -224,7 +238,8 @@ static int happened(fu_run *run, fu_event event)
  * in its accelerations: they must not go on. */
 static int refresh(fu_run *run, double h)
 {
-    return h < SHORT_STEP * (run->fixed_step > 0.0 ? run->fixed_step : run->h)
+    run->usual = run->fixed_step > 0.0 ? run->fixed_step : run->h;
+    return fu_is_short(run, h)
                ? start_scheme(run, !run->integrator->conserves) : FU_RUNNING;
 }
 
@@ -285,7 +300,8 @@ static int step_towards(fu_run *run, double target)
     const fu_event none = {FU_NO_EVENT, 0, 0}, late = fu_late_event(run);
     double want = adaptive ? run->h : run->fixed_step;
     if (late.kind) return happened(run, late);
-    run->holds = !adaptive || !run->integrator->straddles || fu_has_stops(model);
+    run->holds = !adaptive || !run->integrator->straddles || fu_has_stops(model) ||
+                 fu_ties_a_frame(model, -1);
     for (;;) {
         const double remaining = target - run->now.t;
         double h = fitted(remaining, want);
@@ -293,6 +309,7 @@ static int step_towards(fu_run *run, double target)
         if (run->holds) h = fmin(h, fu_time_to_boundary(run) + BEYOND * h);
         const double allowed = allow(run, h);
         run->failure.cause = FU_NO_FAILURE;
+        run->usual = want;
         if (run->integrator->step(run, h)) {
             if (!run->failure.cause) fu_fail(run, FU_ITERATION, run->next.v, -1);
             want = 0.5 * h;

@@ -96,7 +96,7 @@ static int settle(fu_run *run, int j)
     now->mode[j] = FU_HELD;
     now->hold[j] = now->s[j];
     if (fu_project_velocities(run->model, now, &run->accelerator, run->work)) return FU_SINGULAR;
-    for (int i = 0; i < run->model->n_dof; ++i) now->v[i] += run->work[i];
+    fu_impact(run, run->work, 0.0);
     if (fu_complete(run, now)) return FU_SINGULAR;
     if (excess(run, now, j, &pull) > 0.0) release(run, j, pull);
     return FU_RUNNING;
@@ -138,13 +138,12 @@ static int strike(fu_run *run, int j, int side)
     const fu_model *model = run->model;
     const fu_joint_output *joint = (const fu_joint_output *)run->accelerator.joints + j;
     fu_state *now = &run->now;
-    const double energy = fu_kinetic_energy(model, now->q, now->v);
     now->contact[j] = side;
     if (side * fu_slide_rate(model, now, j) > 0.0) {
         now->mode[j] = FU_HELD;
         now->hold[j] = now->s[j];
         if (fu_strike(model, now, &run->accelerator, j, run->work)) return FU_SINGULAR;
-        for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->work[i];
+        fu_impact(run, run->work, model->joints[j].stops[side > 0].restitution);
     }
     release(run, j, 0.0);
     if (fu_complete(run, now)) return FU_SINGULAR;
@@ -154,7 +153,6 @@ static int strike(fu_run *run, int j, int side)
         if (settle(run, j)) return FU_SINGULAR;
     }
     find_ways(run);
-    run->dissipated += energy - fu_kinetic_energy(model, now->q, now->v);
     return FU_RUNNING;
 }
 
@@ -186,9 +184,7 @@ int fu_act(fu_run *run, const fu_watch *watch, int side, int *what)
     const int j = watch->index;
     *what = FU_NOTHING;
     if (watch->kind == FU_WATCH_BUFFER) {
-        const double energy = fu_brake_energy(run->model, now);
         now->contact[j] = side > 0 ? (int)watch->value : 0;
-        run->dissipated += energy - fu_brake_energy(run->model, now); /* of a spring that is let go of before its end */
         *what = side > 0 ? FU_ENTERED : FU_CAME_OUT;
         return FU_RUNNING;
     }
