@@ -121,7 +121,8 @@ cdef class Engine(Statics):
         c.B, c.C, c.X = self._zeros(2 * n * m), self._zeros(2 * n * m), self._zeros(2 * n * m)
         c.columns = <fu_piece *>self._ints(np.zeros(3 * 2 * m * system.n_chains))
         c.D_real, c.pivot_band, c.pivot_border = self._zeros(m * m), self._ints(np.zeros(n)), self._ints(np.zeros(m))
-        self.run.scratch = self._zeros(12 * self.model.n_dof + 3 * self.model.n_q + 7 + n + m)
+        self.run.scratch = self._zeros(12 * self.model.n_dof + 3 * self.model.n_q + 7 + n + m
+                                        + 8 * self.model.n_joints)
 
     def use_threads(self, int threads):
         """Let so many threads share the elements; whether that is possible: OpenMP was there when this was built."""

@@ -22,8 +22,9 @@ STABLE_DAMPING = 6.0
 COST_OF_IMPLICIT = 4e3
 """Evaluations of eq 38 that a radian of the motion as a whole costs the implicit method at tol = 1e-4, by
 tests/benchmarks/choice.py; they grow with the third root of 1/tol."""
-LOOSE = 2e-4
-"""Above this tol order 2 is enough: genalpha is cheaper than radau, by the same."""
+KINKS = 2.0
+"""What friction multiplies that by: where a normal force turns round, friction has a kink, which only short steps find.
+Vibrations of it count as well, by what they make of the sign, and radau would damp them."""
 ITERATIONS = 20
 
 
@@ -84,11 +85,12 @@ class Explicit:
 class Radau:
     """Radau IIA of three stages, of order 5 (Hairer & Wanner 1996, IV.5 and IV.8), from its nodes.
 
-    Steps are chosen by an embedded estimate of order 3, whose error is about ``slack`` times the method's. After a
-    step that failed the next ones stay below ``caution`` of it for a while: factorisations are dear.
+    Steps are chosen by an embedded estimate of order 3 and, for vibrations, by one of the method's own order that
+    follows from it (engine/radau.c). After a step that failed the next ones stay below ``caution`` of it for a while:
+    factorisations are dear.
     """
 
-    name, order, slack, caution = "radau", 3, 7.0, 0.65
+    name, order, slack, caution = "radau", 3, 1.0, 0.65
 
     def __init__(self) -> None:
         root = np.sqrt(6.0)
@@ -115,26 +117,26 @@ Integrator = GeneralisedAlpha | Radau | Explicit | EnergyMomentum
 def choose(settings: RunSettings, scene: Scene, model: Model,
            engine: Engine) -> tuple[Integrator, str]:
     """The integrator of a run, and why it is that one. "auto" takes the cheaper by stiffness and tolerance."""
-    implicit: Integrator = GeneralisedAlpha(settings.spectral_radius)
+    fixed = GeneralisedAlpha(settings.spectral_radius)
     if settings.integrator != "auto":
-        made = {"genalpha": lambda: implicit, "explicit": Explicit, "radau": Radau,
+        made = {"genalpha": lambda: fixed, "explicit": Explicit, "radau": Radau,
                 "energy": lambda: EnergyMomentum(settings.spectral_radius)}[settings.integrator]()
         return made, "as asked for"
     if settings.step is not None:
-        return implicit, "the step is fixed: genalpha holds at any"
+        return fixed, "the step is fixed: genalpha holds at any"
     if "spectral_radius" in settings.model_fields_set:
-        return implicit, "spectral_radius is given, which is genalpha's"
+        return fixed, "spectral_radius is given, which is genalpha's"
     frequency, decay = fastest_rates(model, engine)
     decay = max(decay, *(regularised_decay(scene, slide) for slide in scene.slides.values()), 0.0)
     slow = slowest_rate(scene, model, settings.duration)
     explicit_cost = 12 * max(frequency / STABLE, decay / STABLE_DAMPING)
     implicit_cost = COST_OF_IMPLICIT * slow * (1e-4 / settings.tol) ** (1 / 3)
-    if settings.tol < LOOSE:
-        implicit = Radau()
+    if any(slide.friction is not None and slide.friction.sliding for slide in scene.slides.values()):
+        implicit_cost *= KINKS
     reason = (f"stability asks the explicit method for {explicit_cost:.3g} evaluations a second (highest frequency "
               f"{frequency:.3g} rad/s" + (f", fastest decay {decay:.3g} 1/s" if decay else "")
-              + f"), tol asks {implicit.name} for work like {implicit_cost:.3g}")
-    return (Explicit() if explicit_cost < implicit_cost else implicit), reason
+              + f"), tol asks radau for work like {implicit_cost:.3g}")
+    return (Explicit() if explicit_cost < implicit_cost else Radau()), reason
 
 
 def regularised_decay(scene: Scene, slide: Slide) -> float:

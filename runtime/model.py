@@ -22,8 +22,10 @@ from funicular.friction import Friction
 from funicular.holding import EndModel, Holder, LinkModel, linked, tied
 from funicular.integrators import choose
 from funicular.libraries import kernels_of, tables_of
+from funicular.long_runs import LongRun
 from funicular.modal_shape import Shape
 from funicular.parts import Cable, ModalBody, RigidBody, Slide
+from funicular.progress import Meter
 from funicular.recording import Recording, named, recorded
 from funicular.reduction import Node, Reduction, supports
 from funicular.redundancy import settle
@@ -391,7 +393,7 @@ def _joint(slide: Slide, scene: Scene, holder: Holder, signal, number: int, mult
     )
 
 
-def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float], None], initial=None,
+def simulate(scene: Scene, settings: RunSettings, on_progress: Meter, initial=None,
              stream: Stream | None = None) -> Recording:
     """Integrate a checked scene; calls on_progress(time reached in s) about twenty times a second.
 
@@ -444,7 +446,9 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
     if status is None:
         if stream is not None:
             stream.start(model, engine, partial(named, model, scene, engine), pace, watcher.happened)
-        status = engine.advance(on_progress, pace.every, stream)
+        pace_watch = LongRun(model, engine, settings, watcher, on_progress)
+        status = engine.advance(pace_watch, pace.every, stream)
+        messages += pace_watch.notes()
     cpu, wall = time.process_time() - cpu, time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
     if status == "completed":
         for note in notes(engine, settings):
