@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from funicular.modal_bodies import ModalBody
 
 ARRAYS = ("nodes", "modes", "masses", "stiffness")
+NETCDF = {b"CDF\1": "scipy", b"CDF\2": "scipy", b"CDF\5": None, b"\x89HDF": None}
+"""How files of data begin, and what reads them: None leaves it to xarray."""
 SYMMETRIC, ORTHOGONAL, DEFINITE = 1e-9, 1e-6, 1e-10
 """Parts of the largest entry, or cosines, up to which a matrix is what it should be."""
 
@@ -146,12 +148,16 @@ def of_file(path: str, orthogonal: bool) -> Shape:
         raise ValueError(f'there is no file "{path}"')
     try:
         if file.suffix == ".npz":
-            with np.load(file) as found:
+            with np.load(file, allow_pickle=False) as found:  # a pickle would run code
                 arrays = {name: found[name] for name in found.files}
         else:
             import xarray
 
-            with xarray.open_dataset(file) as found:
+            with open(file, "rb") as opened:
+                head = opened.read(4)
+            if head not in NETCDF:
+                raise ValueError("it begins like no netCDF file")
+            with xarray.open_dataset(file, engine=NETCDF[head]) as found:
                 arrays = {name: found[name].values for name in found.data_vars}
     except Exception as error:
         raise ValueError(f'"{path}" could not be read: {error}', "give an .npz or a netCDF file") from error

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import cached_property
 from operator import methodcaller
 from pathlib import Path
@@ -88,13 +88,15 @@ class EnergyBalance(NamedTuple):
 class Run:
     """Results by name: ``run["A.position"]`` is a NumPy array (time, 3); `keys` lists the names."""
 
-    def __init__(self, variables: Mapping[str, Variable], coords: dict[str, Variable], report: dict, scene_toml: str):
+    def __init__(self, variables: Mapping[str, Variable], coords: dict[str, Variable], report: dict, scene_toml: str,
+                 libraries: Iterable[str | os.PathLike] = ()):
         """report: how the run went, status, message and messages among it; scene_toml: the scene as text.
 
         report["us_per_step"] tells what each slide and joint takes of a step in µs, without solving for its forces.
+        libraries: directories of elements that the scene may load when it is read back from its text.
         """
         self.variables, self.coords = variables, coords
-        self.report, self.scene_toml = report, scene_toml
+        self.report, self.scene_toml, self.libraries = report, scene_toml, libraries
 
     @classmethod
     def from_recording(cls, recording, scene: Scene, settings: RunSettings) -> Run:
@@ -107,7 +109,7 @@ class Run:
             "messages": [*scene.messages, *recording.report.get("messages", [])],
             "settings": settings.model_dump(),
         }
-        return cls(variables, coords, report, scene.to_toml())
+        return cls(variables, coords, report, scene.to_toml(), scene.libraries)
 
     @property
     def time(self) -> np.ndarray:
@@ -133,10 +135,10 @@ class Run:
 
     @cached_property
     def scene(self) -> Scene:
-        """The scene that was run, read back from its text."""
+        """The scene that was run, read back from its text. Raises SceneError for a library that is not allowed."""
         from funicular.scene_file import loads
 
-        return loads(self.scene_toml, "the scene of the run")
+        return loads(self.scene_toml, "the scene of the run", libraries=self.libraries)
 
     def keys(self) -> list[str]:
         """The names of all results."""
@@ -342,9 +344,10 @@ def create_file(path: str | os.PathLike, coords: Mapping[str, Variable], variabl
     return create(path, coords, variables, {"funicular_format": FILE_FORMAT, "scene": scene}, file_text(report), room)
 
 
-def load_run(path: str | os.PathLike) -> Run:
+def load_run(path: str | os.PathLike, libraries: Iterable[str | os.PathLike] = ()) -> Run:
     """Open the results of a run, also of one that goes on or was killed; arrays are read when they are asked for.
 
+    libraries: directories of elements (`funicular derive --spec`) that ``run.scene`` may load; they are machine code.
     Raises ResultFileError, also for a damaged or foreign file.
     """
     path = Path(path)
@@ -365,4 +368,4 @@ def load_run(path: str | os.PathLike) -> Run:
         from funicular.streaming import events_kept
 
         report["events"] = events_kept(path)
-    return Run(Stored(file, names), coords, report, file.attributes["scene"])
+    return Run(Stored(file, names), coords, report, file.attributes["scene"], libraries)

@@ -176,7 +176,7 @@ class Stream:
         self._report(last.report)
         if recording.status not in GOES_ON:
             self._state.unlink(missing_ok=True)
-        return load_run(self._path)
+        return load_run(self._path, libraries=self._scene.libraries)
 
     def _unfinished(self) -> dict:
         return {"status": "unfinished", "message": "the run goes on, or was killed", "resumed_at_s": self._resumed,
@@ -315,10 +315,9 @@ def _programs(scene: Scene) -> str:
     from funicular.libraries import load
 
     files = [engine.__file__, kernels.__file__]
-    own = sorted({cable.library for cable in scene.cables.values() if cable.library is not None})
     versions = f"{numpy.__version__} {scipy.__version__}"
     return _digest(versions.encode(), *(Path(file).read_bytes() for file in files),
-                   *(load(library).digest.encode() for library in own))
+                   *(load(library).digest.encode() for library in scene.libraries))
 
 
 def _start_of(model: Model) -> str:
