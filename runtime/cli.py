@@ -24,7 +24,7 @@ app = typer.Typer(
 
 EXIT_INTERRUPTED = 130
 Libraries = Annotated[list[Path] | None, typer.Option(
-    "--library", metavar="DIR", help="your own elements that the scene may load, machine code; may be given repeatedly")]
+    "--library", metavar="DIR", help="your own elements that the scene may load, machine code; repeatable")]
 Names = Annotated[list[str] | None, typer.Argument(metavar="[NAME]...", help="only these; all if none is given")]
 
 
