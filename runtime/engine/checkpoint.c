@@ -6,7 +6,8 @@
 #include <string.h>
 
 #define ASIDE 1e-3       /* of an element: how far from it a slide may stand, which events leave much nearer */
-#define LONGEST 2.0      /* durations: a step, or what steps stay below */
+#define SHORTEST 1e-13   /* of the duration: a step, or what steps stay below; the time loop gives up before */
+#define LONGEST 2.0      /* of the duration: the same */
 #define MOST_COUNT 100000 /* of rejected steps, of turns on a boundary */
 
 enum { MEASURE, SAVE, RESTORE };
@@ -159,7 +160,7 @@ static int possible_numbers(const fu_run *run)
                            run->statistics.factorisations, run->statistics.crossings, run->statistics.newton_failures,
                            run->statistics.evaluations, run->accelerator.evaluated};
     for (size_t i = 0; i < sizeof positive / sizeof *positive; ++i)
-        if (!(positive[i] > 0.0 && positive[i] <= LONGEST * run->duration)) return 0;
+        if (!(positive[i] >= SHORTEST * run->duration && positive[i] <= LONGEST * run->duration)) return 0;
     for (size_t i = 0; i < sizeof counts / sizeof *counts; ++i)
         if (counts[i] < 0) return 0;
     for (int k = 0; k < run->n_watches; ++k)
