@@ -100,7 +100,7 @@ def run(
 
 def _existing(directory: Path) -> Path:
     """The nearest directory above, itself included, that exists: the rest is made when it is needed."""
-    return next((d for d in (directory, *directory.parents) if d.exists()), directory)
+    return next((d for d in (directory, *directory.parents) if os.path.exists(d)), directory)
 
 
 def _report(run: Run, path: Path, pictures: Path | None, forces: bool) -> None:
@@ -109,8 +109,10 @@ def _report(run: Run, path: Path, pictures: Path | None, forces: bool) -> None:
     from rich.markup import escape
     from rich.table import Table
 
-    rows = [*run.summary_rows(), ("results", str(path))]
-    if pictures is not None:
+    rows = run.summary_rows()
+    if len(run.time):
+        rows.append(("results", str(path)))
+    if pictures is not None and len(run.time):
         from funicular.plot import save_plots
 
         written = save_plots(run, pictures, f"{path.stem}-", forces)

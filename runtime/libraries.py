@@ -20,7 +20,7 @@ from typing import Literal
 import numpy as np
 from funicular import elements
 from funicular.elements import MANIFEST, ElementKind
-from funicular.errors import FunicularError, SceneError
+from funicular.errors import FunicularError, SceneError, shown_path
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 COMMAND = "`funicular derive --spec {spec} --out {out}`"
@@ -111,8 +111,8 @@ def read_manifest(directory: Path) -> tuple[bytes, dict]:
     try:
         text = (directory / MANIFEST).read_bytes()
     except OSError as error:
-        raise LibraryError(f'"{directory}" is none: {MANIFEST} cannot be read ({error.strerror})',
-                           "make one with " + COMMAND.format(spec="FILE", out=directory)) from None
+        raise LibraryError(f'"{shown_path(directory)}" is none: {MANIFEST} cannot be read ({error.strerror})',
+                           "make one with " + COMMAND.format(spec="FILE", out=shown_path(directory))) from None
     try:
         _Manifest.model_validate_json(text)
         return text, json.loads(text)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from funicular.errors import near
+from funicular.errors import near, shown_path
 
 if TYPE_CHECKING:
     from funicular.modal_bodies import ModalBody
@@ -144,8 +145,8 @@ def _is_orthogonal(M: np.ndarray) -> None:
 def of_file(path: str, orthogonal: bool) -> Shape:
     """From an .npz or a netCDF file, see `ModalBody`. Raises ValueError(cause, remedy)."""
     file = Path(path)
-    if not file.is_file():
-        raise ValueError(f'there is no file "{path}"')
+    if not os.path.isfile(file):  # False also of what no path can be
+        raise ValueError(f'there is no file "{shown_path(path)}"')
     try:
         if file.suffix == ".npz":
             with np.load(file, allow_pickle=False) as found:  # a pickle would run code

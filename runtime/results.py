@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from funicular.errors import FunicularWarning, ResultFileError, UnknownResultError, near
+from funicular.errors import FunicularWarning, ResultFileError, UnknownResultError, near, shown_path
 from funicular.locks import Taken, created, lock
 from funicular.netcdf import ROW_CHECKSUM, File, Stored, Variable, create, last_report
 from pydantic import BaseModel, ConfigDict
@@ -165,10 +165,8 @@ class Run:
 
     def __repr__(self) -> str:
         """Status, times and number of results."""
-        return (
-            f"<funicular.Run: {self.status}, {len(self.time)} times to {self.time[-1]:.6g} s, "
-            f"{len(self.keys())} results>"
-        )
+        times = f"{len(self.time)} times to {self.time[-1]:.6g} s" if len(self.time) else "no times"
+        return f"<funicular.Run: {self.status}, {times}, {len(self.keys())} results>"
 
     @property
     def dataset(self) -> xarray.Dataset:
@@ -213,9 +211,9 @@ class Run:
     def energy_balance(self) -> EnergyBalance:
         """How well the energy books close; see `EnergyBalance`."""
         energies = {name: self[f"energy.{name}"] for name in ENERGIES if f"energy.{name}" in self}
-        changes = np.array([(e - e[0]) * (-1 if name == "external" else 1) for name, e in energies.items()])
+        changes = np.array([(e - e[:1]) * (-1 if name == "external" else 1) for name, e in energies.items()])
         residual = changes.sum(axis=0)
-        exchanged = float(np.abs(changes).sum(axis=0).max() / 2)
+        exchanged = float(np.abs(changes).sum(axis=0).max(initial=0.0) / 2)
         return EnergyBalance(residual, exchanged, residual / (exchanged or 1.0))
 
     def section_forces(self, cable: Cable | str, s=None) -> xarray.Dataset:
@@ -234,7 +232,11 @@ class Run:
 
     def summary_rows(self) -> list[tuple[str, str]]:
         """What to tell about the run in short: pairs of a heading and a text."""
-        report, balance = self.report, self.energy_balance()
+        report = self.report
+        if not len(self.time):
+            return [("status", f"{self.status} before the first output time: there are no results"),
+                    *(("note", message) for message in report["messages"])]
+        balance = self.energy_balance()
         rows = [("status", f"{self.status} at t = {self.time[-1]:.6g} s, {len(self.time)} times")]
         counts = [f"{report[key]} {text}" for key, text in _COUNTS.items() if key in report]
         if counts:
@@ -333,12 +335,12 @@ def check_writable(path: str | os.PathLike) -> Path:
             probe.unlink()
             return resolved
     except ValueError as error:  # a NUL, half of a surrogate pair
-        path, cause, remedy = repr(os.fspath(path)), f"this is no path: {error}", "give another one"
+        cause, remedy = f"this is no path: {error}", "give another one"
     except OSError as error:
         cause, remedy = error.strerror, "give a path in a directory that exists and is yours to write to"
         if error.errno == errno.ENAMETOOLONG:
             remedy = "give a shorter name, below 240 bytes"
-    raise ResultFileError(f"{path}: the results cannot be written here: {cause}; {remedy}") from None
+    raise ResultFileError(f"{shown_path(path)}: the results cannot be written here: {cause}; {remedy}") from None
 
 
 def check_free(path: Path) -> None:
@@ -398,14 +400,12 @@ def load_run(path: str | os.PathLike, libraries: Iterable[str | os.PathLike] = (
 
 def open_file(path: str | os.PathLike) -> File:
     """A file of results, open to be read. Raises ResultFileError."""
+    if not os.path.isfile(path):
+        raise ResultFileError(f"{shown_path(path)}: there is no such file")
     try:
-        path = Path(path)
-        if path.is_file():
-            return File(path)
+        return File(path)
     except (OSError, ValueError) as error:
         raise ResultFileError(f"{path}: is no netCDF file, or was cut short or damaged: {error}") from error
-    raise ResultFileError(f"{os.fspath(path)!r}: there is no such file" if "\0" in os.fspath(path)
-                          else f"{path}: there is no such file")
 
 
 def opened(file: File, libraries: Iterable[str | os.PathLike] = (), salvage: bool = False, check: bool = True) -> Run:

@@ -15,7 +15,7 @@ from typing import Any
 
 from funicular.anchors import Anchor
 from funicular.ends import Stop
-from funicular.errors import SceneError, near
+from funicular.errors import SceneError, near, shown_path
 from funicular.parts import PARTS
 from funicular.scene import Scene
 from funicular.sections import Section
@@ -46,11 +46,11 @@ def load_scene(path: str | os.PathLike, libraries: Iterable[str | os.PathLike] =
     Raises SceneError.
     """
     file = Path(path)
-    if not file.is_file():
+    if not os.path.isfile(file):  # False also of what no path can be
         bundled = bundled_scenes()
         if os.fspath(path) not in bundled:
             raise SceneError(
-                os.fspath(path),
+                shown_path(path),
                 "there is no such scene file, nor a bundled scene of that name",
                 near(file.stem, bundled),
             )

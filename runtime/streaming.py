@@ -166,7 +166,7 @@ class Stream:
     def finish(self, recording: Recording) -> Run:
         """Write the last rows and the report; the run as read from the file. Raises ResultFileError.
 
-        A run that has failed before its first row leaves no file, and an older one as it was.
+        A run that has failed before its first row leaves no file, or an older one as it was; it is returned, too.
         """
         last = Run.from_recording(recording, self._scene, self._settings)
         if self._resumed:
