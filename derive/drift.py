@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import json
+import re
 from importlib import resources
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from rich.console import Console
 from rich.progress import Progress
 
 MANIFEST = "manifest.json"
-GENERATED_SUFFIXES = {".c", ".h", ".pyx", ".py", ".json"}
+BYTECODE = "__pycache__"
 
 
 def folder() -> Path:
@@ -99,15 +100,26 @@ def differences(files: dict[str, str]) -> list[str]:
 
 
 def extra() -> list[str]:
-    """A line for each file in generated/ that no spec makes."""
+    """A line for each file in generated/, of whatever kind and however deep, that neither specs nor a build make."""
     known = {MANIFEST, *emit.COMMON, *(f"{name}.c" for name in families())}
-    return [f"extra: generated/{p.name} (no spec makes it: delete it)" for p in sorted(folder().iterdir())
-            if p.suffix in GENERATED_SUFFIXES and p.name not in known and not _is_built(p)]
+    modules = [Path(name).stem for name in emit.COMMON if name.endswith(".pyx")]
+    found = [path for path in sorted(folder().rglob("*"))
+             if (path.is_symlink() or not path.is_dir() or not any(path.iterdir()))
+             and not _is_made(path.relative_to(folder()), known, modules)]
+    return [f"extra: generated/{path.relative_to(folder()).as_posix()} (no spec makes it: delete it)" for path in found]
 
 
-def _is_built(path: Path) -> bool:
-    """Cython's output of a generated .pyx, left by a build in place."""
-    return path.suffix == ".c" and path.with_suffix(".pyx").is_file()
+def _is_made(path: Path, known: set[str], modules: list[str]) -> bool:
+    """Whether specs make a file, seen from generated/, or a build in place or an import leave it.
+
+    modules: what is compiled, of which Cython leaves C, and each Python its own extension module.
+    """
+    if path.parent == Path():
+        compiled = "|".join(map(re.escape, modules))
+        return path.name in known or path.name == BYTECODE or bool(
+            re.fullmatch(rf"({compiled})\.(c|(cpython|cp|pypy)[\w-]*\.(so|pyd))", path.name))
+    source, _, rest = path.name.partition(".")
+    return path.parent == Path(BYTECODE) and f"{source}.py" in known and rest.endswith(".pyc")
 
 
 def main(names: list[str], check: bool = False) -> int:

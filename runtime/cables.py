@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from typing import Annotated, Any, ClassVar
 
@@ -30,13 +29,14 @@ def possible_laws(kind: ElementKind) -> list[str]:
 
 
 def _library(value: Any) -> str | None:
-    """The directory of a library, as an absolute path."""
+    """The directory of a library, as an absolute path without links; what is there is loaded."""
     if value is None:
         return None
-    if not isinstance(value, str | os.PathLike):
-        raise ValueError(f"must be a directory, got {value!r}")
-    of_library(os.path.abspath(value))
-    return os.path.abspath(value)
+    from funicular.libraries import resolved
+
+    directory = resolved(value)
+    of_library(directory)
+    return directory
 
 
 def _element(value: Any, info: ValidationInfo) -> str:

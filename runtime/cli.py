@@ -23,6 +23,8 @@ app = typer.Typer(
 )
 
 EXIT_INTERRUPTED = 130
+Libraries = Annotated[list[Path] | None, typer.Option(
+    "--library", metavar="DIR", help="your own elements that the scene may load, machine code; repeatable")]
 Names = Annotated[list[str] | None, typer.Argument(metavar="[NAME]...", help="only these; all if none is given")]
 
 
@@ -66,6 +68,7 @@ def run(
         float | None, typer.Option(help="of genalpha and energy, instead of the scene's: 1 keeps all vibrations")
     ] = None,
     resume: Annotated[bool, typer.Option("--resume", help="go on with a run that was killed or interrupted")] = False,
+    library: Libraries = None,
 ) -> None:
     """Simulate a scene and write its results, as the run goes.
 
@@ -77,7 +80,7 @@ def run(
     from funicular.scene_file import load_scene
 
     with _told_without_traceback():
-        described = load_scene(scene)
+        described = load_scene(scene, library or ())
         path = Path(output or described.run_settings.get("save") or f"{Path(scene).stem}.nc")
         pictures = plot_dir or (path.parent if plot or forces else None)
         if pictures is not None:
@@ -97,7 +100,7 @@ def run(
 
 def _existing(directory: Path) -> Path:
     """The nearest directory above, itself included, that exists: the rest is made when it is needed."""
-    return next((d for d in (directory, *directory.parents) if d.exists()), directory)
+    return next((d for d in (directory, *directory.parents) if os.path.exists(d)), directory)
 
 
 def _report(run: Run, path: Path, pictures: Path | None, forces: bool) -> None:
@@ -106,8 +109,10 @@ def _report(run: Run, path: Path, pictures: Path | None, forces: bool) -> None:
     from rich.markup import escape
     from rich.table import Table
 
-    rows = [*run.summary_rows(), ("results", str(path))]
-    if pictures is not None:
+    rows = run.summary_rows()
+    if len(run.time):
+        rows.append(("results", str(path)))
+    if pictures is not None and len(run.time):
         from funicular.plot import save_plots
 
         written = save_plots(run, pictures, f"{path.stem}-", forces)
@@ -133,6 +138,7 @@ def bench(
     repetitions: Annotated[int, typer.Option(help="of each run that takes less than 1 s, taking turns; times are "
                                               "medians")] = 5,
     out: Annotated[Path, typer.Option(metavar="DIR", help="where SCENE-bench.csv and .png are written")] = Path(),
+    library: Libraries = None,
 ) -> None:
     """Measure error against time over integrators, tolerances and meshes.
 
@@ -146,7 +152,7 @@ def bench(
     from rich.console import Console
 
     with _told_without_traceback():
-        described, name = load_scene(scene), f"{Path(scene).stem}-bench"
+        described, name = load_scene(scene, library or ()), f"{Path(scene).stem}-bench"
         numbers = _numbers(tols)
         tried = grid(described, integrators=_listed(integrators), tols=numbers, elements=_listed(elements),
                      outputs=_listed(outputs), duration=duration, output_step=output_step, repetitions=repetitions)

@@ -259,11 +259,15 @@ cdef class Engine(Statics):
         fu_save(&self.run, taken)
         return bytes(taken)
 
-    def restore(self, bytes checkpoint):
-        """Go on from a checkpoint; after `start` with the same arguments."""
+    def restore(self, bytes checkpoint, int rows):
+        """Go on from a checkpoint that was taken after so many rows; after `start` with the same arguments.
+
+        Raises ValueError for one of another model, or of a run that could not have paused there; it must not go on then.
+        """
         if len(checkpoint) != fu_save(&self.run, NULL):
             raise ValueError("the checkpoint is of another model")
-        fu_restore(&self.run, checkpoint)
+        if fu_restore(&self.run, checkpoint, rows):
+            raise ValueError("the checkpoint is of no state that a run can pause in")
 
     @property
     def n_rows(self):

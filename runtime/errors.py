@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,9 @@ if TYPE_CHECKING:
 
     from funicular.results import Run
     from funicular.static import Equilibrium
+
+_MOST_SHOWN = 150
+"""Characters of a path's start and end in a message."""
 
 
 class FunicularError(Exception):
@@ -67,6 +71,13 @@ class ResultFileError(FunicularError):
 
 class UnknownResultError(FunicularError, KeyError):
     """A run holds no result of that name."""
+
+
+def shown_path(path: str | os.PathLike) -> str:
+    """A path for a message: what does not print is escaped, and the middle of a very long one is left out."""
+    text = os.fspath(path)
+    text = text if text.isprintable() else ascii(text)[1:-1]
+    return text if len(text) <= 2 * _MOST_SHOWN else f"{text[:_MOST_SHOWN]}...{text[-_MOST_SHOWN:]}"
 
 
 def near(name: str, known: Iterable[str]) -> str:

@@ -1,4 +1,8 @@
-"""Libraries of the user's own elements: what `funicular derive --spec FILE --out DIR` leaves in DIR, loaded."""
+"""Libraries of the user's own elements: what `funicular derive --spec FILE --out DIR` leaves in DIR, loaded.
+
+A library is machine code: to load it is to run it. Only the person who runs a scene may ask for that, by naming the
+directory in Python or on the command line; a file that names one is refused otherwise (`check_allowed`).
+"""
 
 from __future__ import annotations
 
@@ -7,14 +11,17 @@ import hashlib
 import json
 import math
 import os
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Literal
 
 import numpy as np
 from funicular import elements
 from funicular.elements import MANIFEST, ElementKind
-from funicular.errors import FunicularError
+from funicular.errors import FunicularError, SceneError, shown_path
+from pydantic import BaseModel, ConfigDict, ValidationError
 
 COMMAND = "`funicular derive --spec {spec} --out {out}`"
 
@@ -30,6 +37,88 @@ class LibraryError(FunicularError, ValueError):
 
     def __str__(self) -> str:
         return "library " + "; ".join(self.args)
+
+
+def resolved(directory: str | os.PathLike) -> str:
+    """A directory's absolute path without links. Raises ValueError for what no path can be."""
+    try:
+        return os.path.realpath(os.fspath(directory))
+    except (TypeError, ValueError):  # not a path; a NUL, or half of a surrogate pair
+        raise ValueError(f"must be a directory, got {directory!r}") from None
+
+
+def check_allowed(asked: str, allowed: Iterable[str | os.PathLike], place: str) -> None:
+    """Raise SceneError unless the library that a file asks for is among the directories that the caller allows.
+
+    asked: its resolved path; place: the part of the file that asks for it.
+    """
+    if asked not in set(map(resolved, allowed)):
+        raise SceneError(place, f'takes its element from the library "{asked}", which is machine code, and a file '
+                         "alone may not load that", "if you trust this directory, allow it: in Python with "
+                         f'libraries=["{asked}"], on the command line with --library {asked}')
+
+
+class _Described(BaseModel):
+    model_config = ConfigDict(strict=True, defer_build=True)
+
+
+class _Shared(_Described):
+    spec: str
+    file: str
+    sha256: str
+    digest: str = ""
+
+
+class _Argument(_Described):
+    name: str
+    shape: list[int]
+
+
+class _Kernel(_Described):
+    doc: str
+    source: str
+    inputs: list[_Argument]
+    outputs: list[_Argument]
+
+
+class _Element(_Described):
+    nodal_vectors: list[str]
+    dim: Literal[2, 3]
+    director: str
+    laws: dict[str, str]
+
+
+class _Manifest(_Described):
+    """What a library's manifest must have to be loaded."""
+
+    interface: str
+    library: _Shared
+    elements: dict[str, _Element]
+    kernels: dict[str, _Kernel]
+    tools: dict[str, str]
+    families: dict[str, dict]
+    files: dict[str, str]
+
+
+def manifest_digest(content: dict) -> str:
+    """sha256 of a library's manifest, but for the digest in it."""
+    bare = content | {"library": {name: value for name, value in content["library"].items() if name != "digest"}}
+    return hashlib.sha256(json.dumps(bare, sort_keys=True).encode()).hexdigest()
+
+
+def read_manifest(directory: Path) -> tuple[bytes, dict]:
+    """The manifest of the library in a directory, as it stands there and as data. Raises LibraryError."""
+    try:
+        text = (directory / MANIFEST).read_bytes()
+    except OSError as error:
+        raise LibraryError(f'"{shown_path(directory)}" is none: {MANIFEST} cannot be read ({error.strerror})',
+                           "make one with " + COMMAND.format(spec="FILE", out=shown_path(directory))) from None
+    try:
+        _Manifest.model_validate_json(text)
+        return text, json.loads(text)
+    except (ValidationError, ValueError, RecursionError):
+        raise LibraryError(f'"{directory}" is none: its {MANIFEST} is not that of a library',
+                           "make one with " + COMMAND.format(spec="FILE", out=directory)) from None
 
 
 class Kernel:
@@ -96,14 +185,10 @@ class Library:
 
 def load(directory: str | os.PathLike) -> Library:
     """The library in a directory; once loaded it stays. Raises LibraryError."""
-    path = Path(os.path.abspath(directory))
-    try:
-        text = (path / MANIFEST).read_bytes()
-    except OSError as error:
-        raise LibraryError(f'"{directory}" is none: {MANIFEST} cannot be read ({error.strerror})',
-                           "make one with " + COMMAND.format(spec="FILE", out=directory)) from None
+    path = Path(resolved(directory))
+    text, content = read_manifest(path)
     if _loaded.get(str(path), (b"",))[0] != text:
-        _loaded[str(path)] = text, _open(path, text)
+        _loaded[str(path)] = text, _open(path, content)
     return _loaded[str(path)][1]
 
 
@@ -121,23 +206,26 @@ def tables_of(library: str | None) -> int:
     return load(library).tables if library is not None else 0
 
 
-def _open(path: Path, text: bytes) -> Library:
-    try:
-        content = json.loads(text)
-        made, file, digest = content["interface"], path / content["library"]["file"], content["library"]["sha256"]
-        again = "make it anew with " + COMMAND.format(spec=content["library"]["spec"], out=path)
-    except (ValueError, KeyError, TypeError):
-        raise LibraryError(f'"{path}" is none: its {MANIFEST} is not that of a library',
-                           "make one with " + COMMAND.format(spec="FILE", out=path)) from None
+def _open(path: Path, content: dict) -> Library:
+    made, described = content["interface"], content["library"]
+    again = "make it anew with " + COMMAND.format(spec=described["spec"], out=path)
     if made != elements.manifest()["interface"]:
         raise LibraryError(f'"{path}" was made for another version of funicular: its tables of kernels '
                            f"are laid out as {made}, here as {elements.manifest()['interface']}", again)
+    if manifest_digest(content) != described.get("digest"):
+        raise LibraryError(f'"{path}" is damaged: its {MANIFEST} is not the one that was made', again)
+    file = path / Path(described["file"]).name  # nothing from elsewhere, whatever the manifest says
     try:
-        if hashlib.sha256(file.read_bytes()).hexdigest() != digest:
+        if file.is_symlink() or hashlib.sha256(file.read_bytes()).hexdigest() != described["sha256"]:
             raise LibraryError(f'"{path}" is damaged: {file.name} is not the file that was made', again)
         shared = ctypes.CDLL(str(file))
+        kernels = SimpleNamespace(**{name: Kernel(shared, name, entry) for name, entry in content["kernels"].items()})
+        tables = ctypes.addressof(ctypes.c_char.in_dll(shared, "fu_all"))
     except OSError as error:
         raise LibraryError(f'"{path}" cannot be loaded here: {error}', again) from None
-    kernels = SimpleNamespace(**{name: Kernel(shared, name, entry) for name, entry in content["kernels"].items()})
-    return Library(path, elements.of_manifest(content), kernels,
-                   ctypes.addressof(ctypes.c_char.in_dll(shared, "fu_all")), digest)
+    except (AttributeError, ValueError) as error:  # a name that the shared object does not have
+        if isinstance(error, LibraryError):
+            raise
+        raise LibraryError(f'"{path}" is damaged: {file.name} lacks what its {MANIFEST} names: {error}',
+                           again) from None
+    return Library(path, elements.of_manifest(content), kernels, tables, described["sha256"])

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from funicular.errors import near
+from funicular.errors import near, shown_path
 
 if TYPE_CHECKING:
     from funicular.modal_bodies import ModalBody
 
 ARRAYS = ("nodes", "modes", "masses", "stiffness")
+NETCDF = {b"CDF\1": "scipy", b"CDF\2": "scipy", b"CDF\5": None, b"\x89HDF": None}
+"""How files of data begin, and what reads them: None leaves it to xarray."""
 SYMMETRIC, ORTHOGONAL, DEFINITE = 1e-9, 1e-6, 1e-10
 """Parts of the largest entry, or cosines, up to which a matrix is what it should be."""
 
@@ -142,16 +145,20 @@ def _is_orthogonal(M: np.ndarray) -> None:
 def of_file(path: str, orthogonal: bool) -> Shape:
     """From an .npz or a netCDF file, see `ModalBody`. Raises ValueError(cause, remedy)."""
     file = Path(path)
-    if not file.is_file():
-        raise ValueError(f'there is no file "{path}"')
+    if not os.path.isfile(file):  # False also of what no path can be
+        raise ValueError(f'there is no file "{shown_path(path)}"')
     try:
         if file.suffix == ".npz":
-            with np.load(file) as found:
+            with np.load(file, allow_pickle=False) as found:  # a pickle would run code
                 arrays = {name: found[name] for name in found.files}
         else:
             import xarray
 
-            with xarray.open_dataset(file) as found:
+            with open(file, "rb") as opened:
+                head = opened.read(4)
+            if head not in NETCDF:
+                raise ValueError("it begins like no netCDF file")
+            with xarray.open_dataset(file, engine=NETCDF[head]) as found:
                 arrays = {name: found[name].values for name in found.data_vars}
     except Exception as error:
         raise ValueError(f'"{path}" could not be read: {error}', "give an .npz or a netCDF file") from error

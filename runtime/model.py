@@ -254,7 +254,7 @@ def build(scene: Scene) -> Model:
         width=reduction.numbering.width,
         chains=reduction.numbering.chains,
         nodes=nodes,
-        tables=[tables_of(name) for name in {c.library for c in cables if c.library is not None}],
+        tables=[tables_of(name) for name in scene.libraries],
     )
 
 

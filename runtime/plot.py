@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
+import os
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from funicular.errors import ResultFileError
+from funicular.errors import ResultFileError, shown_path
 from funicular.modal_bodies import ModalBody
 from funicular.results import ENERGIES
 from funicular.rotations import rotate
 from funicular.section_forces import even, jumps, of_run, with_sides
 
 if TYPE_CHECKING:
-    import os
-
     from funicular.anchors import Anchor
     from funicular.results import Run
     from funicular.scene import Scene
@@ -61,6 +60,8 @@ def save_plots(run: Run, directory: str | os.PathLike, prefix: str = "", forces:
     if forces:
         drawers |= {f"forces-{name}": partial(draw_section_forces, cable=name) for name in run.scene.cables}
     directory, written = Path(directory), []
+    if "\0" in os.fspath(directory):
+        raise ResultFileError(f"{shown_path(directory)}: the pictures cannot be written here: this is no path")
     try:
         directory.mkdir(parents=True, exist_ok=True)
         for name, draw in drawers.items():
@@ -70,7 +71,8 @@ def save_plots(run: Run, directory: str | os.PathLike, prefix: str = "", forces:
                     written.append(directory / f"{prefix}{name}.png")
                     figure.savefig(written[-1])
     except OSError as error:
-        raise ResultFileError(f"{directory}: the pictures cannot be written here: {error.strerror}") from error
+        where = shown_path(directory)
+        raise ResultFileError(f"{where}: the pictures cannot be written here: {error.strerror}") from error
     return written
 
 

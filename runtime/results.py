@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
+import threading
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import cached_property
 from operator import methodcaller
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from funicular.errors import FunicularWarning, ResultFileError, UnknownResultError, near
-from funicular.netcdf import File, Stored, Variable, create, last_report
+from funicular.errors import FunicularWarning, ResultFileError, UnknownResultError, near, shown_path
+from funicular.locks import Taken, created, lock
+from funicular.netcdf import ROW_CHECKSUM, File, Stored, Variable, create, last_report
+from pydantic import BaseModel, ConfigDict
 
 if TYPE_CHECKING:
     import xarray
@@ -22,8 +26,10 @@ if TYPE_CHECKING:
     from funicular.scene import Scene
     from funicular.settings import RunSettings
 
-FILE_FORMAT = 2
+FILE_FORMAT = 3
 """Raised when a reader of older files could misread new ones."""
+WITH_CHECKSUMS = 3
+"""From this format on files have them; older ones are read all the same, with a warning."""
 _BLOCK = 1 << 22
 """Bytes that are written at once."""
 
@@ -90,13 +96,15 @@ class EnergyBalance(NamedTuple):
 class Run:
     """Results by name: ``run["A.position"]`` is a NumPy array (time, 3); `keys` lists the names."""
 
-    def __init__(self, variables: Mapping[str, Variable], coords: dict[str, Variable], report: dict, scene_toml: str):
+    def __init__(self, variables: Mapping[str, Variable], coords: dict[str, Variable], report: dict, scene_toml: str,
+                 libraries: Iterable[str | os.PathLike] = ()):
         """report: how the run went, status, message and messages among it; scene_toml: the scene as text.
 
         report["us_per_step"] tells what each slide and joint takes of a step in µs, without solving for its forces.
+        libraries: directories of elements that the scene may load when it is read back from its text.
         """
         self.variables, self.coords = variables, coords
-        self.report, self.scene_toml = report, scene_toml
+        self.report, self.scene_toml, self.libraries = report, scene_toml, libraries
 
     @classmethod
     def from_recording(cls, recording, scene: Scene, settings: RunSettings) -> Run:
@@ -109,7 +117,7 @@ class Run:
             "messages": [*scene.messages, *recording.report.get("messages", [])],
             "settings": settings.model_dump(),
         }
-        return cls(variables, coords, report, scene.to_toml())
+        return cls(variables, coords, report, scene.to_toml(), scene.libraries)
 
     @property
     def time(self) -> np.ndarray:
@@ -135,12 +143,12 @@ class Run:
 
     @cached_property
     def scene(self) -> Scene:
-        """The scene that was run, read back from its text."""
+        """The scene that was run, read back from its text. Raises SceneError for a library that is not allowed."""
         from funicular.scene_file import loads
 
         with warnings.catch_warnings():  # what it had to say it said before the run
             warnings.simplefilter("ignore", FunicularWarning)
-            return loads(self.scene_toml, "the scene of the run")
+            return loads(self.scene_toml, "the scene of the run", libraries=self.libraries)
 
     @cached_property
     def model(self) -> Model:
@@ -167,10 +175,8 @@ class Run:
 
     def __repr__(self) -> str:
         """Status, times and number of results."""
-        return (
-            f"<funicular.Run: {self.status}, {len(self.time)} times to {self.time[-1]:.6g} s, "
-            f"{len(self.keys())} results>"
-        )
+        times = f"{len(self.time)} times to {self.time[-1]:.6g} s" if len(self.time) else "no times"
+        return f"<funicular.Run: {self.status}, {times}, {len(self.keys())} results>"
 
     @property
     def dataset(self) -> xarray.Dataset:
@@ -182,7 +188,8 @@ class Run:
                 name: (v.dims, v.values, {"units": v.units, "long_name": v.long_name}) for name, v in variables.items()
             }
 
-        attributes = {"funicular_format": FILE_FORMAT, "scene": self.scene_toml, "report": file_text(self.report)}
+        attributes = {"funicular_format": WITH_CHECKSUMS - 1, "scene": self.scene_toml,
+                      "report": file_text(self.report)}
         return xarray.Dataset(arrays(self.variables), arrays(self.coords), attributes)
 
     def save(self, path: str | os.PathLike) -> None:
@@ -190,16 +197,17 @@ class Run:
 
         Raises ResultFileError.
         """
-        check_writable(path)
-        path = Path(path).resolve()  # a link keeps pointing to what it did
-        part = path.with_name(f".{path.name}.{os.getpid()}.part")
+        path = check_writable(path)
+        check_free(path)
+        part = path.with_name(f".{path.name}.{os.getpid()}-{threading.get_ident()}.part")
+        report = file_text(self.report, len(self.time))
         try:
             if isinstance(self.variables, Stored):
                 described = self.variables.file.described(over_time=True)
                 fixed = {name: v for name, v in self.coords.items() if name != "time"}
-                create_file(part, fixed, described, self.scene_toml, self.report).copy_rows(self.variables.file)
+                create_file(part, fixed, described, self.scene_toml, report).copy_rows(self.variables.file)
             else:
-                file = create_file(part, self.coords, self.variables, self.scene_toml, self.report)
+                file = create_file(part, self.coords, self.variables, self.scene_toml, report)
                 rows = over_time(self.coords, self.variables)
                 block = max(1, _BLOCK // file.row_bytes)
                 for first in range(0, len(self.time), block):
@@ -213,9 +221,9 @@ class Run:
     def energy_balance(self) -> EnergyBalance:
         """How well the energy books close; see `EnergyBalance`."""
         energies = {name: self[f"energy.{name}"] for name in ENERGIES if f"energy.{name}" in self}
-        changes = np.array([(e - e[0]) * (-1 if name == "external" else 1) for name, e in energies.items()])
+        changes = np.array([(e - e[:1]) * (-1 if name == "external" else 1) for name, e in energies.items()])
         residual = changes.sum(axis=0)
-        exchanged = float(np.abs(changes).sum(axis=0).max() / 2)
+        exchanged = float(np.abs(changes).sum(axis=0).max(initial=0.0) / 2)
         return EnergyBalance(residual, exchanged, residual / (exchanged or 1.0))
 
     def section_forces(self, cable: Cable | str, s=None, *, method: str = "balance",
@@ -244,7 +252,11 @@ class Run:
 
     def summary_rows(self) -> list[tuple[str, str]]:
         """What to tell about the run in short: pairs of a heading and a text."""
-        report, balance = self.report, self.energy_balance()
+        report = self.report
+        if not len(self.time):
+            return [("status", f"{self.status} before the first output time: there are no results"),
+                    *(("note", message) for message in report["messages"])]
+        balance = self.energy_balance()
         rows = [("status", f"{self.status} at t = {self.time[-1]:.6g} s, {len(self.time)} times")]
         counts = [f"{report[key]} {text}" for key, text in _COUNTS.items() if key in report]
         if counts:
@@ -327,24 +339,39 @@ def labelled(rows) -> tuple[dict[str, Variable], dict[str, Variable]]:
     return variables, coords
 
 
-def check_writable(path: str | os.PathLike) -> None:
-    """Raises ResultFileError if a file cannot be written at ``path``; leaves nothing behind."""
-    path = Path(path).resolve()
-    if path.is_dir():
-        raise ResultFileError(f"{path}: the results cannot be written here: this is a directory; add a name")
-    if path.exists() and not path.is_file():
-        raise ResultFileError(f"{path}: the results cannot be written here: this is a device, not a file")
-    if path.exists() and not os.access(path, os.W_OK):
-        raise ResultFileError(f"{path}: the results cannot be written here: the file is write-protected")
-    probe = path.with_name(f".{path.name}.{os.getpid()}.probe")
+def check_writable(path: str | os.PathLike) -> Path:
+    """The path without links. Raises ResultFileError if no file can be written there; leaves nothing behind."""
     try:
-        probe.touch()
-        probe.unlink()
+        resolved = Path(path).resolve()  # a link keeps pointing to what it did
+        probe = resolved.with_name(f".{resolved.name}.{os.getpid()}.probe")  # longer than other names that are needed
+        if resolved.is_dir():
+            cause, remedy = "this is a directory", "add a name"
+        elif resolved.exists() and not resolved.is_file():
+            cause, remedy = "this is a device, not a file", "give another path"
+        elif resolved.exists() and not os.access(resolved, os.W_OK):
+            cause, remedy = "the file is write-protected", "give another path"
+        else:
+            os.close(created(probe))
+            probe.unlink()
+            return resolved
+    except ValueError as error:  # a NUL, half of a surrogate pair
+        cause, remedy = f"this is no path: {error}", "give another one"
     except OSError as error:
-        raise ResultFileError(
-            f"{path}: the results cannot be written here: {error.strerror}; "
-            "give a path in a directory that exists and is yours to write to"
-        ) from None
+        cause, remedy = error.strerror, "give a path in a directory that exists and is yours to write to"
+        if error.errno == errno.ENAMETOOLONG:
+            remedy = "give a shorter name, below 240 bytes"
+    raise ResultFileError(f"{shown_path(path)}: the results cannot be written here: {cause}; {remedy}") from None
+
+
+def check_free(path: Path) -> None:
+    """Raises ResultFileError where a run is writing the file."""
+    try:
+        with open(path) as older:
+            lock(older.fileno())
+    except Taken:
+        raise ResultFileError(f"{path}: a run is writing it; wait for its end, or give another name") from None
+    except OSError:
+        pass  # there is none
 
 
 def over_time(coords: Mapping[str, Variable], variables: Mapping[str, Variable]) -> dict[str, np.ndarray]:
@@ -352,38 +379,116 @@ def over_time(coords: Mapping[str, Variable], variables: Mapping[str, Variable])
     return {"time": coords["time"].values} | {name: variable.values for name, variable in variables.items()}
 
 
-def file_text(report: dict) -> str:
-    """A report as it stands in a file, in one line."""
-    return json.dumps(report, default=methodcaller("tolist"))
+def file_text(report: dict, rows: int | None = None) -> str:
+    """A report as it stands in a file, in one line; rows: number of rows of a file that is whole."""
+    return json.dumps(report if rows is None else {"rows": rows, **report}, default=methodcaller("tolist"))
 
 
 def create_file(path: str | os.PathLike, coords: Mapping[str, Variable], variables: Mapping[str, Variable], scene: str,
-                report: dict, room: int = 0) -> File:
-    """A new file of results, without rows; see `funicular.netcdf.create`. Raises OSError."""
-    return create(path, coords, variables, {"funicular_format": FILE_FORMAT, "scene": scene}, file_text(report), room)
+                report: str, room: int = 0, descriptor: int | None = None) -> File:
+    """A new file of results, without rows; report: from `file_text`; see `funicular.netcdf.create`. Raises OSError."""
+    return create(path, coords, variables, {"funicular_format": FILE_FORMAT, "scene": scene}, report, room, descriptor)
 
 
-def load_run(path: str | os.PathLike) -> Run:
+class _Report(BaseModel):
+    """What a report in a file must be, as far as there is any of it but for its status."""
+
+    model_config = ConfigDict(strict=True, extra="allow", defer_build=True)
+
+    status: str
+    message: str
+    messages: list[str]
+    settings: dict
+    events: list[dict] = []
+    time_s: dict[str, float] = {}
+    us_per_step: dict[str, float] = {}
+    modes: dict[str, str] = {}
+    rows: int | None = None
+
+
+def load_run(path: str | os.PathLike, libraries: Iterable[str | os.PathLike] = (), salvage: bool = False) -> Run:
     """Open the results of a run, also of one that goes on or was killed; arrays are read when they are asked for.
 
+    All of the file is checked: its header, its report and its rows have checksums.
+
+    libraries: directories of elements (`funicular derive --spec`) that ``run.scene`` may load; they are machine code.
+    salvage: leave out the rows that are damaged, with a `FunicularWarning`, where the file would be refused otherwise.
     Raises ResultFileError, also for a damaged or foreign file.
     """
-    path = Path(path)
-    if not path.is_file():
-        raise ResultFileError(f"{path}: there is no such file")
+    return opened(open_file(path), libraries, salvage)
+
+
+def open_file(path: str | os.PathLike) -> File:
+    """A file of results, open to be read. Raises ResultFileError."""
+    if not os.path.isfile(path):
+        raise ResultFileError(f"{shown_path(path)}: there is no such file")
     try:
-        file = File(path)
+        return File(path)
     except (OSError, ValueError) as error:
         raise ResultFileError(f"{path}: is no netCDF file, or was cut short or damaged: {error}") from error
+
+
+def opened(file: File, libraries: Iterable[str | os.PathLike] = (), salvage: bool = False, check: bool = True) -> Run:
+    """The results in an open file, see `load_run`; check: its rows, too. Raises ResultFileError."""
+    path = file.path
     if "funicular_format" not in file.attributes:
         raise ResultFileError(f"{path}: is a netCDF file, but not one that funicular wrote")
-    if file.attributes["funicular_format"] > FILE_FORMAT:
-        raise ResultFileError(f"{path}: was written by a newer funicular; update this one to read it")
-    names = [name for name, entry in file.entries.items() if entry.dims[:1] != (name,)]
-    coords = {name: file.variable(name, file.read(name)) for name in file.entries if name not in set(names)}
-    report = json.loads(last_report(file.attributes["report"]))
+    try:
+        made = np.asarray(file.attributes["funicular_format"]).item()
+        if not isinstance(made, int):
+            raise ValueError("its format is no number")
+        if made > FILE_FORMAT:
+            raise ResultFileError(f"{path}: was written by a newer funicular; update this one to read it")
+        if made >= WITH_CHECKSUMS and not file.has_checksums:
+            raise ValueError("it lacks its checksums")
+        report, scene = _read_report(file), file.attributes["scene"]
+        rows = report.pop("rows", None)
+        if check:
+            _check_rows(file, rows, salvage)
+        names = [name for name, entry in file.entries.items()
+                 if entry.dims[:1] != (name,) and not (name == ROW_CHECKSUM and file.has_checksums)]
+        coords = {name: file.variable(name, file.read(name)) for name in file.entries
+                  if name not in {*names, ROW_CHECKSUM}}
+        if not isinstance(scene, str) or "time" not in coords:
+            raise ValueError("it has no times, or no scene")
+    except (OSError, ValueError, LookupError, TypeError, OverflowError) as error:
+        raise ResultFileError(f"{path}: is damaged: {error}") from error
     if report["status"] == "unfinished":
-        from funicular.streaming import events_kept
+        from funicular.streaming import add_events
 
-        report["events"] = events_kept(path)
-    return Run(Stored(file, names), coords, report, file.attributes["scene"])
+        add_events(report, Path(path))
+    return Run(Stored(file, names), coords, report, scene, libraries)
+
+
+def _read_report(file: File) -> dict:
+    """The report in a file. Raises ValueError, KeyError where it is damaged."""
+    report = last_report(file.attributes["report"], file.has_checksums)
+    _Report.model_validate(report)
+    return report
+
+
+def _check_rows(file: File, rows: int | None, salvage: bool) -> None:
+    """Find damaged rows, to leave them out or to raise ResultFileError; warn where there are no checksums.
+
+    rows: number of rows that the report tells, None where the run goes on.
+    """
+    if rows is not None and rows != file.rows:
+        raise ValueError(f"its header says that it has {file.rows} times, its report {rows}")
+    if not file.has_checksums:
+        warnings.warn(f"{file.path}: has no checksums, as an older funicular or another program wrote it: damage to it "
+                      "would not be found", FunicularWarning, stacklevel=4)
+        return
+    damaged = file.damaged_rows()
+    if not len(damaged):
+        return
+    named = ", ".join(map(str, damaged[:_MOST_ROWS])) + (", ..." if len(damaged) > _MOST_ROWS else "")
+    found = f"{file.path}: {len(damaged)} of its {file.rows} output times are damaged, those of the rows {named}"
+    if not salvage or len(damaged) == file.rows:
+        raise ResultFileError(f"{found}; take a copy of it, run the scene again, or read the other times with "
+                              "load_run(path, salvage=True)")
+    file.left_out = damaged
+    warnings.warn(f"{found}; they are left out", FunicularWarning, stacklevel=4)
+
+
+_MOST_ROWS = 10
+"""Rows that a message names."""

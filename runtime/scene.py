@@ -314,6 +314,11 @@ class Scene:
         return min((cable.dim for cable in self.cables.values()), default=3)
 
     @property
+    def libraries(self) -> tuple[str, ...]:
+        """Directories of the libraries that its cables' elements are from."""
+        return tuple(sorted({cable.library for cable in self.cables.values() if cable.library is not None}))
+
+    @property
     def supports(self) -> list[Support]:
         """All that holds or moves nodes: pins, clamps and motions."""
         return [*self.pins, *self.clamps, *self.motions]

@@ -9,12 +9,13 @@ from __future__ import annotations
 import json
 import os
 import tomllib
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 from funicular.anchors import Anchor
 from funicular.ends import Stop
-from funicular.errors import SceneError, near
+from funicular.errors import SceneError, near, shown_path
 from funicular.parts import PARTS
 from funicular.scene import Scene
 from funicular.sections import Section
@@ -38,17 +39,18 @@ def bundled_scenes() -> dict[str, Path]:
     return {path.stem: path for path in sorted(SCENES.glob("*.toml"))}
 
 
-def load_scene(path: str | os.PathLike) -> Scene:
+def load_scene(path: str | os.PathLike, libraries: Iterable[str | os.PathLike] = ()) -> Scene:
     """Read a scene file, or the bundled scene of that name; its [run] table becomes ``scene.run_settings``.
 
+    libraries: directories of elements (`funicular derive --spec`) that the file may load; they are machine code.
     Raises SceneError.
     """
     file = Path(path)
-    if not file.is_file():
+    if not os.path.isfile(file):  # False also of what no path can be
         bundled = bundled_scenes()
         if os.fspath(path) not in bundled:
             raise SceneError(
-                os.fspath(path),
+                shown_path(path),
                 "there is no such scene file, nor a bundled scene of that name",
                 near(file.stem, bundled),
             )
@@ -57,13 +59,15 @@ def load_scene(path: str | os.PathLike) -> Scene:
         text = file.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise SceneError(str(file), f"cannot be read as text: {error}") from None
-    return loads(text, str(file), file.parent)
+    return loads(text, str(file), file.parent, libraries)
 
 
-def loads(text: str, origin: str, directory: str | os.PathLike = "") -> Scene:
+def loads(text: str, origin: str, directory: str | os.PathLike = "",
+          libraries: Iterable[str | os.PathLike] = ()) -> Scene:
     """A scene from the text of a scene file; ``origin`` is what error messages call it.
 
-    directory: where paths in the text start from, by default the working directory. Raises SceneError.
+    directory: where paths in the text start from, by default the working directory; libraries: directories of elements
+    that the text may load. Raises SceneError.
     """
     try:
         tables = tomllib.loads(text)
@@ -73,6 +77,7 @@ def loads(text: str, origin: str, directory: str | os.PathLike = "") -> Scene:
         if name not in TABLES:
             raise SceneError(origin, f'"{name}" is not known here', near(name, TABLES))
     try:
+        _check_libraries(tables, directory, [libraries] if isinstance(libraries, str | os.PathLike) else [*libraries])
         scene = Scene(**{name: tables[name] for name in ("gravity",) if name in tables})
         for kind, part in PARTS.items():
             for index, table in enumerate(_array(tables, kind), start=1):
@@ -90,6 +95,21 @@ def _array(tables: dict, kind: str) -> list:
     if not isinstance(array, list) or not all(isinstance(table, dict) for table in array):
         raise SceneError(f"[{kind}]", "must be an array of tables", f"write [[{kind}]], in two brackets")
     return array
+
+
+def _check_libraries(tables: dict, directory: str | os.PathLike, allowed: list[str | os.PathLike]) -> None:
+    """Refuse libraries that the caller does not allow, before any of them is loaded. Raises SceneError."""
+    for kind, part in PARTS.items():
+        for index, table in enumerate(_array(tables, kind), start=1):
+            if isinstance(library := table.get("library"), str):
+                from funicular.libraries import check_allowed, resolved
+
+                place = part.place(table) if isinstance(table.get("name"), str) else f"[[{kind}]] {index}"
+                try:
+                    asked = resolved(os.path.join(directory, library))
+                except ValueError as error:
+                    raise SceneError(place, f"library {error}") from None
+                check_allowed(asked, allowed, place)
 
 
 def _placed(table: dict, directory: str | os.PathLike) -> dict:
@@ -111,7 +131,12 @@ def _settings(name: str, table: Any) -> dict:
     """What a table of settings sets, checked."""
     if not isinstance(table, dict):
         raise SceneError(f"[{name}]", "must be a table")
-    return SETTINGS[name](**table).model_dump(exclude_unset=True)
+    settings = SETTINGS[name](**table).model_dump(exclude_unset=True)
+    save = settings.get("save")
+    if save is not None and not save.endswith(".nc"):  # lest a scene file replace any file of its reader's
+        raise SceneError(f"[{name}]", f'save = "{save}" in a scene file must end in .nc',
+                         "choose another name, or give it on the command line (-o) or in Python (save=)")
+    return settings
 
 
 def dumps(scene: Scene) -> str:

@@ -7,7 +7,7 @@ state that a checkpoint holds in full at all of them. Runs that end by themselve
 
 from __future__ import annotations
 
-import fcntl
+import errno
 import hashlib
 import json
 import os
@@ -17,9 +17,20 @@ from copy import copy
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
+from funicular.checkpoints import Checkpoint, DamagedCheckpointError, Facts
 from funicular.errors import ResultFileError
+from funicular.locks import NoLocks, Taken, claimed, is_at, lock
 from funicular.netcdf import File
-from funicular.results import Run, check_writable, create_file, file_text, labelled, load_run, over_time
+from funicular.results import (
+    Run,
+    check_writable,
+    create_file,
+    file_text,
+    labelled,
+    open_file,
+    opened,
+    over_time,
+)
 
 if TYPE_CHECKING:
     from funicular.model import Model
@@ -55,53 +66,30 @@ def pauses(rows: int, row_bytes: int) -> Pauses:
     return Pauses(every, min(rows, most // every * every) + 2)  # the start, and where a run is cut short
 
 
-class Checkpoint(NamedTuple):
-    """What a file of the engine's state holds: facts on the run, and the engine's bytes."""
-
-    facts: dict
-    state: bytes
-
-    def write(self, path: Path) -> None:
-        """Replace the file. Raises OSError."""
-        facts = self.facts | {"size": len(self.state), "sha256": hashlib.sha256(self.state).hexdigest()}
-        part = _part_of(path)
-        try:
-            part.write_bytes(json.dumps(facts).encode() + b"\n" + self.state)
-            part.replace(path)
-        finally:
-            part.unlink(missing_ok=True)
-
-    @classmethod
-    def read(cls, path: Path) -> Checkpoint:
-        """Read a file. Raises OSError; ValueError, KeyError or TypeError where it is damaged."""
-        head, _, state = path.read_bytes().partition(b"\n")
-        facts = json.loads(head)
-        if (len(state), hashlib.sha256(state).hexdigest()) != (facts.pop("size"), facts.pop("sha256")):
-            raise ValueError
-        return cls(facts, state)
-
-
 class Stream:
     """The file of a run while it goes on, and its checkpoint."""
 
     def __init__(self, path: str | os.PathLike, scene: Scene, settings: RunSettings, resume: bool):
         """Check that the file can be written or, to resume, that it holds a run of this scene and these settings.
 
-        Raises ResultFileError.
+        From here to the end no other run can write it. Raises ResultFileError.
         """
-        self._path = Path(path).resolve()
-        self._state = _state_of(self._path)
+        self._path = check_writable(path)
+        self._state, self._part = _state_of(self._path), _part_of(self._path)
         self._scene, self._settings = scene, settings
         self._file: File | None = None
+        self._new = self._older = -1  # descriptors of the part file, and of the file that it will take the place of
         self._taken, self._resumed = 0, []
         self._added = self._checked = time.monotonic()
-        if not resume:
-            check_writable(path)
-            if self._path.exists():
-                with open(self._path) as older:
-                    self._claim(older.fileno())
         self._facts = _facts(scene, settings)
-        self._kept = self._to_resume() if resume else None
+        try:
+            if not resume:
+                self._new = self._claim(self._part)
+            self._older = self._claim_older()
+            self._kept = self._to_resume() if resume else None
+        except BaseException:
+            self._let_go()
+            raise
 
     def __enter__(self) -> Stream:
         """The stream."""
@@ -109,14 +97,22 @@ class Stream:
 
     def __exit__(self, *exception) -> None:
         """Let other runs have the file."""
-        _part_of(self._path).unlink(missing_ok=True)
+        self._let_go()
+
+    def _let_go(self) -> None:
+        if self._new >= 0:  # no file was made of it
+            self._part.unlink(missing_ok=True)
+        for descriptor in (self._new, self._older):
+            if descriptor >= 0:
+                os.close(descriptor)
+        self._new = self._older = -1
         if self._file is not None:
-            fcntl.flock(self._file.descriptor, fcntl.LOCK_UN)
+            self._file.close()
 
     @property
     def elapsed(self) -> float:
         """Seconds that the run took before it was resumed."""
-        return self._kept.facts["elapsed_s"] if self._kept else 0.0
+        return self._kept.facts.elapsed_s if self._kept else 0.0
 
     @property
     def free(self) -> int:
@@ -138,12 +134,15 @@ class Stream:
             self._checkpoint()
             return
         facts, state = self._kept
-        self._compare(facts, "start", "from another state")
-        self._compare(facts, "integrator", f'with integrator "{engine.integrator}"')
-        engine.restore(state)
-        self._taken = facts["rows"]
-        events[:] = facts["events"]
-        self._resumed = [*facts["resumed_at_s"], engine.time]
+        self._compare("start", "from another state")
+        self._compare("integrator", f'with integrator "{engine.integrator}"')
+        try:
+            engine.restore(state, facts.rows)
+        except ValueError:
+            raise self._refused(f"its checkpoint {self._state.name} is damaged") from None
+        self._taken = facts.rows
+        events[:] = facts.events
+        self._resumed = [*facts.resumed_at_s, engine.time]
         self._written(lambda: self._file.truncate(self._taken))
         self._report(self._unfinished())
 
@@ -165,18 +164,26 @@ class Stream:
         self._added = time.monotonic()
 
     def finish(self, recording: Recording) -> Run:
-        """Write the last rows and the report; the run as read from the file. Raises ResultFileError."""
+        """Write the last rows and the report; the run as read from the file. Raises ResultFileError.
+
+        A run that has failed before its first row leaves no file, or an older one as it was; it is returned, too.
+        """
         last = Run.from_recording(recording, self._scene, self._settings)
         if self._resumed:
             last.report["resumed_at_s"] = self._resumed
         if self._file is None:
+            if not len(recording.time):
+                return last
             self._make((last.variables, last.coords))
         else:
             self._add(recording)
-        self._report(last.report)
+        self._report(last.report, self._file.rows)
         if recording.status not in GOES_ON:
             self._state.unlink(missing_ok=True)
-        return load_run(self._path)
+        file = open_file(self._path)
+        if not is_at(self._file.descriptor, self._path):
+            raise self._lost()
+        return opened(file, self._scene.libraries, check=False)  # it is what was just written
 
     def _unfinished(self) -> dict:
         return {"status": "unfinished", "message": "the run goes on, or was killed", "resumed_at_s": self._resumed,
@@ -195,31 +202,40 @@ class Stream:
         self._written(make)
         self._taken = self._file.rows
 
-    def _replace(self, coords: dict, variables: dict, report: dict) -> None:
-        self._file = create_file(_part_of(self._path), coords, variables, self._scene.to_toml(), report, REPORT_ROOM)
-        self._claim(self._file.descriptor)
+    def _replace(self, coords: dict, variables: dict, report: dict, rows: int | None = None) -> None:
+        """The part file, whole but for its rows."""
+        descriptor, self._new = self._new if self._new >= 0 else self._claim(self._part), -1
+        self._file = create_file(self._part, coords, variables, self._scene.to_toml(), file_text(report, rows),
+                                 REPORT_ROOM, descriptor)
 
     def _add(self, rows: Rows) -> None:
         variables, coords = labelled(rows)
         self._written(lambda: self._file.write(self._taken, over_time(coords, variables)))
         self._taken = self._file.rows
 
-    def _report(self, report: dict) -> None:
+    def _report(self, report: dict, rows: int | None = None) -> None:
+        """Write a report; rows: number of rows of a file that is whole."""
         def add() -> None:
-            if not self._file.add_report(file_text(report)):  # with more room, then
+            if not self._file.add_report(file_text(report, rows)):  # with more room, then
                 old = self._file
-                self._replace(old.described(over_time=False), old.described(over_time=True), report)
+                self._replace(old.described(over_time=False), old.described(over_time=True), report, rows)
                 self._file.copy_rows(old)
                 self._file.rename(self._path)
 
         self._written(add)
 
     def _checkpoint(self) -> None:
+        if not is_at(self._file.descriptor, self._path):
+            raise self._lost()
         elapsed = self.elapsed + time.monotonic() - self._begin
-        facts = self._facts | {"rows": self._taken, "elapsed_s": elapsed, "resumed_at_s": self._resumed,
-                               "events": self._events}
+        facts = Facts(**self._facts, rows=self._taken, elapsed_s=elapsed, resumed_at_s=self._resumed,
+                      events=self._events)
         self._written(lambda: Checkpoint(facts, self._engine.checkpoint()).write(self._state))
         self._checked = time.monotonic()
+
+    def _lost(self) -> ResultFileError:
+        return self._refused("it was removed or replaced while the run was writing it",
+                             "leave it where it is until the run has come to its end")
 
     def _written(self, write: Callable[[], None]) -> None:
         try:
@@ -229,56 +245,95 @@ class Stream:
             raise ResultFileError(f"{self._path}: the results could not be written: {error.strerror}; {whole}"
                                   "make room, and go on with resume where there is a checkpoint") from error
 
-    def _claim(self, descriptor: int) -> None:
-        """A lock, which also a killed run gives back."""
+    def _claim(self, path: Path) -> int:
+        """A descriptor of a file that is this run's alone."""
         try:
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise self._refused("another run is writing it", "wait for its end, or give another name") from None
-        except OSError:
-            return  # a file system without locks
+            return claimed(path)
+        except Taken:
+            raise self._taken_already() from None
+        except NoLocks:
+            raise self._refused(f"another run may be writing it: there is {path.name}, and this file system has no "
+                                "locks", f"delete {path.name} if there is none") from None
+        except OSError as error:
+            if error.errno == errno.ELOOP:
+                raise self._refused(f"{path.name} beside it is a link", "delete the link") from None
+            raise self._unwritable(error) from None
+
+    def _claim_older(self) -> int:
+        """A descriptor of the file that is there already, which no other run can then write; -1 where there is none."""
+        while self._path.exists():
+            try:
+                descriptor = os.open(self._path, os.O_RDWR | os.O_CLOEXEC)
+            except FileNotFoundError:
+                return -1
+            except OSError as error:
+                raise self._unwritable(error) from None
+            try:
+                lock(descriptor)
+            except Taken:
+                os.close(descriptor)
+                raise self._taken_already() from None
+            if is_at(descriptor, self._path):
+                return descriptor
+            os.close(descriptor)  # replaced while it was opened
+        return -1
+
+    def _unwritable(self, error: OSError) -> ResultFileError:
+        return self._refused(f"the results cannot be written here: {error.strerror}", "give another path")
+
+    def _taken_already(self) -> ResultFileError:
+        return self._refused("another run is writing it", "wait for its end, or give another name")
 
     def _refused(self, cause: str, remedy: str = "start the run anew, without resume") -> ResultFileError:
         return ResultFileError(f"{self._path}: {cause}; {remedy}")
 
-    def _compare(self, facts: dict, name: str, difference: str) -> None:
-        if facts[name] != self._facts[name]:
+    def _compare(self, name: str, difference: str) -> None:
+        if getattr(self._kept.facts, name) != self._facts[name]:
             raise self._refused(f"its run cannot go on {difference}")
 
     def _to_resume(self) -> Checkpoint:
         """The checkpoint, if it is one of this scene and these settings; opens the file."""
-        if not self._path.exists():
+        if self._older < 0:
             raise self._refused("there is no run to resume: there is no such file")
-        status = load_run(self._path).status
+        status = opened(open_file(self._path), check=False).status
         if status not in GOES_ON:
             raise self._refused(f"its run has come to its end ({status}): there is nothing to resume")
-        try:
-            kept = Checkpoint.read(self._state)
-            settings, rows = kept.facts["settings"], kept.facts["rows"]
-        except FileNotFoundError:
-            raise self._refused(f"its checkpoint {self._state.name} is missing") from None
-        except (OSError, ValueError, KeyError, TypeError):
-            raise self._refused(f"its checkpoint {self._state.name} is damaged") from None
+        self._kept = kept = self._read_checkpoint()
         for name, now in self._facts["settings"].items():
-            if (before := settings.get(name)) != now:
+            if (before := kept.facts.settings.get(name)) != now:
                 raise self._refused(f"its run was started with {name} = {before}, and cannot go on with {now}",
                                     "resume it with the settings that it was started with, or start it anew")
-        self._compare(kept.facts, "scene", "with another scene")
-        self._compare(kept.facts, "programs", "with another version of funicular, NumPy or SciPy")
-        check_writable(self._path)
-        self._file = File(self._path, writable=True)
-        self._claim(self._file.descriptor)
-        if rows > self._file.rows:
-            raise self._refused(f"it has {self._file.rows} times, but its checkpoint is of the one after {rows}")
+        self._compare("scene", "with another scene")
+        self._compare("programs", "with another version of funicular, NumPy or SciPy")
+        descriptor, self._older = self._older, -1
+        self._file = File(self._path, descriptor=descriptor)
+        if kept.facts.rows > self._file.rows:
+            raise self._refused(f"it has {self._file.rows} times, but its checkpoint is of the one after "
+                                f"{kept.facts.rows}")
+        if len(damaged := self._file.damaged_rows(kept.facts.rows)):
+            raise self._refused(f"{len(damaged)} of the output times up to its checkpoint are damaged, the first is "
+                                f"that of row {damaged[0]}")
         return kept
 
+    def _read_checkpoint(self) -> Checkpoint:
+        try:
+            return Checkpoint.read(self._state)
+        except FileNotFoundError:
+            raise self._refused(f"its checkpoint {self._state.name} is missing") from None
+        except DamagedCheckpointError as error:
+            raise self._refused(f"its checkpoint {self._state.name} {error}") from None
+        except OSError as error:
+            raise self._refused(f"its checkpoint {self._state.name} cannot be read: {error.strerror}") from None
 
-def events_kept(path: Path) -> list[dict]:
-    """What the events of a run that has not come to its end have found up to its checkpoint."""
+
+def add_events(report: dict, path: Path) -> None:
+    """Put into the report of a run that has not come to its end what events have found up to its checkpoint."""
     try:
-        return Checkpoint.read(_state_of(path)).facts["events"]
-    except (OSError, ValueError, KeyError, TypeError):
-        return []
+        report["events"] = Checkpoint.read(_state_of(path)).facts.events
+    except (OSError, DamagedCheckpointError):
+        report["events"] = []
+        report["messages"].append(f"what events have found is not known: there is no whole checkpoint "
+                                  f"{_state_of(path).name}")
 
 
 def _state_of(path: Path) -> Path:
@@ -315,10 +370,9 @@ def _programs(scene: Scene) -> str:
     from funicular.libraries import load
 
     files = [engine.__file__, kernels.__file__]
-    own = sorted({cable.library for cable in scene.cables.values() if cable.library is not None})
     versions = f"{numpy.__version__} {scipy.__version__}"
     return _digest(versions.encode(), *(Path(file).read_bytes() for file in files),
-                   *(load(library).digest.encode() for library in own))
+                   *(load(library).digest.encode() for library in scene.libraries))
 
 
 def _start_of(model: Model) -> str:

@@ -86,6 +86,18 @@ def _extra(folder: Path) -> None:
     (folder / "old_element.c").write_text("/* left behind */\n")
 
 
+EXTRA = ("old.pxd", "old.so", "kernels.so", "kernels.abi3.so", "old.inc", "notes.txt", "Makefile", "old.pyc",
+         ".hidden.h", "sub/beam24.c", "sub/deep/__init__.py", "__pycache__/old.cpython-311.pyc", "__pycache__/x.so")
+
+
+def _more_extra(folder: Path) -> None:
+    for name in EXTRA:
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text("")
+    (folder / "empty").mkdir()
+    (folder / "linked").symlink_to(folder)
+
+
 def _stale(folder: Path) -> None:
     manifest = json.loads((folder / "manifest.json").read_text())
     old, new = manifest["families"]["rigid"]["spec_hash"], "0123456789abcdef"
@@ -101,10 +113,23 @@ def _no_manifest(folder: Path) -> None:
     (folder / "manifest.json").write_text("{broken")
 
 
+def contents(folder: Path) -> dict[Path, bytes]:
+    return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def test_what_a_build_and_an_import_leave_is_no_drift(copy, remembered):
+    for name in ("kernels.c", "kernels.cpython-311-x86_64-linux-gnu.so", "kernels.cp313-win_amd64.pyd",
+                 "__pycache__/__init__.cpython-312.pyc"):
+        (copy / name).parent.mkdir(exist_ok=True)
+        (copy / name).write_text("")
+    assert drift.extra() == []
+
+
 @pytest.mark.parametrize(("damage", "told", "mended"), [
     (_edited, ("differs: generated/rigid.c", "-    const fu_real arm_X", "+    const fu_real arm_x"), True),
     (_missing, ("missing: generated/registry.c",), True),
     (_extra, ("extra: generated/old_element.c", "delete"), False),
+    (_more_extra, tuple(f"extra: generated/{name} (" for name in (*EXTRA, "empty", "linked")), False),
     (_stale, ("stale (its spec has changed): generated/rigid.c", "- * spec hash 0123456789abcdef"), True),
     (_line_ends, ("differs: generated/kernels.h", "line ends"), True),
     (_no_manifest, ("differs: generated/manifest.json",), True),
@@ -112,13 +137,13 @@ def _no_manifest(folder: Path) -> None:
 def test_check_names_what_is_wrong_and_the_command_that_mends_it(copy, remembered, capsys, damage, told, mended):
     assert drift.main([], check=True) == 0
     damage(copy)
-    before = {p.name: p.read_bytes() for p in copy.iterdir()}
+    before = contents(copy)
     capsys.readouterr()
     assert drift.main([], check=True) == 1
     out, err = capsys.readouterr()
     assert all(text in out for text in told), out
     assert ("`funicular derive` mends it" in err) == mended
-    assert {p.name: p.read_bytes() for p in copy.iterdir()} == before, "a check writes nothing"
+    assert contents(copy) == before, "a check writes nothing"
     assert drift.main([]) == 0
     assert drift.main([], check=True) == (0 if mended else 1)
 

@@ -1,5 +1,6 @@
 """The user's own elements: a spec file outside the package becomes a library; a bad one gets told what it lacks."""
 
+import hashlib
 import json
 import os
 import re
@@ -16,11 +17,13 @@ from funicular.derive.elements.cable18 import CABLE18
 from funicular.derive.families import families
 from funicular.derive.own import command, load
 from funicular.derive.own.load import SpecError
-from funicular.elements import built_in, gauge
+from funicular.elements import built_in, gauge, manifest
 from funicular.errors import SceneError
 from funicular.generated import kernels
-from funicular.libraries import LibraryError
+from funicular.libraries import LibraryError, manifest_digest
 from funicular.libraries import load as load_library
+from funicular.plot import save_plots
+from funicular.results import load_run
 from funicular.scene_file import load_scene, loads
 from scenery import SQUARE, TABLE_1
 from test_readme import README
@@ -131,7 +134,10 @@ def test_a_changed_spec_replaces_the_library_also_in_a_process_that_has_it_open(
     out = tmp_path / "library"
     shutil.copytree(made, out)
     (old,) = [*load_library(out).elements["mine8p"].laws]
+    (tmp_path / "kept.c").write_text("of an older library, says its manifest, which is wrong")
+    _change(out, lambda content: content["files"].update({"../kept.c": "0"}))
     command.main(spec(tmp_path, ("green_linear", "engineering_linear")), out)
+    assert (tmp_path / "kept.c").exists()
     (new,) = [*load_library(out).elements["mine8p"].laws]
     assert (old, new) == ("green_linear", "engineering_linear")
     stretched = [[0, 0], [2, 0], [2, 0], [2, 0]]
@@ -348,6 +354,157 @@ def test_a_scene_says_what_is_wrong_with_its_library(tmp_path, made):
         cable(scene, element="mine", library=made)
 
 
+# --- a file alone loads nothing ----------------------------------------------------------------------------------
+
+HOSTILE = """
+#include <stdio.h>
+__attribute__((constructor)) static void runs(void) { fclose(fopen("%s", "w")); }
+const char fu_all[64];
+"""
+
+
+@pytest.fixture
+def hostile(tmp_path) -> tuple[Path, Path]:
+    """A library without kernels, whole as far as its manifest tells, and the file that appears when it is loaded."""
+    folder, marker = tmp_path / "hostile", tmp_path / "it-ran"
+    folder.mkdir()
+    (tmp_path / "hostile.c").write_text(HOSTILE % marker)
+    subprocess.run(["cc", "-shared", "-fPIC", "-o", folder / "kernels.so", tmp_path / "hostile.c"], check=True)
+    described(folder, folder / "kernels.so")
+    return folder, marker
+
+
+def described(folder: Path, shared: Path, name: str = "") -> None:
+    """A manifest of one element, its digests right."""
+    here = manifest()
+    content = {"interface": here["interface"], "elements": {"cable12": here["elements"]["cable12"]}, "kernels": {},
+               "tools": {}, "families": {}, "files": {},
+               "library": {"spec": "x.py", "file": name or shared.name,
+                           "sha256": hashlib.sha256(shared.read_bytes()).hexdigest()}}
+    content["library"]["digest"] = manifest_digest(content)
+    (folder / "manifest.json").write_text(json.dumps(content))
+
+
+def naming(library) -> str:
+    scene = funicular.Scene()
+    cable(scene, element="cable12")
+    scene.pin("wire", s=0.0)
+    scene.run_settings = {"duration": 0.01, "tol": 1e-3}
+    return scene.to_toml().replace('element = "cable12"', f'element = "cable12"\nlibrary = "{library}"')
+
+
+def not_allowed(library: Path) -> str:
+    return re.escape(f'cable "wire": takes its element from the library "{library}", which is machine code, and a file '
+                     f"alone may not load that; if you trust this directory, allow it: in Python with "
+                     f'libraries=["{library}"], on the command line with --library {library}')
+
+
+def test_a_scene_file_does_not_load_a_library(hostile, tmp_path):
+    folder, marker = hostile
+    (tmp_path / "link").symlink_to(folder)
+    (tmp_path / "mine").mkdir()
+    file = tmp_path / "scene.toml"
+    for named in (folder, "hostile", "./mine/../hostile", "link", "mine/../link/."):
+        file.write_text(naming(named))
+        for allowed in ((), (tmp_path,), (tmp_path / "mine", "hostile")):  # from another working directory
+            with pytest.raises(SceneError, match=not_allowed(folder)):
+                load_scene(file, libraries=allowed)
+        told = CliRunner().invoke(app, ["run", str(file), "-o", str(tmp_path / "x.nc"), "--library", str(tmp_path)])
+        assert told.exit_code == 1 and re.search(not_allowed(folder), told.stderr)
+        assert CliRunner().invoke(app, ["bench", str(file)]).exit_code == 1
+    with pytest.raises(SceneError, match=re.escape("cable \"wire\": library must be a directory, got '")):
+        loads(naming("a\\u0000b"), "x")
+    assert not marker.exists()
+    load_scene(file, libraries=[folder])  # it has no kernels, but now it is loaded
+    assert marker.exists()
+
+
+def test_all_libraries_of_a_file_are_looked_at_first(hostile, tmp_path):
+    folder, marker = hostile
+    second = naming(tmp_path / "other").split("[[cable]]")[1].split("[[")[0].replace('"wire"', '"second"')
+    with pytest.raises(SceneError, match=r'cable "second": takes its element from the library "[^"]*/other", which'):
+        loads(naming(folder) + "\n[[cable]]" + second, "x", libraries=[folder])
+    assert not marker.exists()
+
+
+def test_a_file_of_results_does_not_load_a_library(hostile, tmp_path):
+    folder, marker = hostile
+    run = loads(naming("x").replace('library = "x"\n', ""), "x").run()
+    run.scene_toml = naming(folder)
+    run.save(tmp_path / "x.nc")
+    read = load_run(tmp_path / "x.nc")
+    assert len(read.time) == 101 and read["wire.nodal_vectors"].shape[0] == 101
+    for use in (lambda: read.scene, lambda: read.section_forces("wire"), lambda: save_plots(read, tmp_path / "new")):
+        with pytest.raises(SceneError, match="the scene of the run: " + not_allowed(folder)):
+            use()
+    assert not marker.exists()
+
+
+def test_a_manifest_leads_to_no_file_elsewhere(hostile, tmp_path):
+    folder, marker = hostile
+    shared = (folder / "kernels.so").rename(tmp_path / "kernels.so")
+    for name in ("../kernels.so", str(shared)):
+        described(folder, shared, name)
+        with pytest.raises(LibraryError, match=r"cannot be loaded here: .*No such file"):
+            load_library(folder)
+    (folder / "kernels.so").symlink_to(shared)
+    described(folder, shared)
+    with pytest.raises(LibraryError, match=r"is damaged: kernels\.so is not the file that was made"):
+        load_library(folder)
+    assert not marker.exists()
+
+
+def test_an_allowed_library_is_used(made, tmp_path):
+    """By its directory or a link to it; a run that was made with it reads its scene back."""
+    scene = funicular.Scene()
+    cable(scene, element="mine8p", library=made)
+    scene.pin("wire", s=0.0)
+    run = scene.run(duration=0.01, tol=1e-3, save=tmp_path / "x.nc")
+    assert run.scene.cables["wire"].library == str(made)
+    (tmp_path / "link").symlink_to(made)
+    (tmp_path / "scene.toml").write_text(run.scene_toml.replace(str(made), "link"))
+    for allowed in (made, tmp_path / "link"):
+        assert load_scene(tmp_path / "scene.toml", libraries=[allowed]).cables["wire"].library == str(made)
+        assert load_run(tmp_path / "x.nc", libraries=[allowed]).section_forces("wire").sizes["time"] == 101
+    told = CliRunner().invoke(app, ["run", str(tmp_path / "scene.toml"), "--duration", "0.01", "--plot", "--forces",
+                                    "-o", str(tmp_path / "y.nc"), "--library", "nowhere", "--library", str(made)])
+    assert told.exit_code == 0, told.output
+
+
+def test_a_damaged_manifest_is_refused(copied):
+    """At any place: cut short, or a byte of it changed, which digests find where the words do not."""
+    whole, random = (copied / "manifest.json").read_bytes(), np.random.default_rng(3)
+    for at in random.integers(len(whole), size=100):
+        for damaged in (whole[:at], whole[:at] + bytes([whole[at] ^ 1 << random.integers(8)]) + whole[at + 1:]):
+            (copied / "manifest.json").write_bytes(damaged)
+            try:
+                assert json.loads(damaged) == json.loads(whole) and load_library(copied)  # a blank may become another
+            except ValueError:
+                pass
+            except AssertionError:
+                with pytest.raises(LibraryError):
+                    load_library(copied)
+    for lack in (lambda m: m.pop("kernels"), lambda m: m["library"].pop("file"), lambda m: m["library"].update(file=3),
+                 lambda m: m["elements"]["mine8p"].update(dim="2"), lambda m: m.update(elements=[])):
+        (copied / "manifest.json").write_bytes(whole)
+        _change(copied, lack)
+        with pytest.raises(LibraryError, match=r"is none: its manifest\.json is not that of a library"):
+            load_library(copied)
+    (copied / "manifest.json").write_text("[" * 100_000)
+    with pytest.raises(LibraryError, match=r"is none: its manifest\.json is not that of a library"):
+        load_library(copied)
+
+
+def test_a_library_without_a_kernel_that_it_names(copied):
+    def rename(content):
+        content["kernels"]["mine8p_absent"] = content["kernels"].pop("mine8p_mass")
+        content["library"]["digest"] = manifest_digest(content)
+
+    _change(copied, rename)
+    with pytest.raises(LibraryError, match=r"is damaged: kernels-.*\.so lacks what its manifest\.json names: .*absent"):
+        load_library(copied)
+
+
 def test_gauge_of_nodal_vectors():
     assert list(gauge(("r", "r_x", "r_xx", "r_y", "r_z", "r_xy"), 0.8, 0.3, 0.2)) == pytest.approx(
         [1, 0.1, 0.01, 0.3, 0.2, 0.03])
@@ -382,7 +539,8 @@ def test_the_example_of_the_readme_is_cable18(tmp_path, monkeypatch):
     assert f'library = "{tmp_path / "quintic"}"\n' in in_toml
     (tmp_path / "scene.toml").write_text(in_toml.replace(f'"{tmp_path / "quintic"}"', '"quintic"'))
     monkeypatch.chdir("/")
-    from_file = load_scene(tmp_path / "scene.toml").run(duration=0.3, output_step=0.01)
+    from_file = load_scene(tmp_path / "scene.toml", libraries=[tmp_path / "quintic"])
+    from_file = from_file.run(duration=0.3, output_step=0.01)
     in_toml = in_toml.replace(f'library = "{tmp_path / "quintic"}"\n', "").replace('"quintic"', '"cable18"')
     reference = loads(in_toml, "README.md").run(duration=0.3, output_step=0.01)
     assert len(reference.time) == 31

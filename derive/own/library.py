@@ -15,6 +15,7 @@ from funicular.derive.own.load import SpecError
 from funicular.derive.spec import Family
 from funicular.derive.verify_compile import compiler
 from funicular.elements import manifest
+from funicular.libraries import LibraryError, manifest_digest, read_manifest
 
 LEVEL = "-O3"
 FLAGS = ("-std=c11", LEVEL, "-fPIC")
@@ -34,20 +35,20 @@ def check_destination(out: Path) -> None:
 def recorded(out: Path) -> dict | None:
     """The manifest of the library in a directory, None where there is none."""
     try:
-        content = json.loads((out / MANIFEST).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+        return read_manifest(out)[1]
+    except LibraryError:
         return None
-    return content if isinstance(content, dict) and "library" in content else None
 
 
 def is_current(out: Path, families: list[Family]) -> bool:
     """Whether a directory's library is what these families make with the tools at hand."""
     content = recorded(out)
-    if content is None or content["tools"] != emit.tools() or content["interface"] != manifest()["interface"]:
+    if (content is None or content["library"].get("digest") != manifest_digest(content)
+            or content["tools"] != emit.tools() or content["interface"] != manifest()["interface"]):
         return False
     hashes = {family.name: emit.came_from(family)[1] for family in families}
     file = out / content["library"]["file"]
-    return ({name: entry["spec_hash"] for name, entry in content["families"].items()} == hashes
+    return ({name: entry.get("spec_hash") for name, entry in content["families"].items()} == hashes
             and all(emit.digest(_text(out / name)) == digest for name, digest in content["files"].items())
             and file.is_file() and _digest(file) == content["library"]["sha256"])
 
@@ -71,9 +72,10 @@ def write_manifest(every: list[Derived], files: dict[str, str], spec: Path, shar
     """Write the manifest next to the shared library; returns it."""
     more = {"library": {"spec": str(spec), "file": shared.name, "sha256": _digest(shared),
                         "compiler": " ".join([*compiler(), *FLAGS])}}
-    text = emit.manifest(every, files, like=manifest()["tables"], more=more)
-    (shared.parent / MANIFEST).write_text(text, encoding="utf-8", newline="\n")
-    return json.loads(text)
+    content = json.loads(emit.manifest(every, files, like=manifest()["tables"], more=more))
+    content["library"]["digest"] = manifest_digest(content)
+    (shared.parent / MANIFEST).write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8", newline="\n")
+    return content
 
 
 def move(folder: Path, out: Path) -> None:
@@ -85,7 +87,8 @@ def move(folder: Path, out: Path) -> None:
         os.replace(folder / name, out / name)
     if old is not None:
         for name in {*old["files"], old["library"]["file"]} - set(names):
-            (out / name).unlink(missing_ok=True)
+            if Path(name).name == name:  # nothing elsewhere, whatever the old manifest says
+                (out / name).unlink(missing_ok=True)
 
 
 def _text(path: Path) -> str:

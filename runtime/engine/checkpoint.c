@@ -1,8 +1,14 @@
 /* Checkpoints: what the steps to come depend on, so that a run that is taken up again goes on bit for bit. */
 #include "engine.h"
 
+#include <math.h>
 #include <stddef.h>
 #include <string.h>
+
+#define ASIDE 1e-3       /* of an element: how far from it a slide may stand, which events leave much nearer */
+#define SHORTEST 1e-13   /* of the duration: a step, or what steps stay below; the time loop gives up before */
+#define LONGEST 2.0      /* of the duration: the same */
+#define MOST_COUNT 100000 /* of rejected steps, of turns on a boundary */
 
 enum { MEASURE, SAVE, RESTORE };
 
@@ -74,10 +80,109 @@ long fu_save(const fu_run *run, char *bytes)
     return c.size;
 }
 
-/* Take up again, after fu_start of the same model and settings; the rows before are not in the arrays. */
-void fu_restore(fu_run *run, const char *bytes)
+static int all_finite(const double *numbers, long n)
+{
+    for (long i = 0; i < n; ++i)
+        if (!isfinite(numbers[i])) return 0;
+    return 1;
+}
+
+static int in_range(int value, int least, int most)
+{
+    return value >= least && value <= most;
+}
+
+/* the last of n, or 0, as which it is when there is none and nothing has happened */
+static int last_of(int n)
+{
+    return n > 0 ? n - 1 : 0;
+}
+
+/* whether a slide can be in its mode: only then is there room for the multiplier that holds it */
+static int possible_mode(const fu_joint *joint, int mode)
+{
+    const fu_terminal *ends = joint->stops;
+    if (mode == FU_LEFT) return ends[0].kind == FU_END_IS_OPEN || ends[1].kind == FU_END_IS_OPEN;
+    if (joint->drive >= 0) return mode == FU_HELD;
+    if (mode == FU_HELD) return joint->sticks || ends[0].kind == FU_END_IS_HARD || ends[1].kind == FU_END_IS_HARD;
+    return mode == FU_SLIDES;
+}
+
+/* whether what tells where slides are can be: it leads to places in memory */
+static int possible_places(const fu_model *model, const fu_state *state)
+{
+    for (int j = 0; j < model->n_joints; ++j) {
+        const fu_joint *joint = &model->joints[j];
+        if (!in_range(state->element[j], 0, model->cables[joint->cable].n_elements - 1)) return 0;
+        if (!possible_mode(joint, state->mode[j])) return 0;
+        if (!in_range(state->way[j], -1, 1) || !in_range(state->contact[j], -1, 1)) return 0;
+    }
+    return 1;
+}
+
+static int slides_on_their_elements(const fu_model *model, const fu_state *state)
+{
+    for (int j = 0; j < model->n_joints; ++j) {
+        const double length = model->cables[model->joints[j].cable].length;
+        const double x = state->s[j] - fu_element_start(model, j, state->element[j]);
+        if (state->mode[j] != FU_LEFT && !(x >= -ASIDE * length && x <= (1.0 + ASIDE) * length)) return 0;
+    }
+    return 1;
+}
+
+static int finite_state(const fu_model *model, const fu_state *state)
+{
+    return all_finite(&state->t, 1) && all_finite(state->q, model->n_q) && all_finite(state->v, model->n_dof) &&
+           all_finite(state->acceleration, model->n_dof) && all_finite(state->a, model->n_dof) &&
+           all_finite(state->s, model->n_joints) && all_finite(state->f, 3L * model->n_joints) &&
+           all_finite(state->spring, 3L * model->n_springs) && all_finite(state->multipliers, 6L * model->n_links) &&
+           all_finite(state->hold, model->n_joints) && all_finite(state->director, 3L * model->n_joints) &&
+           all_finite(state->memory, model->n_memory);
+}
+
+/* whether a run stands where fu_pause leaves one: at the time of its last row, without a factored matrix */
+static int is_paused(const fu_run *run, int rows)
+{
+    return run->record.n == rows && run->now.t == (rows - 1) * run->output_step && run->now.t < run->duration &&
+           run->recorded == run->now.t && !run->factored && !run->predictor && run->h_factored == 0.0;
+}
+
+/* whether the numbers that lead the steps to come, and those that messages tell, can be */
+static int possible_numbers(const fu_run *run)
+{
+    const fu_model *model = run->model;
+    const double positive[] = {run->h, run->ceiling};
+    const double numbers[] = {run->motion, run->least_motion, run->extent, run->contraction, run->since, run->dissipated,
+                              run->dissipated_power, run->external, run->external_power, run->closed, run->allowed,
+                              run->round_off, run->newton_tolerance, run->statistics.h_min, run->statistics.h_max,
+                              run->statistics.error_sum, run->books.exchanged, run->books.grown, run->books.lost};
+    const long counts[] = {run->statistics.steps, run->statistics.rejected, run->statistics.newton_iterations,
+                           run->statistics.factorisations, run->statistics.crossings, run->statistics.newton_failures,
+                           run->statistics.evaluations, run->accelerator.evaluated};
+    for (size_t i = 0; i < sizeof positive / sizeof *positive; ++i)
+        if (!(positive[i] >= SHORTEST * run->duration && positive[i] <= LONGEST * run->duration)) return 0;
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; ++i)
+        if (counts[i] < 0) return 0;
+    for (int k = 0; k < run->n_watches; ++k)
+        if (!in_range(run->late[k], -1, 1)) return 0;
+    return all_finite(numbers, sizeof numbers / sizeof *numbers) && all_finite(run->books.first, FU_ENERGIES) &&
+           all_finite(run->first, model->n_q) && all_finite(run->s_slope, model->n_joints) &&
+           run->motion >= 0.0 && run->least_motion >= 0.0 && run->extent >= 0.0 &&
+           in_range(run->stopped_joint, 0, last_of(model->n_joints)) &&
+           in_range(run->turned, 0, MOST_COUNT) && in_range(run->holds, 0, 1) && in_range(run->rest_start, 0, 1) &&
+           in_range(run->struggle, -MOST_COUNT, MOST_COUNT) && in_range(run->failure.cause, FU_NO_FAILURE, FU_JAM) &&
+           in_range(run->failure.dof, 0, last_of(model->n_dof)) &&
+           in_range(run->failure.joint, -1, last_of(model->n_joints));
+}
+
+/* Take up again, after fu_start of the same model and settings; the rows before, so many, are not in the arrays. Not zero
+ * where the bytes are of no run that could have paused there: it must not go on then. */
+int fu_restore(fu_run *run, const char *bytes, int rows)
 {
     copier c = {(char *)bytes, 0, RESTORE};
     copy_all(&c, run);
     run->record.first = run->record.n;
+    return !(is_paused(run, rows) && possible_places(run->model, &run->now) && possible_places(run->model, &run->next) &&
+             finite_state(run->model, &run->now) && slides_on_their_elements(run->model, &run->now) &&
+             possible_numbers(run));
 }

@@ -692,6 +692,6 @@ int fu_stop(fu_run *run);
 /* checkpoint.c: all that later steps depend on */
 void fu_pause(fu_run *run);
 long fu_save(const fu_run *run, char *bytes);
-void fu_restore(fu_run *run, const char *bytes);
+int fu_restore(fu_run *run, const char *bytes, int rows);
 
 #endif

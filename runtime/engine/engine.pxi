@@ -352,6 +352,6 @@ cdef extern from "engine.h" nogil:
     int fu_advance(fu_run *run, double seconds)
     void fu_pause(fu_run *run)
     long fu_save(const fu_run *run, char *bytes)
-    void fu_restore(fu_run *run, const char *bytes)
+    int fu_restore(fu_run *run, const char *bytes, int rows)
     int fu_stop(fu_run *run)
     void fu_costs(const fu_run *run, double *seconds)

@@ -1,0 +1,64 @@
+"""Who may write a file: locks that also a killed process gives back, and new files that follow no links."""
+
+from __future__ import annotations
+
+import fcntl
+import os
+from pathlib import Path
+
+_NEW = os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC
+_MODE = 0o666
+
+
+class Taken(Exception):  # noqa: N818  it is caught here and there, and never seen
+    """Another process, or another run of this one, has the file."""
+
+
+class NoLocks(Exception):  # noqa: N818
+    """The file is there, and its file system has no locks that could tell whether somebody is writing it."""
+
+
+def created(path: str | os.PathLike) -> int:
+    """A descriptor of a new file, to read and write, in the place of an older one or of a link. Raises OSError."""
+    Path(path).unlink(missing_ok=True)
+    return os.open(path, _NEW | os.O_EXCL, _MODE)
+
+
+def claimed(path: str | os.PathLike) -> int:
+    """A descriptor of a file, to read and write, which nobody else can claim until it is closed; new, or as it is.
+
+    Raises Taken, NoLocks, OSError (ELOOP where it is a link).
+    """
+    while True:
+        try:
+            descriptor, is_new = os.open(path, _NEW | os.O_EXCL, _MODE), True
+        except FileExistsError:
+            descriptor, is_new = os.open(path, _NEW, _MODE), False
+        try:
+            if not lock(descriptor) and not is_new:
+                raise NoLocks
+            if is_at(descriptor, path):
+                return descriptor
+        except BaseException:
+            os.close(descriptor)
+            raise
+        os.close(descriptor)  # renamed or removed by the one who had it until now
+
+
+def lock(descriptor: int) -> bool:
+    """Lock an open file; False where the file system has no locks. Raises Taken."""
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise Taken from None
+    except OSError:
+        return False
+    return True
+
+
+def is_at(descriptor: int, path: str | os.PathLike) -> bool:
+    """Whether an open file is the one of that name."""
+    try:
+        return os.path.samestat(os.fstat(descriptor), os.stat(path, follow_symlinks=False))
+    except OSError:
+        return False
