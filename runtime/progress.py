@@ -31,7 +31,7 @@ def progress_bar(duration: float, progress: bool | OnProgress | None) -> Iterato
     """Yields the meter to call with each time reached (s); ``progress`` as in `Scene.run`."""
     if callable(progress):
         yield Meter(progress)
-    elif progress or (progress is None and sys.stderr.isatty()):
+    elif progress is True or (progress is None and sys.stderr.isatty()):
         from rich.console import Console
         from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
