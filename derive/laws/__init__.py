@@ -10,6 +10,7 @@ from funicular.derive.laws.continuum import Continuum
 from funicular.derive.laws.continuum_curved import CurvedContinuum
 from funicular.derive.spec import ASSUMED_LAWS, CABLE_LAWS
 
+
 def _measures(law: str) -> dict[str, str]:
     """Strain and curvature of a cable's law by its name."""
     strain, curvature, *_ = law.split("_")

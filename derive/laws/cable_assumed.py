@@ -1,19 +1,21 @@
-"""Cable with an assumed axial strain: the strain of an element is represented by its lowest Legendre modes.
+"""Cable with an assumed axial strain: an element has the lowest Legendre modes of its strain, and no others.
 
-The strain of a centreline of degree d has degree 2(d - 1) along the element, but slopes alone can only make it constant
-up to degree d - 1. What is above that is stored energy that no motion of the nodes can relieve: the element is too stiff
-where its slope turns (membrane locking), and its tension swings. Here
+The strain along a centreline of degree d has degree 2(d - 1) in X, but the lengths of the slopes can make it constant
+only up to degree d - 1. The rest is energy that no motion of the nodes relieves: the element is too stiff where its
+slope turns (membrane locking), and its tension swings. Here
 
     strain(X) = sum_m strain_m P_m(X),   strain_m = (2m + 1)/2 ∫ strain P_m dX,   m < d,
 
-and the membrane energy is l/2 sum_m EA_m strain_m^2/(2m + 1), for the Green strain an exact quadratic form in Gram
-products. With fewer modes a straight cable has motions without energy: each node has (d + 1)/2 coordinates along the
-cable, and all but so many modes of an element govern the lengths of its slopes alone. These upper modes have a stiffness
-EA_m of their own, the third constant: EA makes the strain of degree d - 1, less relieves the lengths of the slopes too.
-Zero leaves the cable unstable as soon as it is compressed.
+and the membrane energy is l/2 sum_m EA_m strain_m^2/(2m + 1). The modes of the Green strain are linear in Gram products
+and integrated exactly.
 
-Reduced quadrature is the same to the aliasing of higher modes: three Gauss points for the cubic, as in Gerstmayr &
-Irschik, J. Sound Vib. 318 (2008) 461-487.
+A node has (d + 1)/2 coordinates along the cable. With as many modes an element is free of locking, but a straight cable
+then has a motion without energy, in which the slopes change their length and no node moves: it is unstable under any
+compression. The modes above, the upper ones, have an axial stiffness of their own, the third constant. EA gives the
+modes of degree d - 1 entirely; a small part of EA relieves them and keeps the slopes stable as long as the compressive
+strain is below that part.
+
+A Gauss quadrature with d points is the same but for the aliasing of higher modes.
 """
 
 from __future__ import annotations
