@@ -58,9 +58,12 @@ class Secant:
         """A vector of mean values."""
         return self.program.vector(name, [self.mean(x) for x in vector])
 
-    def gradient(self, expr: sp.Expr, by: Sequence[sp.Symbol]) -> list[sp.Expr]:
-        """D with the difference of expr = sum D times the differences of the symbols `by`."""
-        return [_Along(self, symbol, by)(expr) for symbol in by]
+    def gradient(self, expr: sp.Expr, by: Sequence[sp.Symbol], constant: Sequence[sp.Symbol] = ()) -> list[sp.Expr]:
+        """D with the difference of expr = sum D times the differences of the symbols `by`.
+
+        Definitions in `constant` stand for their mean values: a factor x of them contributes x~ dy to d(x y).
+        """
+        return [_Along(self, symbol, by, constant)(expr) for symbol in by]
 
     def moves(self, symbol: sp.Symbol) -> sp.Expr | None:
         """What a symbol differs from by a constant."""
@@ -70,9 +73,10 @@ class Secant:
 class _Along:
     """Discrete derivatives by one symbol, the others of `by` held."""
 
-    def __init__(self, secant: Secant, symbol: sp.Symbol, by: Sequence[sp.Symbol]):
+    def __init__(self, secant: Secant, symbol: sp.Symbol, by: Sequence[sp.Symbol], constant: Sequence[sp.Symbol]):
         self.secant, self.tag = secant, symbol.name
         self.known: dict[sp.Symbol, sp.Expr] = {s: sp.Integer(s == symbol) for s in by}
+        self.known.update(dict.fromkeys(constant, sp.S.Zero))
 
     def __call__(self, expr: sp.Expr) -> sp.Expr:
         if expr.is_Symbol:

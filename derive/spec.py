@@ -16,6 +16,7 @@ from funicular.derive.stages import Program
 x, y, z, l = sp.symbols("x y z l", positive=True)
 COORDINATES = {"x": x, "y": y, "z": z}
 CABLE_LAWS = ("green_exact", "green_linear", "engineering_exact", "engineering_linear")
+ASSUMED_LAWS = tuple(f"{law}_assumed" for law in CABLE_LAWS)
 
 
 class FamilyError(ValueError):

@@ -209,9 +209,14 @@ class Derivation:
         return np.vectorize(self, otypes=[object])(values)
 
 
-def jacobian(program: Program, values: np.ndarray, wrt: Sequence[sp.Symbol]) -> np.ndarray:
-    """Partial derivatives of `values` (n,) by the symbols `wrt` (m,) taken as independent -> (n, m)."""
-    columns = [Derivation(program, f"d_{_plain(s)}", {s: 1, **{o: 0 for o in wrt if o != s}}).array(values)
+def jacobian(program: Program, values: np.ndarray, wrt: Sequence[sp.Symbol],
+             constant: Sequence[sp.Symbol] = ()) -> np.ndarray:
+    """Partial derivatives of `values` (n,) by the symbols `wrt` (m,) taken as independent -> (n, m).
+
+    Definitions in `constant` count as constants, whatever they depend on.
+    """
+    fixed = dict.fromkeys(constant, 0)
+    columns = [Derivation(program, f"d_{_plain(s)}", {s: 1, **{o: 0 for o in wrt if o != s}, **fixed}).array(values)
                for s in wrt]
     return np.stack(columns, axis=-1)
 

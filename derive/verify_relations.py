@@ -144,7 +144,7 @@ def _step_stiffness(family: Family) -> Relation:
         return Relation("step_stiffness", "k", "df/d(both ends), less the tangent half-way", 1, force,
                         spec.n_coordinates, of=tangent)
     return Relation("step_stiffness", "k", "EA/8 of the change's square, by quadrature", 0,
-                    root(verify_laws.cable_turning, spec))
+                    root(verify_laws.cable_turning, spec, family.like))
 
 
 def _stiffness_at(spec: Element) -> list[Relation]:

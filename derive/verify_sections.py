@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 import mpmath
 import numpy as np
-from funicular.derive import verify_curved, verify_structural
+from funicular.derive import verify_curved, verify_laws, verify_structural
 from funicular.derive.spec import Element
 from funicular.derive.verify_motion import cross, frame
 from funicular.derive.verify_reference import Shape, section_points, spatial, stress
@@ -74,8 +74,12 @@ def green(F: np.ndarray) -> np.ndarray:
 
 
 def _cable(element: Element, law: str, s) -> dict[str, np.ndarray]:
-    strain, curvature, *curved = law.split("_")
-    shape, (EA, EI), x = Shape(element, s["l"].item()), s["S"], s["x"].item()
+    strain, curvature, *kind = law.split("_")
+    curved, assumed = kind == ["curved"], kind == ["assumed"]
+    shape, (EA, EI), x = Shape(element, s["l"].item()), s["S"][:2], s["x"].item()
+    modes = [(mode * mp.legendre(m, 2 * x / shape.l - 1), stiffness)
+             for m, (mode, stiffness) in enumerate(verify_laws.strain_modes(element, law, s))] if assumed else []
+    N = sum(stiffness * mode for mode, stiffness in modes)
 
     def derivatives(at, of="e"):
         return [spatial(shape((at, 0, 0), (k, 0, 0)).dot(s[of])) for k in (1, 2)]
@@ -95,7 +99,7 @@ def _cable(element: Element, law: str, s) -> dict[str, np.ndarray]:
             if curved:
                 return verify_curved.cable_density(strain, vectors, derivatives(at, "e0"), EA, EI, s["l"].item())
             eps, kappa = measures(*vectors)
-            return (EA * eps**2 + EI * kappa**2) / 2
+            return (N * eps if assumed else EA * eps**2 / 2) + EI * kappa**2 / 2
 
         return np.array([(energy(STEP, i) - energy(-STEP, i)) / (2 * STEP) for i in range(3)])
 
@@ -104,5 +108,6 @@ def _cable(element: Element, law: str, s) -> dict[str, np.ndarray]:
               - (variation(x + 2 * h, 1) - variation(x - 2 * h, 1))) / (12 * h)
     r1, r2 = derivatives(x)
     eps, kappa = verify_curved.cable_measures(strain, [r1, r2], derivatives(x, "e0")) if curved else measures(r1, r2)
+    eps = sum(mode for mode, _ in modes) if assumed else eps
     return {"force": variation(x, 0) - change, "moment": cross(r1, variation(x, 1)),
             "strain": np.array([eps, 0, 0, 0, 0, kappa])}

@@ -195,7 +195,8 @@ def section_stiffness(law: str, dim: int, moments: np.ndarray, random: np.random
     if law == "structural":
         return {"S": random.uniform(1, 4, 9 if dim == 3 else 4)}
     if not law.startswith("continuum"):
-        return {"S": 53.0 * moments[:2]}
+        upper = [0.6 * moments[0]] if law.endswith("_assumed") else []
+        return {"S": 53.0 * np.array([*moments[:2], *upper])}
     pairs = dim * (dim - 1) // 2
     D, on_axis_alone = (np.concatenate([random.uniform(40, 60, dim), random.uniform(5, 15, pairs),
                                         random.uniform(10, 20, pairs)]) for _ in range(2))

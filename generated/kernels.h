@@ -159,6 +159,42 @@ void cable12_engineering_linear_discrete_force(fu_real l, const fu_real *e, cons
 void cable12_engineering_linear_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void cable12_engineering_linear_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
+/* cable12_green_exact_assumed: elastic law green_exact_assumed on cable12 */
+void cable12_green_exact_assumed_stiffness(fu_real l, const fu_real *S, fu_real *A);
+void cable12_green_exact_assumed_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void cable12_green_exact_assumed_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void cable12_green_exact_assumed_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable12_green_exact_assumed_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable12_green_exact_assumed_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
+void cable12_green_exact_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
+
+/* cable12_green_linear_assumed: elastic law green_linear_assumed on cable12 */
+void cable12_green_linear_assumed_stiffness(fu_real l, const fu_real *S, fu_real *A);
+void cable12_green_linear_assumed_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void cable12_green_linear_assumed_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void cable12_green_linear_assumed_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable12_green_linear_assumed_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable12_green_linear_assumed_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
+void cable12_green_linear_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
+
+/* cable12_engineering_exact_assumed: elastic law engineering_exact_assumed on cable12 */
+void cable12_engineering_exact_assumed_stiffness(fu_real l, const fu_real *S, fu_real *A);
+void cable12_engineering_exact_assumed_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void cable12_engineering_exact_assumed_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void cable12_engineering_exact_assumed_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable12_engineering_exact_assumed_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable12_engineering_exact_assumed_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
+void cable12_engineering_exact_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
+
+/* cable12_engineering_linear_assumed: elastic law engineering_linear_assumed on cable12 */
+void cable12_engineering_linear_assumed_stiffness(fu_real l, const fu_real *S, fu_real *A);
+void cable12_engineering_linear_assumed_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void cable12_engineering_linear_assumed_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void cable12_engineering_linear_assumed_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable12_engineering_linear_assumed_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable12_engineering_linear_assumed_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
+void cable12_engineering_linear_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
+
 /* cable12_green_exact_curved: elastic law green_exact_curved on cable12 */
 void cable12_green_exact_curved_stiffness(fu_real l, const fu_real *e0, const fu_real *S, fu_real *A);
 void cable12_green_exact_curved_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
@@ -278,6 +314,42 @@ void cable8p_engineering_linear_elastic_tangent(fu_real l, const fu_real *e, con
 void cable8p_engineering_linear_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
 void cable8p_engineering_linear_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 void cable8p_engineering_linear_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
+
+/* cable8p_green_exact_assumed: elastic law green_exact_assumed on cable8p */
+void cable8p_green_exact_assumed_stiffness(fu_real l, const fu_real *S, fu_real *A);
+void cable8p_green_exact_assumed_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void cable8p_green_exact_assumed_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void cable8p_green_exact_assumed_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable8p_green_exact_assumed_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable8p_green_exact_assumed_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
+void cable8p_green_exact_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
+
+/* cable8p_green_linear_assumed: elastic law green_linear_assumed on cable8p */
+void cable8p_green_linear_assumed_stiffness(fu_real l, const fu_real *S, fu_real *A);
+void cable8p_green_linear_assumed_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void cable8p_green_linear_assumed_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void cable8p_green_linear_assumed_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable8p_green_linear_assumed_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable8p_green_linear_assumed_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
+void cable8p_green_linear_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
+
+/* cable8p_engineering_exact_assumed: elastic law engineering_exact_assumed on cable8p */
+void cable8p_engineering_exact_assumed_stiffness(fu_real l, const fu_real *S, fu_real *A);
+void cable8p_engineering_exact_assumed_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void cable8p_engineering_exact_assumed_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void cable8p_engineering_exact_assumed_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable8p_engineering_exact_assumed_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable8p_engineering_exact_assumed_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
+void cable8p_engineering_exact_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
+
+/* cable8p_engineering_linear_assumed: elastic law engineering_linear_assumed on cable8p */
+void cable8p_engineering_linear_assumed_stiffness(fu_real l, const fu_real *S, fu_real *A);
+void cable8p_engineering_linear_assumed_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void cable8p_engineering_linear_assumed_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void cable8p_engineering_linear_assumed_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable8p_engineering_linear_assumed_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable8p_engineering_linear_assumed_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
+void cable8p_engineering_linear_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* rigid: rigid body */
 void rigid_point(const fu_real *b, const fu_real *u, const fu_real *w, fu_real *p, fu_real *p_q, fu_real *v, fu_real *bias);

@@ -161,6 +161,58 @@ static const fu_law laws[] = {
      cable12_engineering_exact_dissipation,
      cable12_engineering_exact_algorithmic_force
     },
+    {"cable12_green_exact_assumed",
+     9,
+     1,
+     cable12_green_exact_assumed_energy,
+     cable12_green_exact_assumed_elastic_force,
+     cable12_green_exact_assumed_elastic_tangent,
+     cable12_green_exact_assumed_discrete_force,
+     cable12_green_exact_assumed_step_stiffness,
+     cable12_green_exact_damping_force,
+     cable12_green_exact_damping_tangent,
+     cable12_green_exact_dissipation,
+     cable12_green_exact_algorithmic_force
+    },
+    {"cable12_green_linear_assumed",
+     9,
+     1,
+     cable12_green_linear_assumed_energy,
+     cable12_green_linear_assumed_elastic_force,
+     cable12_green_linear_assumed_elastic_tangent,
+     cable12_green_linear_assumed_discrete_force,
+     cable12_green_linear_assumed_step_stiffness,
+     cable12_green_exact_damping_force,
+     cable12_green_exact_damping_tangent,
+     cable12_green_exact_dissipation,
+     cable12_green_exact_algorithmic_force
+    },
+    {"cable12_engineering_exact_assumed",
+     9,
+     1,
+     cable12_engineering_exact_assumed_energy,
+     cable12_engineering_exact_assumed_elastic_force,
+     cable12_engineering_exact_assumed_elastic_tangent,
+     cable12_engineering_exact_assumed_discrete_force,
+     cable12_engineering_exact_assumed_step_stiffness,
+     cable12_engineering_exact_damping_force,
+     cable12_engineering_exact_damping_tangent,
+     cable12_engineering_exact_dissipation,
+     cable12_engineering_exact_algorithmic_force
+    },
+    {"cable12_engineering_linear_assumed",
+     9,
+     1,
+     cable12_engineering_linear_assumed_energy,
+     cable12_engineering_linear_assumed_elastic_force,
+     cable12_engineering_linear_assumed_elastic_tangent,
+     cable12_engineering_linear_assumed_discrete_force,
+     cable12_engineering_linear_assumed_step_stiffness,
+     cable12_engineering_exact_damping_force,
+     cable12_engineering_exact_damping_tangent,
+     cable12_engineering_exact_dissipation,
+     cable12_engineering_exact_algorithmic_force
+    },
     {"cable12_green_exact_curved",
      9,
      1,
@@ -299,6 +351,58 @@ static const fu_law laws[] = {
      cable8p_engineering_linear_elastic_tangent,
      cable8p_engineering_linear_discrete_force,
      cable8p_engineering_linear_step_stiffness,
+     cable8p_engineering_exact_damping_force,
+     cable8p_engineering_exact_damping_tangent,
+     cable8p_engineering_exact_dissipation,
+     cable8p_engineering_exact_algorithmic_force
+    },
+    {"cable8p_green_exact_assumed",
+     7,
+     0,
+     cable8p_green_exact_assumed_energy,
+     cable8p_green_exact_assumed_elastic_force,
+     cable8p_green_exact_assumed_elastic_tangent,
+     cable8p_green_exact_assumed_discrete_force,
+     cable8p_green_exact_assumed_step_stiffness,
+     cable8p_green_exact_damping_force,
+     cable8p_green_exact_damping_tangent,
+     cable8p_green_exact_dissipation,
+     cable8p_green_exact_algorithmic_force
+    },
+    {"cable8p_green_linear_assumed",
+     7,
+     0,
+     cable8p_green_linear_assumed_energy,
+     cable8p_green_linear_assumed_elastic_force,
+     cable8p_green_linear_assumed_elastic_tangent,
+     cable8p_green_linear_assumed_discrete_force,
+     cable8p_green_linear_assumed_step_stiffness,
+     cable8p_green_exact_damping_force,
+     cable8p_green_exact_damping_tangent,
+     cable8p_green_exact_dissipation,
+     cable8p_green_exact_algorithmic_force
+    },
+    {"cable8p_engineering_exact_assumed",
+     7,
+     0,
+     cable8p_engineering_exact_assumed_energy,
+     cable8p_engineering_exact_assumed_elastic_force,
+     cable8p_engineering_exact_assumed_elastic_tangent,
+     cable8p_engineering_exact_assumed_discrete_force,
+     cable8p_engineering_exact_assumed_step_stiffness,
+     cable8p_engineering_exact_damping_force,
+     cable8p_engineering_exact_damping_tangent,
+     cable8p_engineering_exact_dissipation,
+     cable8p_engineering_exact_algorithmic_force
+    },
+    {"cable8p_engineering_linear_assumed",
+     7,
+     0,
+     cable8p_engineering_linear_assumed_energy,
+     cable8p_engineering_linear_assumed_elastic_force,
+     cable8p_engineering_linear_assumed_elastic_tangent,
+     cable8p_engineering_linear_assumed_discrete_force,
+     cable8p_engineering_linear_assumed_step_stiffness,
      cable8p_engineering_exact_damping_force,
      cable8p_engineering_exact_damping_tangent,
      cable8p_engineering_exact_dissipation,
@@ -1020,6 +1124,118 @@ static void call_cable12_engineering_linear_section_forces(const fu_real *const 
 {
     cable12_engineering_linear_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
 }
+static void call_cable12_green_exact_assumed_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_assumed_stiffness(*a[0], a[1], out[0]);
+}
+static void call_cable12_green_exact_assumed_energy(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_assumed_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_green_exact_assumed_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_assumed_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_green_exact_assumed_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_assumed_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_green_exact_assumed_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_assumed_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable12_green_exact_assumed_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_assumed_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable12_green_exact_assumed_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_exact_assumed_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
+}
+static void call_cable12_green_linear_assumed_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_linear_assumed_stiffness(*a[0], a[1], out[0]);
+}
+static void call_cable12_green_linear_assumed_energy(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_linear_assumed_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_green_linear_assumed_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_linear_assumed_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_green_linear_assumed_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_linear_assumed_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_green_linear_assumed_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_linear_assumed_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable12_green_linear_assumed_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_linear_assumed_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable12_green_linear_assumed_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_green_linear_assumed_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
+}
+static void call_cable12_engineering_exact_assumed_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_assumed_stiffness(*a[0], a[1], out[0]);
+}
+static void call_cable12_engineering_exact_assumed_energy(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_assumed_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_engineering_exact_assumed_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_assumed_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_engineering_exact_assumed_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_assumed_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_engineering_exact_assumed_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_assumed_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable12_engineering_exact_assumed_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_assumed_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable12_engineering_exact_assumed_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_exact_assumed_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
+}
+static void call_cable12_engineering_linear_assumed_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_linear_assumed_stiffness(*a[0], a[1], out[0]);
+}
+static void call_cable12_engineering_linear_assumed_energy(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_linear_assumed_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_engineering_linear_assumed_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_linear_assumed_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_engineering_linear_assumed_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_linear_assumed_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable12_engineering_linear_assumed_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_linear_assumed_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable12_engineering_linear_assumed_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_linear_assumed_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable12_engineering_linear_assumed_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    cable12_engineering_linear_assumed_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
+}
 static void call_cable12_green_exact_curved_stiffness(const fu_real *const *a, fu_real *const *out)
 {
     cable12_green_exact_curved_stiffness(*a[0], a[1], a[2], out[0]);
@@ -1411,6 +1627,118 @@ static void call_cable8p_engineering_linear_step_stiffness(const fu_real *const 
 static void call_cable8p_engineering_linear_section_forces(const fu_real *const *a, fu_real *const *out)
 {
     cable8p_engineering_linear_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
+}
+static void call_cable8p_green_exact_assumed_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_exact_assumed_stiffness(*a[0], a[1], out[0]);
+}
+static void call_cable8p_green_exact_assumed_energy(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_exact_assumed_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable8p_green_exact_assumed_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_exact_assumed_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable8p_green_exact_assumed_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_exact_assumed_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable8p_green_exact_assumed_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_exact_assumed_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable8p_green_exact_assumed_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_exact_assumed_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable8p_green_exact_assumed_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_exact_assumed_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
+}
+static void call_cable8p_green_linear_assumed_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_linear_assumed_stiffness(*a[0], a[1], out[0]);
+}
+static void call_cable8p_green_linear_assumed_energy(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_linear_assumed_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable8p_green_linear_assumed_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_linear_assumed_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable8p_green_linear_assumed_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_linear_assumed_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable8p_green_linear_assumed_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_linear_assumed_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable8p_green_linear_assumed_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_linear_assumed_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable8p_green_linear_assumed_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_green_linear_assumed_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
+}
+static void call_cable8p_engineering_exact_assumed_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_exact_assumed_stiffness(*a[0], a[1], out[0]);
+}
+static void call_cable8p_engineering_exact_assumed_energy(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_exact_assumed_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable8p_engineering_exact_assumed_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_exact_assumed_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable8p_engineering_exact_assumed_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_exact_assumed_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable8p_engineering_exact_assumed_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_exact_assumed_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable8p_engineering_exact_assumed_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_exact_assumed_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable8p_engineering_exact_assumed_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_exact_assumed_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
+}
+static void call_cable8p_engineering_linear_assumed_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_linear_assumed_stiffness(*a[0], a[1], out[0]);
+}
+static void call_cable8p_engineering_linear_assumed_energy(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_linear_assumed_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable8p_engineering_linear_assumed_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_linear_assumed_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable8p_engineering_linear_assumed_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_linear_assumed_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable8p_engineering_linear_assumed_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_linear_assumed_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable8p_engineering_linear_assumed_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_linear_assumed_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable8p_engineering_linear_assumed_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    cable8p_engineering_linear_assumed_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
 }
 static void call_rigid_point(const fu_real *const *a, fu_real *const *out)
 {
@@ -2076,6 +2404,34 @@ const fu_kernel fu_kernels[] = {
     {"cable12_engineering_linear_discrete_force", call_cable12_engineering_linear_discrete_force},
     {"cable12_engineering_linear_step_stiffness", call_cable12_engineering_linear_step_stiffness},
     {"cable12_engineering_linear_section_forces", call_cable12_engineering_linear_section_forces},
+    {"cable12_green_exact_assumed_stiffness", call_cable12_green_exact_assumed_stiffness},
+    {"cable12_green_exact_assumed_energy", call_cable12_green_exact_assumed_energy},
+    {"cable12_green_exact_assumed_elastic_force", call_cable12_green_exact_assumed_elastic_force},
+    {"cable12_green_exact_assumed_elastic_tangent", call_cable12_green_exact_assumed_elastic_tangent},
+    {"cable12_green_exact_assumed_discrete_force", call_cable12_green_exact_assumed_discrete_force},
+    {"cable12_green_exact_assumed_step_stiffness", call_cable12_green_exact_assumed_step_stiffness},
+    {"cable12_green_exact_assumed_section_forces", call_cable12_green_exact_assumed_section_forces},
+    {"cable12_green_linear_assumed_stiffness", call_cable12_green_linear_assumed_stiffness},
+    {"cable12_green_linear_assumed_energy", call_cable12_green_linear_assumed_energy},
+    {"cable12_green_linear_assumed_elastic_force", call_cable12_green_linear_assumed_elastic_force},
+    {"cable12_green_linear_assumed_elastic_tangent", call_cable12_green_linear_assumed_elastic_tangent},
+    {"cable12_green_linear_assumed_discrete_force", call_cable12_green_linear_assumed_discrete_force},
+    {"cable12_green_linear_assumed_step_stiffness", call_cable12_green_linear_assumed_step_stiffness},
+    {"cable12_green_linear_assumed_section_forces", call_cable12_green_linear_assumed_section_forces},
+    {"cable12_engineering_exact_assumed_stiffness", call_cable12_engineering_exact_assumed_stiffness},
+    {"cable12_engineering_exact_assumed_energy", call_cable12_engineering_exact_assumed_energy},
+    {"cable12_engineering_exact_assumed_elastic_force", call_cable12_engineering_exact_assumed_elastic_force},
+    {"cable12_engineering_exact_assumed_elastic_tangent", call_cable12_engineering_exact_assumed_elastic_tangent},
+    {"cable12_engineering_exact_assumed_discrete_force", call_cable12_engineering_exact_assumed_discrete_force},
+    {"cable12_engineering_exact_assumed_step_stiffness", call_cable12_engineering_exact_assumed_step_stiffness},
+    {"cable12_engineering_exact_assumed_section_forces", call_cable12_engineering_exact_assumed_section_forces},
+    {"cable12_engineering_linear_assumed_stiffness", call_cable12_engineering_linear_assumed_stiffness},
+    {"cable12_engineering_linear_assumed_energy", call_cable12_engineering_linear_assumed_energy},
+    {"cable12_engineering_linear_assumed_elastic_force", call_cable12_engineering_linear_assumed_elastic_force},
+    {"cable12_engineering_linear_assumed_elastic_tangent", call_cable12_engineering_linear_assumed_elastic_tangent},
+    {"cable12_engineering_linear_assumed_discrete_force", call_cable12_engineering_linear_assumed_discrete_force},
+    {"cable12_engineering_linear_assumed_step_stiffness", call_cable12_engineering_linear_assumed_step_stiffness},
+    {"cable12_engineering_linear_assumed_section_forces", call_cable12_engineering_linear_assumed_section_forces},
     {"cable12_green_exact_curved_stiffness", call_cable12_green_exact_curved_stiffness},
     {"cable12_green_exact_curved_energy", call_cable12_green_exact_curved_energy},
     {"cable12_green_exact_curved_elastic_force", call_cable12_green_exact_curved_elastic_force},
@@ -2174,6 +2530,34 @@ const fu_kernel fu_kernels[] = {
     {"cable8p_engineering_linear_discrete_force", call_cable8p_engineering_linear_discrete_force},
     {"cable8p_engineering_linear_step_stiffness", call_cable8p_engineering_linear_step_stiffness},
     {"cable8p_engineering_linear_section_forces", call_cable8p_engineering_linear_section_forces},
+    {"cable8p_green_exact_assumed_stiffness", call_cable8p_green_exact_assumed_stiffness},
+    {"cable8p_green_exact_assumed_energy", call_cable8p_green_exact_assumed_energy},
+    {"cable8p_green_exact_assumed_elastic_force", call_cable8p_green_exact_assumed_elastic_force},
+    {"cable8p_green_exact_assumed_elastic_tangent", call_cable8p_green_exact_assumed_elastic_tangent},
+    {"cable8p_green_exact_assumed_discrete_force", call_cable8p_green_exact_assumed_discrete_force},
+    {"cable8p_green_exact_assumed_step_stiffness", call_cable8p_green_exact_assumed_step_stiffness},
+    {"cable8p_green_exact_assumed_section_forces", call_cable8p_green_exact_assumed_section_forces},
+    {"cable8p_green_linear_assumed_stiffness", call_cable8p_green_linear_assumed_stiffness},
+    {"cable8p_green_linear_assumed_energy", call_cable8p_green_linear_assumed_energy},
+    {"cable8p_green_linear_assumed_elastic_force", call_cable8p_green_linear_assumed_elastic_force},
+    {"cable8p_green_linear_assumed_elastic_tangent", call_cable8p_green_linear_assumed_elastic_tangent},
+    {"cable8p_green_linear_assumed_discrete_force", call_cable8p_green_linear_assumed_discrete_force},
+    {"cable8p_green_linear_assumed_step_stiffness", call_cable8p_green_linear_assumed_step_stiffness},
+    {"cable8p_green_linear_assumed_section_forces", call_cable8p_green_linear_assumed_section_forces},
+    {"cable8p_engineering_exact_assumed_stiffness", call_cable8p_engineering_exact_assumed_stiffness},
+    {"cable8p_engineering_exact_assumed_energy", call_cable8p_engineering_exact_assumed_energy},
+    {"cable8p_engineering_exact_assumed_elastic_force", call_cable8p_engineering_exact_assumed_elastic_force},
+    {"cable8p_engineering_exact_assumed_elastic_tangent", call_cable8p_engineering_exact_assumed_elastic_tangent},
+    {"cable8p_engineering_exact_assumed_discrete_force", call_cable8p_engineering_exact_assumed_discrete_force},
+    {"cable8p_engineering_exact_assumed_step_stiffness", call_cable8p_engineering_exact_assumed_step_stiffness},
+    {"cable8p_engineering_exact_assumed_section_forces", call_cable8p_engineering_exact_assumed_section_forces},
+    {"cable8p_engineering_linear_assumed_stiffness", call_cable8p_engineering_linear_assumed_stiffness},
+    {"cable8p_engineering_linear_assumed_energy", call_cable8p_engineering_linear_assumed_energy},
+    {"cable8p_engineering_linear_assumed_elastic_force", call_cable8p_engineering_linear_assumed_elastic_force},
+    {"cable8p_engineering_linear_assumed_elastic_tangent", call_cable8p_engineering_linear_assumed_elastic_tangent},
+    {"cable8p_engineering_linear_assumed_discrete_force", call_cable8p_engineering_linear_assumed_discrete_force},
+    {"cable8p_engineering_linear_assumed_step_stiffness", call_cable8p_engineering_linear_assumed_step_stiffness},
+    {"cable8p_engineering_linear_assumed_section_forces", call_cable8p_engineering_linear_assumed_section_forces},
     {"rigid_point", call_rigid_point},
     {"rigid_point_force", call_rigid_point_force},
     {"rigid_frame", call_rigid_frame},
@@ -2319,7 +2703,7 @@ const int fu_n_kernels = sizeof fu_kernels / sizeof fu_kernels[0];
 
 const fu_tables fu_all = {
     5, elements,
-    18, laws,
+    26, laws,
     2, bodys,
     2, modals,
     10, slides,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from typing import Annotated, Any, ClassVar
 
@@ -17,6 +18,9 @@ from pydantic import PlainValidator, ValidationInfo, model_validator
 
 EXACT = 1e-9
 """Lengths that differ by this part of the cable's length are taken as equal."""
+
+MEMBRANES = ("full", "assumed", "reduced")
+"""How an element of a cable represents its axial strain, see `Cable`; the first is the default."""
 
 FOLLOWS = 0.5
 """An element's slope along the curve that it stands for must be this part of the curve's everywhere."""
@@ -73,7 +77,11 @@ class Cable(Part):
     on the section turns with the curve, about its tangent nowhere. Planar elements lie in the plane z = 0, with the
     height in it. ``law``: for beams "continuum" (the default), "poisson_split" or "structural"; for cables
     ``strain`` ("green" or "engineering") and ``curvature`` ("exact" or "linear"), the measures that their axial and
-    bending stiffness act on, by default green and exact.
+    bending stiffness act on, by default green and exact; and ``membrane``, how an element represents its axial strain:
+    "full" (the default) at every point; "assumed" by the modes that its slopes can make constant, of degree 0 to 2;
+    "reduced" by those of degree 0 and 1, with 1 % of the axial stiffness on degree 2, which keeps the lengths of the
+    slopes stable. Beside a point force on a taut rope full and assumed strain swing, reduced strain does not; axial
+    vibrations take about twice as many elements with it (README, "Elements").
 
     A cable that is stress-free where it is curved has the exact curvature, whose size alone it measures: it resists in
     the plane of its curve, and across that plane by tension alone. Of the beams' laws, "structural" is the one for thin
@@ -91,6 +99,7 @@ class Cable(Part):
     law: str = None
     strain: Annotated[str | None, one_of(("green", "engineering"), optional=True)] = None
     curvature: Annotated[str | None, one_of(("exact", "linear"), optional=True)] = None
+    membrane: Annotated[str | None, one_of(MEMBRANES, optional=True)] = None
     section: AnySection
     material: Material
     up: Annotated[Vector, xyz()] = (0.0, 1.0, 0.0)
@@ -105,7 +114,8 @@ class Cable(Part):
         """A curve as points, and the law by its name."""
         if not isinstance(data, dict):
             return data
-        optional = ("start", "end", "points", "curve", "law", "library", "strain", "curvature", "rest_length")
+        optional = ("start", "end", "points", "curve", "law", "library", "strain", "curvature", "membrane",
+                    "rest_length")
         data = {name: value for name, value in data.items() if value is not None or name not in optional}
         if "curve" in data:
             if "points" in data:
@@ -386,24 +396,27 @@ class Cable(Part):
 def _law(kind: ElementKind, data: dict) -> str:
     """The law of a cable from what it is given; ValueError if the element has no such law."""
     element = data.get("element", "beam24")
-    law, strain, curvature = (data.get(name) for name in ("law", "strain", "curvature"))
+    law, strain, curvature, membrane = (data.get(name) for name in ("law", "strain", "curvature", "membrane"))
     possible = possible_laws(kind)
-    if law is None and not (strain or curvature):
+    if law is None and not (strain or curvature or membrane):
         return possible[0]
     if not isinstance(law, str | None):
         raise ValueError(f"law must be a name, got {shown(law)}", "possible: " + ", ".join(possible))
-    if not isinstance(strain, str | None) or not isinstance(curvature, str | None):
-        return possible[0]  # the checks of strain and curvature refuse it
-    if strain or curvature:
+    if not all(isinstance(measure, str | None) for measure in (strain, curvature, membrane)):
+        return possible[0]  # the checks of strain, curvature and membrane refuse it
+    if strain or curvature or membrane:
         if not kind.is_cable:
-            raise ValueError(f"strain and curvature are for cable elements, {element} is a beam",
+            raise ValueError(f"strain, curvature and membrane are for cable elements, {element} is a beam",
                              "leave them out, or take " + _others(kind.dim, cable=True))
         by_measures = f"{strain or 'green'}_{curvature or 'exact'}"
+        if (membrane or MEMBRANES[0]) != "full":
+            by_measures += f"_{membrane or MEMBRANES[0]}"
         if law not in (None, by_measures):
-            raise ValueError(f'law "{law}" and strain and curvature disagree', "give the one or the others")
+            raise ValueError(f'law "{law}" disagrees with strain, curvature and membrane', "give the one or the others")
         law = by_measures
     if law not in possible:
-        known = {strain or "green", curvature or "exact"} <= {"green", "engineering", "exact", "linear"}
+        known = ({strain or "green", curvature or "exact"} <= {"green", "engineering", "exact", "linear"}
+                 and (membrane or "full") in MEMBRANES)
         if not known:  # the checks of strain and curvature say it better
             return law
         raise ValueError(f'law "{law}" is not possible for {element}', "possible: " + ", ".join(possible))

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
+from funicular import reduced_strain
 from funicular.actions import Actions, DeadLoad, LoadModel, SignalModel, SpringModel
 from funicular.constants import constants
 from funicular.diagnosis import notes
@@ -452,7 +453,8 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Meter, initial=No
         messages += pace_watch.notes()
     cpu, wall = time.process_time() - cpu, time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
     if status == "completed":
-        for note in notes(engine, settings):
+        rows = engine.rows()
+        for note in [*notes(engine, settings), *reduced_strain.notes(scene, model, rows["time"], rows["q"])]:
             messages.append(note)
             warnings.warn(note, FunicularWarning, stacklevel=3)
     recording = recorded(model, scene, engine, settings, status, messages, reason, watcher,

@@ -100,6 +100,7 @@ class Scene:
         law: str | None = None,
         strain: str | None = None,
         curvature: str | None = None,
+        membrane: str | None = None,
         up=(0, 1, 0),
         rest: str = "drawn",
         rest_length: float | None = None,
@@ -108,7 +109,7 @@ class Scene:
     ) -> Cable:
         """Add a cable of equal elements: straight, through points, or along a curve; see `Cable`. Raises SceneError."""
         shape = {"start": start, "end": end, "points": points, "curve": curve, "law": law, "strain": strain,
-                 "curvature": curvature, "rest_length": rest_length}
+                 "curvature": curvature, "membrane": membrane, "rest_length": rest_length}
         return self.add(
             Cable(
                 name=name,

@@ -16,15 +16,22 @@ def section_stiffness(law: str, section: Section, material: Material, dim: int =
     """S of an elastic law.
 
     law: a name in ``derive/laws``, or "poisson_split"; dim: 2 for a planar element, else 3.
-    Returns, in N times even powers of m: (2,) [EA, EI] for cables; for a continuum (9, 6) or, planar, (4, 6): the
+    Returns, in N times even powers of m: (2,) [EA, EI] for cables, (3,) with an assumed axial strain, see `_assumed`;
+    for a continuum (9, 6) or, planar, (4, 6): the
     integrals over the section of D11, D22, D33, D12, D13, D23, G12, G13, G23 (planar: D11, D22, D12, G12) times
     1, y², z², y⁴, y²z², z⁴; for structural (9,) or, planar, (4,), see `_structural`.
     """
     return _LAWS.get(law, _cable)(section, material, dim)
 
 
-KERNEL_LAWS = {"poisson_split": "continuum"}
+CABLE_LAWS = tuple(f"{strain}_{curvature}" for strain in ("green", "engineering") for curvature in ("exact", "linear"))
+
+KERNEL_LAWS = {"poisson_split": "continuum"} | {f"{law}_reduced": f"{law}_assumed" for law in CABLE_LAWS}
 """Laws that run on the kernels of another one: they differ by the stiffness of the section alone."""
+
+
+STABILISATION = 0.01
+"""Part of the axial stiffness that the upper modes of a reduced axial strain have."""
 
 
 def kernel_law(law: str) -> str:
@@ -34,6 +41,18 @@ def kernel_law(law: str) -> str:
 
 def _cable(section: Section, material: Material, dim: int) -> np.ndarray:
     return material.youngs_modulus * section.moments()[:2]
+
+
+def _assumed(section: Section, material: Material, dim: int) -> np.ndarray:
+    """EA, EI, and EA of the modes of the axial strain that the lengths of the slopes alone govern."""
+    EA, EI = _cable(section, material, dim)
+    return np.array([EA, EI, EA])
+
+
+def _reduced(section: Section, material: Material, dim: int) -> np.ndarray:
+    """The same with what keeps the lengths of the slopes stable."""
+    EA, EI = _cable(section, material, dim)
+    return np.array([EA, EI, STABILISATION * EA])
 
 
 def _continuum(section: Section, material: Material, dim: int) -> np.ndarray:
@@ -87,4 +106,5 @@ def _elasticity(material: Material, dim: int) -> np.ndarray:
 
 
 _LAWS: dict[str, Callable[[Section, Material, int], np.ndarray]] = {
-    "continuum": _continuum, "poisson_split": _poisson_split, "structural": _structural}
+    "continuum": _continuum, "poisson_split": _poisson_split, "structural": _structural,
+    **{f"{law}_assumed": _assumed for law in CABLE_LAWS}, **{f"{law}_reduced": _reduced for law in CABLE_LAWS}}

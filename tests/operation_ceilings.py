@@ -62,6 +62,22 @@ CEILINGS = {
         "stiffness": 0, "energy": 165, "elastic_force": 257, "elastic_tangent": 746, "section_forces": 161,
         "discrete_force": 442, "step_stiffness": 161
     },
+    "cable12_green_exact_assumed": {
+        "stiffness": 0, "energy": 280, "elastic_force": 510, "elastic_tangent": 2029, "section_forces": 361,
+        "discrete_force": 956, "step_stiffness": 164
+    },
+    "cable12_green_linear_assumed": {
+        "stiffness": 0, "energy": 156, "elastic_force": 223, "elastic_tangent": 778, "section_forces": 236,
+        "discrete_force": 407, "step_stiffness": 164
+    },
+    "cable12_engineering_exact_assumed": {
+        "stiffness": 0, "energy": 295, "elastic_force": 525, "elastic_tangent": 2167, "section_forces": 377,
+        "discrete_force": 981, "step_stiffness": 164
+    },
+    "cable12_engineering_linear_assumed": {
+        "stiffness": 0, "energy": 194, "elastic_force": 281, "elastic_tangent": 1172, "section_forces": 278,
+        "discrete_force": 516, "step_stiffness": 164
+    },
     "cable18_green_exact": {
         "stiffness": 0, "energy": 410, "elastic_force": 788, "elastic_tangent": 5134, "damping_force": 1776,
         "damping_tangent": 12942, "dissipation": 1023, "section_forces": 516,
@@ -94,6 +110,22 @@ CEILINGS = {
     "cable8p_engineering_linear": {
         "stiffness": 0, "energy": 127, "elastic_force": 189, "elastic_tangent": 436, "section_forces": 107,
         "discrete_force": 319, "step_stiffness": 127
+    },
+    "cable8p_green_exact_assumed": {
+        "stiffness": 0, "energy": 223, "elastic_force": 390, "elastic_tangent": 1177, "section_forces": 263,
+        "discrete_force": 749, "step_stiffness": 131
+    },
+    "cable8p_green_linear_assumed": {
+        "stiffness": 0, "energy": 122, "elastic_force": 163, "elastic_tangent": 431, "section_forces": 166,
+        "discrete_force": 299, "step_stiffness": 131
+    },
+    "cable8p_engineering_exact_assumed": {
+        "stiffness": 0, "energy": 238, "elastic_force": 405, "elastic_tangent": 1279, "section_forces": 279,
+        "discrete_force": 774, "step_stiffness": 131
+    },
+    "cable8p_engineering_linear_assumed": {
+        "stiffness": 0, "energy": 156, "elastic_force": 213, "elastic_tangent": 665, "section_forces": 202,
+        "discrete_force": 393, "step_stiffness": 131
     },
     "beam24_structural": {
         "stiffness": 360, "energy": 533, "elastic_force": 1067, "elastic_tangent": 7419, "damping_force": 1385,

@@ -81,7 +81,7 @@ def test_damped_pendulum_closes_its_books():
 
 @pytest.mark.parametrize(("change", "message"), [
     ({"section": Rectangle(height=0.05, width=0.02)}, "cable12 has one bending stiffness"),
-    ({"element": "beam24"}, "strain and curvature are for cable elements"),
+    ({"element": "beam24"}, "strain, curvature and membrane are for cable elements"),
     ({"strain": "grean"}, 'strain "grean" is not known'),
     ({"curvature": "flat"}, 'curvature "flat" is not known'),
     ({"element": "cable18", "curvature": "linear"},

@@ -14,7 +14,9 @@ WITHIN = {
     "E1 mass": {"beam24": ROUNDING},  # all digits printed
     "E1 force": {"beam24": 1e-9},  # a difference: G A γ of forces E A
     "E2 bending": {"structural": 5e-3, "poisson_split": 1.8e-2},
-    "E2 axial": {"cable12": 1e-7, "cable18": 1e-7, "cable8p": 1e-7, "structural": 1e-7},  # digits printed
+    # digits printed; reduced: a soft upper mode
+    "E2 axial": {"cable12": 1e-7, "cable18": 1e-7, "cable8p": 1e-7, "structural": 1e-7,
+                 "engineering_exact_reduced": 1.2e-5},
     "E2 torsion": {"poisson_split": 4e-3},
     "B1": {"cable12": 1.2e-4, "cable8p": 1.2e-4, "cable18": 3e-5, "structural": 7e-5},
     "B2": {"cable12": 1e-6, "cable8p": 1e-6, "cable18": 2e-10, "structural": 7e-6},
@@ -27,12 +29,12 @@ WITHIN = {
     "B6": {"structural": 4e-5, "poisson_split": 1.8e-2},
     "B8": {"structural": 1e-2, "poisson_split": 1e-2},  # published as "near"
     # bending of the rope, and digits printed; green strain (beams: and locking) takes another force
-    "B11 level": {"engineering_exact": 1e-8, "green_exact": 4e-6, "structural": 2e-7, "poisson_split": 4e-5,
-                  "continuum": 4e-5},
-    "B11 drop": {"engineering_exact": 1e-8, "green_exact": 6e-6, "structural": 5e-8, "poisson_split": 3e-5,
-                 "continuum": 3e-5},
-    "B11 wire": {"engineering_exact": 1e-8, "green_exact": 4e-4, "structural": 1e-8, "poisson_split": 4e-4,
-                 "continuum": 4e-4},
+    "B11 level": {"engineering_exact": 1e-8, "cable8p": 1e-8, "green_exact": 4e-6, "structural": 2e-7,
+                  "poisson_split": 4e-5, "continuum": 4e-5},
+    "B11 drop": {"engineering_exact": 1e-8, "cable8p": 1e-8, "green_exact": 6e-6, "structural": 5e-8,
+                 "poisson_split": 3e-5, "continuum": 3e-5},
+    "B11 wire": {"engineering_exact": 1e-8, "cable8p": 1e-8, "green_exact": 4e-4, "structural": 1e-8,
+                 "poisson_split": 4e-4, "continuum": 4e-4},
     "S1, 3 elements": {"cable12": 3e-5, "cable8p": 3e-5},  # tol 1e-6 of the motion
     "S1, 12 elements": {"cable12": 1e-5, "cable8p": 1e-5, "cable18": 3e-4},  # cable18: the mesh of the reference
     "D0": {"cable12": 2e-5, "cable8p": 2e-5},  # quadrature of the curvature (laws/cable.py)
@@ -60,7 +62,8 @@ OFF = {
     "B3 small": {"cable12": 0.0456, "cable18": 0.0456, "cable8p": 0.0456, CONTINUUM[0]: 0.253, CONTINUUM[1]: 0.0936},
     "B3 large": {"cable12 green_exact": 0.0558, "cable12 engineering_exact": 0.0522, "cable18 green_exact": 0.0558,
                  "cable18 engineering_exact": 0.0522, "cable8p green_exact": 0.0718,
-                 "cable8p engineering_exact": 0.0638, CONTINUUM[0]: 0.364, CONTINUUM[1]: 0.109,
+                 "cable8p engineering_exact": 0.0638, "engineering_exact_assumed": 0.0638,
+                 "engineering_exact_reduced": 0.0638, CONTINUUM[0]: 0.364, CONTINUUM[1]: 0.109,
                  "poisson_split": 0.0435},
     "B4 once": {"poisson_split": 0.140, "continuum": 0.141},
     "B4 twice": {"poisson_split": 0.048, "continuum": 0.049},
@@ -72,18 +75,23 @@ OFF = {
     "D1": {SPLIT[0]: 1.17e-2, SPLIT[1]: 1.03e-2, CONTINUUM[0]: 0.129, CONTINUUM[1]: 0.058},
     "D3 lag": {CONTINUUM[0]: 0.516, CONTINUUM[1]: 0.159},
     # the length of r_x is held
-    "D3 steady": {"cable12": 2.2e-2, "cable18": 8.2e-3, "cable8p": 2.2e-2, "beam24 poisson_split": 2.9e-2,
-                  "beam12p poisson_split": 8.8e-3, CONTINUUM[0]: 2.9e-2, CONTINUUM[1]: 8.8e-3},
+    "D3 steady": {"cable12": 2.2e-2, "cable18": 8.2e-3, "cable8p": 2.2e-2, "engineering_exact_reduced": 1.5e-3,
+                  "beam24 poisson_split": 2.9e-2, "beam12p poisson_split": 8.8e-3, CONTINUUM[0]: 2.9e-2, CONTINUUM[1]: 8.8e-3},
 }
 """Errors that stay, and why: locking, and what an element has not."""
 
 ORDERS = {
     "B1": {"cable12": 3.2, "cable8p": 3.2, "cable18": 4.1, "structural": 3.6},
-    "B2": {"cable12": 5.3, "cable8p": 5.3, "cable18": 8.3, "structural": 4.3},
+    # an assumed strain leaves out part of what the coarse mesh has too much: smaller errors, that fall more slowly
+    "B2": {"cable12": 5.3, "cable8p": 5.3, "cable18": 8.3, "structural": 4.3, "engineering_exact_assumed": 5.0,
+           "engineering_exact_reduced": 4.0},
     "B3 large": {"structural": 3.8},
-    "B4 once": {"cable12": 4.2, "cable8p": 4.2, "cable18": 9.5, "structural": 9.5},
-    "B4 twice": {"cable12": 3.9, "cable8p": 3.9, "cable18": 8.5, "structural": 9.5},
-    "D0 mesh": {"cable12": 3.5, "cable8p": 3.5, "cable18": 4.0, "structural": 2.3},
+    "B4 once": {"cable12": 4.2, "cable8p": 4.2, "cable18": 9.5, "structural": 9.5, "engineering_exact_assumed": 3.7,
+                "engineering_exact_reduced": 3.7},
+    "B4 twice": {"cable12": 3.9, "cable8p": 3.9, "cable18": 8.5, "structural": 9.5, "engineering_exact_assumed": 3.7,
+                 "engineering_exact_reduced": 3.7},
+    "D0 mesh": {"cable12": 3.5, "cable8p": 3.5, "cable18": 4.0, "structural": 2.3, "engineering_exact_assumed": 3.0,
+                "engineering_exact_reduced": 3.0},
 }
 """Least orders of convergence; the table has the measured ones."""
 

@@ -12,7 +12,9 @@ from test_newton_matrix import loaded
 
 CABLES = {"beam24": {"element": "beam24"}, "green": {"element": "cable12", "strain": "green"},
           "engineering": {"element": "cable12", "strain": "engineering"},
-          "linear": {"element": "cable12", "strain": "green", "curvature": "linear"}, "quintic": {"element": "cable18"}}
+          "linear": {"element": "cable12", "strain": "green", "curvature": "linear"},
+          "assumed": {"element": "cable12", "strain": "engineering", "membrane": "assumed"},
+          "reduced": {"element": "cable12", "membrane": "reduced"}, "quintic": {"element": "cable18"}}
 PLANAR = {"beam12p": {"element": "beam12p"}, "cable8p": {"element": "cable8p"}}
 
 

@@ -206,13 +206,16 @@ CONSTANTS = {"area": 1, "second_moment_yy": 1}
      "cable12 has one bending stiffness: its section needs equal "
      'second moments, got (1, 2) m⁴; take a square, a circle or a tube, or element="beam24"'),
     ("cable12", Circle(radius=1), {"law": "structural"}, 'law "structural" is not possible for cable12; possible: '
-     "green_exact, green_linear, engineering_exact, engineering_linear"),
+     "green_exact, green_linear, engineering_exact, engineering_linear, green_exact_assumed, green_linear_assumed, "
+     "engineering_exact_assumed, engineering_linear_assumed, green_exact_reduced, green_linear_reduced, "
+     "engineering_exact_reduced, engineering_linear_reduced"),
     ("beam24", Circle(radius=1), {"law": "green_exact"},
      'law "green_exact" is not possible for beam24; possible: continuum, structural, poisson_split'),
-    ("beam24", Circle(radius=1), {"strain": "green"}, "strain and curvature are for cable elements, beam24 is a beam; "
+    ("beam24", Circle(radius=1), {"strain": "green"},
+     "strain, curvature and membrane are for cable elements, beam24 is a beam; "
      'leave them out, or take element="cable12" or "cable18"'),
     ("cable12", Circle(radius=1), {"law": "green_exact", "strain": "engineering"},
-     'law "green_exact" and strain and curvature disagree; give the one or the others'),
+     'law "green_exact" disagrees with strain, curvature and membrane; give the one or the others'),
 ])
 def test_elements_laws_and_sections_that_do_not_suit(element, section, law, complaint):
     with refused(f'cable "wire": {complaint}'):

@@ -6,7 +6,7 @@ from funicular.constants import element_constants
 from funicular.derive.elements import ELEMENTS
 from funicular.derive.verify_states import reference, rotation, section
 from funicular.generated import kernels
-from test_elements import CABLES, LAWS, arc, at_rest
+from test_elements import CABLES, LAWS, arc, at_rest, cable_stiffness
 
 E, SIDE = 1e6, 0.1
 MOMENTS = section(SIDE, SIDE)
@@ -21,7 +21,7 @@ def stiffness(name: str, law: str) -> np.ndarray:
         dim = ELEMENTS[name].dim
         pairs = dim * (dim - 1) // 2
         return np.outer(E * np.concatenate([np.ones(dim), np.zeros(pairs), np.full(pairs, 0.5)]), MOMENTS)
-    return E * MOMENTS[:2]
+    return cable_stiffness(law, *E * MOMENTS[:2])
 
 
 def kernel(*name: str):

@@ -4,19 +4,28 @@ from collections.abc import Callable
 from functools import partial
 
 from funicular.derive.laws.cable import Cable
+from funicular.derive.laws.cable_assumed import AssumedCable
 from funicular.derive.laws.cable_curved import CurvedCable
 from funicular.derive.laws.continuum import Continuum
 from funicular.derive.laws.continuum_curved import CurvedContinuum
-from funicular.derive.spec import CABLE_LAWS
+from funicular.derive.spec import ASSUMED_LAWS, CABLE_LAWS
 
-LAWS = {"continuum": Continuum, "continuum_curved": CurvedContinuum} | {
-    name: partial(Cable, **dict(zip(("strain", "curvature"), name.split("_"), strict=True))) for name in CABLE_LAWS} | {
-    f"{strain}_exact_curved": partial(CurvedCable, strain=strain, curvature="exact")
-    for strain in ("green", "engineering")}
+
+def _measures(law: str) -> dict[str, str]:
+    """Strain and curvature of a cable's law by its name."""
+    strain, curvature, *_ = law.split("_")
+    return {"strain": strain, "curvature": curvature}
+
+
+LAWS = ({"continuum": Continuum, "continuum_curved": CurvedContinuum}
+        | {name: partial(Cable, **_measures(name)) for name in CABLE_LAWS}
+        | {name: partial(AssumedCable, **_measures(name)) for name in ASSUMED_LAWS}
+        | {name: partial(CurvedCable, **_measures(name))
+           for name in ("green_exact_curved", "engineering_exact_curved")})
 
 DAMPED_LIKE = {"continuum_curved": "continuum"} | {
     f"{strain}_{other}": f"{strain}_exact"
-    for strain in ("green", "engineering") for other in ("linear", "exact_curved")}
+    for strain in ("green", "engineering") for other in ("linear", "exact_curved", "exact_assumed", "linear_assumed")}
 """The law whose damping kernels another takes; its constants lead the other's A."""
 
 

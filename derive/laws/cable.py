@@ -41,6 +41,9 @@ class Point:
 class Term:
     """A point's share of twice the energy, its invariants by name, the vectors that these are products of, and the
     series of the vectors over the strain vectors.
+
+    Where the energy is also a quadratic form over the strains of several points, `strain` is that of this point and
+    `stress` the derivative of twice the form by it.
     """
 
     names: str
@@ -48,6 +51,23 @@ class Term:
     invariants: list[sp.Expr]
     vectors: list[np.ndarray]
     series: list[tuple[sp.Float, ...]]
+    strain: sp.Expr = sp.S.Zero
+    stress: sp.Expr = sp.S.Zero
+
+    @property
+    def share(self) -> sp.Expr:
+        """Of twice the energy, that of the form included: half of the stresses times the strains is the form."""
+        return self.twice + self.stress * self.strain / 2
+
+    @property
+    def varied(self) -> sp.Expr:
+        """What has the derivatives of twice the energy by the invariants, the stress constant."""
+        return self.twice + self.stress * self.strain
+
+    @property
+    def constant(self) -> list[sp.Symbol]:
+        """The stress, where there is one."""
+        return [self.stress] if self.stress.is_Symbol else []
 
 
 class Cable(Damping):
@@ -113,6 +133,10 @@ class Cable(Damping):
     def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X, w, c0=None) -> tuple:
         """Stages: force and moment in space, and strain, at X; c0 of a curved stress-free shape."""
         return resultants(self, program, S, c, X, w, c0)
+
+    def membrane(self, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, strain: sp.Expr) -> tuple:
+        """Energy per length whose derivative is the membrane's force at X, what is constant in it, and the strain."""
+        return S[0] * strain**2 / 2, [], strain
 
     # --- the energy through the invariants ------------------------------------------------------------------
 
@@ -181,7 +205,7 @@ class Cable(Damping):
 
     def energy(self, program: Program, A, c, w) -> sp.Expr:
         """U."""
-        return sum(term.twice for term in self._terms(program, A, c, w)) / 2
+        return sum(term.share for term in self._terms(program, A, c, w)) / 2
 
     def forces(self, program: Program, A, c, w) -> np.ndarray:
         """Stages: dU/dc on strain vectors."""
@@ -216,7 +240,7 @@ class Cable(Damping):
             forces = []
             for g, term in enumerate(group):
                 D = [program.define(f"D_{s.name}", d) for s, d in
-                     zip(term.invariants, secant.gradient(term.twice, term.invariants), strict=True)]
+                     zip(term.invariants, secant.gradient(term.varied, term.invariants, term.constant), strict=True)]
                 means = [secant.means(f"mean{k + 1}_{names}{g}", v) for k, v in enumerate(term.vectors)]
                 forces.append(on_vectors(program, f"{names}{g}", means, D))
             f[self.axis_indices] += self._gathered(program, names, group, forces)
@@ -253,14 +277,14 @@ class Cable(Damping):
         names, at_points = terms[0].names, []
         for g, term in enumerate(terms):
             first = _first(program, term)
-            second = jacobian(program, np.array(first), term.invariants)
+            second = jacobian(program, np.array(first), term.invariants, term.constant)
             at_points.append(by_vectors(program, f"{names}{g}", names, term.vectors, first, second))
         return spread(program, names, [term.series for term in terms], at_points, symmetric=True)
 
 
 def _first(program: Program, term: Term) -> list[sp.Expr]:
-    """Derivatives of a term by its invariants."""
-    gradient = jacobian(program, np.array([term.twice]), term.invariants)[0]
+    """Derivatives of twice the energy by a term's invariants."""
+    gradient = jacobian(program, np.array([term.varied]), term.invariants, term.constant)[0]
     return [program.define(f"D_{s.name}", d) for s, d in zip(term.invariants, gradient, strict=True)]
 
 

@@ -26,15 +26,17 @@ def resultants(law, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, 
                       (("a1", r[0].dot(r[0]) - 1), ("b", r[0].dot(r[1])), ("c", r[1].dot(r[1]))))
     kappa0 = sp.S.Zero
     if c0 is None:
-        strain, k2, scale = law.measures(program, "", a1, b, squared)
-        density = S[0] * strain**2 / 2 + S[1] * k2 / 2
+        at_point, k2, scale = law.measures(program, "", a1, b, squared)
+        axial, constant, strain = law.membrane(program, S, c, X, at_point)
+        density = axial + S[1] * k2 / 2
     else:
         r0 = [program.vector(f"r0{order}", axis(law.gram, c0, X, w, order)) for order in (1, 2, 3)]
         along |= _along_x(r0)
         reference = law.reference(program, "", r0[0], r0[1], law.floor * (2 * w) ** 2)
         density, strain, scale = law.curved_density(program, "", *S, (a1, b, squared), reference)
+        constant = []
         kappa0 = _size(program, "0", program.vector("n0", cross(spatial(r0[0]), spatial(r0[1]))), reference.inverse**3)
-    W = jacobian(program, np.array([density]), [a1, b, squared])[0]
+    W = jacobian(program, np.array([density]), [a1, b, squared], constant)[0]
     by_a, by_b, by_c = (program.define(f"W_{name}", value) for name, value in zip("abc", W, strict=True))
     program.stage("forces on r' and r''")
     slope = program.vector("slope", by_b * r[0] + 2 * by_c * r[1])

@@ -8,7 +8,7 @@ import numpy as np
 from funicular import Material, Rectangle, Scene
 from funicular.sections import Section
 
-from .case import CABLES, KINDS, STRUCTURAL, Case, Kind, Quantity
+from .case import CABLES, KINDS, MEMBRANES, STRUCTURAL, Case, Kind, Quantity
 
 
 def cantilever(kind: Kind, elements: int, length: float, section: Section, youngs_modulus: float, poisson_ratio=0.0,
@@ -151,7 +151,7 @@ POISSON = "Poisson locking: its sides cannot bulge"
 FULLY_INTEGRATED = "own limit: St. Venant-Kirchhoff at strains of 14 %"
 SLOW_START = "locks a little in stretch where slender; order 6 later"
 
-STOUT_NOTES = {str(kind): NO_SHEAR for kind in CABLES} | {"continuum": POISSON}
+STOUT_NOTES = {str(kind): NO_SHEAR for kind in CABLES + MEMBRANES} | {"continuum": POISSON}
 
 B1 = Case(
     "B1", "elastica, tip force", "closed form, elliptic integrals", elastica_quantities, elastica, 32, KINDS,
@@ -160,7 +160,7 @@ B1 = Case(
 
 B2 = Case(
     "B2", "tip force, with stretch", "two independent formulations, converged", stretched_quantities, stretched, 16,
-    KINDS, own_elements={"cable18": 8, "structural": 8}, ordered=CABLES + STRUCTURAL,
+    KINDS, own_elements={"cable18": 8, "structural": 8}, ordered=CABLES + MEMBRANES + STRUCTURAL,
     notes={"poisson_split": OWN_SHEAR, "continuum": OWN_SHEAR})
 
 B3_SMALL = Case(

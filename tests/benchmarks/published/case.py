@@ -40,11 +40,13 @@ class Kind:
 
 CABLES = [Kind(element, law) for element in ("cable12", "cable18", "cable8p")
           for law in ("green_exact", "engineering_exact")]
+MEMBRANES = [Kind("cable8p", f"engineering_exact_{membrane}") for membrane in ("assumed", "reduced")]
+"""Other representations of the axial strain, of one cable: what they change does not depend on the rest."""
 BEAMS = [Kind(element, law) for element in ("beam24", "beam12p")
          for law in ("structural", "poisson_split", "continuum")]
 STRUCTURAL = [kind for kind in BEAMS if kind.law == "structural"]
 SPATIAL_BEAMS = [kind for kind in BEAMS if not kind.is_planar]
-KINDS = CABLES + BEAMS
+KINDS = CABLES + MEMBRANES + BEAMS
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ import numpy as np
 from funicular import Circle, General, Material, Rectangle, Scene, Table
 from sliding import sliding_mass
 
-from .case import CABLES, KINDS, STRUCTURAL, Case, Kind, Quantity
+from .case import CABLES, KINDS, MEMBRANES, STRUCTURAL, Case, Kind, Quantity
 
 CUBIC = [kind for kind in CABLES if kind.element in ("cable12", "cable8p")]
 
@@ -165,8 +165,8 @@ S1 = [
 D0 = Case("D0", "rope pendulum", "two independent formulations", swing_quantities, swing, 8, CUBIC)
 D0_MESH = Case(
     "D0 mesh", "rope pendulum, first half second", "a fine mesh of its own",
-    lambda kind, elements: [Quantity("distance of the end", "m", 0.0, 1.0)], mesh_error, 16, CABLES + STRUCTURAL,
-    own_elements={"cable18": 4}, ordered=CABLES + STRUCTURAL)
+    lambda kind, elements: [Quantity("distance of the end", "m", 0.0, 1.0)], mesh_error, 16,
+    CABLES + MEMBRANES + STRUCTURAL, own_elements={"cable18": 4}, ordered=CABLES + MEMBRANES + STRUCTURAL)
 D1 = Case("D1", "rubber pendulum", "several codes, 1 % of the length", rubber_quantities, rubber, 16, KINDS,
           notes={"continuum": LOCKS, "poisson_split": LOCKS})
 D3_LAG = Case("D3 lag", "spin-up, largest lag", "several codes",
@@ -174,6 +174,7 @@ D3_LAG = Case("D3 lag", "spin-up, largest lag", "several codes",
               notes={"continuum": LOCKS, "poisson_split": LOCKS})
 D3_STEADY = Case("D3 steady", "spin-up, steady extension", "closed form",
                  lambda kind, elements: [Quantity("extension", "m", EXTENSION)], extension, 8, KINDS,
-                 notes={str(kind): HELD_SLOPE for kind in CABLES} | {"poisson_split": NARROWS, "continuum": NARROWS})
+                 notes={str(kind): HELD_SLOPE for kind in CABLES + MEMBRANES}
+                 | {"poisson_split": NARROWS, "continuum": NARROWS})
 
 CASES = [*S1, D0, D0_MESH, D1, D3_LAG, D3_STEADY]
