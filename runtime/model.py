@@ -398,6 +398,7 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
     initial: an `Equilibrium` of this scene to start from, at the scene's velocities; stream: takes the rows as they
     come, so that only the last ones are in what is returned.
     """
+    from funicular import straight_struts
     from funicular.engine import Engine
 
     begin = time.perf_counter()
@@ -409,6 +410,8 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
     engine, watcher = Engine(model), Watcher(scene, model)
     engine.watch(watcher)
     messages = settle(model, engine)
+    if initial is not None:
+        messages += [f"equilibrium to start from: {message}" for message in initial.messages]
     if settings.step is not None:
         step = output_step / np.ceil(output_step / settings.step * (1 - 1e-9))
         if step < settings.step * (1 - 1e-6):
@@ -447,7 +450,7 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
         status = engine.advance(on_progress, pace.every, stream)
     cpu, wall = time.process_time() - cpu, time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
     if status == "completed":
-        for note in notes(engine, settings):
+        for note in [*notes(engine, settings), *straight_struts.notes(scene, model, engine)]:
             messages.append(note)
             warnings.warn(note, FunicularWarning, stacklevel=3)
     recording = recorded(model, scene, engine, settings, status, messages, reason, watcher,

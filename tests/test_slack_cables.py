@@ -1,6 +1,7 @@
-"""Slack cables, drawn straight or otherwise far from where they hang: they must come to the catenary, or its elastica."""
+"""Slack cables drawn straight, or otherwise far from where they hang: they must come to the catenary, or elastica."""
 
 import warnings
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -56,14 +57,15 @@ def test_drawn_with_a_part_of_its_sag(end, length, part, elements):
 def test_a_mooring_drawn_as_a_fold(elements):
     """A Z between the ground and the fairlead, with rounded corners."""
     corners, u = np.array([(0, 0, 0), (40, 0, 0), (10, 15, 0), (50, 30, 0)], dtype=float), np.linspace(0, 1, 30)[:-1]
-    line = np.vstack([a + np.outer(u, b - a) for a, b in zip(corners[:-1], corners[1:], strict=True)] + [corners[-1:]])
+    line = np.vstack([a + np.outer(u, b - a) for a, b in pairwise(corners)] + [corners[-1:]])
     smooth = line.copy()
     for k in range(3):
         smooth[4:-4, k] = np.convolve(line[:, k], np.ones(9) / 9, "valid")
     hangs(rope((50, 30), 110.0, elements, points=smooth), (50, 30), 110.0)
 
 
-@pytest.mark.parametrize(("element", "settings"), [("cable8p", {"load_steps": 2}), ("cable12", {"method": "arc_length"})])
+@pytest.mark.parametrize(("element", "settings"), [("cable8p", {"load_steps": 2}),
+                                                   ("cable12", {"method": "arc_length"})])
 def test_in_load_steps_and_along_a_path(element, settings):
     """Without its weight it is a bow that may point anywhere; with it, it hangs."""
     state = hangs(rope((10, 0), 10.5, 10, element), (10, 0), 10.5, **settings)
