@@ -139,8 +139,8 @@ class Run:
         return loads(self.scene_toml, "the scene of the run")
 
     def keys(self) -> list[str]:
-        """The names of all results."""
-        return [*self.variables, *self._positions]
+        """The names of all results; a cable's ``wire.position`` is a part of its ``wire.nodal_vectors``."""
+        return list(self.variables)
 
     def __contains__(self, name: str) -> bool:
         """Whether there is a result of that name."""
@@ -153,7 +153,7 @@ class Run:
         if name in self._positions:
             return self.variables[self._positions[name]].values[:, :, 0]
         if name not in self.variables:
-            raise UnknownResultError(f'the run has no result "{name}"; {near(name, self.keys())}')
+            raise UnknownResultError(f'the run has no result "{name}"; {near(name, [*self.variables, *self._positions])}')
         return self.variables[name].values
 
     @cached_property

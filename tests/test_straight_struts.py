@@ -58,6 +58,5 @@ def test_positions_of_nodes_by_name(tmp_path):
     assert rest["strut.position"].shape == (7, 3)
     np.testing.assert_array_equal(run["strut.position"], run["strut.nodal_vectors"][:, :, 0])
     assert "strut.position" in run
-    assert "strut.position" in run.keys()
     run.save(tmp_path / "run.nc")
     np.testing.assert_array_equal(load_run(tmp_path / "run.nc")["strut.position"], run["strut.position"])
