@@ -403,6 +403,7 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Meter, initial=No
     initial: an `Equilibrium` of this scene to start from, at the scene's velocities; stream: takes the rows as they
     come, so that only the last ones are in what is returned.
     """
+    from funicular import straight_struts
     from funicular.engine import Engine
 
     begin = time.perf_counter()
@@ -414,6 +415,8 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Meter, initial=No
     engine, watcher = Engine(model), Watcher(scene, model)
     engine.watch(watcher)
     messages = settle(model, engine)
+    if initial is not None:
+        messages += [f"equilibrium to start from: {message}" for message in initial.messages]
     if settings.step is not None:
         step = output_step / np.ceil(output_step / settings.step * (1 - 1e-9))
         if step < settings.step * (1 - 1e-6):
@@ -454,7 +457,8 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Meter, initial=No
     cpu, wall = time.process_time() - cpu, time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
     if status == "completed":
         rows = engine.rows()
-        for note in [*notes(engine, settings), *reduced_strain.notes(scene, model, rows["time"], rows["q"])]:
+        for note in [*notes(engine, settings), *straight_struts.notes(scene, model, engine),
+                     *reduced_strain.notes(scene, model, rows["time"], rows["q"])]:
             messages.append(note)
             warnings.warn(note, FunicularWarning, stacklevel=3)
     recording = recorded(model, scene, engine, settings, status, messages, reason, watcher,

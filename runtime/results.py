@@ -158,20 +158,28 @@ class Run:
         return build(self.scene)
 
     def keys(self) -> list[str]:
-        """The names of all results."""
+        """The names of all results; a cable's ``wire.position`` is a part of its ``wire.nodal_vectors``."""
         return list(self.variables)
 
     def __contains__(self, name: str) -> bool:
         """Whether there is a result of that name."""
-        return name in self.variables
+        return name in self.variables or name in self._positions
 
     def __getitem__(self, name: str) -> np.ndarray:
         """The array called ``name``, time first; units and dimensions stand in ``variables[name]``."""
         if name == "time":
             return self.time
+        if name in self._positions:
+            return self.variables[self._positions[name]].values[:, :, 0]
         if name not in self.variables:
-            raise UnknownResultError(f'the run has no result "{name}"; {near(name, self.variables)}')
+            raise UnknownResultError(f'the run has no result "{name}"; {near(name, [*self.variables, *self._positions])}')
         return self.variables[name].values
+
+    @cached_property
+    def _positions(self) -> dict[str, str]:
+        """Cables' positions of nodes, (time, node, 3) in m, by name; each is the first of these nodal vectors."""
+        suffix = ".nodal_vectors"
+        return {name.removesuffix(suffix) + ".position": name for name in self.variables if name.endswith(suffix)}
 
     def __repr__(self) -> str:
         """Status, times and number of results."""

@@ -38,8 +38,10 @@ class Stability:
             return "stable"
         if self.bound:
             return f"unstable in up to {self.unstable} independent directions"
-        directions = f"{self.unstable} independent direction{'s' * (self.unstable > 1)}"
-        return f"unstable: it diverges in {directions}" if self.follower else f"unstable: {directions} lower its energy"
+        one = self.unstable == 1
+        directions = f"{self.unstable} independent direction{'' if one else 's'}"
+        return (f"unstable: it diverges in {directions}" if self.follower
+                else f"unstable: {directions} {'lowers' if one else 'lower'} its energy")
 
 
 def stability(problem: StaticProblem) -> Stability:

@@ -24,6 +24,9 @@ PUSH = 1e-3
 STIFFER = 100.0
 """Times as stiff: the next stage of `stiffen`."""
 
+CHOICE = ("; nothing says to which side it leaves the other, so that there may be more such states: draw the scene "
+          "slightly bent, or add a small load, to choose")
+
 
 def find_rest(problem: StaticProblem) -> Stability | None:
     """Bring the static state to rest, stable if that can be found; None where there is none, or none was found.
@@ -32,6 +35,7 @@ def find_rest(problem: StaticProblem) -> Stability | None:
     """
     begin = problem.keep()
     passed = passed_at = None
+    problem.pushed = False
     if problem.newton():
         found = stability(problem)
         if not found.unstable:
@@ -42,7 +46,7 @@ def find_rest(problem: StaticProblem) -> Stability | None:
         if (found := descend(problem)) is not None:
             if passed is not None:
                 problem.messages.append(f"Newton's method found a state of rest that is {passed}; the search went on "
-                                        "to a stable one")
+                                        f"to a stable one{CHOICE * problem.pushed}")
             return found
     if passed is not None:
         problem.restore(passed_at)
@@ -87,6 +91,7 @@ def relax(problem: StaticProblem) -> Stability | None:
             if size < 1e-6 * problem.size and mass <= least:
                 problem.move(PUSH * problem.size * lowest_direction(problem))
                 kept = problem.keep()
+                problem.pushed = True
             continue
         if problem.newton() and not (found := stability(problem)).unstable:
             return found

@@ -53,7 +53,8 @@ def equilibrium(scene: Scene, settings: EquilibriumSettings, start: Equilibrium 
 def _note(problem: StaticProblem, state: Equilibrium) -> None:
     """Complete a state's messages; what a user must know is a warning, too."""
     if rubbing := [name for name, slide in problem.scene.slides.items() if slide.friction is not None]:
-        problem.messages.append(f"friction of {', '.join(map(repr, rubbing))} is left out: at rest slides move freely")
+        names = " and ".join(f'"{name}"' for name in rubbing)
+        problem.messages.append(f"friction of {names} is left out: at rest slides move freely")
     if not state.stable:
         problem.messages.append(f"the state is {state.stability}; a small disturbance leaves it")
     state.messages = problem.messages

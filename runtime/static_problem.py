@@ -53,6 +53,7 @@ class StaticProblem:
         self.coordinates = np.append(np.arange(n), np.array(arcs, dtype=int))
         self.places = _places(self.model)
         self.iterations = 0
+        self.pushed = False  # off an unstable branch, in a direction that nothing prefers
         self.messages: list[str] = []
 
     def _falls(self, drawn: np.ndarray, points: np.ndarray) -> float:

@@ -72,3 +72,42 @@ def test_refused():
         inertia(np.array([[1.0, 1.0], [0.0, 1.0]]))
     with pytest.raises(ValueError, match="not finite"):
         inertia(np.array([[np.nan]]))
+
+
+def mechanism():
+    """A rope with a tied rider, a trolley, a door on two hinges (redundant), a spring, and a compressed strut."""
+    from funicular import Scene
+    from scenery import SQUARE, TABLE_1
+
+    scene = Scene()
+    rope = {"section": SQUARE, "material": TABLE_1, "element": "cable12"}
+    scene.cable("rope", start=(0, 0, 0), end=(3, 0, 0), elements=30, **rope)
+    scene.cable("strut", start=(0, 1, 0), end=(0, 1.5, 0), up=(1, 0, 0), elements=8, rest_length=0.7, **rope)
+    for name, s in (("rope", 0), ("rope", 3), ("strut", 0), ("strut", 0.7)):
+        scene.pin(name, s=s)
+    for name, x, y in (("A", 1, 0), ("B", 2, 0), ("door", 4, 0.5)):
+        scene.rigid_body(name, mass=1, inertia=(0.01, 0.02, 0.02), position=(x, y, 0))
+    scene.slide("A", along="rope", s=1.0, frame="tangent", roll="held", up=(0, 1, 0), name="tied")
+    scene.slide("B", along="rope", s=2.0, name="trolley")
+    for y in (-0.5, 0.5):
+        scene.joint("revolute", (4, 0.5 + y, 0), ("door", (0, y, 0)), axis=(0, 1, 0))
+    scene.spring("door", (4, 0.5, 1), stiffness=10.0, length=0.5)
+    return scene
+
+
+def test_scenes_with_slides_joints_springs_and_redundant_constraints(monkeypatch):
+    """The sparse count against all eigenvalues, of the same stiffness."""
+    from funicular import inertia as module
+    from funicular.settings import EquilibriumSettings
+    from funicular.static_problem import StaticProblem
+
+    problem = StaticProblem(mechanism(), EquilibriumSettings())
+    change = np.random.default_rng(2).standard_normal(len(problem.weight)) * np.where(problem.weight == 1, 1e-3, 0)
+    problem.move(change)
+    K, C, units = problem.stiffness()
+    assert K.shape[0] > module.DENSE
+    counted = inertia((K + K.T) / 2, C, units)
+    monkeypatch.setattr(module, "DENSE", 10**6)
+    assert counted == inertia((K + K.T) / 2, C, units)
+    assert counted.negative > 0
+    assert sum(counted) == K.shape[0] - np.linalg.matrix_rank(C.toarray())
