@@ -225,17 +225,17 @@ class Run:
         s: arc-lengths (n,) in m; or the name of a slide on it, for the section where that is at each time. None given:
         along all of the cable, with both sides of supports, joins and loads.
         method: "balance", from what is in balance with the nodes' forces, loads, inertia and riders; "constitutive",
-        from the elastic law and the strains of the mesh, without what Kelvin-Voigt damping adds. Both go to the same
-        as the mesh is refined. Beside a point force, and wherever the force turns within an element, the second swings
-        about the first by up to a tenth and more on any mesh. It is what the elastic energy is made of.
+        from the elastic law and the strains of the mesh, without what Kelvin-Voigt damping adds. They go to the same as
+        the mesh is refined, the second slowly: beside a point force, and wherever a cable turns within an element, it
+        swings about the first by a tenth and more. Vibrations of the mesh are in both.
         side: "after" or "before", of a force or moment on one point the side of larger or of smaller s. At the ends of
         the cable it is always the one inside.
 
         Returns a Dataset over (time, s): force and moment, on the part before the cut along the ground's axes (xyz), in
         N and N m; tension, shear and strain; curvature of cables; components along the section's axes of beams. Strains
-        are those of the mesh. Where a cable's elements are longer than sqrt(E I / N), they cannot show how it bends
-        beside a point force: its tension is then the size of the force, its moment that of the mesh's curvature, which
-        is less than the true one within that length of the point.
+        are those of the mesh. A taut cable bends beside a point force over sqrt(E I / N) alone. Where its elements are
+        longer, tension is the size of the force, shear leaves out what is within that length of the point, and moment
+        is that of an elastica along the line of the force, not of the mesh.
         Raises UnknownResultError; FunicularError where s is off the cable.
         """
         from funicular.section_forces import dataset
