@@ -169,7 +169,7 @@ def gaps_at_nodes(scene, model, at, at_rest):
         s = np.setdiff1d(np.round(cable.node_s, 9)[1:-1], np.round(jumps(scene, name), 9))[None]
         elements = element_forces(scene, model, at, actions, k, at_rest)
         places = (s, False), (s, True), (np.linspace(0, cable.length, 50)[None], True)
-        before, after, every = (balanced(cable, model.cables[k], elements, actions, k, Cuts(model.cables[k], at, side))
+        before, after, every = (balanced(cable, model.cables[k], elements, actions, k, Cuts(model.cables[k], at, side))[:2]
                                 for at, side in places)
         yield from (np.abs(b - a).max(initial=0) / np.abs(e).max()
                     for b, a, e in zip(before, after, every, strict=True))
