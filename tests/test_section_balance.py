@@ -1,8 +1,21 @@
 """Section forces in balance: against free bodies cut out by hand, reported forces, and closed forms."""
 
+import warnings
+
 import numpy as np
 import pytest
-from funicular import Circle, General, Harmonic, Material, Rectangle, Scene, load_run, load_scene, recording
+from funicular import (
+    Circle,
+    FunicularWarning,
+    General,
+    Harmonic,
+    Material,
+    Rectangle,
+    Scene,
+    load_run,
+    load_scene,
+    recording,
+)
 from funicular.generated import kernels
 from funicular.nodal_forces import element_forces
 from funicular.section_balance import Cuts, balanced
@@ -169,8 +182,9 @@ def gaps_at_nodes(scene, model, at, at_rest):
         s = np.setdiff1d(np.round(cable.node_s, 9)[1:-1], np.round(jumps(scene, name), 9))[None]
         elements = element_forces(scene, model, at, actions, k, at_rest)
         places = (s, False), (s, True), (np.linspace(0, cable.length, 50)[None], True)
-        before, after, every = (balanced(cable, model.cables[k], elements, actions, k, Cuts(model.cables[k], at, side))[:2]
-                                for at, side in places)
+        before, after, every = (
+            balanced(cable, model.cables[k], elements, actions, k, Cuts(model.cables[k], where, side))[:2]
+            for where, side in places)
         yield from (np.abs(b - a).max(initial=0) / np.abs(e).max()
                     for b, a, e in zip(before, after, every, strict=True))
 
@@ -298,6 +312,18 @@ def test_read_back(tmp_path):
     again = load_run(tmp_path / "run.nc")
     for s in (None, "trolley", [0.3, 6.0]):
         assert again.section_forces("rope", s).identical(run.section_forces("rope", s))
+
+
+def test_reading_back_says_nothing_anew(tmp_path):
+    """The scene is made again from its text: what its placement had to say was said when it was drawn."""
+    scene = scene_between_pins("cable12")
+    cable(scene, "link", "beam24", 3, (2.5, -1e-4, 0), (2.7, -1, 0), up=(1, 0, 0))
+    with pytest.warns(FunicularWarning, match="are brought together"):
+        scene.slide(("link", 0.0), along="rope", s=2.5, name="trolley")
+    scene.run(duration=0.05, output_step=0.05).save(tmp_path / "run.nc")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert load_run(tmp_path / "run.nc").section_forces("rope", "trolley")["tension"].shape == (2,)
 
 
 def test_many_times_go_in_pieces(monkeypatch):
