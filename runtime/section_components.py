@@ -105,7 +105,7 @@ def balanced_components(cable: Cable, balance: tuple[np.ndarray, np.ndarray], la
     tension = np.copysign(size * np.cos(angle), along)
     shear = (1 - w)[..., None] * across + w[..., None] * bent
     shear = shear * (size * np.sin(angle) / _not_zero(np.linalg.norm(shear, axis=-1)))[..., None]
-    bending = np.where((along > 0)[..., None], taut, parts(law[1])[1])
+    bending = parts(np.where((along > 0)[..., None], taut, law[1]))[1]
     moment = moment + w[..., None] * (bending - parts(moment)[1])
     return {"force": force, "moment": moment} | _named(cable, tension, shear, moment, axes, strain)
 

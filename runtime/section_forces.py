@@ -71,8 +71,8 @@ def cut_forces(scene, model: Model, at: Instants, name: str, s: np.ndarray, *, m
     actions = CableActions(scene, model, at)
     forces = element_forces(scene, model, at, actions, number, at_rest)
     *balance, change = balanced(cable, of, forces, actions, number, cuts)
-    taut = taut_bending(cable, balance[0], change, axes, cuts,
-                        lambda: kinks(scene, cable, of, forces, actions, number))
+    taut = moment if cable.is_curved else taut_bending(  # a bent wire that is drawn straight has a moment
+        cable, balance[0], change, axes, cuts, lambda: kinks(scene, cable, of, forces, actions, number))
     return balanced_components(cable, balance, (force, moment), taut, axes, strain)
 
 
@@ -115,7 +115,7 @@ def of_equilibrium(state: Equilibrium, name: str, s: np.ndarray, *, method: str 
 def rest_instants(state: Equilibrium) -> Instants:
     """A state of rest as one instant, with as much of the loads as it has."""
     return Instants(np.zeros(1), state.placed["q"][None], np.zeros((1, state.model.n_dof)),
-                    lambda quantity: state[quantity][None], state.load_fraction)
+                    lambda quantity: state[quantity][None], state.load_fraction, state.load_fraction)
 
 
 def jumps(scene, name: str) -> np.ndarray:

@@ -505,3 +505,31 @@ def test_kernels_many_times(name):
         kernel.rows(4, *given)
     with pytest.raises(TypeError, match=r"takes \("):
         kernel.rows(5, *given[1:])
+
+
+@pytest.mark.parametrize("fraction", [0.25, 0.5, 1.0])
+def test_states_on_the_way_carry_a_part_of_the_load(fraction):
+    scene = beam("beam12p", "structural", 4)
+    scene.gravity = (0, -9.81, 0)
+    scene.clamp("beam", s=0)
+    scene.force("beam", s=LENGTH, value=(0, -100, 0))
+    (state,) = [state for state in scene.equilibrium(load_steps=4).path if state.load_fraction == fraction]
+    s = np.array([0, 1, LENGTH])
+    below = 100 + 9.81 * 1000 * DEPTH**2 * (LENGTH - s)
+    assert_allclose(state.section_forces("beam", s)["force"][:, 1], -fraction * below, rtol=1e-6)
+
+
+def test_a_bent_wire_drawn_straight():
+    """A taut cable that is stress-free as an arc has the moment of unbending, by its law alone."""
+    scene = Scene(gravity=(0, 0, 0))
+    u = np.linspace(0, 1, 41)
+    scene.cable("wire", points=[(10 * np.sin(a), 10 - 10 * np.cos(a), 0) for a in u], elements=12, element="cable12",
+                section=Circle(radius=0.01), material=Material(youngs_modulus=1e9, poisson_ratio=0.3, density=1000))
+    scene.pin("wire", s=0)
+    scene.force("wire", s=scene.cables["wire"].length, value=(4000, 0, 0))
+    rest = scene.equilibrium()
+    EI = 1e9 * np.pi * 0.01**4 / 4
+    moment = rest.section_forces("wire", [4.0, 5.0, 6.0])["moment"].values
+    by_law = rest.section_forces("wire", [4.0, 5.0, 6.0], method="constitutive")["moment"].values
+    assert np.linalg.norm(moment, axis=1).min() > 0.6 * EI / 10
+    assert_allclose(moment, by_law, atol=0.02 * EI / 10)
