@@ -75,12 +75,13 @@ def balanced(cable: Cable, model: CableModel, forces: ElementForces, actions: Ca
     change = cable.material.density * cable.section.area * _at(_shape(model, cuts.x), inertia)
     for spread in actions.spreads.get(number, []):
         inside = (cuts.element == spread.element) & (cuts.x > spread.start)
-        for column in np.flatnonzero(inside.any(axis=0)):
-            part = _of_spread(model, spread, np.minimum(cuts.x[:, column], spread.stop), e[:, column])
-            here = np.broadcast_to(inside[:, column], times)[:, None]
-            force[:, column] -= np.where(here, part[0], 0.0)
-            moment[:, column] -= np.where(here, part[1], 0.0)
-            change[:, column] -= np.where(here & (cuts.x[:, column] <= spread.stop)[:, None], part[2], 0.0)
+        columns = np.flatnonzero(inside.any(axis=0))
+        if len(columns):
+            here, reach = inside[:, columns, None], cuts.x[:, columns]
+            ends = here & (reach <= spread.stop)[..., None]
+            parts = _of_spread(model, spread, np.clip(reach, spread.start, spread.stop), e[:, columns])
+            for total, part, where in zip((force, moment, change), parts, (here, here, ends), strict=True):
+                total[:, columns] -= np.where(where, part, 0.0)
     for action in actions.points.get(number, []):
         of = forces.e[instants[:, 0], action.element]
         jump = resultants(action.f, of, is_r, spatial(of[:, 0]))
@@ -125,29 +126,29 @@ def _at(N: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 
 def _of_spread(model: CableModel, spread, x: np.ndarray, e: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Force and moment (T, 3) about the element's first node of what is spread up to x, and the force a length at x.
+    """Force and moment (T, n, 3) about the element's first node of what is spread up to x, and the force a length at x.
 
-    x: (T or 1,) in m; e: (T, vectors, 3).
+    x: (T or 1, n) in m; e: (T, n, vectors, 3).
     """
     places, weights = np.polynomial.legendre.leggauss(len(spread.x))
     force = moment = 0.0
+    length = x - spread.start
     for place, weight in zip((1 + places) / 2, weights / 2, strict=True):
-        length = x - spread.start
         at = spread.start + place * length
-        share = _density(spread, at) * (weight * length)[:, None]
+        share = _density(spread, at) * (weight * length)[..., None]
         force = force + share
-        moment = moment + np.cross(_at(_shape(model, at[:, None]), e[:, None])[:, 0], share)
+        moment = moment + np.cross(_at(_shape(model, at), e), share)
     return force, moment, _density(spread, x)
 
 
 def _density(spread, x: np.ndarray) -> np.ndarray:
-    """(T, 3): force a length at x (T or 1,)."""
-    weights = _lagrange(spread.x, x)
-    return np.einsum("tp,tpd->td", np.broadcast_to(weights, (len(spread.density), weights.shape[1])), spread.density)
+    """(T, n, 3): force a length at x (T or 1, n)."""
+    weights, times = _lagrange(spread.x, x), len(spread.density)
+    return np.einsum("tnp,tpd->tnd", np.broadcast_to(weights, (times, *weights.shape[1:])), spread.density)
 
 
 def _lagrange(nodes: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """(T, nodes): weights of the values at nodes in the polynomial through them, at x (T,)."""
+    """(..., nodes): weights of the values at nodes in the polynomial through them, at x (...)."""
     others = [np.delete(nodes, k) for k in range(len(nodes))]
-    return np.stack([np.prod((x[:, None] - other) / (node - other), axis=1)
-                     for node, other in zip(nodes, others, strict=True)], axis=1)
+    return np.stack([np.prod((x[..., None] - other) / (node - other), axis=-1)
+                     for node, other in zip(nodes, others, strict=True)], axis=-1)
