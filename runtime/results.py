@@ -138,16 +138,9 @@ class Run:
         """The scene that was run, read back from its text."""
         from funicular.scene_file import loads
 
-        with warnings.catch_warnings():  # what it had to say it said before the run
+        with warnings.catch_warnings():
             warnings.simplefilter("ignore", FunicularWarning)
             return loads(self.scene_toml, "the scene of the run")
-
-    @cached_property
-    def model(self) -> Model:
-        """The model of that scene, as it was drawn: numbers of its coordinates, what holds and joins them."""
-        from funicular.model import build
-
-        return build(self.scene)
 
     def keys(self) -> list[str]:
         """The names of all results."""
@@ -217,6 +210,13 @@ class Run:
         residual = changes.sum(axis=0)
         exchanged = float(np.abs(changes).sum(axis=0).max() / 2)
         return EnergyBalance(residual, exchanged, residual / (exchanged or 1.0))
+
+    @cached_property
+    def model(self) -> Model:
+        """The model of the scene, as it was drawn: numbers of its coordinates, what holds and joins them."""
+        from funicular.model import build
+
+        return build(self.scene)
 
     def section_forces(self, cable: Cable | str, s=None, *, method: str = "balance",
                        side: str = "after") -> xarray.Dataset:
