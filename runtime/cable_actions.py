@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 class Instants:
     """A scene at T instants: q (T, n_q), v (T, n_dof) of the cables, nil of bodies, and quantities of its parts.
 
-    value(name): a result by name, (T, ...); load: how much of the loads is on.
+    value(name): a result by name, (T, ...); load, weight: how much of the loads and of gravity is on.
     """
 
     time: np.ndarray
@@ -30,6 +30,7 @@ class Instants:
     v: np.ndarray
     value: object
     load: float = 1.0
+    weight: float = 1.0
 
 
 @dataclass
@@ -87,7 +88,7 @@ class CableActions:
 
     def __init__(self, scene: Scene, model: Model, at: Instants):
         self.scene, self.model, self.at, self.dim = scene, model, at, model.dim
-        self.times, self.gravity = len(at.time), at.load * np.array(scene.gravity)[: self.dim]
+        self.times, self.gravity = len(at.time), at.weight * np.array(scene.gravity)[: self.dim]
         self.points: dict[int, list[Action]] = {}
         self.spreads: dict[int, list[Spread]] = {}
         names = [cable.name for cable in model.cables]

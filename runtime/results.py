@@ -146,16 +146,9 @@ class Run:
         """The scene that was run, read back from its text. Raises SceneError for a library that is not allowed."""
         from funicular.scene_file import loads
 
-        with warnings.catch_warnings():  # what it had to say it said before the run
+        with warnings.catch_warnings():
             warnings.simplefilter("ignore", FunicularWarning)
             return loads(self.scene_toml, "the scene of the run", libraries=self.libraries)
-
-    @cached_property
-    def model(self) -> Model:
-        """The model of that scene, as it was drawn: numbers of its coordinates, what holds and joins them."""
-        from funicular.model import build
-
-        return build(self.scene)
 
     def keys(self) -> list[str]:
         """The names of all results; a cable's ``wire.position`` is a part of its ``wire.nodal_vectors``."""
@@ -234,6 +227,13 @@ class Run:
         exchanged = float(np.abs(changes).sum(axis=0).max(initial=0.0) / 2)
         return EnergyBalance(residual, exchanged, residual / (exchanged or 1.0))
 
+    @cached_property
+    def model(self) -> Model:
+        """The model of the scene, as it was drawn: numbers of its coordinates, what holds and joins them."""
+        from funicular.model import build
+
+        return build(self.scene)
+
     def section_forces(self, cable: Cable | str, s=None, *, method: str = "balance",
                        side: str = "after") -> xarray.Dataset:
         """Forces and moments in sections of ``cable``.
@@ -241,17 +241,17 @@ class Run:
         s: arc-lengths (n,) in m; or the name of a slide on it, for the section where that is at each time. None given:
         along all of the cable, with both sides of supports, joins and loads.
         method: "balance", from what is in balance with the nodes' forces, loads, inertia and riders; "constitutive",
-        from the elastic law and the strains of the mesh, without what Kelvin-Voigt damping adds. Both go to the same
-        as the mesh is refined. Beside a point force, and wherever the force turns within an element, the second swings
-        about the first by up to a tenth and more on any mesh. It is what the elastic energy is made of.
+        from the elastic law and the strains of the mesh, without what Kelvin-Voigt damping adds. They go to the same as
+        the mesh is refined, the second slowly: beside a point force, and wherever a cable turns within an element, it
+        swings about the first by a tenth and more. Vibrations of the mesh are in both.
         side: "after" or "before", of a force or moment on one point the side of larger or of smaller s. At the ends of
         the cable it is always the one inside.
 
         Returns a Dataset over (time, s): force and moment, on the part before the cut along the ground's axes (xyz), in
         N and N m; tension, shear and strain; curvature of cables; components along the section's axes of beams. Strains
-        are those of the mesh. Where a cable's elements are longer than sqrt(E I / N), they cannot show how it bends
-        beside a point force: its tension is then the size of the force, its moment that of the mesh's curvature, which
-        is less than the true one within that length of the point.
+        are those of the mesh. A taut cable bends beside a point force over sqrt(E I / N) alone. Where its elements are
+        longer, tension is the size of the force, shear leaves out what is within that length of the point, and moment
+        is that of an elastica along the line of the force, not of the mesh.
         Raises UnknownResultError; FunicularError where s is off the cable.
         """
         from funicular.section_forces import dataset

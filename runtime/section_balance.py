@@ -53,8 +53,11 @@ def resultants(f: np.ndarray, e: np.ndarray, is_r: np.ndarray, about: np.ndarray
 
 
 def balanced(cable: Cable, model: CableModel, forces: ElementForces, actions: CableActions, number: int,
-             cuts: Cuts) -> tuple[np.ndarray, np.ndarray]:
-    """Force and moment (T, n, 3) on the part before each cut, along the ground's axes, in N and N m."""
+             cuts: Cuts) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Force and moment (T, n, 3) on the part before each cut, along the ground's axes, in N and N m.
+
+    The third is the derivative of the force by s there, in N/m.
+    """
     is_r, half = positions(model), model.shape[1]
     times, n = len(forces.e), cuts.s.shape[1]
     instants = np.arange(times)[:, None]
@@ -69,13 +72,16 @@ def balanced(cable: Cable, model: CableModel, forces: ElementForces, actions: Ca
     force, moment = (-value[instants, element] for value in at_node)
     taken = _of_inertia(cable, model, cuts, e, inertia)
     force, moment = force + taken[0], moment + taken[1]
+    change = cable.material.density * cable.section.area * _at(_shape(model, cuts.x), inertia)
     for spread in actions.spreads.get(number, []):
         inside = (cuts.element == spread.element) & (cuts.x > spread.start)
-        for column in np.flatnonzero(inside.any(axis=0)):
-            part = _of_spread(model, spread, np.minimum(cuts.x[:, column], spread.stop), e[:, column])
-            here = np.broadcast_to(inside[:, column], times)[:, None]
-            force[:, column] -= np.where(here, part[0], 0.0)
-            moment[:, column] -= np.where(here, part[1], 0.0)
+        columns = np.flatnonzero(inside.any(axis=0))
+        if len(columns):
+            here, reach = inside[:, columns, None], cuts.x[:, columns]
+            ends = here & (reach <= spread.stop)[..., None]
+            parts = _of_spread(model, spread, np.clip(reach, spread.start, spread.stop), e[:, columns])
+            for total, part, where in zip((force, moment, change), parts, (here, here, ends), strict=True):
+                total[:, columns] -= np.where(where, part, 0.0)
     for action in actions.points.get(number, []):
         of = forces.e[instants[:, 0], action.element]
         jump = resultants(action.f, of, is_r, spatial(of[:, 0]))
@@ -84,7 +90,7 @@ def balanced(cable: Cable, model: CableModel, forces: ElementForces, actions: Ca
         for total, value in zip((force, moment), jump, strict=True):
             total -= before[..., None] * value[:, None]
     r = np.einsum("tnk,tnkd->tnd", _shape(model, cuts.x), e)
-    return force, moment - np.cross(r, force)
+    return force, moment - np.cross(r, force), change
 
 
 def _shape(model: CableModel, x: np.ndarray) -> np.ndarray:
@@ -119,22 +125,30 @@ def _at(N: np.ndarray, values: np.ndarray) -> np.ndarray:
     return np.einsum("tnk,tnkd->tnd", np.broadcast_to(N, (len(values), *N.shape[1:])), values)
 
 
-def _of_spread(model: CableModel, spread, x: np.ndarray, e: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Force and moment (T, 3) about the element's first node of what is spread up to x (T or 1,); e (T, vectors, 3)."""
+def _of_spread(model: CableModel, spread, x: np.ndarray, e: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Force and moment (T, n, 3) about the element's first node of what is spread up to x, and the force a length at x.
+
+    x: (T or 1, n) in m; e: (T, n, vectors, 3).
+    """
     places, weights = np.polynomial.legendre.leggauss(len(spread.x))
     force = moment = 0.0
+    length = x - spread.start
     for place, weight in zip((1 + places) / 2, weights / 2, strict=True):
-        length = x - spread.start
         at = spread.start + place * length
-        share = np.einsum("tp,tpd->td", np.broadcast_to(_lagrange(spread.x, at), (len(e), len(spread.x))),
-                          spread.density) * (weight * length)[:, None]
+        share = _density(spread, at) * (weight * length)[..., None]
         force = force + share
-        moment = moment + np.cross(_at(_shape(model, at[:, None]), e[:, None])[:, 0], share)
-    return force, moment
+        moment = moment + np.cross(_at(_shape(model, at), e), share)
+    return force, moment, _density(spread, x)
+
+
+def _density(spread, x: np.ndarray) -> np.ndarray:
+    """(T, n, 3): force a length at x (T or 1, n)."""
+    weights, times = _lagrange(spread.x, x), len(spread.density)
+    return np.einsum("tnp,tpd->tnd", np.broadcast_to(weights, (times, *weights.shape[1:])), spread.density)
 
 
 def _lagrange(nodes: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """(T, nodes): weights of the values at nodes in the polynomial through them, at x (T,)."""
+    """(..., nodes): weights of the values at nodes in the polynomial through them, at x (...)."""
     others = [np.delete(nodes, k) for k in range(len(nodes))]
-    return np.stack([np.prod((x[:, None] - other) / (node - other), axis=1)
-                     for node, other in zip(nodes, others, strict=True)], axis=1)
+    return np.stack([np.prod((x[..., None] - other) / (node - other), axis=-1)
+                     for node, other in zip(nodes, others, strict=True)], axis=-1)

@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from funicular.cables import Cable
+from funicular.section_layer import Kink, beside, line_bending
+
+SHOWN = 1e-4
+"""Of a kink: where the mesh draws no more of it as an arc, nothing is put in its place."""
 
 CABLE = {
     "tension": ("N", "force along the cable"),
@@ -53,14 +59,38 @@ def unresolved(cable: Cable, force: np.ndarray) -> np.ndarray:
     return x**2 / (1 + x**2)
 
 
+def taut_bending(cable: Cable, force: np.ndarray, change: np.ndarray, axes: np.ndarray, cuts,
+                 kinks: Callable[[], list[Kink]]) -> np.ndarray:
+    """(T, n, 3): the moment of bending that a taut cable has along the line of its force, see section_layer.py.
+
+    Nil where the mesh shows all, and in compression.
+    """
+    pulls = np.einsum("tsi,tsi->ts", force, axes[..., 0, :]) > 0
+    if not np.any(pulls & (unresolved(cable, force) > SHOWN)):
+        return np.zeros_like(force)
+    E, (yy, zz) = cable.material.youngs_modulus, cable.section.moments()[1:3]
+
+    def stiffness(about: np.ndarray) -> np.ndarray:
+        if cable.dim == 2 or yy == zz:
+            return np.full(force.shape[:2], E * yy)
+        by_y, by_z = (np.einsum("tsi,tsi->ts", axes[..., k, :], np.broadcast_to(about, force.shape)) ** 2
+                      for k in (1, 2))
+        return E * (zz * by_y + yy * by_z) / _not_zero(by_y + by_z)
+
+    moment = line_bending(stiffness, force, change)
+    for kink in kinks():
+        moment = moment + beside(kink, cuts.s, cuts.after, stiffness, force)
+    return np.where(pulls[..., None], moment, 0.0)
+
+
 def balanced_components(cable: Cable, balance: tuple[np.ndarray, np.ndarray], law: tuple[np.ndarray, np.ndarray],
-                        axes: np.ndarray, strain: np.ndarray) -> dict[str, np.ndarray]:
+                        taut: np.ndarray, axes: np.ndarray, strain: np.ndarray) -> dict[str, np.ndarray]:
     """Force, moment and components in balance; (force, moment) of the balance and of the elastic law, (T, n, 3).
 
     Where a mesh cannot show how a taut cable bends, its tangent beside a kink is off, and so are the points of its
     centreline. The force across that tangent is then no shear, nor is the force's moment about those points bending.
-    There, by the part that `unresolved` tells, the angle between force and tangent and the moment across the tangent
-    are those that the elastic law has for the mesh's bending. A force's size and direction, and torque, stay.
+    There, by the part that `unresolved` tells, the angle between force and tangent is the one that the elastic law has,
+    and the moment across the tangent is that of `taut_bending`. A force's size and direction, and torque, stay.
     """
     force, moment = balance
     w, tangent = unresolved(cable, force), axes[..., 0, :]
@@ -75,7 +105,8 @@ def balanced_components(cable: Cable, balance: tuple[np.ndarray, np.ndarray], la
     tension = np.copysign(size * np.cos(angle), along)
     shear = (1 - w)[..., None] * across + w[..., None] * bent
     shear = shear * (size * np.sin(angle) / _not_zero(np.linalg.norm(shear, axis=-1)))[..., None]
-    moment = moment + w[..., None] * (parts(law[1])[1] - parts(moment)[1])
+    bending = parts(np.where((along > 0)[..., None], taut, law[1]))[1]
+    moment = moment + w[..., None] * (bending - parts(moment)[1])
     return {"force": force, "moment": moment} | _named(cable, tension, shear, moment, axes, strain)
 
 

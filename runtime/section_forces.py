@@ -12,7 +12,8 @@ from funicular.errors import FunicularError, UnknownResultError, near
 from funicular.libraries import kernels_of
 from funicular.nodal_forces import element_forces
 from funicular.section_balance import Cuts, balanced
-from funicular.section_components import balanced_components, components, labels
+from funicular.section_components import balanced_components, components, labels, taut_bending
+from funicular.section_kinks import kinks
 from funicular.stiffness import section_stiffness
 from funicular.validation import show
 
@@ -69,8 +70,10 @@ def cut_forces(scene, model: Model, at: Instants, name: str, s: np.ndarray, *, m
         return {"force": force, "moment": moment} | components(cable, force, moment, axes, strain)
     actions = CableActions(scene, model, at)
     forces = element_forces(scene, model, at, actions, number, at_rest)
-    balance = balanced(cable, of, forces, actions, number, cuts)
-    return balanced_components(cable, balance, (force, moment), axes, strain)
+    *balance, change = balanced(cable, of, forces, actions, number, cuts)
+    taut = moment if cable.is_curved else taut_bending(  # a bent wire that is drawn straight has a moment
+        cable, balance[0], change, axes, cuts, lambda: kinks(scene, cable, of, forces, actions, number))
+    return balanced_components(cable, balance, (force, moment), taut, axes, strain)
 
 
 def of_run(run: Run, name: str, s: np.ndarray, chosen=slice(None), *, method: str = "balance",
@@ -112,7 +115,7 @@ def of_equilibrium(state: Equilibrium, name: str, s: np.ndarray, *, method: str 
 def rest_instants(state: Equilibrium) -> Instants:
     """A state of rest as one instant, with as much of the loads as it has."""
     return Instants(np.zeros(1), state.placed["q"][None], np.zeros((1, state.model.n_dof)),
-                    lambda quantity: state[quantity][None], state.load_fraction)
+                    lambda quantity: state[quantity][None], state.load_fraction, state.load_fraction)
 
 
 def jumps(scene, name: str) -> np.ndarray:

@@ -441,7 +441,7 @@ typedef struct {
     long evaluated;       /* how often it was */
 } fu_accelerator;
 typedef struct {
-    double s_rate, s_acceleration, force[3], multiplier[2], traction, residual[3]; /* traction: of what drives or brakes it */
+    double s_rate, s_acceleration, force[3], multiplier[2], traction, residual[3]; /* traction: force along the cable */
 } fu_joint_output;
 typedef struct {
     double force[3], moment[3], residual; /* on the second end's carrier, at its point; the largest of phi */

@@ -1,0 +1,85 @@
+"""How a taut cable bends where its mesh cannot show it: along the line of its tension, and beside what kinks that.
+
+Away from point forces the line of a taut cable is that of its force n: it turns by n x n'/n^2 a length. Beside a kink
+of n by an angle 2 theta0 it bends as an elastica with straight ends: E I theta'^2/2 = N (1 - cos theta), where theta is
+the angle between tangent and force. So M = 2 sqrt(N E I) sin(theta/2), and tan(theta/4) = tan(theta0/4)
+exp(-d/sqrt(E I/N)) at a distance d. At a section whose direction is held theta0 is the angle between that and the
+force. Half of a moment on a point goes to either side, and dies out likewise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+FAR = 40.0
+"""Of the bent length: farther away nothing is left."""
+
+
+class Kink(NamedTuple):
+    """At s (T,): directions of the force before and after (T, 3), and a moment (T, 3) on the point, N m.
+
+    side: of the cuts that it bends, -1 those before it, 1 those after it, 0 both.
+    """
+
+    s: np.ndarray
+    before: np.ndarray
+    after: np.ndarray
+    moment: np.ndarray
+    side: int = 0
+
+
+def held(s: np.ndarray, direction: np.ndarray, force: np.ndarray, side: int) -> Kink:
+    """A section whose direction (T, 3) is held, as a kink of which there is one half: that with this force."""
+    along = np.sum(direction * force, axis=-1) / np.sum(direction**2, axis=-1)
+    mirrored = 2 * along[:, None] * direction - force
+    pair = (mirrored, force) if side > 0 else (force, mirrored)
+    return Kink(s, *pair, np.zeros_like(force), side)
+
+
+Stiffness = Callable[[np.ndarray], np.ndarray]
+"""E I (T, n) of bending about directions (T, n or 1, 3), N m^2."""
+
+
+def line_bending(stiffness: Stiffness, force: np.ndarray, change: np.ndarray) -> np.ndarray:
+    """(T, n, 3): moment from how the force's line turns; change (T, n, 3): derivative of the force by s."""
+    square = np.sum(force**2, axis=-1)[..., None]
+    turn = np.cross(force, change) / np.where(square > 0, square, 1.0)
+    return stiffness(turn)[..., None] * turn
+
+
+def beside(kink: Kink, s: np.ndarray, after: np.ndarray, stiffness: Stiffness, force: np.ndarray) -> np.ndarray:
+    """(T, n, 3): moment beside a kink at cuts s (T or 1, n) with these forces.
+
+    after (T or 1, n): of a cut at the kink, whether it is on the side of larger s.
+    """
+    place = kink.s[:, None]
+    normal, theta = _turn(kink.before, kink.after)
+    EI = stiffness(np.where(np.any(normal, axis=-1)[:, None], normal, kink.moment)[:, None])
+    found = np.zeros_like(force)
+    size = np.linalg.norm(force, axis=-1)
+    bent = np.sqrt(EI / np.where(size > 0, size, np.inf))
+    distance = np.abs(s - place)
+    beyond = np.where(distance <= 1e-12 * np.max(np.abs(s), initial=0.0), after, s > place)
+    near = (distance < FAR * bent) & (bent > 0) & ((kink.side == 0) | (beyond == (kink.side > 0)))
+    if not near.any():
+        return found
+    row = np.broadcast_to(np.arange(len(force))[:, None], near.shape)[near]
+    size, bent, distance = size[near], bent[near], distance[near]
+    beyond = np.broadcast_to(beyond, near.shape)[near]
+    decay = np.exp(-distance / bent)
+    theta = 4 * np.arctan(np.tan(theta[row] / 4) * decay)
+    bending = 2 * size * bent * np.sin(theta / 2)
+    couple = kink.moment[row] * (np.where(beyond, -0.5, 0.5) * decay)[:, None]
+    found[near] = bending[:, None] * normal[row] + couple
+    return found
+
+
+def _turn(before: np.ndarray, after: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Axis and half of the angle by which directions (T, 3) turn."""
+    cross = np.cross(before, after)
+    sine = np.linalg.norm(cross, axis=-1)
+    angle = np.arctan2(sine, np.sum(before * after, axis=-1))
+    return cross / np.where(sine > 0, sine, 1.0)[:, None], angle / 2
