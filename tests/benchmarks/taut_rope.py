@@ -87,11 +87,11 @@ class Catenaries:
         return np.array([x, y])
 
 
-def rope(elements: int, membrane: str) -> Scene:
+def rope(elements: int, membrane: str, element: str = "cable8p") -> Scene:
     """Between its pins."""
     area = 7.2e-5
     scene = Scene(gravity=(0, -GRAVITY, 0))
-    scene.cable("rope", start=(0, 0, 0), end=(SPAN, -DROP, 0), rest_length=LENGTH, elements=elements, element="cable8p",
+    scene.cable("rope", start=(0, 0, 0), end=(SPAN, -DROP, 0), rest_length=LENGTH, elements=elements, element=element,
                 strain="engineering", membrane=membrane, section=General(area=area, second_moment_yy=1e-13),
                 material=Material(youngs_modulus=EA / area, poisson_ratio=0, density=WEIGHT / GRAVITY / area))
     scene.pin("rope", s=0)
@@ -99,17 +99,16 @@ def rope(elements: int, membrane: str) -> Scene:
     return scene
 
 
-def at_rest(elements: int, membrane: str, part: float) -> dict[str, float]:
+def at_rest(elements: int, membrane: str, part: float, element: str = "cable8p") -> dict[str, float]:
     """Errors with the rider at a part of an element."""
-    length = LENGTH / elements
-    element = round(PLACE * elements)
-    at = (element + part) * length
-    scene, true = rope(elements, membrane), Catenaries.under(at)
+    length, first = LENGTH / elements, round(PLACE * elements)
+    at = (first + part) * length
+    scene, true = rope(elements, membrane, element), Catenaries.under(at)
     scene.force("rope", s=at, value=(0, -LOAD, 0))
     rest = scene.equilibrium()
-    near = length * (element - 1 + np.linspace(0, 3, 61))
+    near = length * (first - 1 + np.linspace(0, 3, 61))
     inside = near[(np.abs(near - at) > 1e-9 * LENGTH) & (np.abs(near / length - np.round(near / length)) > 1e-9)]
-    nodes = length * (element - 1 + np.arange(4))
+    nodes = length * (first - 1 + np.arange(4))
     nodes = nodes[np.abs(nodes - at) > 1e-9 * LENGTH]
 
     def deviation(places: np.ndarray) -> float:
@@ -124,11 +123,11 @@ def at_rest(elements: int, membrane: str, part: float) -> dict[str, float]:
 
 def point(rest, s: float) -> np.ndarray:
     """x and y of the rope at s."""
-    cable = rest.scene.cables["rope"]
+    cable, vectors = rest.scene.cables["rope"], rest["rope.nodal_vectors"]
     length = cable.length / cable.elements
-    element = min(int(s / length * (1 + 1e-12)), cable.elements - 1)
-    e = rest["rope.nodal_vectors"][element : element + 2, :, :2].reshape(4, 2)
-    return kernels.cable8p_on_axis(length, s - element * length)[0] @ e
+    first = min(int(s / length * (1 + 1e-12)), cable.elements - 1)
+    e = vectors[first : first + 2, :, :2].reshape(2 * vectors.shape[1], 2)
+    return getattr(kernels, f"{cable.element}_on_axis")(length, s - first * length)[0] @ e
 
 
 def in_motion(elements: int, membrane: str, duration: float = 10.0) -> dict[str, float]:
