@@ -23,6 +23,8 @@
 #include "cable12_engineering_exact_curved.c"
 #include "cable18_green_exact.c"
 #include "cable18_engineering_exact.c"
+#include "cable18_green_exact_assumed.c"
+#include "cable18_engineering_exact_assumed.c"
 #include "beam12p_continuum.c"
 #include "beam12p_continuum_curved.c"
 #include "beam12p_structural.c"
@@ -459,6 +461,34 @@ FU_BLOCK_TARGET static void block_cable18_engineering_exact_damping_force(int n,
     }
 }
 
+FU_BLOCK_TARGET static void block_cable18_green_exact_assumed_elastic_force(int n, const fu_elements *of, double *out)
+{
+    fu_real l = FU_NUMBER(of->l);
+    fu_real e[18];
+    fu_real A[3];
+    fu_real f[18];
+    for (int k = 0; k < n; k += FU_BLOCK) {
+        gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
+        cable18_green_exact_assumed_elastic_force(l, e, A, f);
+        scatter(out + k * 18, f, 18);
+    }
+}
+
+FU_BLOCK_TARGET static void block_cable18_engineering_exact_assumed_elastic_force(int n, const fu_elements *of, double *out)
+{
+    fu_real l = FU_NUMBER(of->l);
+    fu_real e[18];
+    fu_real A[3];
+    fu_real f[18];
+    for (int k = 0; k < n; k += FU_BLOCK) {
+        gather(e, of->e + (long)k * of->per_node, 18, of->per_node);
+        if (k == 0 || of->A_stride) gather(A, of->A + (long)k * of->A_stride, 3, of->A_stride);
+        cable18_engineering_exact_assumed_elastic_force(l, e, A, f);
+        scatter(out + k * 18, f, 18);
+    }
+}
+
 FU_BLOCK_TARGET static void block_beam12p_continuum_elastic_force(int n, const fu_elements *of, double *out)
 {
     fu_real l = FU_NUMBER(of->l);
@@ -837,6 +867,8 @@ static const fu_law_blocks all[] = {
     {"cable12_engineering_exact_curved", block_cable12_engineering_exact_curved_elastic_force, block_cable12_engineering_exact_curved_elastic_tangent, block_cable12_engineering_exact_damping_force},
     {"cable18_green_exact", block_cable18_green_exact_elastic_force, 0, block_cable18_green_exact_damping_force},
     {"cable18_engineering_exact", block_cable18_engineering_exact_elastic_force, 0, block_cable18_engineering_exact_damping_force},
+    {"cable18_green_exact_assumed", block_cable18_green_exact_assumed_elastic_force, 0, block_cable18_green_exact_damping_force},
+    {"cable18_engineering_exact_assumed", block_cable18_engineering_exact_assumed_elastic_force, 0, block_cable18_engineering_exact_damping_force},
     {"beam12p_continuum", block_beam12p_continuum_elastic_force, block_beam12p_continuum_elastic_tangent, block_beam12p_continuum_damping_force},
     {"beam12p_continuum_curved", block_beam12p_continuum_curved_elastic_force, block_beam12p_continuum_curved_elastic_tangent, block_beam12p_continuum_damping_force},
     {"beam12p_structural", block_beam12p_structural_elastic_force, block_beam12p_structural_elastic_tangent, block_beam12p_structural_damping_force},

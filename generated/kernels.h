@@ -239,6 +239,24 @@ void cable18_engineering_exact_dissipation(fu_real l, const fu_real *e, const fu
 void cable18_engineering_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
 void cable18_engineering_exact_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
+/* cable18_green_exact_assumed: elastic law green_exact_assumed on cable18 */
+void cable18_green_exact_assumed_stiffness(fu_real l, const fu_real *S, fu_real *A);
+void cable18_green_exact_assumed_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void cable18_green_exact_assumed_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void cable18_green_exact_assumed_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable18_green_exact_assumed_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable18_green_exact_assumed_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
+void cable18_green_exact_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
+
+/* cable18_engineering_exact_assumed: elastic law engineering_exact_assumed on cable18 */
+void cable18_engineering_exact_assumed_stiffness(fu_real l, const fu_real *S, fu_real *A);
+void cable18_engineering_exact_assumed_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);
+void cable18_engineering_exact_assumed_elastic_force(fu_real l, const fu_real *e, const fu_real *A, fu_real *f);
+void cable18_engineering_exact_assumed_elastic_tangent(fu_real l, const fu_real *e, const fu_real *A, fu_real *K);
+void cable18_engineering_exact_assumed_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
+void cable18_engineering_exact_assumed_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
+void cable18_engineering_exact_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
+
 /* beam12p_continuum: elastic law continuum on beam12p */
 void beam12p_continuum_stiffness(fu_real l, const fu_real *S, fu_real *A);
 void beam12p_continuum_energy(fu_real l, const fu_real *e, const fu_real *A, fu_real *U);

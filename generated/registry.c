@@ -265,6 +265,32 @@ static const fu_law laws[] = {
      cable18_engineering_exact_dissipation,
      cable18_engineering_exact_algorithmic_force
     },
+    {"cable18_green_exact_assumed",
+     17,
+     1,
+     cable18_green_exact_assumed_energy,
+     cable18_green_exact_assumed_elastic_force,
+     cable18_green_exact_assumed_elastic_tangent,
+     cable18_green_exact_assumed_discrete_force,
+     cable18_green_exact_assumed_step_stiffness,
+     cable18_green_exact_damping_force,
+     cable18_green_exact_damping_tangent,
+     cable18_green_exact_dissipation,
+     cable18_green_exact_algorithmic_force
+    },
+    {"cable18_engineering_exact_assumed",
+     17,
+     1,
+     cable18_engineering_exact_assumed_energy,
+     cable18_engineering_exact_assumed_elastic_force,
+     cable18_engineering_exact_assumed_elastic_tangent,
+     cable18_engineering_exact_assumed_discrete_force,
+     cable18_engineering_exact_assumed_step_stiffness,
+     cable18_engineering_exact_damping_force,
+     cable18_engineering_exact_damping_tangent,
+     cable18_engineering_exact_dissipation,
+     cable18_engineering_exact_algorithmic_force
+    },
     {"beam12p_continuum",
      15,
      0,
@@ -1380,6 +1406,62 @@ static void call_cable18_engineering_exact_section_forces(const fu_real *const *
 {
     cable18_engineering_exact_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
 }
+static void call_cable18_green_exact_assumed_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_green_exact_assumed_stiffness(*a[0], a[1], out[0]);
+}
+static void call_cable18_green_exact_assumed_energy(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_green_exact_assumed_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable18_green_exact_assumed_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_green_exact_assumed_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable18_green_exact_assumed_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_green_exact_assumed_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable18_green_exact_assumed_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_green_exact_assumed_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable18_green_exact_assumed_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_green_exact_assumed_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable18_green_exact_assumed_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_green_exact_assumed_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
+}
+static void call_cable18_engineering_exact_assumed_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_engineering_exact_assumed_stiffness(*a[0], a[1], out[0]);
+}
+static void call_cable18_engineering_exact_assumed_energy(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_engineering_exact_assumed_energy(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable18_engineering_exact_assumed_elastic_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_engineering_exact_assumed_elastic_force(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable18_engineering_exact_assumed_elastic_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_engineering_exact_assumed_elastic_tangent(*a[0], a[1], a[2], out[0]);
+}
+static void call_cable18_engineering_exact_assumed_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_engineering_exact_assumed_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable18_engineering_exact_assumed_step_stiffness(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_engineering_exact_assumed_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
+}
+static void call_cable18_engineering_exact_assumed_section_forces(const fu_real *const *a, fu_real *const *out)
+{
+    cable18_engineering_exact_assumed_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
+}
 static void call_beam12p_continuum_stiffness(const fu_real *const *a, fu_real *const *out)
 {
     beam12p_continuum_stiffness(*a[0], a[1], out[0]);
@@ -2468,6 +2550,20 @@ const fu_kernel fu_kernels[] = {
     {"cable18_engineering_exact_dissipation", call_cable18_engineering_exact_dissipation},
     {"cable18_engineering_exact_algorithmic_force", call_cable18_engineering_exact_algorithmic_force},
     {"cable18_engineering_exact_section_forces", call_cable18_engineering_exact_section_forces},
+    {"cable18_green_exact_assumed_stiffness", call_cable18_green_exact_assumed_stiffness},
+    {"cable18_green_exact_assumed_energy", call_cable18_green_exact_assumed_energy},
+    {"cable18_green_exact_assumed_elastic_force", call_cable18_green_exact_assumed_elastic_force},
+    {"cable18_green_exact_assumed_elastic_tangent", call_cable18_green_exact_assumed_elastic_tangent},
+    {"cable18_green_exact_assumed_discrete_force", call_cable18_green_exact_assumed_discrete_force},
+    {"cable18_green_exact_assumed_step_stiffness", call_cable18_green_exact_assumed_step_stiffness},
+    {"cable18_green_exact_assumed_section_forces", call_cable18_green_exact_assumed_section_forces},
+    {"cable18_engineering_exact_assumed_stiffness", call_cable18_engineering_exact_assumed_stiffness},
+    {"cable18_engineering_exact_assumed_energy", call_cable18_engineering_exact_assumed_energy},
+    {"cable18_engineering_exact_assumed_elastic_force", call_cable18_engineering_exact_assumed_elastic_force},
+    {"cable18_engineering_exact_assumed_elastic_tangent", call_cable18_engineering_exact_assumed_elastic_tangent},
+    {"cable18_engineering_exact_assumed_discrete_force", call_cable18_engineering_exact_assumed_discrete_force},
+    {"cable18_engineering_exact_assumed_step_stiffness", call_cable18_engineering_exact_assumed_step_stiffness},
+    {"cable18_engineering_exact_assumed_section_forces", call_cable18_engineering_exact_assumed_section_forces},
     {"beam12p_continuum_stiffness", call_beam12p_continuum_stiffness},
     {"beam12p_continuum_energy", call_beam12p_continuum_energy},
     {"beam12p_continuum_elastic_force", call_beam12p_continuum_elastic_force},
@@ -2703,7 +2799,7 @@ const int fu_n_kernels = sizeof fu_kernels / sizeof fu_kernels[0];
 
 const fu_tables fu_all = {
     5, elements,
-    26, laws,
+    28, laws,
     2, bodys,
     2, modals,
     10, slides,

@@ -8,7 +8,7 @@ CABLE18 = Element(
     basis=(1, x, x**2, x**3, x**4, x**5),
     nodal_vectors=("r", "r_x", "r_xx"),
     director="",
-    laws=("green_exact", "engineering_exact"),
+    laws=("green_exact", "engineering_exact", "green_exact_assumed", "engineering_exact_assumed"),
     doc="spatial cable, quintic: a slide crosses its nodes without a jump of acceleration",
     source="quintic Hermite interpolation of the ANCF cable",
 )
