@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import warnings
 from collections.abc import Mapping
 from functools import cached_property
 from operator import methodcaller
@@ -11,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from funicular.errors import ResultFileError, UnknownResultError, near
+from funicular.errors import FunicularWarning, ResultFileError, UnknownResultError, near
 from funicular.netcdf import File, Stored, Variable, create, last_report
 
 if TYPE_CHECKING:
@@ -133,10 +134,12 @@ class Run:
 
     @cached_property
     def scene(self) -> Scene:
-        """The scene that was run, read back from its text."""
+        """The scene that was run, read back from its text; what was adjusted then is told in the report."""
         from funicular.scene_file import loads
 
-        return loads(self.scene_toml, "the scene of the run")
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", FunicularWarning)
+            return loads(self.scene_toml, "the scene of the run")
 
     def keys(self) -> list[str]:
         """The names of all results."""
