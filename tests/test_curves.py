@@ -168,7 +168,8 @@ def test_a_ring_may_close():
     ({"curve": lambda u: (np.cos(6 * u), np.sin(6 * u), 0), "elements": 1, "up": (0, 0, 1)},
      "element 1 of 1 cannot follow the curve from (1, 0, 0) to (0.960170287, -0.279415498, 0) m: it bends too much "
      "there; take more elements"),
-    ({"curve": None, "points": [(0, 0, 0), (1, 1, 0), (2, 0, 0)], "up": (1, 2, 0)},
+    ({"curve": None, "points": [(0, 0, 0), (1, 1, 0), (2, 0, 0)], "up": (1, 2, 0),
+      "section": Rectangle(height=0.01, width=0.02)},
      "up must not be zero or parallel to the axis (0.447213595, 0.894427191, 0), got (1, 2, 0); "
      "give the direction of the section's height"),
     ({"rest_length": 0}, "rest_length must be positive, got 0 m"),
