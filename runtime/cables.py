@@ -59,7 +59,8 @@ class Cable(Part):
     """A cable of equal elements, drawn straight, through points or along a curve.
 
     Drawn, which is how a run starts: from ``start`` to ``end``; or smoothly through ``points`` (x, y, z); or along
-    ``curve``, a function of u from 0 to 1 that gives x, y, z (kept as points; in Python only). All in m.
+    ``curve``, a function of u from 0 to 1 that gives x, y, z (kept as points; in Python only). All in m. The tangent
+    must be continuous, the curvature need not: straight, arc, straight will do.
     Undeformed: ``rest`` "drawn", the drawn shape, or "straight"; ``rest_length`` in m, the length as drawn if not
     given: a shorter one makes the drawn cable taut, a longer one slack (or compressed, where it is straight).
     All arc-lengths s are of the undeformed cable.

@@ -18,6 +18,10 @@ from funicular.validation import show, vector
 FINE = 33
 """Places at which an interval between two points is looked at for folds."""
 
+LOOSE, LITTLE = 1.2, 1e-3
+"""A curve swings that turns off a chord by more than this part of the chords' angle, and so much more in rad. Along a
+circle it is a half with even points, and never more than one."""
+
 GAUSS, WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 PARTS = 8
@@ -69,36 +73,53 @@ class Line:
 
 
 class Spline:
-    """The cubic spline through points, twice continuously differentiable.
+    """The cubic spline through points, twice continuously differentiable; three points give a parabola.
 
-    Its parameter is the sum of the chords, which keeps uneven points from making loops; arc-length is the integral of
-    its speed, by Gauss quadrature between the points. Not-a-knot ends: three points give a parabola.
+    Beside long straight pieces that one swings out, though: where it turns away from a chord by more than the chords
+    turn there, it is Akima's, with a continuous tangent, whose pieces follow from the nearest points (modified weights,
+    see scipy's `Akima1DInterpolator`). The parameter is the sum of the chords, which keeps uneven points from making
+    loops; arc-length is the integral of the speed, by Gauss quadrature between the points. The ends are not-a-knot.
     """
 
     straight = False
 
     def __init__(self, points: np.ndarray):
         """points: (n, 3) in m, n of 3 or more, neighbours different."""
-        from scipy.interpolate import CubicSpline
+        from scipy.interpolate import Akima1DInterpolator, CubicSpline
 
         self.points = np.array(points, dtype=float)
         self.t = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(self.points, axis=0), axis=1))])
-        self._r = CubicSpline(self.t, self.points)
-        self._r_t, self._r_tt = self._r.derivative(), self._r.derivative(2)
+        self._take(CubicSpline(self.t, self.points))
+        if self._swings():
+            self._take(Akima1DInterpolator(self.t, self.points, method="makima"))
         self._refuse_folds()
         parts = np.diff(self.t)[:, None] * np.arange(PARTS) / PARTS
         self.t = np.append((self.t[:-1, None] + parts).ravel(), self.t[-1])  # the quadrature's intervals from here on
         self.s = np.concatenate([[0.0], np.cumsum(self._arc(self.t[:-1], self.t[1:]))])
         self.length = float(self.s[-1])
 
-    def _refuse_folds(self) -> None:
-        """Between two points the curve must go on in the direction of the next one."""
+    def _take(self, r) -> None:
+        self._r, self._r_t, self._r_tt = r, r.derivative(), r.derivative(2)
+
+    def _off_the_chords(self) -> tuple[np.ndarray, np.ndarray]:
+        """Parameters (intervals, FINE), and there the cosine of the angle between the curve and its chord."""
         inside = self.t[:-1, None] + np.diff(self.t)[:, None] * np.linspace(0, 1, FINE)
         slope = self._r_t(inside)
         chord = np.diff(self.points, axis=0) / np.diff(self.t)[:, None]
         onward = np.einsum("kfi,ki->kf", slope, chord)
         speed = np.linalg.norm(slope, axis=-1)
-        turn = onward / np.maximum(speed, 1e-300)
+        return inside, onward / np.maximum(speed, 1e-300)
+
+    def _swings(self) -> bool:
+        """Whether the curve turns away from a chord by more than the chords turn at its ends."""
+        off = np.arccos(np.clip(self._off_the_chords()[1].min(axis=1), -1, 1))
+        chord = np.diff(self.points, axis=0) / np.diff(self.t)[:, None]
+        turns = np.arccos(np.clip(np.sum(chord[1:] * chord[:-1], axis=1), -1, 1))
+        return bool(np.any(off > LOOSE * np.maximum(np.append(turns, 0), np.append(0, turns)) + LITTLE))
+
+    def _refuse_folds(self) -> None:
+        """Between two points the curve must go on in the direction of the next one."""
+        inside, turn = self._off_the_chords()
         interval, where = np.unravel_index(np.argmin(turn), turn.shape)
         if turn[interval, where] > 0:
             return
