@@ -11,7 +11,7 @@ from funicular import curves
 from funicular.elements import ElementKind, built_in, of_library
 from funicular.errors import near
 from funicular.materials import Material
-from funicular.sections import AnySection, General
+from funicular.sections import AnySection, Circle, General, Tube
 from funicular.stiffness import KERNEL_LAWS, kernel_law
 from funicular.validation import Count, Name, Part, Vector, one_of, positive, show, shown, xyz
 from pydantic import PlainValidator, ValidationInfo, model_validator
@@ -65,7 +65,8 @@ class Cable(Part):
     """A cable of equal elements, drawn straight, through points or along a curve.
 
     Drawn, which is how a run starts: from ``start`` to ``end``; or smoothly through ``points`` (x, y, z); or along
-    ``curve``, a function of u from 0 to 1 that gives x, y, z (kept as points; in Python only). All in m.
+    ``curve``, a function of u from 0 to 1 that gives x, y, z (kept as points; in Python only). All in m. The tangent
+    must be continuous, the curvature need not: straight, arc, straight will do.
     Undeformed: ``rest`` "drawn", the drawn shape, or "straight"; ``rest_length`` in m, the length as drawn if not
     given: a shorter one makes the drawn cable taut, a longer one slack (or compressed, where it is straight).
     All arc-lengths s are of the undeformed cable.
@@ -74,15 +75,16 @@ class Cable(Part):
     ``angular_velocity`` (rad/s, along the ground's axes), but for what supports hold.
 
     ``up`` is the direction of the section's height at the start; only its part across the axis counts, and from there
-    on the section turns with the curve, about its tangent nowhere. Planar elements lie in the plane z = 0, with the
-    height in it. ``law``: for beams "continuum" (the default), "poisson_split" or "structural"; for cables
-    ``strain`` ("green" or "engineering") and ``curvature`` ("exact" or "linear"), the measures that their axial and
-    bending stiffness act on, by default green and exact; and ``membrane``, how an element represents its axial strain:
-    "full" (the default) at every point; "assumed" by its Legendre modes of degree 0 to 2; "reduced" by those of degree
-    0 and 1, with 1 % of the axial stiffness on degree 2, which keeps the lengths of the slopes stable ("cable18": 0 to
-    4, 0 to 2, and 3 and 4). Beside a point force on a taut rope the tension of full and assumed strain swings, that of
-    reduced strain hardly. Reduced strain is for small strain: stable up to a compression of 1 %, with about four times
-    as many elements for axial waves.
+    on the section turns with the curve, about its tangent nowhere. It may lie along the axis where the section is round
+    or the element has no axes across: then the height lies along the ground's axis most nearly across. Planar elements
+    lie in the plane z = 0, with the height in it. ``law``: for beams "continuum" (the default), "poisson_split" or
+    "structural"; for cables ``strain`` ("green" or "engineering") and ``curvature`` ("exact" or "linear"), the measures
+    that their axial and bending stiffness act on, by default green and exact; and ``membrane``, how an element
+    represents its axial strain: "full" (the default) at every point; "assumed" by its Legendre modes of degree 0 to 2;
+    "reduced" by those of degree 0 and 1, with 1 % of the axial stiffness on degree 2, which keeps the lengths of the
+    slopes stable ("cable18": 0 to 4, 0 to 2, and 3 and 4). Beside a point force on a taut rope the tension of full and
+    assumed strain swings, that of reduced strain hardly. Reduced strain is for small strain: stable up to a compression
+    of 1 %, with about four times as many elements for axial waves.
 
     A cable that is stress-free where it is curved has the exact curvature, whose size alone it measures: it resists in
     the plane of its curve, and across that plane by tension alone. Of the beams' laws, "structural" is the one for thin
@@ -168,13 +170,29 @@ class Cable(Part):
                              "leave it out: the height lies in the plane")
 
     def _refuse_a_lost_up(self) -> None:
-        if self.dim == 3:
-            axis = self._shape.tangent(0.0)
-            tilt = np.linalg.norm(np.cross(axis, self.up))
-            if not tilt > 1e-6 * np.linalg.norm(self.up):
-                raise ValueError(
-                    f"up must not be zero or parallel to the axis {show(axis)}, got {show(self.up)}",
-                    "give the direction of the section's height")
+        if self.dim == 3 and not self._has_up and not (self._is_round and any(self.up)):
+            raise ValueError(
+                f"up must not be zero or parallel to the axis {show(self._shape.tangent(0.0))}, got {show(self.up)}",
+                "give the direction of the section's height")
+
+    @property
+    def _has_up(self) -> bool:
+        """Whether up tells a direction across the axis at the start."""
+        tilt = np.linalg.norm(np.cross(self._shape.tangent(0.0), self.up))
+        return bool(tilt > 1e-6 * np.linalg.norm(self.up))
+
+    @property
+    def _is_round(self) -> bool:
+        """Whether all directions across its axis are alike: a round section, or elements that have none."""
+        return isinstance(self.section, Circle | Tube) or not self.kind_of_element.director
+
+    @property
+    def height_direction(self) -> Vector:
+        """``up``; where that lies along the axis of a round section, the ground's axis most nearly across it."""
+        if self._has_up:
+            return self.up
+        least = int(np.argmin(np.abs(self._shape.tangent(0.0))))
+        return tuple(float(k == least) for k in range(3))
 
     def _refuse_coarse_elements(self) -> None:
         """An element whose slope loses the direction of the curve could not even be drawn."""
@@ -201,6 +219,9 @@ class Cable(Part):
             able = [f"{name} ({', '.join(laws)})" for name, laws in curved.items() if laws]
             raise ValueError(f'{self.element} with law "{self.law}" is stress-free only where it is straight, but '
                              "it is drawn curved", 'take rest="straight", or one of ' + ", ".join(able))
+        if self.dim == 3 and kernel_law(self.stiffness_law) == "continuum" and self.material.is_incompressible:
+            raise ValueError(f'law "{self.law}" needs a poisson_ratio below 0.5, at which Lamé\'s λ is infinite, got '
+                             f"{self.material.poisson():.9g}", 'take law="structural", which needs E and G alone')
         section = self.section
         given = {keyword for keyword in ("torsion_constant", "shear_factors")
                  if getattr(section, f"given_{keyword}") is not None}
@@ -208,6 +229,9 @@ class Cable(Part):
             self._refuse_unequal_bending()
             if given:
                 raise ValueError(f"section.{min(given)} is given, but {self.element} has neither shear nor torsion",
+                                 "leave it out, or take " + _others(kind.dim, cable=False))
+            if isinstance(section, General) and section.has_rotary:
+                raise ValueError(f"section.rotary_moment is given, but {self.element} has no rotary inertia",
                                  "leave it out, or take " + _others(kind.dim, cable=False))
         elif self.law == "structural":
             needed = {"shear_factors"} | ({"torsion_constant"} if kind.dim == 3 else set())
@@ -336,7 +360,7 @@ class Cable(Part):
             i, k = self._shape.tangent(places), np.array([0.0, 0.0, 1.0])
             axes = np.stack([i, np.cross(k, i), np.broadcast_to(k, i.shape)], axis=1)
         else:
-            axes = curves.transported(self._way, self.up, tuple(places.tolist()))
+            axes = curves.transported(self._way, self.height_direction, tuple(places.tolist()))
         return axes[which[: s.size]].reshape(*s.shape, 3, 3)
 
     @property

@@ -18,6 +18,10 @@ from funicular.validation import show, shown, vector
 FINE = 33
 """Places at which an interval between two points is looked at for folds."""
 
+LOOSE, LITTLE = 1.2, 1e-3
+"""A curve swings that turns off a chord by more than this part of the chords' angle, and so much more in rad. Along a
+circle it is a half with even points, and never more than one."""
+
 GAUSS, WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 PARTS = 8
@@ -26,6 +30,15 @@ PARTS = 8
 MOST_SAMPLES = 4096
 CLOSE = 1e-9
 """A function is sampled until its spline keeps this near to it, in parts of its extent."""
+
+SHARP, SHARPEST = 1e-5, 1e-9
+"""In parts of its extent: where it is sampled more closely than this, it is looked at for a kink; and the closest."""
+
+ONWARD = 0.9
+"""Cosine of the angle from one chord to the next, beyond which there is more to see between."""
+
+KINK = 0.7
+"""An angle of which more than this part is left within a third of the way is a kink, and no bend."""
 
 FRAMES = 32
 """Steps of the transport of the section's axes between places asked for; its error falls with their 4th power."""
@@ -60,36 +73,53 @@ class Line:
 
 
 class Spline:
-    """The cubic spline through points, twice continuously differentiable.
+    """The cubic spline through points, twice continuously differentiable; three points give a parabola.
 
-    Its parameter is the sum of the chords, which keeps uneven points from making loops; arc-length is the integral of
-    its speed, by Gauss quadrature between the points. Not-a-knot ends: three points give a parabola.
+    Beside long straight pieces that one swings out, though: where it turns away from a chord by more than the chords
+    turn there, it is Akima's, with a continuous tangent, whose pieces follow from the nearest points (modified weights,
+    see scipy's `Akima1DInterpolator`). The parameter is the sum of the chords, which keeps uneven points from making
+    loops; arc-length is the integral of the speed, by Gauss quadrature between the points. The ends are not-a-knot.
     """
 
     straight = False
 
     def __init__(self, points: np.ndarray):
         """points: (n, 3) in m, n of 3 or more, neighbours different."""
-        from scipy.interpolate import CubicSpline
+        from scipy.interpolate import Akima1DInterpolator, CubicSpline
 
         self.points = np.array(points, dtype=float)
         self.t = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(self.points, axis=0), axis=1))])
-        self._r = CubicSpline(self.t, self.points)
-        self._r_t, self._r_tt = self._r.derivative(), self._r.derivative(2)
+        self._take(CubicSpline(self.t, self.points))
+        if self._swings():
+            self._take(Akima1DInterpolator(self.t, self.points, method="makima"))
         self._refuse_folds()
         parts = np.diff(self.t)[:, None] * np.arange(PARTS) / PARTS
         self.t = np.append((self.t[:-1, None] + parts).ravel(), self.t[-1])  # the quadrature's intervals from here on
         self.s = np.concatenate([[0.0], np.cumsum(self._arc(self.t[:-1], self.t[1:]))])
         self.length = float(self.s[-1])
 
-    def _refuse_folds(self) -> None:
-        """Between two points the curve must go on in the direction of the next one."""
+    def _take(self, r) -> None:
+        self._r, self._r_t, self._r_tt = r, r.derivative(), r.derivative(2)
+
+    def _off_the_chords(self) -> tuple[np.ndarray, np.ndarray]:
+        """Parameters (intervals, FINE), and there the cosine of the angle between the curve and its chord."""
         inside = self.t[:-1, None] + np.diff(self.t)[:, None] * np.linspace(0, 1, FINE)
         slope = self._r_t(inside)
         chord = np.diff(self.points, axis=0) / np.diff(self.t)[:, None]
         onward = np.einsum("kfi,ki->kf", slope, chord)
         speed = np.linalg.norm(slope, axis=-1)
-        turn = onward / np.maximum(speed, 1e-300)
+        return inside, onward / np.maximum(speed, 1e-300)
+
+    def _swings(self) -> bool:
+        """Whether the curve turns away from a chord by more than the chords turn at its ends."""
+        off = np.arccos(np.clip(self._off_the_chords()[1].min(axis=1), -1, 1))
+        chord = np.diff(self.points, axis=0) / np.diff(self.t)[:, None]
+        turns = np.arccos(np.clip(np.sum(chord[1:] * chord[:-1], axis=1), -1, 1))
+        return bool(np.any(off > LOOSE * np.maximum(np.append(turns, 0), np.append(0, turns)) + LITTLE))
+
+    def _refuse_folds(self) -> None:
+        """Between two points the curve must go on in the direction of the next one."""
+        inside, turn = self._off_the_chords()
         interval, where = np.unravel_index(np.argmin(turn), turn.shape)
         if turn[interval, where] > 0:
             return
@@ -161,7 +191,11 @@ def points(value: Any) -> tuple[tuple[float, ...], ...]:
 
 
 def sample(curve: Callable[[float], Iterable[float]], least: int) -> np.ndarray:
-    """Points (n, 3) of a function of u from 0 to 1, so many that their spline is the curve to 1e-9 of its extent."""
+    """Points (n, 3) of a function of u from 0 to 1, so many that their spline is the curve to 1e-9 of its extent.
+
+    Evenly spaced where it is smooth; else closer where its curvature or its speed jumps. ValueError where it has no
+    tangent.
+    """
     from scipy.interpolate import CubicSpline
 
     def at(u: float) -> tuple[float, ...]:
@@ -184,10 +218,78 @@ def sample(curve: Callable[[float], Iterable[float]], least: int) -> np.ndarray:
         if gap[worst] <= CLOSE * extent:
             return known
         if len(u) > MOST_SAMPLES:
-            raise ValueError(
-                f"curve is not smooth near u = {between[worst]:.6g}, at {show(new[worst], 'm')}: it is "
-                f"{gap[worst]:.3g} m away from the spline through its neighbours",
-                "look for a kink or a fold there; join two cables where there has to be one")
+            return _closer(at, np.linspace(0, 1, count + 1))
+
+
+def _closer(at: Callable[[float], tuple[float, ...]], u: np.ndarray) -> np.ndarray:
+    """Points of a function, closer to each other where their spline over the chords is not yet near to it."""
+    from scipy.interpolate import CubicSpline
+
+    known = np.array([at(v) for v in u])
+    extent = np.ptp(known, axis=0).max()
+    while True:
+        chords = np.linalg.norm(np.diff(known, axis=0), axis=1)
+        moves = np.append(True, chords > 1e-12 * extent)  # it may stand still for a while
+        u, known, chords = u[moves], known[moves], chords[moves[1:]]
+        t = np.append(0.0, np.cumsum(chords))
+        between = 0.5 * (u[1:] + u[:-1])
+        new = np.array([at(v) for v in between])
+        gap = _distances(CubicSpline(t, known), t[:-1], t[1:], new)
+        along = np.diff(known, axis=0) / chords[:, None]
+        turns = np.append(np.append(False, np.sum(along[1:] * along[:-1], axis=1) < ONWARD), False)
+        far = (gap > CLOSE * extent) | turns[1:] | turns[:-1]
+        if not far.any():
+            return known
+        for k in np.flatnonzero(far & (chords < SHARP * extent)):
+            _refuse_a_jump(at, u[max(k - 1, 0)], u[min(k + 2, len(u) - 1)], SHARP * extent)
+            _refuse_a_kink(at, u[k], u[k + 1], new[k], gap[k], chords[k] / extent)
+        if len(u) > 4 * MOST_SAMPLES:
+            worst = int(np.argmax(gap))
+            raise ValueError(f"curve winds too much to be followed near u = {between[worst]:.6g}, at "
+                             f"{show(new[worst], 'm')}: {len(u)} points are still {gap[worst]:.3g} m away from it",
+                             "draw it as several cables")
+        places = np.flatnonzero(far) + 1
+        u, known = np.insert(u, places, between[far]), np.insert(known, places, new[far], axis=0)
+
+
+def _distances(spline, low: np.ndarray, high: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """(n,): of each point to the spline, whose nearest place is sought between two parameters."""
+    t = 0.5 * (low + high)
+    for _ in range(6):
+        slope = spline(t, 1)
+        step = np.sum((points - spline(t)) * slope, axis=1) / np.sum(slope * slope, axis=1)
+        t = np.clip(t + step, low, high)
+    return np.linalg.norm(spline(t) - points, axis=1)
+
+
+def _refuse_a_jump(at: Callable, low: float, high: float, far: float) -> None:
+    """What lies between the ends of an interval becomes small with it, but for a jump."""
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        start, point, end = (np.array(at(v)) for v in (low, middle, high))
+        low, high = (low, middle) if np.linalg.norm(point - start) > np.linalg.norm(end - point) else (middle, high)
+    if (gap := np.linalg.norm(np.subtract(at(high), at(low)))) > far:
+        raise ValueError(f"curve jumps by {gap:.3g} m at u = {low:.6g}, from {show(np.array(at(low)), 'm')}",
+                         "draw two cables where it has to be broken")
+
+
+def _refuse_a_kink(at: Callable, low: float, high: float, point: np.ndarray, gap: float, chord: float) -> None:
+    """A bend is the less of an angle, the shorter the piece that is looked at; a kink is all of it at one point."""
+
+    def angle(way: float) -> float:
+        ends = [np.array(at(v)) for v in (max(low - way, 0.0), low, high, min(high + way, 1.0))]
+        before, after = ends[1] - ends[0], ends[3] - ends[2]
+        size = np.linalg.norm(before) * np.linalg.norm(after)
+        return acos(np.clip(before @ after / size, -1, 1)) if size > 0 else 0.0
+
+    place = f"near u = {0.5 * (low + high):.6g}, at {show(point, 'm')}"
+    wide, narrow = angle(4 * (high - low)), angle(high - low)
+    if narrow > KINK * wide:
+        raise ValueError(f"curve has a kink {place}: it turns by {degrees(narrow):.3g} degrees there",
+                         "round it off, or join two cables there")
+    if chord < SHARPEST:
+        raise ValueError(f"curve bends too sharply {place}: the spline through its neighbours is {gap:.3g} m away",
+                         "draw it as two cables that are joined there")
 
 
 @lru_cache(maxsize=4096)

@@ -145,7 +145,8 @@ cdef class Engine(Statics):
 
     def _watch(self, watches):
         """Watch for these, and after them for what the slides do."""
-        kinds = {"q": FU_WATCH_Q, "v": FU_WATCH_V, "s": FU_WATCH_S, "function": FU_WATCH_CALL}
+        kinds = {"q": FU_WATCH_Q, "v": FU_WATCH_V, "s": FU_WATCH_S, "s_rate": FU_WATCH_RATE,
+                 "traction": FU_WATCH_TRACTION, "function": FU_WATCH_CALL}
         numbers = [(kinds[watch.kind], watch.index, watch.direction, watch.value) for watch in watches]
         cdef int i, k, side
         for i in range(self.model.n_joints):
@@ -165,6 +166,7 @@ cdef class Engine(Statics):
         run = &self.run
         run.n_watches, run.watches = len(numbers), self.watches
         run.watched, run.late = self._doubles(np.zeros(run.n_watches)), self._ints(np.zeros(run.n_watches))
+        run.watch_work = self._doubles(np.zeros(self.model.n_dof))
 
     cdef _snapshot(self, const fu_state *state):
         """t, q, v, s of a state."""

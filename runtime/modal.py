@@ -15,11 +15,14 @@ from funicular.rotations import rotate
 from funicular.scene import Scene
 from funicular.spectrum import RELATIVE, ROUNDING, IncompleteError, Pencil, basis
 from funicular.threads import one_blas_thread
-from scipy.linalg import eig
+from scipy.linalg import eig, eigh, null_space
 from scipy.sparse import csc_array, diags_array
 
 ASYMMETRY, LEAST_ASYMMETRY = 1e-9, 1e-13
 """Of the stiffness of two coordinates, and of the largest: what rounding leaves; more comes from loads that turn."""
+
+DENSE, LOST = 600, 1e-9
+"""Unknowns up to which LAPACK computes all modes, and of the largest eigenvalue: those below are not told from zero."""
 
 MOST_UNSYMMETRIC = 3000
 """Degrees of freedom up to which modes with an unsymmetric stiffness are computed: all of them at once."""
@@ -27,7 +30,7 @@ MOST_UNSYMMETRIC = 3000
 STRAIN = 1e-6
 """Of the cables, by which the part of the stiffness that comes of their stress is found."""
 
-KNOWN, HIDDEN = 1e-3, 1e-2
+KNOWN, HIDDEN = 1e-3, 5e-2
 """A frequency is uncertain where rounding changes it by more than this part of itself; one of zero, of the lowest."""
 
 
@@ -85,7 +88,7 @@ def modes(scene: Scene, n: int, about: Equilibrium | None = None) -> Modes:
     squares, vectors, error, after = _solve(K, M, constraints, n)
     strained = _rounded_shape(engine, model, K)
     error += np.abs(np.sum(vectors * (strained @ vectors), axis=0)) / np.sum(vectors * (M @ vectors), axis=0)
-    after = min(after, np.min(squares, initial=np.inf, where=squares > error))
+    after = min(after, np.min(squares.real, initial=np.inf, where=squares.real > error))
     squares, vectors, error = squares[:n], vectors[:, :n], error[:n]
     dofs = np.array([engine.spread(np.append(x, np.zeros(model.n_band + model.n_border_dof + model.n_extra - len(x))))
                      for x in vectors.T])
@@ -196,11 +199,30 @@ def _solve(K: csc_array, M: csc_array, constraints: csc_array, n: int
     try:
         if not symmetric:
             return *_unsymmetric(K, M, constraints, n, pencil), np.inf
-        return pencil.lowest(n)
+        return _small(K, M, constraints, n, pencil) if K.shape[0] <= DENSE else pencil.lowest(n)
     except (IncompleteError, ArithmeticError, RuntimeError, ValueError, np.linalg.LinAlgError):
         raise SceneError("modes", f"rounding of the stiffness hides the {n} lowest modes: stiffness and inertia of the "
                          "scene are too different", "take fewer elements, or look for a part that is far stiffer, far "
                          "lighter or far thinner than the others") from None
+
+
+def _small(K: csc_array, M: csc_array, constraints: csc_array, n: int, pencil: Pencil
+           ) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+    """The same by LAPACK, but for what is lost in the rounding of the largest eigenvalue, zeros among it."""
+    free = null_space(constraints.toarray()) if constraints.shape[0] else np.eye(K.shape[0])
+    k, m = free.T @ (K @ free), free.T @ (M @ free)
+    try:
+        squares, x = eigh((k + k.T) / 2, (m + m.T) / 2, subset_by_index=(0, n - 1))
+    except (ValueError, np.linalg.LinAlgError):
+        return pencil.lowest(n)
+    largest, vectors, after = fastest(K, M), free @ x, np.inf
+    error = np.maximum(pencil.unit * pencil.uncertainty(vectors / pencil.scale[:, None]), RELATIVE * largest)
+    lost = np.abs(squares) <= LOST * largest
+    if lost.any():
+        found, shapes, errors, after = pencil.lowest(n)
+        squares[lost], vectors[:, lost], error[lost] = found[:n][lost], shapes[:, :n][:, lost], errors[:n][lost]
+        after = min(after, np.min(found[n:], initial=np.inf, where=found[n:] > errors[n:]))
+    return squares, vectors, error, after
 
 
 def _is_symmetric(K: csc_array) -> bool:

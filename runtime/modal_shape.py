@@ -191,7 +191,7 @@ def of_mesh(body: ModalBody) -> Shape:
     undeformed = cable.nodal_vectors - body.offset * np.array([v == "r" for v in model.vectors])[:, None] * [1.0, 0, 0]
     fields = np.concatenate([undeformed[None], vectors])
     S, X = _integrals(model, fields)
-    rotary = cable.material.density * cable.length * cable.section.moments()[1:3]
+    rotary = cable.material.density * cable.length * cable.section.mass_moments()[1:3]
     for axis, value in zip("yz", rotary, strict=True):
         if f"r_{axis}" not in model.vectors:  # inertia that the element leaves out: of the frame's turns alone
             X[0, 0, "xyz".index(axis), "xyz".index(axis)] += value

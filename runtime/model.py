@@ -263,7 +263,7 @@ def build(scene: Scene) -> Model:
 def _cable(cable: Cable, first: int) -> CableModel:
     element, law, length = cable.element, cable.kernel_law, cable.length / cable.elements
     kernels, vectors = kernels_of(cable.library), cable.kind_of_element.nodal_vectors
-    m = getattr(kernels, f"{element}_mass")(length, cable.material.density, cable.section.moments())
+    m = getattr(kernels, f"{element}_mass")(length, cable.material.density, cable.section.mass_moments())
     return CableModel(
         cable.name, element, law, cable.elements, first, length, cable.material.damping_time,
         cable.material.mass_damping, m, constants(cable), (cable.elements + 1, len(vectors), cable.dim), vectors,
@@ -272,7 +272,7 @@ def _cable(cable: Cable, first: int) -> CableModel:
 
 def _gravity(model: CableModel, cable: Cable, gravity: np.ndarray) -> np.ndarray:
     """(coordinates,): generalised weight of a cable; two elements meet at an inner node."""
-    first, second = model.kernel("gravity")(model.length, cable.material.density, cable.section.moments(),
+    first, second = model.kernel("gravity")(model.length, cable.material.density, cable.section.mass_moments(),
                                             gravity).reshape(2, *model.shape[1:])
     weight = np.zeros(model.shape)
     weight[:-1] += first

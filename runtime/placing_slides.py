@@ -86,7 +86,7 @@ def _framed(scene: Scene, slide: Slide, cable: Cable) -> Slide:
     up = slide.up
     if up is None:
         size = np.linalg.norm(scene.gravity)
-        up = tuple((-np.array(scene.gravity) / size + 0.0).tolist()) if size > 0 else cable.up
+        up = tuple((-np.array(scene.gravity) / size + 0.0).tolist()) if size > 0 else cable.height_direction
     check_up(up, cable_frame(cable, slide.s)[:, 0], f'cable "{cable.name}"', slide.where)
     return slide.model_copy(update={"up": up})
 

@@ -143,7 +143,10 @@ class Run:
 
     @cached_property
     def scene(self) -> Scene:
-        """The scene that was run, read back from its text. Raises SceneError for a library that is not allowed."""
+        """The scene that was run, read back from its text; what was adjusted then is told in the report.
+
+        Raises SceneError for a library that is not allowed.
+        """
         from funicular.scene_file import loads
 
         with warnings.catch_warnings():

@@ -465,7 +465,7 @@ class Scene:
         """The ``n`` lowest natural frequencies and shapes, about the scene as drawn or a state from `equilibrium`.
 
         As drawn, joints and slides bear nothing yet: what swings by its weight does so about its equilibrium alone.
-        Raises SceneError.
+        Damping and friction are left out; what rounding hides is told, as in `Modes`. Raises SceneError.
         """
         settings = ModeSettings(n=n)
         state = None if about is None else _equilibrium_state(self, about)

@@ -47,6 +47,10 @@ class Section(Part):
         """
         raise NotImplementedError
 
+    def mass_moments(self) -> np.ndarray:
+        """`moments` as the inertia takes them: density times these is mass and rotary inertia per length."""
+        return self.moments()
+
     @property
     def torsion_constant(self) -> float:
         """St Venant's J in m⁴: torque = G J times the twist per length."""
@@ -159,13 +163,17 @@ class General(Section):
     """A section known by its constants alone, for cables and for structural beams.
 
     area in m²; second_moment_yy (∫y²dA) and second_moment_zz in m⁴, equal if only one is given; for beams
-    torsion_constant in m⁴ and shear_factors (ky, kz).
+    torsion_constant in m⁴ and shear_factors (ky, kz). rotary_moment_yy and rotary_moment_zz in m⁴, for beams: what
+    times the density is the rotary inertia per length in kg m, of a section whose mass is elsewhere than its stiffness;
+    equal if only one is given, the second moments if none is.
     """
 
     shape: ClassVar[str] = "general"
     area_: Annotated[float, positive("m²")] = Field(alias="area")
     yy: Annotated[float, positive("m⁴")] = Field(alias="second_moment_yy")
     zz: Annotated[float, positive("m⁴")] = Field(default_factory=lambda data: data["yy"], alias="second_moment_zz")
+    rotary_yy: Annotated[float, positive("m⁴")] | None = Field(None, alias="rotary_moment_yy")
+    rotary_zz: Annotated[float, positive("m⁴")] | None = Field(None, alias="rotary_moment_zz")
 
     @model_validator(mode="after")
     def _twists_less_than_a_disc(self) -> General:
@@ -179,6 +187,18 @@ class General(Section):
     def moments(self) -> np.ndarray:
         """See `Section.moments`; not known, hence NaN, are those of order 4."""
         return np.array([self.area_, self.yy, self.zz, nan, nan, nan])
+
+    @property
+    def has_rotary(self) -> bool:
+        """Whether its rotary inertia is given apart from its stiffness."""
+        return self.rotary_yy is not None or self.rotary_zz is not None
+
+    def mass_moments(self) -> np.ndarray:
+        """See `Section.mass_moments`."""
+        if not self.has_rotary:
+            return self.moments()
+        yy, zz = self.rotary_yy or self.rotary_zz, self.rotary_zz or self.rotary_yy
+        return np.array([self.area_, yy, zz, nan, nan, nan])
 
 
 def _ring_shear_factors(poisson_ratio: float, inner: float) -> tuple[float, float]:

@@ -191,6 +191,8 @@ class Pencil:
         low, high = self.floor, self.largest
         while self.below(high) < n:
             high *= FACTOR
+            if high > LEVEL * self.largest:
+                raise IncompleteError("there are fewer eigenvalues than degrees of freedom")
         while high / low > FACTOR:
             shift = np.sqrt(low * high)
             low, high = (low, shift) if self.below(shift) >= n else (shift, high)

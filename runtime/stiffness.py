@@ -101,7 +101,7 @@ def _elasticity(material: Material, dim: int) -> np.ndarray:
     if dim == 3:
         return material.elasticity()
     lam, mu = material.lame()
-    lam *= 2 * mu / (lam + 2 * mu)
+    lam = 2 * mu if np.isinf(lam) else lam * (2 * mu / (lam + 2 * mu))
     return np.array([lam + 2 * mu, lam + 2 * mu, lam, mu])
 
 

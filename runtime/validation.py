@@ -150,6 +150,11 @@ def within(low: float, high: float, *, ends: bool) -> PlainValidator:
     return _bounded("", lambda x: low < x < high, f"lie inside ({low:g}, {high:g})")
 
 
+def above(low: float, most: float) -> PlainValidator:
+    """Check of a finite number above ``low`` and at most ``most``."""
+    return _bounded("", lambda x: low < x <= most, f"be above {low:g} and at most {most:g}")
+
+
 def xyz(unit: str = "") -> PlainValidator:
     """Check of three finite numbers."""
     return PlainValidator(lambda value: vector(value, unit))

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 AXES = ("x", "y", "z")
 WATCHABLE = {"rigid_body": ("position", "velocity"), "modal_body": ("position", "velocity"),
-             "cable": ("position", "velocity"), "slide": ("s",)}
+             "cable": ("position", "velocity"), "slide": ("s", "s_rate", "traction")}
 """Quantities that a threshold can be set on, by kind of part."""
 
 
@@ -47,7 +47,10 @@ def check_event(scene: Scene, event: Event) -> None:
 
 
 class Watch:
-    """What the engine watches for an event: kind "q", "v", "s" or "function", entry, value, direction."""
+    """What the engine watches for an event: kind, entry, value, direction.
+
+    kind: "q" or "v", of which the index is an entry; "s", "s_rate", "traction", of which it is a slide; "function".
+    """
 
     def __init__(self, event: Event, scene: Scene, model: Model):
         self.event, self.value = event, event.value
@@ -57,7 +60,7 @@ class Watch:
             return
         name, what, *axis = event.quantity.split(".")
         if name in scene.slides:
-            self.kind, self.index = "s", list(scene.slides).index(name)
+            self.kind, self.index = what, list(scene.slides).index(name)
             return
         of = "configuration" if what == "position" else "dof"
         self.kind = "q" if what == "position" else "v"

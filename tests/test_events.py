@@ -94,7 +94,8 @@ def test_of_a_scene_file_and_back():
 @pytest.mark.parametrize(("wrong", "message"), [
     ({"quantity": "B.position.y"}, 'event "e": there is no body, cable or slide "B"'),
     ({"quantity": "A.position"}, 'event "e": "A.position" cannot be watched; A.position.x, A.velocity.x'),
-    ({"quantity": "trolley.force"}, 'event "e": "trolley.force" cannot be watched; trolley.s can'),
+    ({"quantity": "trolley.force"}, 'event "e": "trolley.force" cannot be watched; trolley.s, trolley.s_rate, '
+     "trolley.traction can"),
     ({"quantity": "wire.position.y"}, "s is missing"),
     ({"quantity": "wire.position.y", "s": 4.9}, "node"),
     ({"quantity": "A.position.y", "s": 1.0}, "has no place s"),
@@ -120,3 +121,44 @@ def test_a_function_that_fails_is_named(function, message):
     with pytest.raises(fu.SceneError, match='event "e"') as error:
         scene.run(0.1)
     assert message in str(error.value)
+
+
+@pytest.mark.parametrize("integrator", ["genalpha", "explicit", "radau"])
+@pytest.mark.parametrize(("quantity", "value", "direction"), [
+    ("s_rate", 3.6, "falling"), ("s_rate", 3.0, "both"), ("traction", -60.0, "falling"), ("traction", -44.0, "both")])
+def test_a_slides_rate_and_traction(integrator, quantity, value, direction):
+    """A run that stops there ends with that very rate, or force along the cable: here of friction."""
+    scene = riding()
+    scene.slides.clear()
+    scene.slide("A", along="wire", s=2.0, name="trolley", friction=fu.Friction(coefficient=0.1, viscous=10.0))
+    scene.event("there", quantity=f"trolley.{quantity}", value=value, direction=direction, action="stop")
+    run = scene.run(1.5, integrator=integrator, tol=1e-4)
+    assert (run.status, run.events[-1]["name"]) == ("event", "there")
+    last, before = run[f"trolley.{quantity}"][-1], run[f"trolley.{quantity}"][-2]
+    assert last == pytest.approx(value, rel=1e-6)
+    assert direction == "both" or (last > before) == (direction == "rising")
+
+
+def test_the_traction_of_a_driven_slide():
+    """v = 0.5 sin(4 t) on a straight, stiff cable: the drive's force is 2 m cos(4 t), which passes 5 N three times."""
+    scene = fu.Scene(gravity=(0, 0, 0))
+    scene.cable("wire", start=(0, 0, 0), end=(10, 0, 0), elements=6, element="cable12",
+                section=fu.Rectangle(height=0.05, width=0.05),
+                material=fu.Material(youngs_modulus=2e11, density=1000, poisson_ratio=0.0, damping_time=1e-2))
+    scene.pin("wire", s=0.0)
+    scene.pin("wire", s=10.0)
+    scene.rigid_body("A", mass=5.0, inertia=(0.1, 0.2, 0.3), position=(2, 0, 0))
+    scene.slide("A", along="wire", s=2.0, name="trolley", velocity=fu.Harmonic(amplitude=0.5, frequency=4 / 2 / np.pi))
+    scene.event("force", quantity="trolley.traction", value=5.0)
+    scene.event("speed", quantity="trolley.s_rate", value=0.25, direction="rising")
+    run = scene.run(2.0, integrator="radau", tol=1e-6)
+    times = {name: [e["time"] for e in run.events if e["name"] == name] for name in ("force", "speed")}
+    assert times["force"][0] < 1e-3, "it starts with a jump, which the cable's damping smooths"
+    np.testing.assert_allclose(times["force"][1:], np.array([np.pi / 3, 5 * np.pi / 3, 7 * np.pi / 3]) / 4, atol=5e-3)
+    np.testing.assert_allclose(times["speed"], np.array([np.pi / 6, 13 * np.pi / 6]) / 4, atol=1e-6)
+
+
+def test_what_a_slide_has_to_watch():
+    with pytest.raises(fu.SceneError, match=r'"trolley.rate" cannot be watched; trolley.s, trolley.s_rate, '
+                                            r"trolley\.traction can"):
+        riding().event("fast", quantity="trolley.rate")

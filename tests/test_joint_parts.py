@@ -1,10 +1,11 @@
 """Joints as a scene knows them: what is completed, the frames of their ends, and what is refused."""
 
 import re
+import warnings
 
 import numpy as np
 import pytest
-from funicular import Circle, FunicularWarning, Harmonic, Material, Ramp, Scene, SceneError, Table
+from funicular import Circle, FunicularWarning, Harmonic, Material, Ramp, Scene, SceneError, Table, load_run
 from funicular.anchors import Anchor
 from funicular.frames import cable_frame, end_frame, joint_axes
 from funicular.joints import KINDS, Joint
@@ -311,3 +312,19 @@ def test_in_a_file():
         loads(text + 'kind="revolute"\nname="j"\naxes=[0,0,1]\n', "x.toml")
     scene = loads(text + 'kind="revolute"\naxis=[0,0,1]\nangle={form="ramp", start=0, end=2}\n', "x.toml")
     assert scene.joints["joint_1"].angle == Ramp(start=0, end=2)
+
+
+def test_a_saved_run_does_not_repeat_what_was_adjusted(tmp_path):
+    """The warning comes as the scene is made; the report keeps it, and reading the scene back is silent."""
+    scene = Scene(gravity=(0, 0, 0))
+    for name, y in (("A", 0.0), ("B", 1.0005)):
+        scene.rigid_body(name, mass=1, inertia=(1, 1, 1), position=(0, y, 0))
+    with pytest.warns(FunicularWarning, match="they are brought together"):
+        scene.joint("spherical", "A", ("B", (0, -1, 0)))
+    scene.run(0.01, save=tmp_path / "run.nc")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        run = load_run(tmp_path / "run.nc")
+        assert list(run.scene.bodies) == ["A", "B"]
+        run.summary()
+    assert any("they are brought together" in message for message in run.report["messages"])

@@ -492,9 +492,11 @@ typedef struct {
     int *pivot_band, *pivot_border;
 } fu_complex_system;
 
-/* What the user watches: an entry of the state less a value, or a function of his; what stops.c watches on a slide:
- * whether it stays as it is, and its buffer at the end that `value` is the side of. */
-enum { FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_CALL, FU_WATCH_GRIP, FU_WATCH_BUFFER };
+/* What the user watches: an entry of the state less a value, a slide's rate or traction less a value, or a function of
+ * his; what stops.c watches on a slide: whether it stays as it is, and its buffer at the end that `value` is the side of.
+ * A traction is of the accelerations, which eq 38 gives anew at each state that is looked at. */
+enum { FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_RATE, FU_WATCH_TRACTION, FU_WATCH_CALL, FU_WATCH_GRIP,
+       FU_WATCH_BUFFER };
 typedef struct {
     int kind, index, direction; /* direction: 1 rising, -1 falling, 0 both */
     double value;
@@ -583,6 +585,7 @@ struct fu_run {
     const fu_watch *watches;
     double *watched;     /* per watch: its value at `now`, 0 where it has just passed */
     int *late;           /* per watch: the side to which it passed together with another event */
+    double *watch_work;  /* n_dof: accelerations that a watched traction is of */
     double (*call)(void *context, int watch, const fu_state *state);
     void *context;
     fu_event event;      /* that the run has stopped at */

@@ -36,7 +36,8 @@ cdef extern from "engine.h" nogil:
     int FU_JOINT_OUTPUTS, FU_LINK_OUTPUTS, FU_MAX_COORDINATES, FU_MAX_RATES, FU_END_COORDINATES, FU_SLIDES, FU_HELD, FU_LEFT
     int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT, FU_UNSTABLE
     int FU_NO_FAILURE, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE, FU_JAM
-    int FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_CALL, FU_WATCH_GRIP, FU_WATCH_BUFFER
+    int FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_RATE, FU_WATCH_TRACTION, FU_WATCH_CALL
+    int FU_WATCH_GRIP, FU_WATCH_BUFFER
     int FU_ACTED, FU_STUCK, FU_BROKE_LOOSE, FU_TURNED, FU_STRUCK, FU_FREED, FU_FLEW, FU_ENTERED, FU_CAME_OUT, FU_RESTS
     int FU_END_IS_ERROR, FU_END_IS_OPEN, FU_END_IS_HARD, FU_END_IS_BUFFERED
     int FU_SIGNAL_TERMS, FU_BAND_GROUP
@@ -305,6 +306,7 @@ cdef extern from "engine.h" nogil:
         int n_watches
         const fu_watch *watches
         double *watched
+        double *watch_work
         int *late
         double (*call)(void *context, int watch, const fu_state *state) noexcept nogil
         void *context

@@ -83,6 +83,14 @@ double fu_time_of_turn(fu_run *run, double h)
     return 0.0;
 }
 
+/* The force on a rider along the cable, as results have it; not a number where eq 38 has no solution. */
+static double traction(const fu_run *run, const fu_state *state, int joint)
+{
+    fu_accelerator *work = (fu_accelerator *)&run->accelerator; /* scratch: a run is never a constant */
+    fu_joint_output *outputs = (fu_joint_output *)work->joints;
+    return fu_accelerations(run->model, state, work, run->watch_work, outputs, 0) ? NAN : outputs[joint].traction;
+}
+
 /* what an event of the user's, or of a slide's, watches, positive where it has happened when `side` is 1 */
 static double watched(const fu_run *run, const fu_state *state, int k)
 {
@@ -91,6 +99,8 @@ static double watched(const fu_run *run, const fu_state *state, int k)
     case FU_WATCH_Q: return state->q[watch->index] - watch->value;
     case FU_WATCH_V: return state->v[watch->index] - watch->value;
     case FU_WATCH_S: return state->s[watch->index] - watch->value;
+    case FU_WATCH_RATE: return fu_slide_rate(run->model, state, watch->index) - watch->value;
+    case FU_WATCH_TRACTION: return traction(run, state, watch->index) - watch->value;
     case FU_WATCH_GRIP: return fu_grip(run, state, watch->index);
     case FU_WATCH_BUFFER: return fu_press(run, state, watch->index, (int)watch->value);
     default: return run->call(run->context, k, state);
