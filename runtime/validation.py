@@ -15,6 +15,9 @@ import numpy as np
 from funicular.errors import SceneError, near
 from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainValidator, ValidationError, model_validator
 
+FARTHEST = 1e9
+"""m: coordinates of points are not larger."""
+
 
 def _real(value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, Real):
@@ -42,6 +45,9 @@ def vector(value: Any, unit: str = "", size: int = 3) -> tuple[float, ...]:
     numbers = tuple(map(_real, value))
     if not all(map(math.isfinite, numbers)):
         raise ValueError(f"must be finite, got {show(numbers, unit)}")
+    if unit == "m" and max(map(abs, numbers), default=0.0) > FARTHEST:
+        raise ValueError(f"must lie within {FARTHEST:g} m of the origin, beyond which positions are rounded to more "
+                         f"than 1e-7 m, got {show(numbers, unit)}", "draw the scene nearer to the origin")
     return numbers
 
 
