@@ -47,6 +47,9 @@ class _Short(reprlib.Repr):
 shown = _Short().repr
 """``shown(value)``: a value as messages quote it, shortened where it is long or nested deeply."""
 
+FARTHEST = 1e9
+"""m: coordinates of points are not larger."""
+
 
 def _real(value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, Real):
@@ -81,6 +84,9 @@ def vector(value: Any, unit: str = "", size: int = 3) -> tuple[float, ...]:
         raise ValueError(f"must be {size} numbers, got {shown(value)}")
     numbers = tuple(map(_real, value))
     _in_range(numbers, unit, show(numbers, unit))
+    if unit == "m" and max(map(abs, numbers), default=0.0) > FARTHEST:
+        raise ValueError(f"must lie within {FARTHEST:g} m of the origin, beyond which positions are rounded to more "
+                         f"than 1e-7 m, got {show(numbers, unit)}", "draw the scene nearer to the origin")
     return numbers
 
 

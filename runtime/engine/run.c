@@ -1,6 +1,7 @@
 /* The time loop: steps that end on output times, error control, slides that cross element boundaries. */
 #include "engine.h"
 
+#include <math.h>
 #include <string.h>
 
 #define RECOVERY 1.05       /* of what steps stay below after a failure, with each step that is taken */
@@ -51,7 +52,26 @@ static double extent(const fu_model *model, const double *origin, const double *
     return largest;
 }
 
-/* FU_SINGULAR, FU_UNSTABLE, or FU_RUNNING where all is well */
+static int all_finite(const double *numbers, long n)
+{
+    for (long i = 0; i < n; ++i)
+        if (!isfinite(numbers[i])) return 0;
+    return 1;
+}
+
+static int is_finite_row(const fu_model *model, const fu_record *r, long row)
+{
+    const long q = model->n_q, v = model->n_dof, joints = model->n_joints, links = model->n_links;
+    const double energies[] = {r->kinetic[row], r->elastic[row], r->potential[row], r->dissipated[row], r->external[row]};
+    return all_finite(energies, sizeof energies / sizeof *energies) && all_finite(r->q + row * q, q) &&
+           all_finite(r->v + row * v, v) && all_finite(r->acceleration + row * v, v) &&
+           all_finite(r->reaction + row * v, v) && all_finite(r->s + row * joints, joints) &&
+           all_finite(r->joint + row * joints * FU_JOINT_OUTPUTS, joints * FU_JOINT_OUTPUTS) &&
+           all_finite(r->link + row * links * FU_LINK_OUTPUTS, links * FU_LINK_OUTPUTS) &&
+           all_finite(r->spring + 3 * row * model->n_springs, 3L * model->n_springs);
+}
+
+/* FU_SINGULAR, FU_UNSTABLE, FU_NO_CONVERGENCE for a row that is not finite, which does not count, or FU_RUNNING */
 static int record_row(fu_run *run)
 {
     const double begin = fu_clock();
@@ -77,9 +97,14 @@ static int record_row(fu_run *run)
     fu_link_outputs(model, now, &run->accelerator, (fu_link_output *)(r->link + row * model->n_links * FU_LINK_OUTPUTS));
     const double energies[FU_ENERGIES] = {r->kinetic[row], r->elastic[row], r->potential[row], run->dissipated,
                                           -run->external};
+    run->statistics.time_output += fu_clock() - begin;
+    if (!is_finite_row(model, r, row)) {
+        if (info) return FU_SINGULAR;
+        fu_fail(run, FU_NOT_FINITE, now->v, -1);
+        return FU_NO_CONVERGENCE;
+    }
     ++r->n;
     run->recorded = now->t;
-    run->statistics.time_output += fu_clock() - begin;
     return info ? FU_SINGULAR : fu_check_books(run, energies, row == 0) ? FU_UNSTABLE : FU_RUNNING;
 }
 
@@ -139,7 +164,8 @@ int fu_start(fu_run *run)
         if (fu_begin_stops(run) || start_scheme(run, 0)) return FU_SINGULAR;
         memcpy(run->before, run->psi, sizeof(double) * (size_t)model->n_dof);
     }
-    if (record_row(run)) return FU_SINGULAR;
+    const int recorded = record_row(run);
+    if (recorded) return recorded == FU_NO_CONVERGENCE ? recorded : FU_SINGULAR;
     if (run->rest_start) {
         memset(now->acceleration, 0, sizeof(double) * (size_t)model->n_dof);
         memset(now->a, 0, sizeof(double) * (size_t)model->n_dof);
