@@ -59,8 +59,8 @@ class LongRun:
                          f"{_duration(more / rate)} left")
         if not self._told:
             self._told = True
-            warnings.warn(f"the run needs about {self._steps + more:.2g} steps, {_duration(more / rate)} at the present "
-                          f"rate of {rate:.2g} a second: {self._why()}", FunicularWarning, stacklevel=5)
+            warnings.warn(f"the run needs about {self._steps + more:.2g} steps, {_duration(more / rate)} at the "
+                          f"present rate of {rate:.2g} a second: {self._why()}", FunicularWarning, stacklevel=5)
 
     def notes(self) -> list[str]:
         """For the report: how many steps the run has taken or was to take, and why; empty for a run of few steps."""
@@ -85,14 +85,14 @@ class LongRun:
             return f"a step ends at each output time. Take an output_step larger than {settings.output_step:.3g} s"
         events = len(self._watcher.happened) + counts["element_crossings"]
         if events > OFTEN * counts["steps"]:
-            return (f"there were {events} events and crossings of elements in {counts['steps']} steps, and a step ends at "
-                    "each. Look at the slides that stick, strike or cross nodes")
-        cause, dof, joint = engine.failure
-        where = f", most of all at {place(self._model, dof, joint)}" if cause == "error" else ""
+            return (f"there were {events} events and crossings of elements in {counts['steps']} steps, and a step ends "
+                    "at each. Look at the slides that stick, strike or cross nodes")
+        _, dof, joint = engine.failure  # of the last step that was rejected
+        where = f", most of all at {place(self._model, dof, joint)}" if counts["rejected_steps"] else ""
         if counts["rejected_steps"] > REJECTED * counts["steps"]:
-            return (f"{counts['rejected_steps']} steps were rejected beside {counts['steps']} taken{where}: forces change "
-                    "within a step, as at contacts and kinks of friction. Take a larger tol, or damping_time in the "
-                    "material")
+            return (f"{counts['rejected_steps']} steps were rejected beside {counts['steps']} taken{where}: forces "
+                    "change within a step, as at contacts and kinks of friction. Take a larger tol, or damping_time in "
+                    "the material")
         frequency, decay = self._fastest()
         if engine.integrator == "explicit" and mean * max(frequency / STABLE, decay / STABLE_DAMPING) > NEAR:
             return (f"stability asks the explicit method for steps of {mean:.2g} s: the highest frequency is "

@@ -90,6 +90,22 @@ def test_integrators_agree_on_everything(planar, integrator, tol, books):
     assert np.abs(np.linalg.norm(found["A.orientation"], axis=1) - 1).max() < 1e-15
 
 
+@pytest.mark.parametrize("angle", [1.0, 2.0, 3.0, 5.0, 8.0, 15.0, 50.0])
+def test_radaus_estimate_is_true_for_vibrations_that_a_step_does_not_resolve(angle):
+    """One step of so many radians of a mass on a spring, from four phases: twice the estimate for vibrations counts,
+    measured 1.1 to 4.7 errors. The embedded one, a seventh of which counted before, is 32 errors at 1 rad, 0.7 at 8."""
+    estimates, errors = [], []
+    for phase in 0.1 + np.arange(4) * np.pi / 4:
+        scene = fu.Scene(gravity=(0, 0, 0))
+        scene.rigid_body("A", mass=2.0, inertia=(1, 1, 1), position=(np.cos(phase), 0, 0),
+                         velocity=(-angle * np.sin(phase), 0, 0))
+        scene.spring("A", (0, 0, 0), stiffness=2.0 * angle**2, length=0.0)
+        run = scene.run(1.0, step=1.0, output_step=1.0, integrator="radau")
+        estimates.append(run.report["sum_of_local_error_estimates_m"])
+        errors.append(abs(run["A.position"][-1, 0] - np.cos(phase + angle)))
+    assert 1.0 < max(estimates) / max(errors) < 6.0
+
+
 @pytest.mark.parametrize("youngs_modulus", [2e6, 7e8, 2e11])
 def test_radau_reaches_tol_however_stiff(youngs_modulus):
     stiff = soft(youngs_modulus=youngs_modulus)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from funicular import FunicularWarning, ResultFileError, Scene, SceneError, load_scene
+from funicular import Circle, FunicularWarning, Material, ResultFileError, Scene, SceneError, load_scene
 from scenery import add_cable, one_rider
 
 
@@ -92,3 +92,15 @@ def test_radau_at_loose_tolerances_gains_no_energy():
     off = [np.abs(run["A.position"] - fine["A.position"]).max() for run in loose]
     assert max(off) < 0.01  # measured: 1e-3 m
     assert max(np.abs(run.energy_balance().relative).max() for run in loose) < 0.3  # measured: 0.08
+
+
+def test_a_step_that_overflows_does_not_spoil_the_next():
+    """The first step, a thousandth of the duration, is 250 times too long for the explicit method."""
+    scene = Scene()
+    scene.cable("wire", start=(0, 0, 0), end=(1, 0, 0), elements=8, element="cable8p", section=Circle(radius=1e-3),
+                material=Material(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7850))
+    scene.pin("wire", s=0.0)
+    scene.force("wire", s=1.0, value=(10, 0, 0))
+    scene.event("enough", function=lambda time, state: time - 1e-3, action="stop")
+    run = scene.run(5.0, integrator="explicit")
+    assert run.status == "event" and run.report["steps"] > 50

@@ -1,4 +1,4 @@
-"""The error of the motion is what ``tol`` says: scenes of tests/benchmarks/choice_scenes.py against their references."""
+"""The error of the motion is what ``tol`` says, over the scenes of tests/benchmarks/choice_scenes.py."""
 
 import numpy as np
 import pytest

@@ -164,11 +164,13 @@ int fu_system_factor_border(fu_system *s, const fu_lapack *lapack)
     return info;
 }
 
-/* In place: right-hand side to solution; x goes on FU_BAND_BEYOND beyond the unknowns, all zero. */
+/* In place: right-hand side to solution; x goes on FU_BAND_BEYOND beyond the unknowns. These are made zero here: a step
+ * that has overflowed leaves no numbers in them, and no later step would have any. */
 void fu_system_solve(const fu_system *s, const fu_lapack *lapack, double *x)
 {
     int m = s->m, one = 1, info;
     double *y = x + s->n;
+    for (int i = m; i < m + FU_BAND_BEYOND(s->width); ++i) y[i] = 0.0;
     for (int c = 0; c < s->n_chains; ++c) solve_chain(s, lapack, c, s->chains[c], x);
     if (!m) return;
     for (const fu_piece *r = s->rows; r < s->rows + s->n_rows; ++r) y[r->k] -= times(s, r, r->rows, x);

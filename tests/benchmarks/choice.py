@@ -3,11 +3,11 @@
     python tests/benchmarks/choice.py [--only WORDS] [--every] [--repetitions N] [--out FILE.csv]
     python tests/benchmarks/choice.py --references
 
-``error/tol`` is the largest error of a position, of nodes and bodies at 20 output times, over the largest motion and over
-tol. References are in tests/reference/choice.npz: the explicit method at tol = 1e-10; ``converged`` is the distance of
-radau at tol = 1e-8 from them, over the largest motion. --references makes them anew. Steps, evaluations of accelerations,
-Newton iterations and factorisations do not depend on the machine; CPU seconds are the median of the repetitions.
---every adds the cost and the error of each integrator, whether or not "auto" takes it.
+``error/tol`` is the largest error of a position, of nodes and bodies at 20 output times, over the largest motion and
+over tol. References are in tests/reference/choice.npz, by the explicit method at tol = 1e-10; ``converged`` is the
+distance of radau at tol = 1e-8 from them, over the largest motion. --references makes them anew. Steps, evaluations of
+accelerations, Newton iterations and factorisations do not depend on the machine; CPU seconds are the median of the
+repetitions. --every adds the cost and the error of each integrator, whether or not "auto" takes it.
 """
 
 from __future__ import annotations

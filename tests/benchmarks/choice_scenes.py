@@ -66,7 +66,8 @@ def double_pendulum() -> fu.Scene:
     scene.rigid_body("lower", mass=1.0, inertia=(0.08, 0.001, 0.08), position=(0, -1.5, 0), velocity=(6.0, 0, 0),
                      angular_velocity=(0, 0, 4))
     scene.joint("revolute", ("upper", (0, 0.5, 0)), (0, 0, 0), axis=(0, 0, 1), name="top")
-    scene.joint("universal", ("upper", (0, -0.5, 0)), ("lower", (0, 0.5, 0)), axis=(1, 0, 0), second_axis=(0, 0, 1), name="knee")
+    scene.joint("universal", ("upper", (0, -0.5, 0)), ("lower", (0, 0.5, 0)), axis=(1, 0, 0),
+                second_axis=(0, 0, 1), name="knee")
     return scene
 
 
@@ -171,7 +172,8 @@ def spin_up() -> fu.Scene:
                 section=fu.General(area=1e-3, second_moment_yy=5e-7),
                 material=fu.Material(youngs_modulus=2.8e10, poisson_ratio=0.0, density=1200))
     time = np.linspace(0, 3, 31)
-    scene.motion("beam", s=0.0, rotation=((0, 0, 1), fu.Table(time=tuple(time), value=tuple(time**2 * (3 - time / 3) / 3))))
+    angle = fu.Table(time=tuple(time), value=tuple(time**2 * (3 - time / 3) / 3))
+    scene.motion("beam", s=0.0, rotation=((0, 0, 1), angle))
     return scene
 
 
