@@ -21,6 +21,18 @@ static double force_of_links(const fu_model *model, const fu_state *state, int s
     return force;
 }
 
+/* R of a slide by the force that a Newton method solves for, 0 where nothing brakes it; t and u as brakes.c has them */
+static double resistance(const fu_model *model, const fu_state *state, int j, double t[3], double u[3])
+{
+    double J[3 * (FU_SLIDE_COORDINATES + 1)], K[(FU_SLIDE_COORDINATES + 1) * (FU_SLIDE_COORDINATES + 1)];
+    fu_braking braking;
+    if (!fu_is_braked(model, state, j)) return 0.0;
+    fu_slide_tangent(model, state, j, state->f + 3 * j, J, K);
+    fu_slide_motion(model, state, j, J, t, u);
+    fu_braking_of(model, state, j, t, u, state->f + 3 * j, &braking);
+    return braking.R;
+}
+
 /* Power of what drives slides and joints: from the forces that a Newton method solves for, else from eq 38. */
 static double driving_power(const fu_run *run, const fu_state *state)
 {
@@ -31,16 +43,18 @@ static double driving_power(const fu_run *run, const fu_state *state)
         for (int r = 0; r < model->n_joints + model->n_links; ++r)
             for (int c = 0; c < work->rows[r].rows; ++c)
                 power += work->multipliers[work->rows[r].first + c] * work->rows[r].rate[c];
+        for (int j = 0; j < model->n_joints; ++j)
+            if (model->joints[j].drive >= 0) power -= work->resistance[j] * work->slides[j].s_rate;
         return power;
     }
     for (int j = 0; j < model->n_joints; ++j) {
-        double phi[3], g[FU_SLIDE_COORDINATES], rate, second;
+        double phi[3], g[FU_SLIDE_COORDINATES], t[3], u[3], rate, second;
         int at[FU_SLIDE_COORDINATES + 1];
         if (state->mode[j] != FU_HELD || model->joints[j].drive < 0) continue;
         fu_slide_held(model, state, j, &rate, &second);
         fu_slide_residual(model, state, j, phi, g);
         const int s = fu_slide_coordinates(model, state, j, at);
-        power += (g[s] + force_of_links(model, state, at[s])) * rate;
+        power += (g[s] + force_of_links(model, state, at[s]) - resistance(model, state, j, t, u)) * rate;
     }
     for (int k = 0; k < model->n_links; ++k)
         if (model->links[k].signal >= 0) power += fu_link_driving(model, &model->links[k], state);
@@ -56,10 +70,9 @@ double fu_dissipated_power(const fu_run *run, const fu_state *state)
     if (!model->n_brakes) return power;
     if (!run->integrator->newton) return power + run->accelerator.braking[model->n_joints];
     for (int j = 0; j < model->n_joints; ++j) {
-        double J[3 * (FU_SLIDE_COORDINATES + 1)], K[(FU_SLIDE_COORDINATES + 1) * (FU_SLIDE_COORDINATES + 1)], t[3], u[3];
-        if (!model->joints[j].brake || state->mode[j] != FU_SLIDES) continue;
-        fu_slide_tangent(model, state, j, state->f + 3 * j, J, K);
-        fu_slide_motion(model, state, j, J, t, u);
+        double t[3], u[3];
+        if (!fu_is_braked(model, state, j)) continue;
+        resistance(model, state, j, t, u);
         power += fu_brake_power(model, state, j, t, u, state->f + 3 * j);
     }
     return power;

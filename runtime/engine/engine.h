@@ -380,6 +380,7 @@ double fu_slide_step(const fu_model *model, const fu_state *state, int j, double
 typedef struct {
     double R, by_t[3], by_u[3], by_f[3], by_s;
 } fu_braking;
+int fu_is_braked(const fu_model *model, const fu_state *state, int j);
 void fu_braking_of(const fu_model *model, const fu_state *state, int j, const double *t, const double *u, const double *f,
               fu_braking *braking);
 double fu_brake_power(const fu_model *model, const fu_state *state, int j, const double *t, const double *u,
@@ -436,12 +437,15 @@ typedef struct {
     double *force, *work, *prescribed; /* n_dof */
     double *multipliers;  /* of slides and links, as eq 38 gives them */
     double *braking;      /* per slide: R; then the power that brakes take; then of each slide's R the last step and its cause */
+    double *resistance;   /* per slide: R of one that is driven */
     int jammed;           /* slide whose R was not found, -1 */
     double *joints;       /* FU_JOINT_OUTPUTS a joint */
     long evaluated;       /* how often it was */
 } fu_accelerator;
+/* traction: the force on the rider along the cable; of a slide that is driven what its drive gives, over s: times s_rate it is
+ * the drive's power */
 typedef struct {
-    double s_rate, s_acceleration, force[3], multiplier[2], traction, residual[3]; /* traction: force along the cable */
+    double s_rate, s_acceleration, force[3], multiplier[2], traction, residual[3];
 } fu_joint_output;
 typedef struct {
     double force[3], moment[3], residual; /* on the second end's carrier, at its point; the largest of phi */

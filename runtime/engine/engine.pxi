@@ -222,6 +222,7 @@ cdef extern from "engine.h" nogil:
         double *prescribed
         double *multipliers
         double *braking
+        double *resistance
         int jammed
         double *joints
         long evaluated
