@@ -21,8 +21,8 @@ def velocity_jumps(scene: Scene) -> list[str]:
             if abs(given - own) > EQUAL * (abs(given) + abs(own)):
                 found.append(
                     f"{motion.where} at s = {show(motion.s, 'm')}: {what} starts at {show(given, unit)}, but its node "
-                    f"at {show(own, unit)}; this jump sends a shock along the cable, which depends on the mesh. Let the "
-                    "signal start at the node's rate (a Ramp starts at 0), or give the cable that velocity")
+                    f"at {show(own, unit)}; this jump sends a shock along the cable, which depends on the mesh. Let "
+                    "the signal start at the node's rate (a Ramp starts at 0), or give the cable that velocity")
     return found
 
 

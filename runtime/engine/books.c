@@ -2,7 +2,9 @@
 #include "engine.h"
 
 #define MOST_GROWTH 0.5    /* of the energy exchanged, or of motion: beyond it the result is none */
-#define LEAST_MOTION 1e-3  /* of the size of the scene: less is rounding, or how a motion begins */
+#define BEGUN 1e-4         /* of the size of the scene: with less motion it has not begun */
+#define LEAST_MOTION 1e-8  /* of the largest coordinate: less is what step control and rounding leave of rest */
+#define ROUNDING 1e-14     /* of the energies */
 
 /* What joints whose frame goes with a slide put on its s: a moment does work where the frame turns along the cable. */
 static double force_of_links(const fu_model *model, const fu_state *state, int s)
@@ -129,14 +131,23 @@ void fu_impact(fu_run *run, const double *change, double restitution)
     if (is_driven(model)) run->external += fu_kinetic_energy(model, now->q, now->v) - before + lost;
 }
 
-/* Whether anything moves beyond rounding */
+/* Whether anything moves beyond what step control and rounding leave of a scene at rest */
 int fu_moves(const fu_run *run)
 {
     return run->motion > LEAST_MOTION * run->extent;
 }
 
-/* The books at an output: kinetic, elastic, potential, dissipated, and minus external energy. Not zero where energy
- * has come from nowhere, as where an explicit method's step is beyond its limit. */
+/* What rounding may make of the sum of the energies, J: that of coordinates far from the origin under gravity among it */
+static double rounding(const fu_run *run, const double energies[FU_ENERGIES])
+{
+    double sum = 0.0, weight = 0.0;
+    for (int k = 0; k < FU_ENERGIES; ++k) sum += fabs(energies[k]);
+    for (int i = 0; i < run->model->n_dof; ++i) weight += fabs(run->model->gravity[i]);
+    return ROUNDING * (sum + weight * run->extent);
+}
+
+/* The energy balance at an output: kinetic, elastic, potential, dissipated, and minus external energy. Not zero where
+ * energy has come from nowhere, as where an explicit method's step is beyond its limit. */
 int fu_check_books(fu_run *run, const double energies[FU_ENERGIES], int first)
 {
     fu_books *books = &run->books;
@@ -146,9 +157,11 @@ int fu_check_books(fu_run *run, const double energies[FU_ENERGIES], int first)
         grown += energies[k] - books->first[k];
         changes += fabs(energies[k] - books->first[k]);
     }
-    books->exchanged = fmax(books->exchanged, fmax(0.5 * changes, energies[0]));
+    books->exchanged = fmax(books->exchanged, 0.5 * changes);
+    books->in_motion = fmax(books->in_motion, energies[0]);
+    books->rounding = fmax(books->rounding, rounding(run, energies));
     books->grown = fmax(books->grown, grown);
     books->lost = fmax(books->lost, -grown);
-    if (!fu_moves(run) || grown <= MOST_GROWTH * books->exchanged) return 0;
+    if (run->motion <= BEGUN * run->size || grown <= MOST_GROWTH * fmax(books->exchanged, books->in_motion)) return 0;
     return fu_fail(run, FU_NO_FAILURE, run->now.v, -1);
 }

@@ -524,11 +524,11 @@ typedef struct {
     int cause, dof, joint;
 } fu_failure;
 
-/* The books since the start, J: energies then, the most exchanged between them (or in motion), the most that came from
- * nowhere and that went there. */
+/* The energy balance since the start, J: energies then, the most exchanged between them and in motion, the most that came
+ * from nowhere and that went there, and what rounding may make of it. */
 #define FU_ENERGIES 5
 typedef struct {
-    double first[FU_ENERGIES], exchanged, grown, lost;
+    double first[FU_ENERGIES], exchanged, in_motion, grown, lost, rounding;
 } fu_books;
 
 /* Rows of output, one an output time; joint: FU_JOINT_OUTPUTS numbers a joint in the order of fu_joint_output. */
@@ -606,6 +606,7 @@ struct fu_run {
     double recorded; /* s: time of the last row */
     double usual; /* s: the step that is wanted, were it not for an event or an output time */
     double motion, least_motion, extent; /* m: largest so far, assumed at least, largest coordinate of a position */
+    double size; /* m: of the scene as it is at the start, wherever it lies */
     double allowed; /* m: error of the step */
     double closed;  /* m: gaps at the start */
     double ceiling; /* s: that steps stay below, after one that failed */
