@@ -3,7 +3,7 @@
 
 #define MOST_GROWTH 0.5    /* of the energy exchanged, or of motion: beyond it the result is none */
 #define BEGUN 1e-4         /* of the size of the scene: with less motion it has not begun */
-#define LEAST_MOTION 1e-8  /* of the largest coordinate: less is what step control and rounding leave of rest */
+#define LEAST_MOTION 1e-10 /* of the largest coordinate: less is what step control and rounding leave of rest */
 #define ROUNDING 1e-14     /* of the energies */
 
 /* What joints whose frame goes with a slide put on its s: a moment does work where the frame turns along the cable. */
