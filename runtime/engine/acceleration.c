@@ -132,6 +132,17 @@ static void force_of(const fu_model *model, const fu_accelerator *work, int j, c
     }
 }
 
+/* The force along the cable on a slide's rider that comes of joints whose frame goes with the slide, added: what their
+ * moments put on s, which stands in their rows as G. */
+static void add_force_of_frame(const fu_model *model, const fu_accelerator *work, int j, const double *lambda, double *f)
+{
+    const int dim = model->dim;
+    const double *G = work->slides[j].by_point + (dim - 1) * dim;
+    for (const fu_rows *rows = work->rows + model->n_joints; rows < work->rows + n_rows(model); ++rows)
+        for (int c = 0; c < rows->rows && rows->slide == j; ++c)
+            for (int d = 0; d < dim; ++d) f[d] -= G[d] * rows->by_s[c] * lambda[rows->first + c];
+}
+
 /* r_x, and the velocity along it, of a slide on its cable */
 static void along(const fu_model *model, const fu_slide_state *slide, double *t, double *u)
 {
@@ -297,6 +308,7 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
             if (square > 0.0) out->traction = pull / sqrt(square);
             if (model->joints[j].drive >= 0 && state->mode[j] == FU_HELD)
                 out->traction = -lambda[rows->first + dim - 1] - work->resistance[j];
+            add_force_of_frame(model, work, j, lambda, out->force);
         }
     if (reaction) {
         fu_mass_times(model, state->q, acceleration, work->work);

@@ -361,6 +361,8 @@ void fu_end_curvature(const fu_model *model, const fu_end *end, const fu_state *
  * the multiplier `first` on, which has `room` for some more; those of the bits `idle` are nil. */
 typedef struct {
     int first, room, rows, idle, n, at[FU_ROW_COORDINATES];
+    int slide; /* that an end of a joint is on, -1; by_s: derivatives by its s */
+    double by_s[6];
     double H[6 * FU_ROW_COORDINATES], W[6], C[6], rate[6], scale[6];
 } fu_rows;
 
