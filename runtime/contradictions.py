@@ -10,6 +10,7 @@ from funicular.cables import EXACT
 from funicular.errors import SceneError
 from funicular.joints import DRIVEN, LINES, POINTS, Joint
 from funicular.placing import HELD, Node, holder, joined, point_of
+from funicular.supports import Motion, Support
 from funicular.validation import show
 
 if TYPE_CHECKING:
@@ -22,12 +23,17 @@ def check_supports(scene: Scene, joint: Joint) -> None:
         if (node := _node(scene, end)) is None:
             continue
         support = holder(scene, node)
-        if other.on is None and support is not None and getattr(support, "displacement", ()) is not None:
+        if other.on is None and support is not None and _holds_position(support):
             raise SceneError(joint.where, f"holds {called(end)} to the ground, but it is {HELD[support.kind]} already",
                              "leave one of them out")
         if _node(scene, other) in joined(scene, node):
             raise SceneError(joint.where, f"holds {called(end)} to {called(other)}, but their nodes are joined "
                              "already", "leave one of them out")
+
+
+def _holds_position(support: Support) -> bool:
+    """Whether it leaves no direction free."""
+    return not isinstance(support, Motion) or (support.displacement is not None and None not in support.displacement)
 
 
 def _node(scene: Scene, end: Anchor) -> Node | None:

@@ -348,9 +348,9 @@ cdef class Engine(Statics):
 
     @property
     def books(self):
-        """Energy that has come from nowhere, that went there, and that was exchanged or in motion, J."""
+        """Energy that has come from nowhere, that went there, that was exchanged, and what rounding may explain, J."""
         b = self.run.books
-        return b.grown, b.lost, b.exchanged
+        return b.grown, b.lost, b.exchanged, b.rounding
 
     @property
     def moves(self):

@@ -11,11 +11,12 @@ from pydantic import model_validator
 class Friction(Part):
     """Friction along the tangent of a slide, from its normal force N (the two multipliers) and its speed.
 
-    coefficient: of sliding, Coulomb's; static_coefficient: of sticking, that of sliding if not given; viscous in
-    N s/m; rolling: the coefficient of rolling resistance, a force of rolling N against the motion (for wheels: the arm
-    of the resistance over the radius). model: "regularised", where the force rises smoothly with the speed to its full
-    value at about ``velocity`` (m/s), so that a rider at rest creeps; or "stick", where it is held at rest, and the
-    instants of sticking and breaking loose are found as events.
+    coefficient: of sliding, Coulomb's; static_coefficient: of sticking, that of sliding if not given; viscous in N s/m;
+    rolling: the coefficient of rolling resistance, a force of rolling N against the motion (for wheels: the arm of the
+    resistance over the radius). model: "regularised", where the force rises smoothly with the speed to its full value
+    at about ``velocity`` (m/s), so that a rider at rest creeps; or "stick", where it is held at rest, and the instants
+    of sticking and breaking loose are found as events. On a driven slide friction acts against the drive, which gives
+    so much more: it is part of the slide's traction. While the drive stands it takes none.
     """
 
     coefficient: Annotated[float, not_negative()] = 0.0

@@ -142,7 +142,7 @@ def choose(settings: RunSettings, scene: Scene, model: Model,
 def regularised_decay(scene: Scene, slide: Slide) -> float:
     """1/s: how fast a slow rider under its weight comes to the speed at which regularised friction lets it creep."""
     friction = slide.friction
-    if friction is None or friction.sticks:
+    if friction is None or friction.sticks or slide.prescribed is not None:
         return 0.0
     return friction.sliding * float(np.linalg.norm(scene.gravity)) / friction.velocity
 

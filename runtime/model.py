@@ -33,6 +33,7 @@ from funicular.redundancy import settle
 from funicular.rotations import rotate
 from funicular.scene import Scene
 from funicular.settings import RunSettings
+from funicular.starts import velocity_jumps
 from funicular.streaming import Stream, pauses
 from funicular.threads import one_blas_thread, share_elements
 from funicular.watching import Watcher
@@ -373,7 +374,7 @@ def _joint(slide: Slide, scene: Scene, holder: Holder, signal, number: int, mult
     rider = holder.end(slide.rider)
     driven, ends, friction = slide.prescribed is not None, (slide.at_start, slide.at_end), slide.friction
     may_hold = driven or (friction is not None and friction.sticks) or any(isinstance(end, HardStop) for end in ends)
-    brakes = not driven and (friction is not None or any(isinstance(end, Buffer) for end in ends))
+    brakes = friction is not None or any(isinstance(end, Buffer) for end in ends)
     return JointModel(
         slide.name,
         f"slide_{along.element}_{BODIES[dim][0] if native else RIDERS[dim]}",
@@ -448,6 +449,9 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Meter, initial=No
     if largest > 1e-9 * (1.0 + np.max(np.abs(model.v) * model.weight, initial=0.0)):
         messages.append(f"initial velocities broke a joint: changed by up to {largest:.3g} m/s to keep it")
         warnings.warn(messages[-1], FunicularWarning, stacklevel=3)
+    for jump in velocity_jumps(scene):
+        messages.append(jump)
+        warnings.warn(jump, FunicularWarning, stacklevel=3)
     if status is None:
         if stream is not None:
             stream.start(model, engine, partial(named, model, scene, engine), pace, watcher.happened)

@@ -63,7 +63,7 @@ def _off(part: Part) -> Iterator[str]:
         case Moment():
             yield from _in_plane("value", part.value, part.value, "N m")
         case Motion():
-            if part.displacement is not None and part.displacement[2] != Constant(constant=0.0):
+            if part.displacement is not None and part.displacement[2] not in (None, Constant(constant=0.0)):
                 yield "displacement z"
             if part.rotation is not None:
                 yield from _in_plane("rotation about", part.rotation.axis, part.rotation.axis)

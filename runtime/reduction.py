@@ -127,9 +127,11 @@ class Supports:
                 if d != unknown:
                     self.rows[dof] = Row({node.dofs("r_x")[unknown]: ratio} if ratio else {})
 
-    def displace(self, node: Node, signals: Iterable[int]) -> None:
-        """Position as drawn plus a signal an axis."""
+    def displace(self, node: Node, signals: Iterable[int | None]) -> None:
+        """Position as drawn plus a signal an axis; None leaves it free."""
         for dof, start, signal in zip(node.dofs("r"), node.vector("r"), signals, strict=False):
+            if signal is None:
+                continue
             self.rows[dof] = Row(prescribed=[Prescribed(signal, base=float(start), linear=1.0)])
 
     def rotate(self, node: Node, axis: np.ndarray, signal: int) -> None:
@@ -312,7 +314,7 @@ def supports(scene: Scene, nodes: dict[str, list[Node]], signal) -> Supports:
     for motion in scene.motions:
         rooted.append(at(motion.cable, motion.s))
         if motion.displacement is not None:
-            made.displace(rooted[-1], [signal(s) for s in motion.displacement])
+            made.displace(rooted[-1], [None if s is None else signal(s) for s in motion.displacement])
         if motion.rotation is not None:
             made.rotate(rooted[-1], np.array(motion.rotation.axis), signal(motion.rotation.angle))
     links = [(at(join.cable, join.s), at(join.to, join.at), join.rotation == "rigid") for join in scene.joins.values()]

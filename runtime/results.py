@@ -53,7 +53,7 @@ QUANTITIES = {
         "s_acceleration": (_TIME, "m/s2", "second rate of s"),
         "force": (_XYZ, "N", "force on the rider"),
         "multiplier": (("time", "normal"), "N", "multipliers of the two constraints across the cable"),
-        "traction": (_TIME, "N", "force on the rider along the cable: of what drives or brakes it"),
+        "traction": (_TIME, "N", "force on the rider along the cable; of a driven slide its drive's power over s_rate"),
         "moment": (_XYZ, "N m", "moment on the rider, of a slide that ties its axes to the cable's frame"),
         "residual": (_TIME, "m", "distance of the rider's point to the cable"),
     },
@@ -76,8 +76,8 @@ ENERGIES = {
     "kinetic": "kinetic energy",
     "elastic": "elastic energy",
     "potential": "potential energy of gravity",
-    "dissipated": "energy lost to damping since the start",
-    "external": "work of loads other than gravity and of prescribed motions since the start",
+    "dissipated": "energy lost to damping, friction and impacts since the start",
+    "external": "work of loads other than gravity, of drives and of prescribed motions since the start",
 }
 
 

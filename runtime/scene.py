@@ -193,7 +193,8 @@ class Scene:
     def motion(self, cable: Cable | str, *, s: float, displacement=None, rotation=None) -> Motion:
         """Move the node of ``cable`` at ``s`` (m) as prescribed.
 
-        displacement: 3 signals or numbers (m); rotation: an axis and a signal (rad); see `Motion`. Raises SceneError.
+        displacement: 3 signals or numbers (m), None or "free" where it is free; rotation: an axis and a signal (rad);
+        see `Motion`. Raises SceneError.
         """
         return self.add(Motion(cable=cable, s=s, displacement=displacement, rotation=rotation))
 
@@ -530,7 +531,8 @@ class Scene:
         for motion in self.motions:
             length = self.cables[motion.cable].length
             starts = [(f"displacement {axis}", signal, length, "m")
-                      for axis, signal in zip("xyz", motion.displacement or (), strict=False)]
+                      for axis, signal in zip("xyz", motion.displacement or (), strict=False)
+                      if signal is not None]
             starts += [("rotation", motion.rotation.angle, 1.0, "rad")] if motion.rotation else []
             for name, signal, size, unit in starts:
                 if abs(value := float(signal.value(0.0))) > EXACT * size:

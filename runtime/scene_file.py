@@ -21,7 +21,7 @@ from funicular.scene import Scene
 from funicular.sections import Section
 from funicular.settings import EquilibriumSettings, RunSettings
 from funicular.signals import Constant, Signal
-from funicular.supports import Rotation
+from funicular.supports import FREE, Motion, Rotation
 from funicular.validation import Part
 
 SCENES = Path(__file__).parent / "scenes"
@@ -167,6 +167,11 @@ def _data(value: Any) -> Any:
             return value.data()
         case Rotation():
             return [value.axis, _data(value.angle)]
+        case Motion():
+            given = {"cable": value.cable, "s": value.s}
+            if value.displacement is not None:
+                given["displacement"] = [FREE if each is None else _data(each) for each in value.displacement]
+            return given | ({} if value.rotation is None else {"rotation": _data(value.rotation)})
         case Part():
             tag = {name: getattr(value, name) for base, name in TAGS.items() if isinstance(value, base)}
             given = {keyword: getattr(value, name) for keyword, name in value.keywords().items()}

@@ -57,14 +57,27 @@ class Rotation(Part):
     angle: Signal
 
 
-def _displacement(value: Any) -> tuple[Signal, Signal, Signal] | None:
+FREE = "free"
+"""A direction that a motion leaves free, in scenes."""
+
+
+Displacement = tuple[Signal | None, Signal | None, Signal | None]
+"""A signal for each direction, None for one that stays free."""
+
+
+def _displacement(value: Any) -> Displacement | None:
     if value is None:
         return None
     if hasattr(value, "tolist"):
         value = value.tolist()
     if not isinstance(value, list | tuple) or len(value) != 3:
-        raise ValueError(f"must be 3 signals or numbers, got {shown(value)}", "give 0 for a direction without motion")
-    return tuple(map(_component, "xyz", value))
+        raise ValueError(f"must be 3 signals or numbers, got {shown(value)}",
+                         'give 0 for a direction without motion, "free" for one that is not prescribed')
+    made = tuple(None if each is None or each == FREE else _component(axis, each)
+                 for axis, each in zip("xyz", value, strict=True))
+    if not any(made):
+        raise ValueError("leaves all directions free", "leave it out, or give a signal or number for one of them")
+    return made
 
 
 def _component(axis: str, value: Any) -> Signal:
@@ -107,13 +120,14 @@ def _rotation(value: Any) -> Rotation | None:
 class Motion(Support):
     """Moves a cable's node at ``s`` (m) as prescribed.
 
-    displacement: three signals in m, from where the node is drawn, or numbers, 0 for a direction that is held; without
-    it the position stays free. rotation: an axis and a signal in rad, by which the section turns from where it is
-    drawn (of cables r_x, whose length is held, too; of beams r_y and r_z); without it the section stays free.
+    displacement: three signals in m, from where the node is drawn, or numbers, 0 for a direction that is held; None, or
+    "free", leaves a direction free. Without it the position stays free. rotation: an axis and a signal in rad, by which
+    the section turns from where it is drawn (of cables r_x, whose length is held, too; of beams r_y and r_z); without
+    it the section stays free.
     """
 
     kind: ClassVar[str] = "motion"
-    displacement: Annotated[tuple[Signal, Signal, Signal] | None, PlainValidator(_displacement)] = None
+    displacement: Annotated[Displacement | None, PlainValidator(_displacement)] = None
     rotation: Annotated[Rotation | None, PlainValidator(_rotation)] = None
 
     @model_validator(mode="after")

@@ -110,7 +110,7 @@ def test_joins_that_hold_what_is_held(scene):
      'motion on "beam": has neither displacement nor rotation; give one of them, or both'),
     (lambda s: s.motion("beam", s=0, displacement=(0, 1)),
      'motion on "beam": displacement must be 3 signals or numbers, '
-     "got (0, 1); give 0 for a direction without motion"),
+     "got (0, 1); give 0 for a direction without motion, \"free\" for one that is not prescribed"),
     (lambda s: s.motion("beam", s=0, displacement=(0,
      "t", 0)), 'motion on "beam": displacement y must be a number or a '
      "signal such as Ramp(start=0, end=1), got 't'"),

@@ -132,6 +132,17 @@ static void force_of(const fu_model *model, const fu_accelerator *work, int j, c
     }
 }
 
+/* The force along the cable on a slide's rider that comes of joints whose frame goes with the slide, added: what their
+ * moments put on s, which stands in their rows as G. */
+static void add_force_of_frame(const fu_model *model, const fu_accelerator *work, int j, const double *lambda, double *f)
+{
+    const int dim = model->dim;
+    const double *G = work->slides[j].by_point + (dim - 1) * dim;
+    for (const fu_rows *rows = work->rows + model->n_joints; rows < work->rows + n_rows(model); ++rows)
+        for (int c = 0; c < rows->rows && rows->slide == j; ++c)
+            for (int d = 0; d < dim; ++d) f[d] -= G[d] * rows->by_s[c] * lambda[rows->first + c];
+}
+
 /* r_x, and the velocity along it, of a slide on its cable */
 static void along(const fu_model *model, const fu_slide_state *slide, double *t, double *u)
 {
@@ -154,6 +165,23 @@ static double towards(fu_accelerator *work, int n_joints, int j, double change)
     last[0] = last[0] == 0.0 ? TRIAL * change : slope > STEEP ? change / slope : change;
     last[1] = change;
     return last[0];
+}
+
+/* R of the slides that are driven, by these multipliers: of what the force along the cable is, the part that their drives
+ * do not give; and what it takes. */
+static void resist(const fu_model *model, const fu_state *state, fu_accelerator *work, const double *lambda)
+{
+    for (int j = 0; j < model->n_joints; ++j) {
+        double t[3], u[3], f[3];
+        fu_braking braking;
+        work->resistance[j] = 0.0;
+        if (model->joints[j].drive < 0 || !fu_is_braked(model, state, j)) continue;
+        along(model, &work->slides[j], t, u);
+        force_of(model, work, j, lambda, f);
+        fu_braking_of(model, state, j, t, u, f, &braking);
+        work->resistance[j] = braking.R;
+        work->braking[model->n_joints] += fu_brake_power(model, state, j, t, u, f);
+    }
 }
 
 /* R of all slides by these multipliers, or null: by the forces of the state; work->work follows by G' R. Returns the
@@ -255,6 +283,7 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
     if (model->n_motions) fu_mass_times(model, state->q, prescribed, work->work);
     for (int i = 0; i < model->n_dof; ++i) work->work[i] = -work->force[i] - work->work[i];
     if (settle(model, state, work, acceleration)) return 1;
+    resist(model, state, work, lambda);
     for (int i = 0; i < model->n_dof; ++i) acceleration[i] += prescribed[i];
     memcpy(work->multipliers, lambda, sizeof(double) * (size_t)model->n_multipliers);
     if (joints)
@@ -277,6 +306,9 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
                 square += G * G;
             }
             if (square > 0.0) out->traction = pull / sqrt(square);
+            if (model->joints[j].drive >= 0 && state->mode[j] == FU_HELD)
+                out->traction = -lambda[rows->first + dim - 1] - work->resistance[j];
+            add_force_of_frame(model, work, j, lambda, out->force);
         }
     if (reaction) {
         fu_mass_times(model, state->q, acceleration, work->work);

@@ -2,7 +2,9 @@
 #include "engine.h"
 
 #define MOST_GROWTH 0.5    /* of the energy exchanged, or of motion: beyond it the result is none */
-#define LEAST_MOTION 1e-3  /* of the size of the scene: less is rounding, or how a motion begins */
+#define BEGUN 1e-4         /* of the size of the scene: with less motion it has not begun */
+#define LEAST_MOTION 1e-10 /* of the largest coordinate: less is what step control and rounding leave of rest */
+#define ROUNDING 1e-14     /* of the energies */
 
 /* What joints whose frame goes with a slide put on its s: a moment does work where the frame turns along the cable. */
 static double force_of_links(const fu_model *model, const fu_state *state, int s)
@@ -21,6 +23,18 @@ static double force_of_links(const fu_model *model, const fu_state *state, int s
     return force;
 }
 
+/* R of a slide by the force that a Newton method solves for, 0 where nothing brakes it; t and u as brakes.c has them */
+static double resistance(const fu_model *model, const fu_state *state, int j, double t[3], double u[3])
+{
+    double J[3 * (FU_SLIDE_COORDINATES + 1)], K[(FU_SLIDE_COORDINATES + 1) * (FU_SLIDE_COORDINATES + 1)];
+    fu_braking braking;
+    if (!fu_is_braked(model, state, j)) return 0.0;
+    fu_slide_tangent(model, state, j, state->f + 3 * j, J, K);
+    fu_slide_motion(model, state, j, J, t, u);
+    fu_braking_of(model, state, j, t, u, state->f + 3 * j, &braking);
+    return braking.R;
+}
+
 /* Power of what drives slides and joints: from the forces that a Newton method solves for, else from eq 38. */
 static double driving_power(const fu_run *run, const fu_state *state)
 {
@@ -31,16 +45,18 @@ static double driving_power(const fu_run *run, const fu_state *state)
         for (int r = 0; r < model->n_joints + model->n_links; ++r)
             for (int c = 0; c < work->rows[r].rows; ++c)
                 power += work->multipliers[work->rows[r].first + c] * work->rows[r].rate[c];
+        for (int j = 0; j < model->n_joints; ++j)
+            if (model->joints[j].drive >= 0) power -= work->resistance[j] * work->slides[j].s_rate;
         return power;
     }
     for (int j = 0; j < model->n_joints; ++j) {
-        double phi[3], g[FU_SLIDE_COORDINATES], rate, second;
+        double phi[3], g[FU_SLIDE_COORDINATES], t[3], u[3], rate, second;
         int at[FU_SLIDE_COORDINATES + 1];
         if (state->mode[j] != FU_HELD || model->joints[j].drive < 0) continue;
         fu_slide_held(model, state, j, &rate, &second);
         fu_slide_residual(model, state, j, phi, g);
         const int s = fu_slide_coordinates(model, state, j, at);
-        power += (g[s] + force_of_links(model, state, at[s])) * rate;
+        power += (g[s] + force_of_links(model, state, at[s]) - resistance(model, state, j, t, u)) * rate;
     }
     for (int k = 0; k < model->n_links; ++k)
         if (model->links[k].signal >= 0) power += fu_link_driving(model, &model->links[k], state);
@@ -56,10 +72,9 @@ double fu_dissipated_power(const fu_run *run, const fu_state *state)
     if (!model->n_brakes) return power;
     if (!run->integrator->newton) return power + run->accelerator.braking[model->n_joints];
     for (int j = 0; j < model->n_joints; ++j) {
-        double J[3 * (FU_SLIDE_COORDINATES + 1)], K[(FU_SLIDE_COORDINATES + 1) * (FU_SLIDE_COORDINATES + 1)], t[3], u[3];
-        if (!model->joints[j].brake || state->mode[j] != FU_SLIDES) continue;
-        fu_slide_tangent(model, state, j, state->f + 3 * j, J, K);
-        fu_slide_motion(model, state, j, J, t, u);
+        double t[3], u[3];
+        if (!fu_is_braked(model, state, j)) continue;
+        resistance(model, state, j, t, u);
         power += fu_brake_power(model, state, j, t, u, state->f + 3 * j);
     }
     return power;
@@ -116,14 +131,23 @@ void fu_impact(fu_run *run, const double *change, double restitution)
     if (is_driven(model)) run->external += fu_kinetic_energy(model, now->q, now->v) - before + lost;
 }
 
-/* Whether anything moves beyond rounding */
+/* Whether anything moves beyond what step control and rounding leave of a scene at rest */
 int fu_moves(const fu_run *run)
 {
     return run->motion > LEAST_MOTION * run->extent;
 }
 
-/* The books at an output: kinetic, elastic, potential, dissipated, and minus external energy. Not zero where energy
- * has come from nowhere, as where an explicit method's step is beyond its limit. */
+/* What rounding may make of the sum of the energies, J: that of coordinates far from the origin under gravity among it */
+static double rounding(const fu_run *run, const double energies[FU_ENERGIES])
+{
+    double sum = 0.0, weight = 0.0;
+    for (int k = 0; k < FU_ENERGIES; ++k) sum += fabs(energies[k]);
+    for (int i = 0; i < run->model->n_dof; ++i) weight += fabs(run->model->gravity[i]);
+    return ROUNDING * (sum + weight * run->extent);
+}
+
+/* The energy balance at an output: kinetic, elastic, potential, dissipated, and minus external energy. Not zero where
+ * energy has come from nowhere, as where an explicit method's step is beyond its limit. */
 int fu_check_books(fu_run *run, const double energies[FU_ENERGIES], int first)
 {
     fu_books *books = &run->books;
@@ -133,9 +157,11 @@ int fu_check_books(fu_run *run, const double energies[FU_ENERGIES], int first)
         grown += energies[k] - books->first[k];
         changes += fabs(energies[k] - books->first[k]);
     }
-    books->exchanged = fmax(books->exchanged, fmax(0.5 * changes, energies[0]));
+    books->exchanged = fmax(books->exchanged, 0.5 * changes);
+    books->in_motion = fmax(books->in_motion, energies[0]);
+    books->rounding = fmax(books->rounding, rounding(run, energies));
     books->grown = fmax(books->grown, grown);
     books->lost = fmax(books->lost, -grown);
-    if (!fu_moves(run) || grown <= MOST_GROWTH * books->exchanged) return 0;
+    if (run->motion <= BEGUN * run->size || grown <= MOST_GROWTH * fmax(books->exchanged, books->in_motion)) return 0;
     return fu_fail(run, FU_NO_FAILURE, run->now.v, -1);
 }

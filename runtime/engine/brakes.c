@@ -2,11 +2,28 @@
  * r_x, from the tangent t = r_x, the velocity u of the rider's point over the cable's particle and the whole force f.
  *
  * R stands in the row of s, f . r_x = R (eq 30 has zero there), and in eq 38 as G' R. A slide that is held needs none: the
- * force along the cable is then what holding takes.
+ * force along the cable is then what holding takes. Of a slide that is driven it is a part of that: the drive gives the
+ * rest, and R counts for its power and for what goes to heat alone.
  */
 #include "engine.h"
 
 #define LEAST_NORMAL 1e-30 /* N: of a normal force of zero there is no direction */
+
+/* whether R acts on a slide as it is */
+int fu_is_braked(const fu_model *model, const fu_state *state, int j)
+{
+    const fu_joint *joint = &model->joints[j];
+    return joint->brake && (state->mode[j] == FU_SLIDES || (state->mode[j] == FU_HELD && joint->drive >= 0));
+}
+
+/* direction that friction is against, 0 where it goes smoothly with the speed; a drive that stands needs none of it */
+static double way_of(const fu_model *model, const fu_state *state, int j)
+{
+    double rate, second;
+    if (model->joints[j].drive < 0) return state->way[j];
+    fu_slide_held(model, state, j, &rate, &second);
+    return model->joints[j].sticks ? (rate > 0.0) - (rate < 0.0) : 0.0;
+}
 
 /* how far a slide is in the buffer of one side, m; negative outside */
 double fu_compression(const fu_model *model, const fu_state *state, int j, int side)
@@ -29,7 +46,8 @@ void fu_braking_of(const fu_model *model, const fu_state *state, int j, const do
     const fu_joint *joint = &model->joints[j];
     const fu_terminal *stop = pressed(model, state, j);
     const int side = state->contact[j];
-    const double friction[5] = {joint->friction, joint->viscous, joint->velocity, state->way[j], LEAST_NORMAL};
+    const double friction[5] = {joint->friction, joint->viscous, joint->velocity, way_of(model, state, j),
+                                LEAST_NORMAL};
     const double buffer[4] = {stop ? stop->stiffness : 0.0, stop ? stop->damping : 0.0,
                               stop ? fu_compression(model, state, j, side) : 0.0, side};
     double by_x;

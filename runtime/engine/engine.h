@@ -361,6 +361,8 @@ void fu_end_curvature(const fu_model *model, const fu_end *end, const fu_state *
  * the multiplier `first` on, which has `room` for some more; those of the bits `idle` are nil. */
 typedef struct {
     int first, room, rows, idle, n, at[FU_ROW_COORDINATES];
+    int slide; /* that an end of a joint is on, -1; by_s: derivatives by its s */
+    double by_s[6];
     double H[6 * FU_ROW_COORDINATES], W[6], C[6], rate[6], scale[6];
 } fu_rows;
 
@@ -380,6 +382,7 @@ double fu_slide_step(const fu_model *model, const fu_state *state, int j, double
 typedef struct {
     double R, by_t[3], by_u[3], by_f[3], by_s;
 } fu_braking;
+int fu_is_braked(const fu_model *model, const fu_state *state, int j);
 void fu_braking_of(const fu_model *model, const fu_state *state, int j, const double *t, const double *u, const double *f,
               fu_braking *braking);
 double fu_brake_power(const fu_model *model, const fu_state *state, int j, const double *t, const double *u,
@@ -436,12 +439,15 @@ typedef struct {
     double *force, *work, *prescribed; /* n_dof */
     double *multipliers;  /* of slides and links, as eq 38 gives them */
     double *braking;      /* per slide: R; then the power that brakes take; then of each slide's R the last step and its cause */
+    double *resistance;   /* per slide: R of one that is driven */
     int jammed;           /* slide whose R was not found, -1 */
     double *joints;       /* FU_JOINT_OUTPUTS a joint */
     long evaluated;       /* how often it was */
 } fu_accelerator;
+/* traction: the force on the rider along the cable; of a slide that is driven what its drive gives, over s: times s_rate it is
+ * the drive's power */
 typedef struct {
-    double s_rate, s_acceleration, force[3], multiplier[2], traction, residual[3]; /* traction: force along the cable */
+    double s_rate, s_acceleration, force[3], multiplier[2], traction, residual[3];
 } fu_joint_output;
 typedef struct {
     double force[3], moment[3], residual; /* on the second end's carrier, at its point; the largest of phi */
@@ -523,11 +529,11 @@ typedef struct {
     int cause, dof, joint;
 } fu_failure;
 
-/* The books since the start, J: energies then, the most exchanged between them (or in motion), the most that came from
- * nowhere and that went there. */
+/* The energy balance since the start, J: energies then, the most exchanged between them and in motion, the most that came
+ * from nowhere and that went there, and what rounding may make of it. */
 #define FU_ENERGIES 5
 typedef struct {
-    double first[FU_ENERGIES], exchanged, grown, lost;
+    double first[FU_ENERGIES], exchanged, in_motion, grown, lost, rounding;
 } fu_books;
 
 /* Rows of output, one an output time; joint: FU_JOINT_OUTPUTS numbers a joint in the order of fu_joint_output. */
@@ -606,6 +612,7 @@ struct fu_run {
     double recorded; /* s: time of the last row */
     double usual; /* s: the step that is wanted, were it not for an event or an output time */
     double motion, least_motion, extent; /* m: largest so far, assumed at least, largest coordinate of a position */
+    double size; /* m: of the scene as it is at the start, wherever it lies */
     double allowed; /* m: error of the step */
     double closed;  /* m: gaps at the start */
     double ceiling; /* s: that steps stay below, after one that failed */

@@ -223,6 +223,7 @@ cdef extern from "engine.h" nogil:
         double *prescribed
         double *multipliers
         double *braking
+        double *resistance
         int jammed
         double *joints
         long evaluated
@@ -267,7 +268,7 @@ cdef extern from "engine.h" nogil:
     ctypedef struct fu_failure:
         int cause, dof, joint
     ctypedef struct fu_books:
-        double exchanged, grown, lost
+        double exchanged, in_motion, grown, lost, rounding
     ctypedef struct fu_statistics:
         long steps, rejected, newton_iterations, factorisations, crossings, newton_failures, evaluations
         double h_min, h_max, error_sum, time_factor, time_solve, time_residual, time_output

@@ -141,6 +141,7 @@ void fu_link_terms(const fu_model *model, const fu_link *link, const fu_state *s
     link_view view;
     if (fu_link_is_idle(link, state)) {
         rows->n = rows->rows = 0;
+        rows->slide = -1;
         return;
     }
     for (int e = 0; e < 2; ++e) s_rate[e] = link->ends[e].slide >= 0 ? slides[link->ends[e].slide].s_rate : 0.0;
@@ -173,6 +174,7 @@ void fu_link_terms(const fu_model *model, const fu_link *link, const fu_state *s
             rows->at[n++] = every[i];
         }
     rows->n = n;
+    rows->slide = -1;
     for (int e = 0; e < 2; ++e)
         if (link->ends[e].slide >= 0) rows->n += of_slides[link->ends[e].slide].n;
     for (int r = 0; r < m; ++r)
@@ -182,9 +184,11 @@ void fu_link_terms(const fu_model *model, const fu_link *link, const fu_state *s
         if (slide < 0) continue;
         const fu_rows *of = &of_slides[slide];
         const int s = (e ? view.n : one->n) - 1;
+        rows->slide = slide;
         memcpy(rows->at + to, of->at, sizeof(int) * (size_t)of->n);
         for (int r = 0; r < m; ++r) {
             const double by_s = J[r * view.n + s];
+            rows->by_s[r] = link->idle >> r & 1 ? 0.0 : by_s;
             for (int i = 0; i < of->n; ++i) rows->H[r * rows->n + to + i] = by_s * slides[slide].G[i];
             rows->W[r] -= by_s * slides[slide].s_bias;
         }

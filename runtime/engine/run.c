@@ -52,6 +52,26 @@ static double extent(const fu_model *model, const double *origin, const double *
     return largest;
 }
 
+/* the largest side of the box around all nodes and bodies' centres, or what unit slopes and turns move a point by, m */
+static double size(const fu_model *model, const double *origin, const double *q)
+{
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    double largest = extent(model, origin, origin);
+    for (int c = 0; c < model->n_cables; ++c)
+        for (int k = 0, at = model->cables[c].first; k <= model->cables[c].n_elements; ++k, at += model->cables[c].per_node)
+            for (int d = 0; d < model->dim; ++d) {
+                low[d] = fmin(low[d], q[at + d]);
+                high[d] = fmax(high[d], q[at + d]);
+            }
+    for (int b = 0; b < model->n_rigids; ++b)
+        for (int d = 0; d < model->dim; ++d) {
+            low[d] = fmin(low[d], q[model->rigids[b].configuration + d]);
+            high[d] = fmax(high[d], q[model->rigids[b].configuration + d]);
+        }
+    for (int d = 0; d < model->dim; ++d) largest = fmax(largest, high[d] - low[d]);
+    return largest;
+}
+
 static int all_finite(const double *numbers, long n)
 {
     for (long i = 0; i < n; ++i)
@@ -147,6 +167,7 @@ int fu_prepare(fu_run *run)
     if (fu_accelerator_prepare(model, &run->accelerator)) return FU_SINGULAR;
     memset(run->first, 0, sizeof(double) * (size_t)model->n_q);
     run->extent = extent(model, run->first, now->q);
+    run->size = size(model, run->first, now->q);
     return FU_RUNNING;
 }
 

@@ -29,7 +29,7 @@ int fu_has_stops(const fu_model *model)
 static const double *held_force(const fu_run *run, const fu_state *state, int j)
 {
     fu_joint_output *joints = (fu_joint_output *)run->accelerator.joints;
-    if (!run->integrator->newton) return state->f + 3 * j;
+    if (!run->integrator->newton && !fu_ties_a_frame(run->model, j)) return state->f + 3 * j;
     fu_accelerator work = run->accelerator;
     return fu_accelerations(run->model, state, &work, run->work, joints, 0) ? state->f + 3 * j : joints[j].force;
 }
@@ -51,6 +51,8 @@ static double excess(const fu_run *run, const fu_state *state, int j, double *pu
         const double across = f[d] - along * G[d] / sqrt(square);
         normal += across * across;
     }
+    /* what moments put along the cable is not held by friction */
+    if (fu_ties_a_frame(model, j)) along = ((const fu_joint_output *)run->accelerator.joints)[j].traction;
     const double grip = joint->holding * sqrt(normal);
     if (side && !is_hard(model, j, side)) /* the buffer's part */
         along += side * joint->stops[side > 0].stiffness * fu_compression(model, state, j, side) * sqrt(square);

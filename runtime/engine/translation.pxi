@@ -274,7 +274,7 @@ cdef class Translation(Arrays):
         a.rows = <fu_rows *>self._zeros(rows * sizeof(fu_rows) // sizeof(double) + 1)
         a.slides = <fu_slide_state *>self._zeros(n_joints * sizeof(fu_slide_state) // sizeof(double) + 1)
         a.multipliers = self._zeros(model.n_multipliers)
-        a.braking, a.jammed = self._zeros(3 * n_joints + 1), -1
+        a.braking, a.resistance, a.jammed = self._zeros(3 * n_joints + 1), self._zeros(n_joints), -1
         a.joints = self._doubles(np.zeros(n_joints * FU_JOINT_OUTPUTS))
         a.force, a.work = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         a.prescribed = self._doubles(np.zeros(n_dof))
