@@ -38,7 +38,7 @@ def find_rest(problem: StaticProblem) -> Stability | None:
     problem.pushed = False
     if problem.newton():
         found = stability(problem)
-        if not found.unstable:
+        if not found.unstable or not problem.settings.seek_stable:
             return found
         passed, passed_at = found, problem.keep()
     for descend in (stiffen, relax):
