@@ -55,8 +55,8 @@ class EquilibriumSettings(Part):
     which ends in a stable state, or "arc_length", which follows the path of equilibria, also where the load falls again
     and where they are unstable; largest_step of such a path: what two states that follow each other differ by at most,
     of the load fraction, and of positions relative to the size of the scene; seek_stable: whether "newton" goes on
-    where it has come to an unstable state, which else is returned with its label; scale_gravity: whether a load fraction p
-    is p times gravity, too, or whether gravity is whole from the start.
+    where it has come to an unstable state, which else is returned with its label; scale_gravity: whether a load
+    fraction p is p times gravity, too, or whether gravity is whole from the start.
     """
 
     kind: ClassVar[str] = "equilibrium"
