@@ -168,7 +168,8 @@ class Run:
         if name in self._positions:
             return self.variables[self._positions[name]].values[:, :, 0]
         if name not in self.variables:
-            raise UnknownResultError(f'the run has no result "{name}"; {near(name, [*self.variables, *self._positions])}')
+            known = [*self.variables, *self._positions]
+            raise UnknownResultError(f'the run has no result "{name}"; {near(name, known)}')
         return self.variables[name].values
 
     @cached_property

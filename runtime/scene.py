@@ -440,6 +440,7 @@ class Scene:
         max_iterations: int | None = None,
         method: str | None = None,
         largest_step: float | None = None,
+        seek_stable: bool | None = None,
         scale_gravity: bool | None = None,
         start: Equilibrium | None = None,
     ) -> Equilibrium:
@@ -452,7 +453,7 @@ class Scene:
         Raises SceneError; EquilibriumError, which keeps the state that was reached.
         """
         given = {"load_steps": load_steps, "tolerance": tolerance, "max_iterations": max_iterations, "method": method,
-                 "largest_step": largest_step, "scale_gravity": scale_gravity}
+                 "largest_step": largest_step, "seek_stable": seek_stable, "scale_gravity": scale_gravity}
         begin = None if start is None else _equilibrium_state(self, start)
         settings = EquilibriumSettings(**self.equilibrium_settings | {k: v for k, v in given.items() if v is not None})
         self.check()

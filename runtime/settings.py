@@ -66,8 +66,9 @@ class EquilibriumSettings(Part):
     last correction of positions, relative to the size of the scene; max_iterations of a load step; method: "newton",
     which ends in a stable state, or "arc_length", which follows the path of equilibria, also where the load falls again
     and where they are unstable; largest_step of such a path: what two states that follow each other differ by at most,
-    of the load fraction, and of positions relative to the size of the scene; scale_gravity: whether a load fraction p
-    is p times gravity, too, or whether gravity is whole from the start.
+    of the load fraction, and of positions relative to the size of the scene; seek_stable: whether "newton" goes on
+    where it has come to an unstable state, which else is returned with its label; scale_gravity: whether a load
+    fraction p is p times gravity, too, or whether gravity is whole from the start.
     """
 
     kind: ClassVar[str] = "equilibrium"
@@ -76,6 +77,7 @@ class EquilibriumSettings(Part):
     max_iterations: Count = 50
     method: Annotated[str, one_of(("newton", "arc_length"))] = "newton"
     largest_step: Annotated[float, within(0, 1, ends=False)] = 0.1
+    seek_stable: Flag = True
     scale_gravity: Flag = True
 
 

@@ -38,10 +38,10 @@ def find_rest(problem: StaticProblem) -> Stability | None:
     problem.pushed = False
     if problem.newton():
         found = stability(problem)
-        if not found.unstable:
+        if not found.unstable or not problem.settings.seek_stable:
             return found
         passed, passed_at = found, problem.keep()
-    for descend in (stiffen, relax):
+    for descend in (stiffen, relax) if problem.settings.seek_stable else (relax,):
         problem.restore(begin)
         if (found := descend(problem)) is not None:
             if passed is not None:
@@ -59,10 +59,11 @@ def relax(problem: StaticProblem) -> Stability | None:
 
     A step never goes along a direction of negative curvature: it is made shorter until mass outweighs that, so that it
     descends (the test of curvature is that of Chiang & Zavala 2016). A state that its symmetry keeps at rest on an
-    unstable branch is pushed off along the direction of the least curvature.
+    unstable branch is pushed off along the direction of the least curvature. Where any state of rest will do
+    (seek_stable), neither is done.
     """
     mass, near, kept, begin = 1e-3 * problem.fastest, 1e-5, problem.keep(), problem.keep()
-    least = LEAST_MASS * problem.fastest
+    least, descends = LEAST_MASS * problem.fastest, problem.settings.seek_stable
     for _ in range(MOST_RELAXATIONS):
         problem.iterations += 1
         try:
@@ -71,7 +72,7 @@ def relax(problem: StaticProblem) -> Stability | None:
             mass *= 10.0
             continue
         size = problem.length(change)
-        if not size < LARGEST_MOVE * problem.size or problem.curvature(change, mass) < 0:
+        if not size < LARGEST_MOVE * problem.size or (descends and problem.curvature(change, mass) < 0):
             mass *= 4.0
             if not mass < 1e30:
                 return None
@@ -87,13 +88,13 @@ def relax(problem: StaticProblem) -> Stability | None:
         mass = max(least, mass * (0.5 if size < 0.1 * LARGEST_MOVE * problem.size else 1.0))
         if mass > 100 * least and size > near * problem.size:
             continue
-        if stability(problem).unstable:
+        if descends and stability(problem).unstable:
             if size < 1e-6 * problem.size and mass <= least:
                 problem.move(PUSH * problem.size * lowest_direction(problem))
                 kept = problem.keep()
                 problem.pushed = True
             continue
-        if problem.newton() and not (found := stability(problem)).unstable:
+        if problem.newton() and not ((found := stability(problem)).unstable and descends):
             return found
         problem.restore(kept)
         near *= 0.1
