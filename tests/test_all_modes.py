@@ -159,7 +159,7 @@ def test_a_body_of_1e20_kg():
     scene.pin(scene.cable("beam", start=(0, 0, 0), end=(1, 0, 0), elements=4, section=SQUARE, material=STEEL), s=0.0)
     scene.rigid_body("body", mass=1e20, inertia=(1e20,) * 3, position=(1, 0, 0))
     scene.joint("spherical", "body", ("beam", 1.0))
-    with pytest.warns(FunicularWarning, match="6 of those given as 0 may be higher"):  # the beam's own turn
+    with pytest.warns(FunicularWarning, match="1 of those given as 0 may be higher"):  # the beam's own turn
         found = scene.modes(7).angular_frequency
     assert np.all(found[:6] == 0)
     assert found[6] == pytest.approx(np.sqrt(2e11 * SQUARE.area / 1e20), rel=1e-4)
