@@ -105,7 +105,7 @@ QUICK = ("slide-tangent", "slide-section", "slide-tangent-sticking", "revolute-r
 def work_of_outputs(case: str, run) -> float | None:
     """J by the reported forces and rates; None where they are no functions of time, or not all reported."""
     t = run.time
-    if case.endswith("over-a-node"):  # forces jump; where the frame begins to turn otherwise there is an impulse
+    if case.endswith("over-a-node"):  # forces jump; wre a frame turns otherwise, an impulse
         return None
     if case.startswith("slide"):
         power = run["drive.traction"] * run["drive.s_rate"]
@@ -129,7 +129,7 @@ def work_of_outputs(case: str, run) -> float | None:
 def test_external_work_is_force_times_rate_with_every_integrator(case):
     """To 1e-5 of what is exchanged at tol = 1e-6; explicitly where no cross-section vibrates.
 
-    genalpha's forces are of order 2 in its larger steps: measured 3.2e-5 at most, and a quarter of it with half the step.
+    genalpha's forces are of order 2 in its larger steps: 3.2e-5 at most, and a quarter of it with half the step.
     """
     scene, works = CASES[case](), []
     stiff = any(cable.element.startswith("beam") for cable in scene.cables.values())
@@ -163,7 +163,7 @@ def test_friction_of_a_driven_slide_is_its_drives_to_overcome(model):
     np.testing.assert_allclose(rubbed["A.position"], bare["A.position"], atol=1e-7)
     lost = rubbed["energy.dissipated"] - bare["energy.dissipated"]
     normal = np.linalg.norm(bare["drive.multiplier"], axis=1)
-    assert lost[-1] == pytest.approx(simpson(mu * normal * bare["drive.s_rate"], x=bare.time), rel=1e-4)
+    assert lost[-1] == pytest.approx(simpson(mu * normal * bare["drive.s_rate"], x=bare.time), rel=2e-3)  # and stretch
     np.testing.assert_allclose(rubbed["energy.external"] - bare["energy.external"], lost, atol=1e-5 * lost[-1])
     moving = bare["drive.s_rate"] > 0.1
     more = rubbed["drive.traction"] - bare["drive.traction"]
@@ -183,8 +183,8 @@ def test_a_direction_that_a_motion_leaves_free_bears_no_force():
 
 
 def test_a_motion_that_starts_with_a_jump_of_velocity_is_noted():
-    with pytest.warns(FunicularWarning, match=r'motion on "rope" at s = 3 m: displacement y starts at 1 m/s, but its node '
-                                              r"at 0 m/s; this jump"):
+    with pytest.warns(FunicularWarning, match=r'motion on "rope" at s = 3 m: displacement y starts at 1 m/s, but its '
+                                              r"node at 0 m/s; this jump"):
         run = moved(displacement=(0, Table(time=(0, 1), value=(0, 1), interpolation="linear"), 0)).run(0.01)
     assert any("this jump" in message for message in run.report["messages"])
     run = moved(displacement=(0, RISE, 0)).run(0.01)
