@@ -113,8 +113,8 @@ def work_of_outputs(case: str, run) -> float | None:
             power += 15.0 * rotate(run["A.orientation"], run["A.angular_velocity"])[:, 2]
     elif case in ("motion", "motion-one-direction"):
         power = np.sum(run["rope@3.force"] * run["rope.nodal_velocity"][:, -1, 0], axis=1)
-    elif "rope" not in case and not case.startswith("motion"):  # a joint to the ground: of its force and moment at the body's end
-        end = rotate(run["A.orientation"], (0, 0.2 if "distance" in case and case.startswith("dist") else 0.3, 0))
+    elif "rope" not in case and not case.startswith("motion"):  # of a joint to the ground, at the body's end
+        end = rotate(run["A.orientation"], (0, 0.2 if case.startswith("distance") else 0.3, 0))
         turn = rotate(run["A.orientation"], run["A.angular_velocity"])
         power = np.sum(run["drive.force"] * (run["A.velocity"] + np.cross(turn, end)), axis=1)
         power += np.sum(run["drive.moment"] * turn, axis=1)
