@@ -1,13 +1,14 @@
 """Work of what drives a scene: the time integral of force times rate, for every drive, frame, joint and integrator.
 
-Work is recorded as energy.external. It is compared with what the balance of all other energies asks for, with the integral
-of the reported forces times rates (Simpson's rule over a fine output), and between integrators.
+Work is recorded as energy.external. It is compared with what the balance of all other energies asks for, with the
+integral of the reported forces times rates (Simpson's rule over a fine output), and between integrators.
 """
 
 import numpy as np
 import pytest
-from funicular import Friction, Harmonic, Material, Ramp, Rectangle, Scene, Table
+from funicular import Friction, FunicularWarning, Harmonic, Material, Ramp, Rectangle, Scene, SceneError, Table
 from funicular.rotations import rotate
+from funicular.scene_file import loads
 from scipy.integrate import simpson
 
 SECTION = Rectangle(height=0.02, width=0.02)
@@ -44,9 +45,9 @@ def driven_slide(frame="point", roll="free", element="cable12", friction=None, *
 def driven_cable() -> Scene:
     """A cable that hangs from the slide by its end."""
     scene = hung()
-    scene.cable("link", start=(0.7, 0, 0), end=(0.7, -1, 0), elements=2, element="cable12", section=SECTION,
+    scene.cable("link", start=(0.6, 0, 0), end=(0.6, -1, 0), elements=2, element="cable12", section=SECTION,
                 material=SOFT, up=(1, 0, 0))
-    scene.slide(("link", 0.0), along="rope", s=0.7, name="drive", drive=Ramp(start=0, end=TIME, before=0.7, after=1.2))
+    scene.slide(("link", 0.0), along="rope", s=0.6, name="drive", drive=WITHIN)
     return scene
 
 
@@ -87,7 +88,6 @@ CASES = {
     "prismatic": lambda: driven_joint("prismatic", distance=RISE, axis=(1, 0.5, 0)),
     "prismatic-rope": lambda: driven_joint("prismatic", "rope", distance=RISE, axis=(1, 0.5, 0)),
     "cylindrical-angle": lambda: driven_joint("cylindrical", angle=RISE, axis=(1, 0, 0)),
-    "cylindrical-distance": lambda: driven_joint("cylindrical", distance=RISE, axis=(1, 0.5, 0)),
     "distance": lambda: driven_joint("distance", distance=Ramp(start=0, end=TIME, before=0.1, after=0.3)),
     "distance-rope": lambda: driven_joint("distance", "rope", distance=Ramp(start=0, end=TIME, before=0.1, after=0.3)),
     "revolute-planar": lambda: driven_joint("revolute", planar=True, angle=RISE, **AXIS),
@@ -97,6 +97,7 @@ CASES = {
     "motion-rotation": lambda: moved(rotation=((0, 0, 1), RISE)),
     "motion-both": lambda: moved(displacement=(0, RISE, 0), rotation=((0, 0, 1), RISE)),
 }
+BOUNDS = {"genalpha": 5e-5, "radau": 1e-5, "explicit": 1e-5}
 QUICK = ("slide-tangent", "slide-section", "slide-tangent-sticking", "revolute-rope", "motion-one-direction")
 """The others are slow."""
 
@@ -104,16 +105,16 @@ QUICK = ("slide-tangent", "slide-section", "slide-tangent-sticking", "revolute-r
 def work_of_outputs(case: str, run) -> float | None:
     """J by the reported forces and rates; None where they are no functions of time, or not all reported."""
     t = run.time
-    if case.endswith("tangent-over-a-node"):  # an impulse, where the frame begins to turn otherwise
+    if case.endswith("over-a-node"):  # forces jump; wre a frame turns otherwise, an impulse
         return None
     if case.startswith("slide"):
         power = run["drive.traction"] * run["drive.s_rate"]
         if "A.position" in run:
             power += 15.0 * rotate(run["A.orientation"], run["A.angular_velocity"])[:, 2]
-    elif case.startswith("motion") and "rotat" not in case:
+    elif case in ("motion", "motion-one-direction"):
         power = np.sum(run["rope@3.force"] * run["rope.nodal_velocity"][:, -1, 0], axis=1)
-    elif "rope" not in case and "motion" not in case:  # a joint to the ground: of its force and moment at the body's end
-        end = rotate(run["A.orientation"], (0, 0.2 if "distance" in case and case.startswith("dist") else 0.3, 0))
+    elif "rope" not in case and not case.startswith("motion"):  # of a joint to the ground, at the body's end
+        end = rotate(run["A.orientation"], (0, 0.2 if case.startswith("distance") else 0.3, 0))
         turn = rotate(run["A.orientation"], run["A.angular_velocity"])
         power = np.sum(run["drive.force"] * (run["A.velocity"] + np.cross(turn, end)), axis=1)
         power += np.sum(run["drive.moment"] * turn, axis=1)
@@ -123,9 +124,13 @@ def work_of_outputs(case: str, run) -> float | None:
 
 
 @pytest.mark.filterwarnings("ignore:initial velocities broke a joint", "ignore:motion on")
-@pytest.mark.parametrize("case", [pytest.param(name, marks=() if name in QUICK else pytest.mark.slow) for name in CASES])
+@pytest.mark.parametrize("case", [pytest.param(name, marks=() if name in QUICK else pytest.mark.slow)
+                                  for name in CASES])
 def test_external_work_is_force_times_rate_with_every_integrator(case):
-    """To 1e-5 of what is exchanged at tol = 1e-6; explicitly where no cross-section vibrates."""
+    """To 1e-5 of what is exchanged at tol = 1e-6; explicitly where no cross-section vibrates.
+
+    genalpha's forces are of order 2 in its larger steps: 3.2e-5 at most, and a quarter of it with half the step.
+    """
     scene, works = CASES[case](), []
     stiff = any(cable.element.startswith("beam") for cable in scene.cables.values())
     for integrator in INTEGRATORS[:2] if stiff else INTEGRATORS:
@@ -133,8 +138,54 @@ def test_external_work_is_force_times_rate_with_every_integrator(case):
         balance, works = run.energy_balance(), [*works, run["energy.external"][-1]]
         by_outputs = work_of_outputs(case, run)
         print(case, integrator, works[-1], np.abs(balance.relative).max(), by_outputs, run.report["steps"])
-        assert np.abs(balance.relative).max() < 1e-5
-        assert works[-1] == pytest.approx(works[0], abs=1e-5 * balance.exchanged)
+        close = BOUNDS[integrator]
+        assert np.abs(balance.relative).max() < close
         if by_outputs is not None:
-            assert works[-1] == pytest.approx(by_outputs, abs=1e-5 * balance.exchanged)
+            assert works[-1] == pytest.approx(by_outputs, abs=close * balance.exchanged)
+    assert works == pytest.approx([works[-1]] * len(works), abs=BOUNDS["genalpha"] * balance.exchanged)
     assert abs(works[0]) > 1e-3 * balance.exchanged
+
+
+def test_a_rider_tied_to_the_tangent_feels_force_equal_to_mass_times_acceleration():
+    """The frame's moment puts a force along the cable on it, which was left out."""
+    run = CASES["slide-tangent"]().run(TIME, integrator="radau", tol=1e-6, progress=False)
+    force = 2.0 * (run["A.acceleration"] + np.array([0, 9.81, 0]))
+    np.testing.assert_allclose(run["drive.force"], force, atol=1e-9 * np.abs(force).max())
+
+
+@pytest.mark.parametrize("model", ["stick", "regularised"])
+def test_friction_of_a_driven_slide_is_its_drives_to_overcome(model):
+    """The motion is the same; the drive gives N mu more, and that goes to heat."""
+    drive, mu = {"drive": Ramp(start=0.02, end=TIME, before=0.6, after=0.95)}, 0.3
+    bare, rubbed = (driven_slide(friction=friction, **drive).run(TIME, integrator="radau", tol=1e-7,
+                                                                output_step=TIME / OUTPUTS, progress=False)
+                    for friction in (None, Friction(coefficient=mu, model=model, velocity=1e-6)))
+    np.testing.assert_allclose(rubbed["A.position"], bare["A.position"], atol=1e-7)
+    lost = rubbed["energy.dissipated"] - bare["energy.dissipated"]
+    normal = np.linalg.norm(bare["drive.multiplier"], axis=1)
+    assert lost[-1] == pytest.approx(simpson(mu * normal * bare["drive.s_rate"], x=bare.time), rel=2e-3)  # and stretch
+    np.testing.assert_allclose(rubbed["energy.external"] - bare["energy.external"], lost, atol=1e-5 * lost[-1])
+    moving = bare["drive.s_rate"] > 0.1
+    more = rubbed["drive.traction"] - bare["drive.traction"]
+    np.testing.assert_allclose(more[moving], (mu * normal)[moving], rtol=0.05)  # per s: the cable is stretched
+
+
+def test_a_direction_that_a_motion_leaves_free_bears_no_force():
+    scene = CASES["motion-one-direction"]()
+    run = scene.run(TIME, tol=1e-5, progress=False)
+    np.testing.assert_allclose(run["rope@3.force"][:, [0, 2]], 0, atol=1e-12)
+    np.testing.assert_allclose(run["rope.nodal_vectors"][:, -1, 0, 1], RISE.value(run.time), atol=1e-12)
+    assert np.ptp(run["rope.nodal_vectors"][:, -1, 0, 0]) > 1e-4
+    text = scene.to_toml()
+    assert '"free"' in text and loads(text, "text").to_toml() == text
+    with pytest.raises(SceneError, match="displacement leaves all directions free"):
+        moved(displacement=(None, "free", None))
+
+
+def test_a_motion_that_starts_with_a_jump_of_velocity_is_noted():
+    with pytest.warns(FunicularWarning, match=r'motion on "rope" at s = 3 m: displacement y starts at 1 m/s, but its '
+                                              r"node at 0 m/s; this jump"):
+        run = moved(displacement=(0, Table(time=(0, 1), value=(0, 1), interpolation="linear"), 0)).run(0.01)
+    assert any("this jump" in message for message in run.report["messages"])
+    run = moved(displacement=(0, RISE, 0)).run(0.01)
+    assert run.report["messages"] == []

@@ -60,9 +60,9 @@ def test_a_cable_that_is_pushed_through_itself():
 @pytest.mark.parametrize(("settings", "says"), [
     ({"step": 0.1}, r"the estimated errors of the steps sum up to 0.0\d+ of the largest motion: take a smaller step"),
     ({"step": 0.1}, r"\d+ times no step of 0.1 s was possible: it was divided, down to 0.0\d+ s"),
-    ({"step": 0.02, "spectral_radius": 0.0}, r"the energy balance is off by up to [\d.]+ J, 0.\d+ of the [\d.]+ J exchanged: energy "
-                                             r"went that neither .*: take a smaller step, or none, so that tol chooses "
-                                             r"it, or a spectral_radius nearer to 1")])
+    ({"step": 0.02, "spectral_radius": 0.0},
+     r"the energy balance is off by up to [\d.]+ J, 0.\d+ of the [\d.]+ J exchanged: energy went that neither .*: "
+     r"take a smaller step, or none, so that tol chooses it, or a spectral_radius nearer to 1")])
 def test_coarse_results_are_told(settings, says):
     with pytest.warns(FunicularWarning, match=says):
         run = rider(0.25, 1.0, elements=3).run(1.0, output_step=0.1, progress=False, **settings)
