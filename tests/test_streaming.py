@@ -238,6 +238,27 @@ def test_ctrl_c_leaves_what_there_is_and_goes_on(uninterrupted, tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["x.nc"]
 
 
+@pytest.mark.parametrize("writes", range(6))
+def test_dying_when_it_goes_on_after_ctrl_c(uninterrupted, tmp_path, monkeypatch, writes):
+    """The report tells how many times the file has: it must not be the older one when these are fewer again."""
+    path = tmp_path / "x.nc"
+
+    def stop(time: float) -> None:
+        if time > 0.095:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(streaming, "CHECKPOINT_INTERVAL", 1e9)
+    with pytest.warns(FunicularWarning, match="interrupted"):
+        short().run(**SETTINGS, save=path, progress=stop)
+    with monkeypatch.context() as patch:
+        failing(patch, writes, Killed())
+        with pytest.raises(Killed):
+            resumed(path)
+    assert load_run(path).status in ("interrupted", "unfinished")
+    resumed(path)
+    assert content(path) == uninterrupted
+
+
 def test_a_run_that_ends_early_leaves_its_rows_and_no_checkpoint(tmp_path):
     path = tmp_path / "x.nc"
     with pytest.raises(EndOfCableError) as stopped:
