@@ -19,8 +19,8 @@ FOLDED, STRETCHED = 0.8, 3.0
 ROUNDED = 4e-16
 """Of the farthest coordinate: below this the error control does not go (engine/run.c)."""
 
-AT_REST = 1e3
-"""Times that rounding: what moves less may be at rest."""
+LEAST_MOTION = 1e-9
+"""Of the farthest coordinate: what moves less may be at rest (engine/run.c)."""
 
 QUIET_ERROR, QUIET_LOSS, LOOSE_LOSS = 5e-3, 0.01, 0.05
 """Of the largest motion, and of the energy exchanged: errors of a fixed step, and energy that nothing explains, beyond
@@ -110,7 +110,7 @@ def notes(engine, settings: RunSettings) -> list[str]:
         told.append(f"{counts['rejected_steps']} times no step of {settings.step:g} s was possible: it was divided, "
                     f"down to {counts['smallest_step_s']:.3g} s")
     rounded, motion = ROUNDED * engine.extent, counts["largest_motion_m"]
-    if settings.step is None and AT_REST * rounded < motion < rounded / settings.tol:
+    if settings.step is None and LEAST_MOTION * engine.extent < motion < rounded / settings.tol:
         told.append(f"positions are rounded to {rounded:.2g} m so far from the origin, which is more than tol = "
                     f"{settings.tol:g} allows: draw the scene nearer to it")
     if not engine.moves:

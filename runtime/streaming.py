@@ -143,8 +143,8 @@ class Stream:
         self._taken = facts.rows
         events[:] = facts.events
         self._resumed = [*facts.resumed_at_s, engine.time]
+        self._report(self._unfinished())  # first: the older one may tell the number of times
         self._written(lambda: self._file.truncate(self._taken))
-        self._report(self._unfinished())
 
     def pause(self) -> None:
         """Write rows and a checkpoint if it is time to, or if the buffer does not last to the next pause."""

@@ -238,6 +238,30 @@ def test_ctrl_c_leaves_what_there_is_and_goes_on(uninterrupted, tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["x.nc"]
 
 
+@pytest.mark.parametrize("method", ["add_report", "truncate"])
+def test_dying_when_it_goes_on_after_ctrl_c(uninterrupted, tmp_path, monkeypatch, method):
+    """The report tells how many times the file has: it must not be the older one when these are fewer again."""
+    path = tmp_path / "x.nc"
+
+    def stop(time: float) -> None:
+        if time > 0.095:
+            raise KeyboardInterrupt
+
+    def die(*given) -> None:
+        raise Killed
+
+    monkeypatch.setattr(streaming, "CHECKPOINT_INTERVAL", 1e9)
+    with pytest.warns(FunicularWarning, match="interrupted"):
+        short().run(**SETTINGS, save=path, progress=stop)
+    with monkeypatch.context() as patch:
+        patch.setattr(File, method, die)
+        with pytest.raises(Killed):
+            resumed(path)
+    assert len(load_run(path).time) == 11
+    resumed(path)
+    assert content(path) == uninterrupted
+
+
 def test_a_run_that_ends_early_leaves_its_rows_and_no_checkpoint(tmp_path):
     path = tmp_path / "x.nc"
     with pytest.raises(EndOfCableError) as stopped:
