@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from funicular.validation import Part, Vector, finite, number, vector, xyz
+from funicular.validation import Part, Vector, finite, number, shown, vector, xyz
 from pydantic import PlainValidator
 
 
@@ -33,12 +33,12 @@ def _anchor(value: Any) -> Anchor:
         return Anchor(on=on)
     remedy = 'give a point (x, y, z), a body, ("body", (x, y, z)) or ("cable", s)'
     if not isinstance(value, list | tuple) or len(value) not in (2, 3):
-        raise ValueError(f"must be an end, got {value!r}", remedy)
+        raise ValueError(f"must be an end, got {shown(value)}", remedy)
     if len(value) == 3:
         return Anchor(at=vector(value, "m"))
     on, place = getattr(value[0], "name", value[0]), value[1]
     if not isinstance(on, str):
-        raise ValueError(f"must be an end, got {value!r}", remedy)
+        raise ValueError(f"must be an end, got {shown(value)}", remedy)
     if isinstance(place, list | tuple) or (hasattr(place, "tolist") and getattr(place, "ndim", 0)):
         return Anchor(on=on, at=vector(place, "m"))
     return Anchor(on=on, s=number(place, "m"))

@@ -13,7 +13,7 @@ from funicular.errors import near
 from funicular.materials import Material
 from funicular.sections import AnySection, General
 from funicular.stiffness import KERNEL_LAWS, kernel_law
-from funicular.validation import Count, Name, Part, Vector, one_of, positive, show, xyz
+from funicular.validation import Count, Name, Part, Vector, one_of, positive, show, shown, xyz
 from pydantic import PlainValidator, ValidationInfo, model_validator
 
 EXACT = 1e-9
@@ -34,7 +34,7 @@ def _library(value: Any) -> str | None:
     if value is None:
         return None
     if not isinstance(value, str | os.PathLike):
-        raise ValueError(f"must be a directory, got {value!r}")
+        raise ValueError(f"must be a directory, got {shown(value)}")
     of_library(os.path.abspath(value))
     return os.path.abspath(value)
 
@@ -44,7 +44,7 @@ def _element(value: Any, info: ValidationInfo) -> str:
     library = info.data.get("library")
     known = of_library(library)
     if not isinstance(value, str):
-        raise ValueError(f"must be a name, got {value!r}", "known: " + ", ".join(known))
+        raise ValueError(f"must be a name, got {shown(value)}", "known: " + ", ".join(known))
     if value not in known:
         where = f' in library "{library}"' if library else ""
         raise ValueError(f'"{value}" is not known{where}', near(value, known))
@@ -110,13 +110,14 @@ class Cable(Part):
                 raise ValueError("has points and a curve", "give one of them")
             curve, elements = data.pop("curve"), data.get("elements")
             if not callable(curve):
-                raise ValueError(f"curve must be a function of u from 0 to 1, got {curve!r}", "or give points")
+                raise ValueError(f"curve must be a function of u from 0 to 1, got {shown(curve)}", "or give points")
             data["points"] = curves.sample(curve, min(elements, 1000) if isinstance(elements, int) else 1)
         try:
             known = of_library(_library(data.get("library")))
         except ValueError:  # the check of the library says it
             return data
-        kind = known.get(str(data.get("element", "beam24")))
+        element = data.get("element", "beam24")
+        kind = known.get(element) if isinstance(element, str) else None
         if kind is not None:
             data["law"] = _law(kind, data)
         return data
@@ -387,6 +388,10 @@ def _law(kind: ElementKind, data: dict) -> str:
     possible = possible_laws(kind)
     if law is None and not (strain or curvature):
         return possible[0]
+    if not isinstance(law, str | None):
+        raise ValueError(f"law must be a name, got {shown(law)}", "possible: " + ", ".join(possible))
+    if not isinstance(strain, str | None) or not isinstance(curvature, str | None):
+        return possible[0]  # the checks of strain and curvature refuse it
     if strain or curvature:
         if not kind.is_cable:
             raise ValueError(f"strain and curvature are for cable elements, {element} is a beam",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 import warnings
 from collections.abc import Iterator
@@ -138,7 +137,6 @@ def bench(
 
     The reference is computed, too, and how far it is converged is told. Combinations that fail are told, as well.
     """
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # one thread, as CPU time says it; before NumPy is loaded
     from funicular.bench import bench, grid
     from funicular.bench_report import print_table, save
     from funicular.results import check_writable

@@ -13,7 +13,7 @@ from math import acos, degrees
 from typing import Any
 
 import numpy as np
-from funicular.validation import show, vector
+from funicular.validation import show, shown, vector
 
 FINE = 33
 """Places at which an interval between two points is looked at for folds."""
@@ -146,7 +146,7 @@ def points(value: Any) -> tuple[tuple[float, ...], ...]:
     """Two points or more, (x, y, z) in m each, neighbours different; else ValueError."""
     rows = value.tolist() if isinstance(value, np.ndarray) else value
     if not isinstance(rows, list | tuple) or len(rows) < 2:
-        raise ValueError(f"must be a list of 2 points or more, got {rows!r}")
+        raise ValueError(f"must be a list of 2 points or more, got {shown(rows)}")
     result = []
     for number, row in enumerate(rows, start=1):
         try:
@@ -190,7 +190,7 @@ def sample(curve: Callable[[float], Iterable[float]], least: int) -> np.ndarray:
                 "look for a kink or a fold there; join two cables where there has to be one")
 
 
-@lru_cache(maxsize=128)
+@lru_cache(maxsize=4096)
 def shape_through(points: tuple[tuple[float, ...], ...]) -> Line | Spline:
     """The shape through checked points: a line if all of them lie on one, in order."""
     way = np.array(points)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, Any, ClassVar
 
 from funicular.errors import near
-from funicular.validation import Part, not_negative, positive, within
+from funicular.validation import Part, not_negative, positive, shown, within
 from pydantic import PlainValidator, model_validator
 
 WORDS = ("error", "leave")
@@ -55,14 +55,16 @@ def _end(value: Any) -> str | Stop:
             raise ValueError(f'"{value}" is not known', near(value, WORDS))
         return value
     if not isinstance(value, dict):
-        raise ValueError(f"must be a word or a stop such as HardStop(restitution=0.5), got {value!r}",
+        raise ValueError(f"must be a word or a stop such as HardStop(restitution=0.5), got {shown(value)}",
                          "words: " + ", ".join(WORDS))
     data = dict(value)
     stop = data.pop("stop", None)
     if stop is None:
         raise ValueError("has no stop", "known: " + ", ".join(STOPS))
+    if not isinstance(stop, str):
+        raise ValueError(f"has the stop {shown(stop)}, not a name", "known: " + ", ".join(STOPS))
     if stop not in STOPS:
-        raise ValueError(f'has the unknown stop "{stop}"', near(str(stop), STOPS))
+        raise ValueError(f'has the unknown stop "{stop}"', near(stop, STOPS))
     return STOPS[stop].model_validate(data)
 
 

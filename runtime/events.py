@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Annotated, Any, ClassVar
 
-from funicular.validation import Name, Part, finite, one_of
+from funicular.validation import Name, Part, finite, one_of, shown
 from pydantic import PlainValidator, model_validator
 
 
 def _function(value: Any) -> Callable | None:
     if value is not None and not callable(value):
-        raise ValueError(f"must be a function of (time, state), got {value!r}")
+        raise ValueError(f"must be a function of (time, state), got {shown(value)}")
     return value
 
 
 def _text(value: Any) -> str | None:
     if value is not None and not isinstance(value, str):
-        raise ValueError(f'must be text such as "A.position.y", got {value!r}')
+        raise ValueError(f'must be text such as "A.position.y", got {shown(value)}')
     return value
 
 

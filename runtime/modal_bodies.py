@@ -12,7 +12,7 @@ from funicular.cables import EXACT, Cable
 from funicular.materials import Material
 from funicular.rotations import rotate
 from funicular.sections import AnySection
-from funicular.validation import Count, Flag, Name, Part, Vector, not_negative, one_of, show, xyz
+from funicular.validation import Count, Flag, Name, Part, Vector, not_negative, one_of, show, shown, xyz
 from pydantic import PlainValidator, model_validator
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 def _path(value: Any) -> str | None:
     if value is not None and not isinstance(value, str | os.PathLike):
-        raise ValueError(f"must be a file, got {value!r}")
+        raise ValueError(f"must be a file, got {shown(value)}")
     return None if value is None else os.fspath(value)
 
 

@@ -31,6 +31,7 @@ from funicular.rotations import rotate
 from funicular.scene import Scene
 from funicular.settings import RunSettings
 from funicular.streaming import Stream, pauses
+from funicular.threads import one_blas_thread, share_elements
 from funicular.watching import Watcher
 from scipy.sparse import csr_array
 
@@ -391,6 +392,7 @@ def _joint(slide: Slide, scene: Scene, holder: Holder, signal, number: int, mult
     )
 
 
+@one_blas_thread
 def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float], None], initial=None,
              stream: Stream | None = None) -> Recording:
     """Integrate a checked scene; calls on_progress(time reached in s) about twenty times a second.
@@ -413,8 +415,7 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float],
         step = output_step / np.ceil(output_step / settings.step * (1 - 1e-9))
         if step < settings.step * (1 - 1e-6):
             messages.append(f"step {settings.step:.6g} s was made {step:.6g} s, so that steps end on output times")
-    if settings.threads > 1 and not engine.use_threads(settings.threads):
-        messages.append(f"threads = {settings.threads} came to 1: the compiler that built this had no OpenMP")
+    messages += share_elements(engine, settings.threads)
     method, reason = choose(settings, scene, model, engine)
     if method.name == "energy":
         _check_conserves(model, scene, engine, method)

@@ -66,6 +66,8 @@ def joined(scene: Scene, node: Node, without: Join | None = None) -> set[Node]:
     while new:
         at = new.pop()
         for join in scene.joins.values():
+            if at[0] not in (join.cable, join.to):
+                continue
             pair = set(ends_of(scene, join))
             if join is not without and at in pair:
                 new += pair - found
@@ -76,7 +78,8 @@ def joined(scene: Scene, node: Node, without: Join | None = None) -> set[Node]:
 def holder(scene: Scene, node: Node) -> Support | None:
     """What holds ``node`` or one that is joined to it."""
     nodes = joined(scene, node)
-    return next((s for s in scene.supports if node_of(scene, s) in nodes), None)
+    cables = {cable for cable, _ in nodes}
+    return next((s for s in scene.supports if s.cable in cables and node_of(scene, s) in nodes), None)
 
 
 def check_support(scene: Scene, support: Support) -> None:

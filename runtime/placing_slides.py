@@ -56,13 +56,15 @@ def _check_rider(scene: Scene, slide: Slide) -> None:
     if slide.body == slide.along:
         raise SceneError(slide.where, f'cable "{slide.along}" rides itself', "let another cable ride, or a body")
     for other in scene.slides.values():
-        if (other.rider, other.along) == (slide.rider, slide.along):
+        if (other.body, other.along) != (slide.body, slide.along):
+            continue
+        if other.rider == slide.rider:
             what = f'body "{slide.body}"' if slide.body_s is None else f'cable "{slide.body}"'
             raise SceneError(slide.where, f'holds the same point of {what} on cable "{slide.along}" as slide '
                              f'"{other.name}"', "leave one of them out, or give them different points "
                              + ("at" if slide.body_s is None else "body_s"))
         both = slide.prescribed is not None and other.prescribed is not None
-        if both and slide.body in scene.bodies and (other.body, other.along) == (slide.body, slide.along):
+        if both and slide.body in scene.bodies:
             raise SceneError(slide.where, f'drives body "{slide.body}" along cable "{slide.along}", as slide '
                              f'"{other.name}" does', "leave one of the drives out")
 

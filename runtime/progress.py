@@ -14,7 +14,7 @@ def progress_bar(duration: float, progress: bool | OnProgress | None) -> Iterato
     """Yields the function to call with each time reached (s); ``progress`` as in `Scene.run`."""
     if callable(progress):
         yield progress
-    elif progress or (progress is None and sys.stderr.isatty()):
+    elif progress is True or (progress is None and sys.stderr.isatty()):
         from rich.console import Console
         from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 

@@ -36,7 +36,7 @@ from funicular.results import Run
 from funicular.sections import Section
 from funicular.settings import EquilibriumSettings, ModeSettings, RunSettings
 from funicular.supports import Support
-from funicular.validation import Part, show, vector
+from funicular.validation import Part, show, shown, vector
 
 if TYPE_CHECKING:
     from funicular.modal import Modes
@@ -364,6 +364,9 @@ class Scene:
         when they are asked for. resume: go on from there, to the same numbers. progress: a bar (True), none (False), a
         bar if a terminal watches (None), or a function of the time reached.
 
+        While it goes on the BLAS of NumPy and SciPy has one thread, in the whole process: what other threads of it
+        compute meanwhile with large matrices takes longer.
+
         Raises SceneError, ResultFileError, EquilibriumError; EndOfCableError and ConvergenceError, whose ``run`` holds
         everything up to then. Ctrl-C returns what was computed, with a `FunicularWarning`.
         """
@@ -377,7 +380,7 @@ class Scene:
             "spectral_radius": spectral_radius,
             "initial": initial if state is None else "equilibrium",
             "threads": threads,
-            "save": None if save is None else os.fspath(save),
+            "save": save,
         }
         settings = RunSettings(**self.run_settings | {k: v for k, v in given.items() if v is not None})
         self.check()
@@ -387,6 +390,8 @@ class Scene:
 
             for joint in self.joints.values():
                 check_drive(self, joint)
+        if not isinstance(resume, bool):
+            raise SceneError("run", f"resume must be true or false, got {shown(resume)}")
         if resume and settings.save is None:
             raise ResultFileError("run: there is nothing to resume without a file of results; name it with save")
         from funicular.streaming import Stream
@@ -449,23 +454,33 @@ class Scene:
 
         return dumps(self)
 
-    @property
-    def _named(self) -> dict[str, Part]:
-        """Results are addressed by name, so that all named parts share one space of names."""
-        return self.cables | self.joins | self.bodies | self.joints | self.slides | self.loads | self.springs
+    def _part_named(self, name: str, kind: str) -> Part | None:
+        """The part whose name that is: results are addressed by name, so that all but events share one space of names.
+        """
+        groups = (self.cables, self.joins, self.bodies, self.joints, self.slides, self.loads, self.springs)
+        return next((group[name] for group in ([self.events] if kind == "event" else groups) if name in group), None)
 
     def _claim(self, part: Part) -> None:
-        if part.name in self._named:
-            kind = self._named[part.name].kind
-            raise SceneError(part.where, f"there is already a {kind} of that name", "give each part its own name")
+        if (other := self._part_named(part.name, part.kind)) is not None:
+            raise SceneError(part.where, f"there is already a {other.kind} of that name", "give each part its own name")
         if part.name in RESERVED:
             raise SceneError(part.where, "that name is taken by the results", "give another one")
 
     def _free_name(self, kind: str) -> str:
-        number = 1
-        while f"{kind}_{number}" in self._named:
-            number += 1
-        return f"{kind}_{number}"
+        """A name with a number that no part has: the least one where those below it are taken one after the other.
+
+        Found by doubling and bisection, so that a thousand unnamed parts do not cost a million look-ups.
+        """
+        taken, free = 0, 1
+        while self._part_named(f"{kind}_{free}", kind) is not None:
+            taken, free = free, 2 * free
+        while free - taken > 1:
+            middle = (taken + free) // 2
+            if self._part_named(f"{kind}_{middle}", kind) is None:
+                free = middle
+            else:
+                taken = middle
+        return f"{kind}_{free}"
 
     def _add_cable(self, cable: Cable) -> None:
         for other in self.cables.values():
@@ -506,6 +521,7 @@ def _equilibrium_state(scene: Scene, state: Equilibrium) -> Equilibrium:
     from funicular.static import Equilibrium
 
     if not isinstance(state, Equilibrium):
-        raise SceneError("scene", f"the state to start from must be one that equilibrium() returned, got {state!r}")
+        raise SceneError("scene", "the state to start from must be one that equilibrium() returned, got "
+                         + shown(state))
     state.check_fits(scene)
     return state

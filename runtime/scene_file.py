@@ -69,6 +69,10 @@ def loads(text: str, origin: str, directory: str | os.PathLike = "") -> Scene:
         tables = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:  # its text gives line and column
         raise SceneError(origin, f"is not valid TOML: {error}") from None
+    except RecursionError:
+        raise SceneError(origin, "is nested too deeply") from None
+    except ValueError:  # Python refuses to read an integer of thousands of digits
+        raise SceneError(origin, "has an integer of too many digits", "write it as a number such as 1e9") from None
     for name in tables:
         if name not in TABLES:
             raise SceneError(origin, f'"{name}" is not known here', near(name, TABLES))

@@ -10,10 +10,12 @@ from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from funicular.errors import SceneError, near
-from funicular.validation import Part, positive, show, vector
+from funicular.validation import Part, positive, show, shown, vector
 from pydantic import Field, PlainValidator, model_validator
 
 Length = Annotated[float, positive("m")]
+THINNEST = 1e-12
+"""Of its radius: the wall of a tube, whose moments are differences."""
 ZETA_5 = 1.03692775514336992633  # Σ 1/n⁵
 
 
@@ -137,6 +139,9 @@ class Tube(Section):
             raise ValueError(
                 f"inner_radius must be smaller than outer_radius ({self.outer_radius:g} m), got {self.inner_radius:g} m"
             )
+        if not self.outer_radius - self.inner_radius >= THINNEST * self.outer_radius:
+            raise ValueError(f"the wall must be thicker than {THINNEST:g} of outer_radius ({self.outer_radius:g} m), "
+                             f"got {self.outer_radius - self.inner_radius:g} m", "its moments are lost in rounding")
         return self
 
     def moments(self) -> np.ndarray:
@@ -195,13 +200,13 @@ def _section(value: Any) -> Section:
     if isinstance(value, Section):
         return value
     if not isinstance(value, dict):
-        raise ValueError(f"must be a section such as Rectangle(height=0.05, width=0.05), got {value!r}")
+        raise ValueError(f"must be a section such as Rectangle(height=0.05, width=0.05), got {shown(value)}")
     sizes = dict(value)
     shape = sizes.pop("shape", None)
     if shape is None:
         raise ValueError("has no shape", "known: " + ", ".join(SHAPES))
     if not isinstance(shape, str):
-        raise ValueError(f"has the shape {shape!r}, not a name", "known: " + ", ".join(SHAPES))
+        raise ValueError(f"has the shape {shown(shape)}, not a name", "known: " + ", ".join(SHAPES))
     if shape not in SHAPES:
         raise ValueError(f'has the unknown shape "{shape}"', near(shape, SHAPES))
     return SHAPES[shape].model_validate(sizes)

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar
+import os
+from typing import Annotated, Any, ClassVar
 
 from funicular.validation import Count, Part, one_of, positive, within
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 INTEGRATORS = ("auto", "genalpha", "explicit", "radau", "energy")
 
 Duration = Annotated[float, positive("s")]
+
+
+def _text_of_path(value: Any) -> Any:
+    return os.fspath(value) if isinstance(value, os.PathLike) else value
 
 
 class RunSettings(Part):
@@ -23,7 +28,8 @@ class RunSettings(Part):
     and tol, genalpha where step or spectral_radius is given; spectral_radius of genalpha (0.9 if not given) and energy
     (1) at infinity: 1 keeps and 0 removes the fastest vibrations, energy's of the cables, counted as dissipated with
     what their algorithmic stresses hold at the time; initial: "drawn" or "equilibrium" (static, under the loads
-    at t = 0); save: the file to write, or None; threads over the elements of cables, for some thousand of them or more.
+    at t = 0); save: the file to write, or None; threads over the elements of cables, for some thousand of them or more,
+    at most as many as there are processors.
     """
 
     kind: ClassVar[str] = "run"
@@ -35,7 +41,7 @@ class RunSettings(Part):
     spectral_radius: Annotated[float, within(0, 1, ends=True)] = Field(
         default_factory=lambda data: 1.0 if data.get("integrator") == "energy" else 0.9)
     initial: Annotated[str, one_of(("drawn", "equilibrium"))] = "drawn"
-    save: str | None = None
+    save: Annotated[str | None, BeforeValidator(_text_of_path)] = None
     threads: Count = 1
 
     @model_validator(mode="after")

@@ -7,19 +7,24 @@ A further form is one class with ``pieces`` and one entry in `FORMS`.
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Iterable
 from math import pi
 from numbers import Real
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from funicular.errors import near
-from funicular.validation import Part, finite, list_of, one_of, positive, show
+from funicular.validation import Part, finite, list_of, one_of, positive, show, shown
 from pydantic import Field, PlainValidator, model_validator
 
 DEGREE = 6
 """Of the integral of a smooth rise; FU_SIGNAL_TERMS in engine.h is one more."""
 Time = Annotated[float, finite("s")]
 Value = Annotated[float, finite()]
+
+SHORTEST = 1e-12, 1e-14
+"""Two times of a signal must be apart by so many seconds, and by this part of their size: rounding keeps them apart."""
 
 _RISE = np.array([0, 0, 0, 10, -15, 6, 0])
 """The polynomial from 0 to 1 over [0, 1] whose first and second derivatives vanish at both ends."""
@@ -76,6 +81,15 @@ def _steps(times: list[float], values: list[float]) -> tuple[np.ndarray, np.ndar
     return breaks, coefficients
 
 
+def _check_apart(times: Iterable[float]) -> None:
+    """ValueError where two times (s) that follow on each other are as good as one."""
+    for one, other in itertools.pairwise(times):
+        least = max(SHORTEST[0], SHORTEST[1] * max(abs(one), abs(other)))
+        if not other - one >= least:
+            raise ValueError(f"times must be {show(least, 's')} apart or more, got {other - one:.3g} s between "
+                             f"{one!r} s and {other!r} s")
+
+
 class Constant(Signal):
     """The same ``constant`` at all times; in a scene a plain number."""
 
@@ -107,6 +121,7 @@ class Table(Signal):
         if not steps.min() > 0:
             k = int(np.argmax(steps <= 0))
             raise ValueError(f"time must increase, got {show(self.time[k + 1], 's')} after {show(self.time[k], 's')}")
+        _check_apart(self.time)
         return self
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
@@ -138,6 +153,7 @@ class Ramp(Signal):
     def _takes_time(self) -> Ramp:
         if not self.start < self.end:
             raise ValueError(f"end must be after start {show(self.start, 's')}, got {show(self.end, 's')}")
+        _check_apart((self.start, self.end))
         return self
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
@@ -165,15 +181,20 @@ class Pulse(Signal):
         if self.rise is not None and self.rise > (self.end - self.start) / 2 * (1 + 1e-12):
             raise ValueError(f"rise must not exceed half of the pulse, {show((self.end - self.start) / 2, 's')}, "
                              f"got {show(self.rise, 's')}")
+        _check_apart(self._times)
         return self
+
+    @property
+    def _times(self) -> list[float]:
+        """Where it begins to rise, is up, begins to fall, where that is later, and is down."""
+        half = (self.end - self.start) / 2
+        if self.rise is None or self.rise >= half * (1 - 1e-12):
+            return [self.start, self.start + half, self.end]
+        return [self.start, self.start + self.rise, self.end - self.rise, self.end]
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
         """See `Signal.pieces`."""
-        half = (self.end - self.start) / 2
-        if self.rise is None or self.rise >= half * (1 - 1e-12):
-            return _steps([self.start, self.start + half, self.end], [0.0, self.height, 0.0])
-        times = [self.start, self.start + self.rise, self.end - self.rise, self.end]
-        return _steps(times, [0.0, self.height, self.height, 0.0])
+        return _steps(self._times, [0.0, *[self.height] * (len(self._times) - 2), 0.0])
 
 
 class Harmonic(Signal):
@@ -257,13 +278,15 @@ def signal(value: Any) -> Signal:
     if isinstance(value, Real) and not isinstance(value, bool):
         return Constant.model_validate({"constant": value})
     if not isinstance(value, dict):
-        raise ValueError(f"must be a number or a signal such as Ramp(start=0, end=1), got {value!r}")
+        raise ValueError(f"must be a number or a signal such as Ramp(start=0, end=1), got {shown(value)}")
     data = dict(value)
     form = data.pop("form", None)
     if form is None:
         raise ValueError("has no form", "known: " + ", ".join(FORMS))
+    if not isinstance(form, str):
+        raise ValueError(f"has the form {shown(form)}, not a name", "known: " + ", ".join(FORMS))
     if form not in FORMS:
-        raise ValueError(f'has the unknown form "{form}"', near(str(form), FORMS))
+        raise ValueError(f'has the unknown form "{form}"', near(form, FORMS))
     return FORMS[form].model_validate(data)
 
 

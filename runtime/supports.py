@@ -6,8 +6,14 @@ import math
 from typing import Annotated, Any, ClassVar
 
 from funicular.signals import Signal, signal
-from funicular.validation import Name, Part, Reference, Vector, finite, one_of, vector
+from funicular.validation import Name, Part, Reference, Vector, finite, one_of, shown, vector
 from pydantic import PlainValidator, model_validator
+
+
+def _called(cable: Any) -> str:
+    """What messages call a cable, given as itself, as its name, or as what is neither."""
+    name = getattr(cable, "name", cable)
+    return f'"{name}"' if isinstance(name, str) else shown(name)
 
 
 class Support(Part):
@@ -19,7 +25,7 @@ class Support(Part):
     @classmethod
     def place(cls, data: dict) -> str:
         """How messages name the support."""
-        return f'{cls.kind} on "{getattr(data.get("cable"), "name", data.get("cable"))}"'
+        return f"{cls.kind} on {_called(data.get('cable'))}"
 
     @property
     def label(self) -> str:
@@ -57,7 +63,7 @@ def _displacement(value: Any) -> tuple[Signal, Signal, Signal] | None:
     if hasattr(value, "tolist"):
         value = value.tolist()
     if not isinstance(value, list | tuple) or len(value) != 3:
-        raise ValueError(f"must be 3 signals or numbers, got {value!r}", "give 0 for a direction without motion")
+        raise ValueError(f"must be 3 signals or numbers, got {shown(value)}", "give 0 for a direction without motion")
     return tuple(map(_component, "xyz", value))
 
 
@@ -84,7 +90,8 @@ def _rotation(value: Any) -> Rotation | None:
     if isinstance(value, dict) and set(value) == {"axis", "angle"}:
         value = value["axis"], value["angle"]
     if not isinstance(value, list | tuple) or len(value) != 2:
-        raise ValueError(f"must be an axis and a signal, got {value!r}", "such as ((0, 0, 1), Ramp(start=0, end=1))")
+        raise ValueError(f"must be an axis and a signal, got {shown(value)}",
+                         "such as ((0, 0, 1), Ramp(start=0, end=1))")
     try:
         axis = vector(value[0])
     except ValueError as error:
@@ -92,7 +99,9 @@ def _rotation(value: Any) -> Rotation | None:
     norm = math.hypot(*axis)
     if not norm > 0:
         raise ValueError("axis must not be zero")
-    return Rotation(axis=axis if norm == 1 else tuple(a / norm for a in axis), angle=_component("angle", value[1]))
+    if abs(norm - 1) > 1e-15:  # already rounded to a unit: dividing again would only move the last digit
+        axis = tuple(a / norm for a in axis)
+    return Rotation(axis=axis, angle=_component("angle", value[1]))
 
 
 class Motion(Support):
@@ -134,5 +143,4 @@ class Join(Part):
         """How messages name the join."""
         if data.get("name") is not None:
             return super().place(data)
-        one, other = (getattr(data.get(key), "name", data.get(key)) for key in ("cable", "to"))
-        return f'join of "{one}" and "{other}"'
+        return f"join of {_called(data.get('cable'))} and {_called(data.get('to'))}"

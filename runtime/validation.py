@@ -2,11 +2,15 @@
 
 A quantity is ``Annotated[float, positive("m")]``; its checks raise ``ValueError(cause)`` or
 ``ValueError(cause, remedy)``, and `Part` turns the first of them into a `SceneError` that names its place.
+
+Numbers are bounded (`LIMITS`), so that no power or product that the equations take of them leaves the range of double
+precision: the sixth power of a radius, for instance, is a moment of its section.
 """
 
 from __future__ import annotations
 
 import math
+import reprlib
 from collections.abc import Iterable
 from numbers import Integral, Real
 from typing import Annotated, Any, ClassVar
@@ -15,40 +19,79 @@ import numpy as np
 from funicular.errors import SceneError, near
 from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainValidator, ValidationError, model_validator
 
+LIMITS = {"m": (1e-12, 1e12), "s": (1e-12, 1e12), "m²": (1e-24, 1e24), "m⁴": (1e-48, 1e48)}
+"""By unit: the least size of a number that must be positive, and the largest of any number; else `OTHER_LIMITS`."""
+
+OTHER_LIMITS = (1e-30, 1e30)
+
+MOST = 1_000_000
+"""The largest count: elements of a cable, modes, iterations."""
+
+LONGEST_NAME = 100
+"""Characters; with the name of a quantity behind it, it has to be a name in a netCDF file, too."""
+
+
+class _Short(reprlib.Repr):
+    """Values in messages, whatever their size and depth."""
+
+    def __init__(self):
+        super().__init__()
+        self.maxlevel, self.maxstring, self.maxother = 4, 80, 120
+        self.maxlist = self.maxtuple = self.maxdict = 12
+
+    def repr_int(self, value: int, level: int) -> str:
+        """Python writes no integers of thousands of digits."""
+        return repr(value) if value.bit_length() < 256 else f"an integer of {value.bit_length()} bits"
+
+
+shown = _Short().repr
+"""``shown(value)``: a value as messages quote it, shortened where it is long or nested deeply."""
+
 
 def _real(value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, Real):
-        raise ValueError(f"must be a number, got {value!r}")
+        raise ValueError(f"must be a number, got {shown(value)}")
     try:
         return float(value)
     except OverflowError:  # an integer of more than 308 digits
         return math.inf
 
 
+def _in_range(numbers: tuple[float, ...], unit: str, got: str) -> None:
+    """ValueError unless all numbers are finite and within the limits of their unit; got: how messages quote them."""
+    if not all(map(math.isfinite, numbers)):
+        raise ValueError(f"must be finite, got {got}")
+    largest = LIMITS.get(unit, OTHER_LIMITS)[1]
+    if max(map(abs, numbers), default=0.0) > largest:
+        raise ValueError(f"must not exceed {show(largest, unit)} in size, got {got}")
+
+
 def number(value: Any, unit: str = "") -> float:
-    """``value`` as a finite float; ValueError if it is none. Text and booleans are no numbers."""
+    """``value`` as a finite float within `LIMITS`; ValueError if it is none. Text and booleans are no numbers."""
     result = _real(value)
-    if not math.isfinite(result):
-        raise ValueError(f"must be finite, got {show(result, unit)}")
+    _in_range((result,), unit, show(result, unit))
     return result
 
 
 def vector(value: Any, unit: str = "", size: int = 3) -> tuple[float, ...]:
-    """``value`` as ``size`` finite floats; ValueError if it is anything else."""
+    """``value`` as ``size`` finite floats within `LIMITS`; ValueError if it is anything else."""
     if isinstance(value, np.ndarray):
         value = value.tolist()
     if not isinstance(value, list | tuple) or len(value) != size:
-        raise ValueError(f"must be {size} numbers, got {value!r}")
+        raise ValueError(f"must be {size} numbers, got {shown(value)}")
     numbers = tuple(map(_real, value))
-    if not all(map(math.isfinite, numbers)):
-        raise ValueError(f"must be finite, got {show(numbers, unit)}")
+    _in_range(numbers, unit, show(numbers, unit))
     return numbers
 
 
 def show(value: float | tuple[float, ...] | np.ndarray, unit: str = "") -> str:
     """A number or vector for a message, with its unit."""
-    text = f"{value:.9g}" if isinstance(value, float) else "(" + ", ".join(f"{v:.9g}" for v in value) + ")"
-    return f"{text} {unit}".strip()
+    if isinstance(value, float):
+        return f"{value:.9g} {unit}".strip()
+    numbers = [f"{v:.9g}" for v in value]
+    if len(numbers) > 12:
+        numbers[6:-3] = ["..."]
+    return f"({', '.join(numbers)}) {unit}".strip()
 
 
 def one_of(known: Iterable[str], optional: bool = False) -> PlainValidator:
@@ -57,7 +100,7 @@ def one_of(known: Iterable[str], optional: bool = False) -> PlainValidator:
         if value is None and optional:
             return None
         if not isinstance(value, str):
-            raise ValueError(f"must be a name, got {value!r}", "known: " + ", ".join(known))
+            raise ValueError(f"must be a name, got {shown(value)}", "known: " + ", ".join(known))
         if value not in known:
             raise ValueError(f'"{value}" is not known', near(value, known))
         return value
@@ -81,8 +124,18 @@ def _bounded(unit: str, holds, rule: str) -> PlainValidator:
 
 
 def positive(unit: str = "") -> PlainValidator:
-    """Check of a finite number above 0."""
-    return _bounded(unit, lambda x: x > 0, "be positive")
+    """Check of a finite number above 0 and within `LIMITS`."""
+    least = LIMITS.get(unit, OTHER_LIMITS)[0]
+
+    def check(value: Any) -> float:
+        result = number(value, unit)
+        if not result > 0:
+            raise ValueError(f"must be positive, got {show(result, unit)}")
+        if result < least:
+            raise ValueError(f"must not be below {show(least, unit)}, got {show(result, unit)}")
+        return result
+
+    return PlainValidator(check)
 
 
 def not_negative(unit: str = "") -> PlainValidator:
@@ -108,6 +161,8 @@ def direction() -> PlainValidator:
         result = vector(value)
         if not any(result):
             raise ValueError("must not be zero")
+        if math.hypot(*result) < OTHER_LIMITS[0]:
+            raise ValueError(f"must not be shorter than {show(OTHER_LIMITS[0])}, got {show(result)}")
         return result
 
     return PlainValidator(check)
@@ -118,7 +173,7 @@ def list_of(unit: str = "", *, least: int) -> PlainValidator:
     def check(value: Any) -> tuple[float, ...]:
         value = value.tolist() if isinstance(value, np.ndarray) else value
         if not isinstance(value, list | tuple) or len(value) < least:
-            raise ValueError(f"must be a list of {least} numbers or more, got {value!r}")
+            raise ValueError(f"must be a list of {least} numbers or more, got {shown(value)}")
         return vector(value, unit, len(value))
 
     return PlainValidator(check)
@@ -126,20 +181,24 @@ def list_of(unit: str = "", *, least: int) -> PlainValidator:
 
 def _count(value: Any) -> int:
     if isinstance(value, bool) or not isinstance(value, Integral) or value < 1:
-        raise ValueError(f"must be a whole number, 1 or more, got {value!r}")
+        raise ValueError(f"must be a whole number, 1 or more, got {shown(value)}")
+    if value > MOST:
+        raise ValueError(f"must not exceed {MOST}, got {shown(int(value))}")
     return int(value)
 
 
 def _flag(value: Any) -> bool:
     if not isinstance(value, bool | np.bool_):
-        raise ValueError(f"must be true or false, got {value!r}")
+        raise ValueError(f"must be true or false, got {shown(value)}")
     return bool(value)
 
 
 def _name(value: Any) -> str:
     # Results are addressed as "name.quantity" and "cable@s": a name must leave these signs alone.
     if not isinstance(value, str) or not value.replace("-", "_").isidentifier():
-        raise ValueError(f"must be made of letters, digits, _ and -, and begin with no digit, got {value!r}")
+        raise ValueError(f"must be made of letters, digits, _ and -, and begin with no digit, got {shown(value)}")
+    if len(value) > LONGEST_NAME:
+        raise ValueError(f"must not be longer than {LONGEST_NAME} characters, got {len(value)}")
     return value
 
 
@@ -211,7 +270,7 @@ def _scene_error(place: str, error: ValidationError) -> SceneError:
             cause, remedy = "is missing", []
         case "model_type":
             name = first["ctx"]["class_name"]
-            cause, remedy = f"must be a {name} or a table of its values, got {first['input']!r}", []
+            cause, remedy = f"must be a {name} or a table of its values, got {shown(first['input'])}", []
         case _:
-            cause, remedy = f"{first['msg'][:1].lower() + first['msg'][1:]}, got {first['input']!r}", []
+            cause, remedy = f"{first['msg'][:1].lower() + first['msg'][1:]}, got {shown(first['input'])}", []
     return SceneError(place, f"{path} {cause}".strip(), *remedy)

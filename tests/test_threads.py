@@ -1,0 +1,131 @@
+"""Threads are bounded by the machine, refused after a fork, and BLAS has one of them while a scene is computed."""
+
+import subprocess
+import sys
+import threading
+
+import funicular as fu
+import pytest
+from funicular import threads
+from threadpoolctl import ThreadpoolController, threadpool_limits
+
+
+def scene(body: float = 0.5) -> fu.Scene:
+    made = fu.Scene()
+    rope = made.cable("rope", start=(0, 0, 0), end=(1, 0, 0), elements=4, element="cable12",
+                      section=fu.Circle(radius=0.01),
+                      material=fu.Material(youngs_modulus=1e7, poisson_ratio=0.3, density=1000))
+    made.pin(rope, s=0)
+    made.pin(rope, s=1)
+    made.rigid_body("A", mass=1, inertia=(1, 1, 1), position=(body, 0, 0))
+    made.slide("A", along="rope", s=body)
+    return made
+
+
+@pytest.mark.parametrize("asked", [10**4, 10**5, 10**6])
+def test_no_more_threads_than_processors(asked, monkeypatch):
+    """10^4 OpenMP threads hung, 10^5 ended the process."""
+    monkeypatch.setattr("funicular.threads.available", lambda: 2)
+    run = scene().run(1e-3, step=5e-4, output_step=5e-4, threads=asked)
+    assert run.status == "completed"
+    assert run.report["messages"][0] in (
+        f"threads = {asked} came to 2: there are 2 processors for this process",
+        f"threads = {asked} came to 1: the compiler that built this had no OpenMP")
+
+
+def test_there_are_processors():
+    assert threads.available() >= 1
+
+
+FORKED = """
+import os, sys
+sys.path.insert(0, "tests")
+import funicular.threads
+from test_threads import scene
+funicular.threads.available = lambda: 2
+before = scene().run(1e-3, step=5e-4, output_step=5e-4, threads={parent})
+child = os.fork()
+if child:
+    sys.exit(os.waitpid(child, 0)[1] != 0)
+after = scene().run(1e-3, step=5e-4, output_step=5e-4, threads=2)
+assert after["rope.nodal_vectors"].tobytes() == before["rope.nodal_vectors"].tobytes()
+print(*after.report["messages"], flush=True)
+"""
+
+
+@pytest.mark.parametrize("parent", [1, 2])
+def test_threads_after_a_fork(parent, request):
+    """The forked process waited for ever for the threads of its parent."""
+    done = subprocess.run([sys.executable, "-c", FORKED.format(parent=parent)], capture_output=True, text=True,
+                          timeout=60, check=True, cwd=request.config.rootpath)
+    if "no OpenMP" not in done.stdout:
+        assert done.stdout.strip() == ("" if parent == 1 else (
+            "threads = 2 came to 1: this process was forked from one that had used threads; start it anew instead, "
+            'with the method "spawn" of multiprocessing'))
+
+
+def blas_threads() -> set[int]:
+    return {pool["num_threads"] for pool in ThreadpoolController().info() if pool["user_api"] == "blas"}
+
+
+@pytest.fixture
+def two_blas_threads():
+    """What a user's environment may ask for."""
+    import funicular.engine  # noqa: F401  with SciPy's BLAS
+
+    with threadpool_limits(limits=2, user_api="blas"):
+        yield
+
+
+def test_one_blas_thread_during_a_run(two_blas_threads):
+    seen = set()
+    scene().run(1e-2, tol=1e-3, progress=lambda time: seen.update(blas_threads()))
+    assert seen == {1}
+    assert blas_threads() == {2}
+
+
+def test_blas_threads_come_back_after_an_error(two_blas_threads):
+    def stop(time):
+        raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        scene().run(1e-2, progress=stop)
+    assert blas_threads() == {2}
+
+
+@pytest.mark.parametrize("compute", [lambda: scene().equilibrium(), lambda: scene().modes(2)], ids=["rest", "modes"])
+def test_one_blas_thread_at_rest_and_for_modes(compute, two_blas_threads, monkeypatch):
+    from funicular.redundancy import settle
+
+    seen = set()
+    for module in ("static", "modal"):  # what both call at first
+        monkeypatch.setattr(f"funicular.{module}.settle", lambda *a: (seen.update(blas_threads()), settle(*a))[1])
+    compute()
+    assert seen == {1}
+    assert blas_threads() == {2}
+
+
+def test_blas_threads_come_back_after_the_last_of_several_runs(two_blas_threads):
+    first_in, second_in, first_out = threading.Event(), threading.Event(), threading.Event()
+    seen = {}
+
+    def first():
+        with threads.one_blas_thread:
+            first_in.set()
+            second_in.wait(30)
+        seen["after the first"] = blas_threads()
+        first_out.set()
+
+    def second():
+        first_in.wait(30)
+        with threads.one_blas_thread:
+            second_in.set()
+            first_out.wait(30)
+
+    both = [threading.Thread(target=work) for work in (first, second)]
+    for each in both:
+        each.start()
+    for each in both:
+        each.join()
+    assert seen == {"after the first": {1}}
+    assert blas_threads() == {2}
