@@ -5,6 +5,8 @@ The engine is C and not Cython because `cimport` does not work across the mapped
 generated kernels and the engine is a C header.
 """
 
+import os
+
 import numpy as np
 
 from cpython.exc cimport PyErr_CheckSignals
@@ -117,10 +119,10 @@ cdef class Engine(Statics):
         o.gamma, o.alpha, o.beta = method.gamma, method.alpha, method.beta
         n, m, rows = system.n, system.m, 3 * system.width + 1
         c = &self.run.complex_newton
-        c.K, c.D, c.x = self._zeros(2 * rows * n), self._zeros(2 * m * m), self._zeros(2 * (n + m))
-        c.B, c.C, c.X = self._zeros(2 * n * m), self._zeros(2 * n * m), self._zeros(2 * n * m)
+        c.K, c.D, c.x = self._zeros(2.0 * rows * n), self._zeros(2.0 * m * m), self._zeros(2.0 * (n + m))
+        c.B, c.C, c.X = self._zeros(2.0 * n * m), self._zeros(2.0 * n * m), self._zeros(2.0 * n * m)
         c.columns = <fu_piece *>self._ints(np.zeros(3 * 2 * m * system.n_chains))
-        c.D_real, c.pivot_band, c.pivot_border = self._zeros(m * m), self._ints(np.zeros(n)), self._ints(np.zeros(m))
+        c.D_real, c.pivot_band, c.pivot_border = self._zeros(1.0 * m * m), self._ints(np.zeros(n)), self._ints(np.zeros(m))
         self.run.scratch = self._zeros(12 * self.model.n_dof + 3 * self.model.n_q + 7 + n + m)
 
     def use_threads(self, int threads):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import nullcontext
+from contextlib import contextmanager, nullcontext
 from typing import TYPE_CHECKING
 
 from funicular.ends import Stop
@@ -43,6 +43,16 @@ if TYPE_CHECKING:
     from funicular.static import Equilibrium
 
 RESERVED = ("energy", "time")
+
+
+@contextmanager
+def _in_memory() -> Iterator[None]:
+    """For what may ask for more memory than there is."""
+    try:
+        yield
+    except MemoryError:
+        raise SceneError("scene", "takes more memory than this machine has",
+                         "take fewer elements, fewer bodies and slides, or a larger output_step") from None
 
 
 class Scene:
@@ -341,6 +351,7 @@ class Scene:
         for slide in self.slides.values():
             check_on_cable(self, slide)
 
+    @_in_memory()
     def run(
         self,
         duration: float | None = None,
@@ -413,6 +424,7 @@ class Scene:
                 warnings.warn(recording.message, FunicularWarning, stacklevel=2)
         return run
 
+    @_in_memory()
     def equilibrium(
         self,
         *,
@@ -434,6 +446,7 @@ class Scene:
 
         return equilibrium(self, settings)
 
+    @_in_memory()
     def modes(self, n: int, about: Equilibrium | None = None) -> Modes:
         """The ``n`` lowest natural frequencies and shapes, about the scene as drawn or a state from `equilibrium`.
 

@@ -232,9 +232,9 @@ cdef class Translation(Arrays):
         system.chains = self._ints(model.chains)
         middles = (model.chains[:-1] + model.chains[1:]) // 2
         system.half = self._ints(np.searchsorted(np.sort([*model.chains[:-1], *middles]), np.arange(n), "right") - 1)
-        system.D, system.L = self._zeros(m * m), self._zeros((width + 1) * (n + FU_BAND_GROUP * chains))
-        system.B, system.C = self._zeros(n * m), self._zeros(n * m)
-        system.X = self._zeros(FU_BAND_LENGTH(n, width) * m)
+        system.D, system.L = self._zeros(<double>m * m), self._zeros((width + 1.0) * (n + FU_BAND_GROUP * chains))
+        system.B, system.C = self._zeros(<double>n * m), self._zeros(<double>n * m)
+        system.X = self._zeros(<double>FU_BAND_LENGTH(n, width) * m)
         system.span_B = <fu_span *>self._ints(np.zeros(2 * 2 * m * chains))
         system.span_C = <fu_span *>self._ints(np.zeros(2 * 2 * m * chains))
         system.columns = <fu_piece *>self._ints(np.zeros(3 * 2 * m * chains))
@@ -267,8 +267,8 @@ cdef class Translation(Arrays):
         a = &run.accelerator
         self._system(&a.mass, model, width, model.n_border_dof + model.n_multipliers)
         # that of the mass is factored elsewhere, before the first of Newton is made
-        run.newton.K = a.mass.K = self._zeros((3 * width + 1) * model.n_band)
-        a.corner = self._zeros(a.mass.m * a.mass.m)
+        run.newton.K = a.mass.K = self._zeros((3.0 * width + 1) * model.n_band)
+        a.corner = self._zeros(<double>a.mass.m * a.mass.m)
         a.rhs = self._zeros(unknowns + model.n_multipliers + FU_BAND_BEYOND(width))
         rows = n_joints + len(model.links)
         a.rows = <fu_rows *>self._zeros(rows * sizeof(fu_rows) // sizeof(double) + 1)
