@@ -30,6 +30,9 @@ def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
         grown, _, exchanged = engine.books
         return (f"energy came from nowhere at {when}: {grown:.3g} J, where {exchanged:.3g} J were exchanged; fastest "
                 f"is {where} ({state}); {KEPT}. {_too_large(engine, settings)}")
+    if cause is None and status == "no_convergence":
+        return (f"no step could be made at {when}: to pass an event there it would have to be shorter than 1e-12 of "
+                f"the duration; {KEPT}. Look at slides, stops and events that act at the same instant")
     if doubled := redundant(model, engine):
         return (f"no step converged at {when}: {doubled} hold nearly the same; {KEPT}. "
                 "Leave one of them out, or hold the body at points farther apart")

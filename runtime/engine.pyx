@@ -327,9 +327,12 @@ cdef class Engine(Statics):
 
     @property
     def failure(self):
-        """Of the last step that failed: why (see CAUSES), and the dof and joint (or None) where that shows most."""
+        """Of the last step that failed: why (see CAUSES), and the dof and slide (or None) where that shows most.
+
+        Why is None where energy grew, and where no step was tried that failed.
+        """
         f = self.run.failure
-        return CAUSES[f.cause], f.dof, f.joint if f.joint >= 0 else None
+        return CAUSES[f.cause], f.dof, f.joint if f.cause != FU_NO_FAILURE and f.joint >= 0 else None
 
     @property
     def jammed(self):

@@ -84,11 +84,19 @@ def _check_that_they_follow(model: Model, engine, idle: list[tuple[int, int]], n
 
 
 def redundant(model: Model, engine, ratio: float = NEARLY) -> str:
-    """Names of slides and joints that hold nearly the same at the time reached; empty where there are none."""
+    """Names of slides and joints that hold nearly the same at the time reached; empty where there are none.
+
+    Empty, too, where the state has no compliance: it is not finite, or the mass matrix is singular there.
+    """
     if not model.links and len(model.joints) < 2:
         return ""
-    S = engine.compliance()
+    try:
+        S = engine.compliance()
+    except ArithmeticError:
+        return ""
     used = np.flatnonzero(np.diag(S) > 0)
+    if not len(used) or not np.isfinite(S).all():
+        return ""
     scale = 1 / np.sqrt(np.diag(S)[used])
     values, vectors = np.linalg.eigh(scale[:, None] * S[np.ix_(used, used)] * scale)
     idle = values < ratio * values[-1]

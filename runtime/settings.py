@@ -10,6 +10,9 @@ from pydantic import BeforeValidator, Field, model_validator
 
 INTEGRATORS = ("auto", "genalpha", "explicit", "radau", "energy")
 
+SMALLEST_STEP = 1e-12
+"""Of the duration, as in engine/run.c."""
+
 Duration = Annotated[float, positive("s")]
 
 
@@ -50,6 +53,9 @@ class RunSettings(Part):
             value = getattr(self, name)
             if value is not None and value > self.duration:
                 raise ValueError(f"{name} must not exceed the duration {self.duration:g} s, got {value:g} s")
+        if self.step is not None and self.step < SMALLEST_STEP * self.duration:
+            raise ValueError(f"step must not be below {SMALLEST_STEP:g} of the duration {self.duration:g} s, got "
+                             f"{self.step:g} s")
         return self
 
 
