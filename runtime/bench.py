@@ -21,7 +21,8 @@ from funicular.errors import FunicularError, FunicularWarning, SceneError, near
 from funicular.parts import Cable
 from funicular.results import Run
 from funicular.scene import Scene
-from funicular.settings import INTEGRATORS
+from funicular.settings import INTEGRATORS, RunSettings
+from funicular.validation import MOST
 
 TOLS = (1e-2, 1e-3, 1e-4, 1e-5)
 TIGHTER = (1 / 20, 1 / 80)
@@ -52,6 +53,8 @@ class Mesh:
         mesh = cls(float(match[2]), bool(match[1]))
         if not (mesh.factor or mesh.count % 1 == 0) or mesh.count <= 0:
             raise SceneError("bench", f'elements: "{text}" is not a number of elements', "write a whole one, 1 or more")
+        if mesh.count > MOST:
+            raise SceneError("bench", f"elements: {mesh.count:g} exceeds {MOST}")
         return mesh
 
     def __str__(self) -> str:
@@ -100,6 +103,9 @@ class Grid:
 def grid(scene: Scene, *, integrators=None, elements=("x1", "x2"), tols=TOLS, outputs=None, duration=None,
          output_step=None, repetitions: int = 5) -> Grid:
     """A checked grid; without integrators all but "auto", which takes one of them. Raises SceneError."""
+    for name, values in (("integrators", integrators), ("elements", elements), ("tols", tols), ("outputs", outputs)):
+        if values is not None and not len(values):
+            raise SceneError("bench", f"{name}: the list is empty", "name one, or leave it out")
     integrators = tuple(integrators or (name for name in INTEGRATORS if name != "auto"))
     for name in integrators:
         if name not in INTEGRATORS:
@@ -109,14 +115,17 @@ def grid(scene: Scene, *, integrators=None, elements=("x1", "x2"), tols=TOLS, ou
             raise SceneError("bench", f"tols: a tolerance must lie inside (0, 1), got {tol:g}")
     if repetitions < 1:
         raise SceneError("bench", f"repetitions must be 1 or more, got {repetitions}")
+    if repetitions > MOST:
+        raise SceneError("bench", f"repetitions must not exceed {MOST}, got {repetitions}")
     outputs = tuple(outputs or default_outputs(scene))
     for name in outputs:
         check_output(scene, name)
-    duration = duration or scene.run_settings.get("duration")
+    duration = scene.run_settings.get("duration") if duration is None else duration
     if duration is None:
         raise SceneError("bench", "the scene file gives no duration", "give one: --duration")
+    settings = RunSettings(duration=duration, **{} if output_step is None else {"output_step": output_step})
     return Grid(integrators, tuple(map(Mesh.parse, elements)), tuple(sorted(tols, reverse=True)), outputs,
-                duration, output_step or duration / 50, repetitions)
+                settings.duration, settings.duration / 50 if output_step is None else settings.output_step, repetitions)
 
 
 @dataclass

@@ -43,6 +43,9 @@ def _told_without_traceback() -> Iterator[None]:
         except FunicularError as error:
             print(f"error: {error}", file=sys.stderr)
             raise typer.Exit(1) from None
+        except MemoryError:
+            print("error: that takes more memory than this machine has", file=sys.stderr)
+            raise typer.Exit(1) from None
         except KeyboardInterrupt:
             print("interrupted", file=sys.stderr)
             raise typer.Exit(EXIT_INTERRUPTED) from None

@@ -1,28 +1,31 @@
 """Hypothesis strategies of small scenes with all kinds of parts, over many decades of size, nonsense among them."""
 
+import tomllib
 import warnings
 
 import funicular as fu
 import numpy as np
 from funicular.errors import FunicularError
+from funicular.scene_file import _toml
 from hypothesis import strategies as st
 
-NESTED = []
+NESTED: list = []
 for _ in range(10_000):
     NESTED = [NESTED]
 
 NUMBERS = [0, -1, 1, 0.5, 1e8, 10**8, 10**12, 2**63, 1e60, -1e60, 1e-300, 5e-324, 1e308, float("inf"), float("nan"),
            10**400, 10**5000, -(10**5000)]
 WORDS = ["", "x", "A", "wire", "\0", "ä-1", "a" * 10_000, "continuum", "stick", "all", "/", "wire.position.y"]
-DATA = [True, [], {}, [[]], NESTED, [1], [1, 2, 3], ["a", "b", "c"], [1e300] * 3, [1e-300] * 3, [10**5000] * 3,
-        [[1, 2, 3]] * 3, {"form": []}, {"form": {}}, {"form": NESTED}, {"form": "ramp", "start": [], "end": 1},
-        {"shape": []}, {"stop": []}, {"stop": {}}, ["A", NESTED], ["A", [1, 2]], ["wire", 10**5000], ["wire", []],
-        [NESTED] * 3, [{"form": []}] * 3, {"axis": [0, 0, 1], "angle": {"form": []}}, [[0, 0, 1], {"form": 1}]]
+SHALLOW = [True, [], {}, [[]], [1], [1, 2, 3], ["a", "b", "c"], [1e300] * 3, [1e-300] * 3,
+           [[1, 2, 3]] * 3, {"form": []}, {"form": {}}, {"form": "ramp", "start": [], "end": 1},
+           {"shape": []}, {"stop": []}, {"stop": {}}, ["A", [1, 2]], ["wire", []], [{"form": []}] * 3,
+           {"axis": [0, 0, 1], "angle": {"form": []}}, [[0, 0, 1], {"form": 1}]]
+DATA = [*SHALLOW, NESTED, [10**5000] * 3, {"form": NESTED}, ["A", NESTED], ["wire", 10**5000], [NESTED] * 3]
 OBJECTS = [None, b"x", 1j, object(), print, lambda u: (u, u, u), np.zeros((3, 3, 3)), np.array("x"), np.array([]),
            {1, 2}, range(3)]
 
-in_files = st.sampled_from([*NUMBERS, *WORDS, *DATA])
-"""Nonsense that a scene file can hold, but for what TOML cannot write."""
+in_files = st.sampled_from([*NUMBERS[:-2], *WORDS, *SHALLOW])
+"""Nonsense that TOML can write."""
 
 nonsense = st.sampled_from([*NUMBERS, *WORDS, *DATA, *OBJECTS])
 
@@ -96,9 +99,10 @@ def parts(draw):
                               "rotation": draw(st.sampled_from(["rigid", "free"]))}))
     for k in range(draw(st.integers(0 if cables else 1, 2))):
         made += draw(bodies("AB"[k], 0.3 + 0.2 * k, numbers, material, section))
-        if cables:
-            made += draw(st.just([]) | slides("AB"[k], (0.3 + 0.2 * k) * size, numbers))
-        made += draw(st.just([]) | joints("AB"[k], (0.3 + 0.2 * k) * size, numbers))
+        if cables and draw(st.integers(0, 2)):
+            made += draw(slides("AB"[k], (0.3 + 0.2 * k) * size, numbers))
+        if draw(st.integers(0, 2)) == 0:
+            made += draw(joints("AB"[k], (0.3 + 0.2 * k) * size, numbers))
     if cables == 2 and draw(st.integers(0, 3)) == 0:
         made.append(("slide", {"body": ("rope", 0.0), "along": "wire", "s": size}))
     for _ in range(draw(st.integers(0, 2))):
@@ -199,7 +203,31 @@ def build(gravity, made) -> fu.Scene:
 
 
 @st.composite
-def scenes(draw):
-    """(time in s, scene)."""
+def scenes(draw, spoilt: bool = True):
+    """(time in s, scene); spoilt: with nonsense for a keyword of one of its parts, now and then."""
     time, gravity, made = draw(parts())
+    if spoilt and draw(st.integers(0, 3)) == 0:
+        k = draw(st.integers(0, len(made) - 1))
+        method, keywords = made[k]
+        made[k] = method, keywords | {draw(st.sampled_from(sorted(keywords))): draw(nonsense)}
     return time, build(gravity, made)
+
+
+@st.composite
+def texts(draw):
+    """The text of a scene file, with nonsense for one of its values."""
+    tables = tomllib.loads(draw(scenes(spoilt=False))[1].to_toml())
+    _spoil(draw, tables)
+    return "\n".join(f"{name} = {_toml(value)}" for name, value in tables.items()) + "\n"
+
+
+def _spoil(draw, into: dict | list) -> None:
+    """Replace a value somewhere inside."""
+    places = sorted(into) if isinstance(into, dict) else range(len(into))
+    if not len(places):
+        return
+    place = draw(st.sampled_from(places))
+    if isinstance(into[place], dict | list) and draw(st.integers(0, 3)):
+        _spoil(draw, into[place])
+    else:
+        into[place] = draw(in_files)

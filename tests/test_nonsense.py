@@ -225,5 +225,5 @@ def test_no_more_memory_than_there_is(monkeypatch):
 
     monkeypatch.setattr(engine, "MACHINE_MEMORY", 1e4)
     for compute in (lambda: scene().run(1), lambda: scene().equilibrium(), lambda: scene().modes(2)):
-        with pytest.raises(fu.SceneError, match=r"^scene: takes more memory than this machine has; take fewer elements"):
+        with pytest.raises(fu.SceneError, match=r"^scene: takes more memory than this machine has; take fewer"):
             compute()

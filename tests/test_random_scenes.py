@@ -1,0 +1,149 @@
+"""What holds for every scene: a result or a `FunicularError`, finite rows, closed joints, a text that says all of it.
+
+Examples are the same every time. Each scene that failed stands as a test of its own, in the file of what it was about.
+"""
+
+import time as clock
+import warnings
+
+import funicular as fu
+import numpy as np
+import pytest
+from funicular.errors import FunicularError
+from funicular.scene_file import loads
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from random_scenes import scenes, texts
+
+INTEGRATORS = st.sampled_from(["auto", "genalpha", "explicit", "radau", "energy"])
+STEPS = st.sampled_from([{"tol": 1e-4}, {"tol": 1e-2}, {"step": 5e-3}, {"step": 2e-4}])
+"""Of the scene's time."""
+
+
+def examples(number: int):
+    return settings(max_examples=number, deadline=None, derandomize=True, database=None,
+                    suppress_health_check=list(HealthCheck))
+
+
+class TooLongError(Exception):
+    pass
+
+
+def within(seconds: float):
+    """A progress function that ends a run after so much processor time; what it did until then is not judged."""
+    end = clock.process_time() + seconds
+
+    def progress(time: float) -> None:
+        if clock.process_time() > end:
+            raise TooLongError
+
+    return progress
+
+
+def computed(time: float, scene: fu.Scene, integrator: str, steps: dict, initial: str = "drawn",
+             seconds: float = 0.3) -> fu.Run | None:
+    """A run over 0.05 of the scene's time, as far as it goes; None where it is refused or takes too long."""
+    steps = {name: value * time if name == "step" else value for name, value in steps.items()}
+    try:
+        return scene.run(0.05 * time, output_step=0.01 * time, integrator=integrator, initial=initial, **steps,
+                         progress=within(seconds))
+    except (fu.ConvergenceError, fu.EndOfCableError) as error:
+        return error.run
+    except (FunicularError, TooLongError):
+        return None
+
+
+def check_run(time: float, scene: fu.Scene, integrator: str, steps: dict, initial: str = "drawn") -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", fu.FunicularWarning)
+        run = computed(time, scene, integrator, steps, initial)
+    if run is None:
+        return
+    sizes = [cable.length for cable in scene.cables.values()]
+    for name in run.keys():
+        assert np.isfinite(run[name]).all() or run.status == "no_convergence", name
+        if name.endswith((".position", ".nodal_vectors")):
+            sizes.append(float(np.abs(run[name]).max()))
+    for name in run.keys():
+        if name.endswith(".residual") and run.status != "no_convergence":
+            assert np.abs(run[name]).max() <= 1e-6 * max(sizes), name
+
+
+def check_text(scene: fu.Scene) -> None:
+    text = scene.to_toml()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", fu.FunicularWarning)  # nothing is left to adjust
+        assert loads(text, "copy").to_toml() == text
+
+
+def check_file(text: str) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", fu.FunicularWarning)
+        try:
+            scene = loads(text, "x.toml")
+        except FunicularError as error:
+            assert str(error).startswith("x.toml: ")
+            return
+    check_text(scene)
+
+
+def check_statics(scene: fu.Scene) -> None:
+    """At rest with few iterations, and modes: a result of numbers, or an error."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", fu.FunicularWarning)
+        try:
+            assert np.isfinite(scene.modes(2).angular_frequency).all()
+        except FunicularError:
+            pass
+        try:
+            rest = scene.equilibrium(max_iterations=20)
+        except FunicularError:
+            return
+    for name in rest.keys():
+        assert np.isfinite(rest[name]).all(), name
+
+
+@examples(60)
+@given(scenes(), INTEGRATORS, STEPS)
+def test_runs(scene, integrator, steps):
+    check_run(*scene, integrator, steps)
+
+
+@examples(80)
+@given(scenes())
+def test_texts(scene):
+    check_text(scene[1])
+
+
+@examples(120)
+@given(texts())
+def test_files(text):
+    check_file(text)
+
+
+@pytest.mark.slow
+@examples(400)
+@given(scenes(), INTEGRATORS, STEPS, st.sampled_from(["drawn", "drawn", "drawn", "drawn", "equilibrium"]))
+def test_many_runs(scene, integrator, steps, initial):
+    check_run(*scene, integrator, steps, initial)
+
+
+@pytest.mark.slow
+@examples(400)
+@given(scenes())
+def test_many_texts(scene):
+    check_text(scene[1])
+
+
+@pytest.mark.slow
+@examples(1000)
+@given(texts())
+def test_many_files(text):
+    check_file(text)
+
+
+@pytest.mark.slow
+@examples(40)
+@given(scenes())
+def test_statics(scene):
+    check_statics(scene[1])
