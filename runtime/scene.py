@@ -475,7 +475,9 @@ class Scene:
 
     def _claim(self, part: Part) -> None:
         if (other := self._part_named(part.name, part.kind)) is not None:
-            raise SceneError(part.where, f"there is already a {other.kind} of that name", "give each part its own name")
+            article = "an" if part.kind == "event" else "a"
+            raise SceneError(part.where, f"there is already {article} {other.kind} of that name",
+                             "give each part its own name")
         if part.name in RESERVED:
             raise SceneError(part.where, "that name is taken by the results", "give another one")
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from funicular import FunicularWarning, Material, Rectangle, Scene
+from funicular import FunicularWarning, Material, Rectangle, Scene, SceneError
 from numpy.testing import assert_allclose
 
 
@@ -106,3 +106,45 @@ def test_inertia_from_moments_matrix_or_array(scene):
 def test_numpy_scalars_are_numbers(scene):
     rider = body(scene, mass=np.float32(2), position=np.array([1, 2, 4]))
     assert (rider.mass, rider.position) == (2.0, (1.0, 2.0, 4.0))
+
+
+def test_unnamed_parts_take_the_next_number(scene):
+    scene.rigid_body("A", mass=1, inertia=(1, 1, 1), position=(0, 0, 0))
+    names = [scene.force("A", value=(0, 0, 1), **given).name for given in
+             ({}, {}, {"name": "force_3"}, {}, {"name": "force_9"}, {})]
+    assert names == ["force_1", "force_2", "force_3", "force_4", "force_9", "force_5"]
+    assert scene.spring("A", (0, 0, 9), stiffness=1).name == "spring_1"
+
+
+def test_a_free_name_is_found_in_few_looks(scene, monkeypatch):
+    """2,000 unnamed forces took 71 s: each looked at the names of all parts as many times as there were forces."""
+    scene.rigid_body("A", mass=1, inertia=(1, 1, 1), position=(0, 0, 0))
+    looks, look = [], Scene._part_named
+    monkeypatch.setattr(Scene, "_part_named", lambda *a: (looks.append(a), look(*a))[1])
+    for _ in range(500):
+        scene.force("A", value=(0, 0, 1))
+    assert len(looks) < 500 * 20
+
+
+def test_supports_look_only_at_what_is_on_their_cable(scene, monkeypatch):
+    import funicular.placing as placing
+
+    looks, look = [], placing.node_of
+    monkeypatch.setattr(placing, "node_of", lambda *a: (looks.append(a), look(*a))[1])
+    wire = scene.cables["wire"]
+    for k in range(50):
+        scene.add(wire.model_copy(update={"name": f"wire_{k}"}))
+        scene.pin(f"wire_{k}", s=0)
+        scene.pin(f"wire_{k}", s=wire.length)
+    assert len(looks) <= 100
+
+
+def test_unnamed_events_are_all_kept(scene):
+    """The second one took the place of the first."""
+    scene.rigid_body("A", mass=1, inertia=(1, 1, 1), position=(0, 0, 0))
+    for value in (0.1, 0.2, 0.3):
+        scene.event(quantity="A.position.x", value=value)
+    assert [(name, event.value) for name, event in scene.events.items()] == [
+        ("event_1", 0.1), ("event_2", 0.2), ("event_3", 0.3)]
+    with pytest.raises(SceneError, match='event "event_2": there is already an event of that name'):
+        scene.event("event_2", quantity="A.position.x")

@@ -117,6 +117,14 @@ def test_round_trip_of_shapes_supports_loads_and_springs():
     assert copy.cables["ring"].length == 1.1
 
 
+@pytest.mark.parametrize("axis", [(1, 1, 0), (1, 1, 1), (0.3, -0.1, 0.2), (0, 0, 1)])
+def test_the_axis_of_a_motion_is_read_as_it_was_written(axis):
+    """Divided by its length once more it lost its last digit, and a run of the text could not be resumed."""
+    scene = loads(CABLE, "x")
+    scene.motion("wire", s=0, rotation=(axis, Ramp(start=0, end=1)))
+    assert same(loads(scene.to_toml(), "copy"), scene)
+
+
 def test_loads_as_tables():
     scene = loads(CABLE + """
 [[clamp]]
