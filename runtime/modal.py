@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from funicular.equilibrium import Equilibrium
-from funicular.errors import SceneError
+from funicular.errors import SceneError, UnknownResultError, near
 from funicular.model import build
 from funicular.recording import body_state, spatial
 from funicular.redundancy import settle
@@ -45,7 +45,9 @@ class Modes:
         return self.angular_frequency / (2 * np.pi)
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """A shape by its name. Raises KeyError."""
+        """A shape by its name. Raises UnknownResultError naming the near ones."""
+        if name not in self.shapes:
+            raise UnknownResultError(f'no shape "{name}"; {near(name, self.shapes)}')
         return self.shapes[name]
 
     def __len__(self) -> int:

@@ -34,7 +34,9 @@ def settle(model: Model, engine) -> list[str]:
         return []  # slides of different bodies never do: each acts on its own body, whose mass is not zero
     if not engine.prepare():
         return []  # start tells why
-    S, owner = engine.compliance(), _owners(model)
+    S, owner = _compliance(engine), _owners(model)
+    if S is None:
+        return []  # here, too
     if held := [name for name, own in zip(owner, np.diag(S), strict=True) if own == 0]:
         raise SceneError("scene", f"is over-constrained: {_listed(held)} between places that supports hold already",
                          "leave that out, or the supports")
@@ -84,25 +86,28 @@ def _check_that_they_follow(model: Model, engine, idle: list[tuple[int, int]], n
 
 
 def redundant(model: Model, engine, ratio: float = NEARLY) -> str:
-    """Names of slides and joints that hold nearly the same at the time reached; empty where there are none.
-
-    Empty, too, where the state has no compliance: it is not finite, or the mass matrix is singular there.
-    """
+    """Names of slides and joints that hold nearly the same at the time reached; empty where there are none."""
     if not model.links and len(model.joints) < 2:
         return ""
-    try:
-        S = engine.compliance()
-    except ArithmeticError:
+    S = _compliance(engine)
+    if S is None or not np.any(np.diag(S) > 0):
         return ""
     used = np.flatnonzero(np.diag(S) > 0)
-    if not len(used) or not np.isfinite(S).all():
-        return ""
     scale = 1 / np.sqrt(np.diag(S)[used])
     values, vectors = np.linalg.eigh(scale[:, None] * S[np.ix_(used, used)] * scale)
     idle = values < ratio * values[-1]
     owner = _owners(model)
     return _listed([owner[k] for k, part in zip(used, np.linalg.norm(vectors[:, idle], axis=1), strict=True)
                     if part > 1e-3])
+
+
+def _compliance(engine) -> np.ndarray | None:
+    """H M^-1 H'; None where the state has none: it is not finite, or the mass matrix is singular there."""
+    try:
+        S = engine.compliance()
+    except ArithmeticError:
+        return None
+    return S if np.isfinite(S).all() else None
 
 
 def _following(S: np.ndarray) -> dict[int, list[int]]:
