@@ -5,10 +5,12 @@ import re
 
 import funicular as fu
 import pytest
+from funicular.cli import app
 from funicular.errors import FunicularError
 from funicular.scene_file import loads
 from funicular.settings import EquilibriumSettings, ModeSettings, RunSettings
 from random_scenes import DATA, NUMBERS, OBJECTS, WORDS
+from typer.testing import CliRunner
 
 SQUARE = fu.Rectangle(height=0.05, width=0.05)
 SOFT = fu.Material(youngs_modulus=4e8, poisson_ratio=0.0, density=4200)
@@ -227,3 +229,48 @@ def test_no_more_memory_than_there_is(monkeypatch):
     for compute in (lambda: scene().run(1), lambda: scene().equilibrium(), lambda: scene().modes(2)):
         with pytest.raises(fu.SceneError, match=r"^scene: takes more memory than this machine has; take fewer"):
             compute()
+
+
+FALLING = """
+[[rigid_body]]
+name = "A"
+mass = 1
+inertia = [1, 1, 1]
+position = [0, 0, 0]
+
+[run]
+duration = 0.1
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "given", "complaint"),
+    [
+        ("gravity = " + "[" * 10_000 + "]" * 10_000, ["run"], "scene.toml: is nested too deeply"),
+        (FALLING.replace("= 1\n", "= 1e60\n"), ["run"], 'rigid_body "A": mass must not exceed 1e+30 kg in size'),
+        (FALLING, ["run", "--duration", "nan"], "run: duration must be finite, got nan s"),
+        (FALLING, ["run", "--step", "5e-324"], "run: step must not be below 1e-12 s, got 4.94065646e-324 s"),
+        (FALLING, ["run", "--tol", "1e-400"], "run: tol must be positive, got 0"),
+        (FALLING, ["bench", "--duration", "0"], "run: duration must be positive, got 0 s"),
+        (FALLING, ["bench", "--duration", "nan"], "run: duration must be finite, got nan s"),
+        (FALLING, ["bench", "--output-step", "1"], "run: output_step must not exceed the duration 0.1 s, got 1 s"),
+        (FALLING, ["bench", "--tols", ""], "bench: tols: the list is empty; name one, or leave it out"),
+        (FALLING, ["bench", "--tols", "nan"], "bench: tols: a tolerance must lie inside (0, 1), got nan"),
+        (FALLING, ["bench", "--elements", ","], "bench: elements: the list is empty; name one, or leave it out"),
+        (FALLING, ["bench", "--elements", "9" * 30], "bench: elements: 1e+30 exceeds 1000000"),
+        (FALLING, ["bench", "--elements", "x9999999"], "bench: elements: 1e+07 exceeds 1000000"),
+        (FALLING, ["bench", "--integrators", ","], "bench: integrators: the list is empty; name one, or leave it out"),
+        (FALLING, ["bench", "--outputs", ""], "bench: outputs: the list is empty; name one, or leave it out"),
+        (FALLING, ["bench", "--repetitions", "0"], "bench: repetitions must be 1 or more, got 0"),
+        (FALLING, ["bench", "--repetitions", "99999999999999"],
+         "bench: repetitions must not exceed 1000000, got 99999999999999"),
+    ],
+)
+def test_the_command_line_says_it_in_a_line(text, given, complaint, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "scene.toml").write_text(text)
+    result = CliRunner().invoke(app, [given[0], "scene.toml", *given[1:]])
+    assert isinstance(result.exception, SystemExit)
+    assert (result.exit_code, result.stderr.count("\n")) == (1, 1)
+    assert result.stderr.startswith("error: ") and complaint in result.stderr
+    assert [path.name for path in tmp_path.iterdir()] == ["scene.toml"]
