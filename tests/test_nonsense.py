@@ -1,14 +1,17 @@
 """Every keyword of every part and setting, given nonsense: it is taken, or refused by a `SceneError`."""
 
 import copy
+import itertools
 import re
 
 import funicular as fu
+import numpy as np
 import pytest
 from funicular.cli import app
 from funicular.errors import FunicularError
 from funicular.scene_file import loads
 from funicular.settings import EquilibriumSettings, ModeSettings, RunSettings
+from funicular.validation import LIMITS, OTHER_LIMITS
 from random_scenes import DATA, NUMBERS, OBJECTS, WORDS
 from typer.testing import CliRunner
 
@@ -220,6 +223,25 @@ def test_files(text, complaint):
     with pytest.raises(fu.SceneError) as refused:
         loads(text, "x.toml")
     assert complaint is None or re.sub(r"\s+", " ", str(refused.value)) == complaint
+
+
+@pytest.mark.parametrize("integrator", ["genalpha", "radau", "explicit"])
+def test_at_the_limits(integrator):
+    """The least and the largest numbers that are taken give a result or an error with words."""
+    for length, radius, E, density in itertools.product(*[LIMITS["m"]] * 2, *[OTHER_LIMITS] * 2):
+        made = fu.Scene()
+        wire = made.cable("wire", start=(0, 0, 0), end=(length, 0, 0), elements=2, element="cable12",
+                          section=fu.Circle(radius=radius),
+                          material=fu.Material(youngs_modulus=E, poisson_ratio=0.3, density=density))
+        made.pin(wire, s=0)
+        made.rigid_body("A", mass=density, inertia=(1e-30, 1e-30, 1e-30), position=(length, 0, 0))
+        made.slide("A", along=wire, s=length)
+        made.force(wire, s=length, value=(0, 1e30, 0))
+        try:
+            run = made.run(1, step=1, output_step=1, integrator=integrator)
+        except FunicularError:
+            continue
+        assert all(np.isfinite(run[name]).all() for name in run.keys())
 
 
 def test_no_more_memory_than_there_is(monkeypatch):
