@@ -19,7 +19,7 @@ import numpy as np
 from funicular.errors import SceneError, near
 from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainValidator, ValidationError, model_validator
 
-LIMITS = {"m": (1e-12, 1e12), "s": (1e-12, 1e12), "m²": (1e-24, 1e24), "m⁴": (1e-48, 1e48)}
+LIMITS = {"m": (1e-12, 1e9), "s": (1e-12, 1e12), "m²": (1e-24, 1e24), "m⁴": (1e-48, 1e48)}
 """By unit: the least size of a number that must be positive, and the largest of any number; else `OTHER_LIMITS`."""
 
 OTHER_LIMITS = (1e-30, 1e30)
@@ -80,6 +80,10 @@ def vector(value: Any, unit: str = "", size: int = 3) -> tuple[float, ...]:
     if not isinstance(value, list | tuple) or len(value) != size:
         raise ValueError(f"must be {size} numbers, got {shown(value)}")
     numbers = tuple(map(_real, value))
+    farthest = LIMITS["m"][1]
+    if unit == "m" and farthest < max(map(abs, numbers), default=0.0) < math.inf:
+        raise ValueError(f"must lie within {farthest:g} m of the origin, beyond which positions are rounded to more "
+                         f"than 1e-7 m, got {show(numbers, unit)}", "draw the scene nearer to the origin")
     _in_range(numbers, unit, show(numbers, unit))
     return numbers
 

@@ -142,7 +142,10 @@ def test_parts(added):
 @pytest.mark.parametrize(
     ("make", "complaint"),
     [
-        (lambda: fu.Circle(radius=1e60), "Circle: radius must not exceed 1e+12 m in size, got 1e+60 m"),
+        (lambda: fu.Circle(radius=1e60), "Circle: radius must not exceed 1e+09 m in size, got 1e+60 m"),
+        (lambda: scene().force("A", value=(0, 0, 1), at=(1e60, 0, 0)),
+         "force: at must lie within 1e+09 m of the origin, beyond which positions are rounded to more than 1e-7 m, got "
+         "(1e+60, 0, 0) m; draw the scene nearer to the origin"),
         (lambda: fu.Circle(radius=1e-300), "Circle: radius must not be below 1e-12 m, got 1e-300 m"),
         (lambda: fu.Circle(radius=10**400), "Circle: radius must be finite, got inf m"),
         (lambda: fu.Tube(outer_radius=1, inner_radius=1 - 1e-15), "Tube: the wall must be thicker than 1e-12 of "
