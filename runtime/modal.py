@@ -12,7 +12,6 @@ from funicular.recording import body_state, spatial
 from funicular.redundancy import settle
 from funicular.rotations import rotate
 from funicular.scene import Scene
-from funicular.threads import one_blas_thread
 from scipy.linalg import eig, eigh, null_space
 from scipy.sparse import csc_array
 from scipy.sparse.linalg import ArpackNoConvergence, eigsh
@@ -54,7 +53,6 @@ class Modes:
         return len(self.angular_frequency)
 
 
-@one_blas_thread
 def modes(scene: Scene, n: int, about: Equilibrium | None = None) -> Modes:
     """The n lowest modes about a state, as drawn if none is given; damping is left out. Raises SceneError."""
     from funicular.engine import Engine

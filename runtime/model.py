@@ -31,7 +31,7 @@ from funicular.rotations import rotate
 from funicular.scene import Scene
 from funicular.settings import RunSettings
 from funicular.streaming import Stream, pauses
-from funicular.threads import one_blas_thread, share_elements
+from funicular.threads import share_elements
 from funicular.watching import Watcher
 from scipy.sparse import csr_array
 
@@ -392,7 +392,6 @@ def _joint(slide: Slide, scene: Scene, holder: Holder, signal, number: int, mult
     )
 
 
-@one_blas_thread
 def simulate(scene: Scene, settings: RunSettings, on_progress: Callable[[float], None], initial=None,
              stream: Stream | None = None) -> Recording:
     """Integrate a checked scene; calls on_progress(time reached in s) about twenty times a second.

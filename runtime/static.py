@@ -18,7 +18,6 @@ from funicular.recording import end_points
 from funicular.redundancy import settle
 from funicular.scene import Scene
 from funicular.settings import EquilibriumSettings
-from funicular.threads import one_blas_thread
 from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
 
@@ -179,7 +178,6 @@ def _solver(matrix: csc_array) -> Callable[[np.ndarray], np.ndarray]:
     return splu(matrix.tocsc(), permc_spec="COLAMD").solve
 
 
-@one_blas_thread
 def equilibrium(scene: Scene, settings: EquilibriumSettings) -> Equilibrium:
     """The scene at rest under gravity, its loads at t = 0 and its springs. Raises SceneError, EquilibriumError."""
     path = Path(scene, settings)
