@@ -48,7 +48,6 @@ shown = _Short().repr
 """``shown(value)``: a value as messages quote it, shortened where it is long or nested deeply."""
 
 
-
 def _real(value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, Real):
         raise ValueError(f"must be a number, got {shown(value)}")
