@@ -16,6 +16,9 @@ KEPT = "what was computed up to there is kept"
 FOLDED, STRETCHED = 0.8, 3.0
 """Elements shorter or longer than this part of their undeformed length are named."""
 
+STEADY = 0.01
+"""Of the kinetic energy: where less is exchanged, as where bodies turn freely, errors are measured by this part of it."""
+
 QUIET_ERROR, QUIET_LOSS, LOOSE_LOSS = 5e-3, 0.01, 0.05
 """Of the largest motion, and of the energy exchanged: errors of a fixed step, and energy that nothing explains, beyond
 these are told; the last is for loose tolerances, where energy may be off by so much more."""
@@ -28,7 +31,8 @@ def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
     _, q, v, _ = engine.now()
     where, (state, folded) = place(model, dof, joint), condition(model, dof, q, v)
     if status == "unstable":
-        grown, _, exchanged, _ = engine.books
+        grown, _, exchanged, in_motion, _ = engine.books
+        exchanged = max(exchanged, in_motion)
         return (f"energy came from nowhere at {when}: {grown:.3g} J, where {exchanged:.3g} J were exchanged; fastest "
                 f"is {where} ({state}); {KEPT}. {_too_large(engine, settings)}")
     if doubled := redundant(model, engine):
@@ -111,10 +115,10 @@ def notes(engine, settings: RunSettings) -> list[str]:
 
 def unexplained(engine, settings: RunSettings) -> list[str]:
     """A note where energy has come or gone that nothing in the scene explains; empty where the balance closes."""
-    grown, lost, exchanged, rounding = engine.books
+    grown, lost, exchanged, in_motion, rounding = engine.books
     off, fixed = max(grown, lost), settings.step is not None
     quiet = QUIET_LOSS if fixed else min(max(QUIET_LOSS, 100 * settings.tol), LOOSE_LOSS)
-    if not off > quiet * exchanged + rounding:
+    if not off > quiet * max(exchanged, STEADY * in_motion) + rounding:
         return []
     what = ("went that neither damping nor friction nor impacts took", "came that nothing did work for")[grown > lost]
     damped = ", or a spectral_radius nearer to 1" if lost > grown and settings.spectral_radius < 1 else ""

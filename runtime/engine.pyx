@@ -336,9 +336,9 @@ cdef class Engine(Statics):
 
     @property
     def books(self):
-        """Energy that has come from nowhere, that went there, that was exchanged, and what rounding may explain, J."""
+        """Energy that has come from nowhere, that went there, was exchanged, was in motion, and what rounding may make, J."""
         b = self.run.books
-        return b.grown, b.lost, b.exchanged, b.rounding
+        return b.grown, b.lost, b.exchanged, b.in_motion, b.rounding
 
     @property
     def moves(self):
