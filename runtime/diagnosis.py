@@ -17,7 +17,7 @@ FOLDED, STRETCHED = 0.8, 3.0
 """Elements shorter or longer than this part of their undeformed length are named."""
 
 STEADY = 0.01
-"""Of the kinetic energy: where less is exchanged, as where bodies turn freely, errors are measured by this part of it."""
+"""Of the kinetic energy: where less is exchanged, as where bodies turn freely, errors go by this part of it."""
 
 QUIET_ERROR, QUIET_LOSS, LOOSE_LOSS = 5e-3, 0.01, 0.05
 """Of the largest motion, and of the energy exchanged: errors of a fixed step, and energy that nothing explains, beyond

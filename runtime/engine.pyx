@@ -336,7 +336,7 @@ cdef class Engine(Statics):
 
     @property
     def books(self):
-        """Energy that has come from nowhere, that went there, was exchanged, was in motion, and what rounding may make, J."""
+        """Energy that has come from nowhere, that went there, was exchanged, in motion, and what rounding makes, J."""
         b = self.run.books
         return b.grown, b.lost, b.exchanged, b.in_motion, b.rounding
 
