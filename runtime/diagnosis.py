@@ -21,6 +21,8 @@ ROUNDED = 4e-16
 
 LEAST_MOTION = 1e-9
 """Of the farthest coordinate: what moves less may be at rest (engine/run.c)."""
+STEADY = 0.01
+"""Of the kinetic energy: where less is exchanged, as where bodies turn freely, errors go by this part of it."""
 
 QUIET_ERROR, QUIET_LOSS, LOOSE_LOSS = 5e-3, 0.01, 0.05
 """Of the largest motion, and of the energy exchanged: errors of a fixed step, and energy that nothing explains, beyond
@@ -34,7 +36,8 @@ def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
     _, q, v, _ = engine.now()
     where, (state, folded) = place(model, dof, joint), condition(model, dof, q, v)
     if status == "unstable":
-        grown, _, exchanged, _ = engine.books
+        grown, _, exchanged, in_motion, _ = engine.books
+        exchanged = max(exchanged, in_motion)
         return (f"energy came from nowhere at {when}: {grown:.3g} J, where {exchanged:.3g} J were exchanged; fastest "
                 f"is {where} ({state}); {KEPT}. {_too_large(engine, settings)}")
     if cause is None and status == "no_convergence":
@@ -124,10 +127,10 @@ def notes(engine, settings: RunSettings) -> list[str]:
 
 def unexplained(engine, settings: RunSettings) -> list[str]:
     """A note where energy has come or gone that nothing in the scene explains; empty where the balance closes."""
-    grown, lost, exchanged, rounding = engine.books
+    grown, lost, exchanged, in_motion, rounding = engine.books
     off, fixed = max(grown, lost), settings.step is not None
     quiet = QUIET_LOSS if fixed else min(max(QUIET_LOSS, 100 * settings.tol), LOOSE_LOSS)
-    if not off > quiet * exchanged + rounding:
+    if not off > quiet * max(exchanged, STEADY * in_motion) + rounding:
         return []
     what = ("went that neither damping nor friction nor impacts took", "came that nothing did work for")[grown > lost]
     damped = ", or a spectral_radius nearer to 1" if lost > grown and settings.spectral_radius < 1 else ""

@@ -348,9 +348,9 @@ cdef class Engine(Statics):
 
     @property
     def books(self):
-        """Energy that has come from nowhere, that went there, that was exchanged, and what rounding may explain, J."""
+        """Energy that has come from nowhere, that went there, was exchanged, in motion, and what rounding makes, J."""
         b = self.run.books
-        return b.grown, b.lost, b.exchanged, b.rounding
+        return b.grown, b.lost, b.exchanged, b.in_motion, b.rounding
 
     @property
     def moves(self):

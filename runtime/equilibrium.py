@@ -56,7 +56,7 @@ class Equilibrium:
     is on, 1 but in the `EquilibriumError` that says how far it got, and along a path; iterations of Newton; residual:
     the largest force left over, in N; stability: see `Stability`; path: the states of rest on the way, each under its
     load_fraction of all loads, in their order, this one last: what a curve of load and displacement is drawn from;
-    critical_points of that path; messages: what the search passed, adjusted or left out.
+    critical_points of that path; gravity_fraction: how much of gravity is on, all of it where scale_gravity is off; messages: what the search passed, adjusted or left out.
     """
 
     scene: Scene
@@ -68,6 +68,7 @@ class Equilibrium:
     iterations: int
     residual: float
     stability: Stability
+    gravity_fraction: float
     heading: np.ndarray | None = field(default=None, repr=False)
     quantities: dict[str, np.ndarray] = field(default_factory=dict)
     path: list[Equilibrium] = field(default_factory=list, repr=False)
@@ -82,7 +83,8 @@ class Equilibrium:
         units = np.where(problem.weight > 0, problem.weight, np.inf)
         engine = problem.engine
         state = cls(problem.scene, problem.model, problem.keep(), engine.reaction(), engine.held(), problem.fraction,
-                    problem.iterations, float(np.max(np.abs(left) / units, initial=0.0)), stability, heading)
+                    problem.iterations, float(np.max(np.abs(left) / units, initial=0.0)), stability,
+                    problem.fraction if problem.settings.scale_gravity else 1.0, heading)
         state.quantities = state._quantities()
         state.path, state.layout = [state], layout(problem.scene)
         return state

@@ -104,7 +104,7 @@ def _of_inertia(cable: Cable, model: CableModel, cuts: Cuts, e: np.ndarray, a: n
     """
     places, weights = np.polynomial.legendre.leggauss(2 * sum(set(name) <= set("r_x") for name in model.vectors))
     density = cable.material.density
-    area, yy, zz = cable.section.moments()[:3]
+    area, yy, zz = cable.section.mass_moments()[:3]
     force = moment = 0.0
     across = [(k, I) for k, (name, I) in enumerate((("r_y", yy), ("r_z", zz)), start=1) if name in model.vectors]
     for place, weight in zip((1 + places) / 2, weights / 2, strict=True):

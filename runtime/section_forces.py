@@ -115,7 +115,7 @@ def of_equilibrium(state: Equilibrium, name: str, s: np.ndarray, *, method: str 
 def rest_instants(state: Equilibrium) -> Instants:
     """A state of rest as one instant, with as much of the loads as it has."""
     return Instants(np.zeros(1), state.placed["q"][None], np.zeros((1, state.model.n_dof)),
-                    lambda quantity: state[quantity][None], state.load_fraction, state.load_fraction)
+                    lambda quantity: state[quantity][None], state.load_fraction, state.gravity_fraction)
 
 
 def jumps(scene, name: str) -> np.ndarray:

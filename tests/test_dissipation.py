@@ -120,7 +120,7 @@ class Stub:
     (0.0, 0.02, 1e-6, "off by up to 0.02 J, 0.02 of the 1 J exchanged: energy went that neither"),
     (0.009, 0.009, 1e-6, None), (0.04, 0.0, 1e-3, None), (0.06, 0.0, 1e-3, "take a smaller tol")])
 def test_a_hundredth_of_what_is_exchanged_is_told(grown, lost, tol, says):
-    notes = unexplained(Stub(grown, lost, 1.0, 1e-9), RunSettings(duration=1.0, tol=tol))
+    notes = unexplained(Stub(grown, lost, 1.0, 1.0, 1e-9), RunSettings(duration=1.0, tol=tol))
     assert (says is None) == (notes == []) and (says is None or says in notes[0])
 
 

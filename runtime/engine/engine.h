@@ -456,7 +456,6 @@ int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work);
 int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerator *work, double *acceleration,
                      fu_joint_output *joints, double *reaction);
 void fu_link_outputs(const fu_model *model, const fu_state *state, const fu_accelerator *work, fu_link_output *out);
-void fu_frame_forces(const fu_model *model, const fu_state *state, const fu_accelerator *work, int joint, double *f);
 int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S);
 int fu_project_positions(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change);
 int fu_project_velocities(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change);

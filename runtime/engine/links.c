@@ -227,26 +227,6 @@ void fu_link_outputs(const fu_model *model, const fu_state *state, const fu_acce
     }
 }
 
-/* f of a slide's rider += what joints whose frame goes with the slide put on it along the cable, by the multipliers that
- * fu_accelerations left: s follows from the rider's point (eq 24), so that a moment on a frame that turns with s is a force
- * on that point. */
-void fu_frame_forces(const fu_model *model, const fu_state *state, const fu_accelerator *work, int j, double *f)
-{
-    const int dim = model->dim, s = fu_extra(model, model->joints[j].unknown);
-    const double *by_point = work->slides[j].by_point + (dim - 1) * dim;
-    for (int k = 0; k < model->n_links; ++k) {
-        const fu_link *link = &model->links[k];
-        double phi[6], J[6 * 2 * FU_END_COORDINATES], on_s = 0.0;
-        int at[2 * FU_END_COORDINATES];
-        if ((link->ends[0].slide != j && link->ends[1].slide != j) || fu_link_is_idle(link, state)) continue;
-        const int n = fu_link_residual(model, link, state, phi, at, J);
-        for (int i = 0; i < n; ++i)
-            for (int r = 0; r < link->kernel->rows && at[i] == s; ++r)
-                if (!(link->idle >> r & 1)) on_s += J[r * n + i] * work->multipliers[link->multiplier + r];
-        for (int d = 0; d < dim; ++d) f[d] -= by_point[d] * on_s;
-    }
-}
-
 /* power that a driven joint's multipliers give to the scene */
 double fu_link_driving(const fu_model *model, const fu_link *link, const fu_state *state)
 {

@@ -106,7 +106,6 @@ static int record_row(fu_run *run)
     memcpy(r->s + row * model->n_joints, now->s, sizeof(double) * (size_t)model->n_joints);
     const int info = fu_accelerations(model, now, &run->accelerator, r->acceleration + row * model->n_dof, joints,
                                       r->reaction + row * model->n_dof);
-    for (int j = 0; j < model->n_joints; ++j) fu_frame_forces(model, now, &run->accelerator, j, joints[j].force);
     r->kinetic[row] = fu_kinetic_energy(model, now->q, now->v);
     r->elastic[row] = fu_elastic_energy(model, now->q);
     if (model->n_brakes) r->elastic[row] += fu_brake_energy(model, now);
