@@ -56,7 +56,8 @@ class Equilibrium:
     is on, 1 but in the `EquilibriumError` that says how far it got, and along a path; iterations of Newton; residual:
     the largest force left over, in N; stability: see `Stability`; path: the states of rest on the way, each under its
     load_fraction of all loads, in their order, this one last: what a curve of load and displacement is drawn from;
-    critical_points of that path; gravity_fraction: how much of gravity is on, all of it where scale_gravity is off; messages: what the search passed, adjusted or left out.
+    critical_points of that path; gravity_fraction: how much of gravity is on, all of it where scale_gravity is off;
+    messages: what the search passed, adjusted or left out.
     """
 
     scene: Scene

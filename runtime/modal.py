@@ -14,7 +14,6 @@ from funicular.redundancy import settle
 from funicular.rotations import rotate
 from funicular.scene import Scene
 from funicular.spectrum import RELATIVE, ROUNDING, IncompleteError, Pencil, basis
-from funicular.threads import one_blas_thread
 from scipy.linalg import eig, eigh, null_space
 from scipy.sparse import csc_array, diags_array
 
@@ -67,7 +66,6 @@ class Modes:
         return len(self.angular_frequency)
 
 
-@one_blas_thread
 def modes(scene: Scene, n: int, about: Equilibrium | None = None) -> Modes:
     """The n lowest modes about a state, as drawn if none is given; damping and friction are left out.
 

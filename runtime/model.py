@@ -35,7 +35,7 @@ from funicular.scene import Scene
 from funicular.settings import RunSettings
 from funicular.starts import velocity_jumps
 from funicular.streaming import Stream, pauses
-from funicular.threads import one_blas_thread, share_elements
+from funicular.threads import share_elements
 from funicular.watching import Watcher
 from scipy.sparse import csr_array
 
@@ -396,7 +396,6 @@ def _joint(slide: Slide, scene: Scene, holder: Holder, signal, number: int, mult
     )
 
 
-@one_blas_thread
 def simulate(scene: Scene, settings: RunSettings, on_progress: Meter, initial=None,
              stream: Stream | None = None) -> Recording:
     """Integrate a checked scene; calls on_progress(time reached in s) about twenty times a second.

@@ -36,6 +36,7 @@ from funicular.results import Run
 from funicular.sections import Section
 from funicular.settings import EquilibriumSettings, ModeSettings, RunSettings
 from funicular.supports import Support
+from funicular.threads import one_blas_thread
 from funicular.validation import Part, show, shown, vector
 
 if TYPE_CHECKING:
@@ -358,7 +359,6 @@ class Scene:
         for slide in self.slides.values():
             check_on_cable(self, slide)
 
-    @_in_memory()
     def run(
         self,
         duration: float | None = None,
@@ -414,7 +414,8 @@ class Scene:
             raise ResultFileError("run: there is nothing to resume without a file of results; name it with save")
         from funicular.streaming import Stream
 
-        with nullcontext() if settings.save is None else Stream(settings.save, self, settings, resume) as stream:
+        saving = nullcontext() if settings.save is None else Stream(settings.save, self, settings, resume)
+        with saving as stream, one_blas_thread, _in_memory():
             if settings.initial == "equilibrium" and state is None:
                 state = self.equilibrium()
             from funicular.model import simulate
@@ -431,7 +432,6 @@ class Scene:
                 warnings.warn(recording.message, FunicularWarning, stacklevel=2)
         return run
 
-    @_in_memory()
     def equilibrium(
         self,
         *,
@@ -460,9 +460,9 @@ class Scene:
 
         from funicular.static import equilibrium
 
-        return equilibrium(self, settings, begin)
+        with one_blas_thread, _in_memory():
+            return equilibrium(self, settings, begin)
 
-    @_in_memory()
     def modes(self, n: int, about: Equilibrium | None = None) -> Modes:
         """The ``n`` lowest natural frequencies and shapes, about the scene as drawn or a state from `equilibrium`.
 
@@ -475,7 +475,8 @@ class Scene:
 
         from funicular.modal import modes
 
-        return modes(self, settings.n, state)
+        with one_blas_thread, _in_memory():
+            return modes(self, settings.n, state)
 
     def to_toml(self) -> str:
         """The scene as the text of a scene file."""

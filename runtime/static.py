@@ -16,7 +16,6 @@ from funicular.settings import EquilibriumSettings
 from funicular.stability import stability
 from funicular.stable_search import find_rest
 from funicular.static_problem import StaticProblem
-from funicular.threads import one_blas_thread
 
 SMALLEST_STEP = 1e-3
 """Of the load: where smaller steps do not converge either, the search ends."""
@@ -26,7 +25,6 @@ MOVED = 1e-9
 """Of the scene's size: what rounding may move."""
 
 
-@one_blas_thread
 def equilibrium(scene: Scene, settings: EquilibriumSettings, start: Equilibrium | None = None) -> Equilibrium:
     """The scene at rest under gravity, its loads at t = 0 and its springs; start: a state to begin from, else as drawn.
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import threading
-from contextlib import ContextDecorator
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -41,7 +40,7 @@ def share_elements(engine: Engine, asked: int) -> list[str]:
     return [f"threads = {asked} came to {threads}: {why}"] if why else []
 
 
-class _OneBlasThread(ContextDecorator):
+class _OneBlasThread:
     """Holds the BLAS of NumPy and SciPy at one thread in the whole process, while anything is inside.
 
     OpenBLAS starts its threads from blocks of a few dozen rows on, where handing out the work takes longer than the
@@ -73,7 +72,7 @@ class _OneBlasThread(ContextDecorator):
 
 
 one_blas_thread = _OneBlasThread()
-"""For ``with``, or as a decorator."""
+"""For ``with``."""
 
 
 def _let_this_thread_set_limits() -> None:

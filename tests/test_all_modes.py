@@ -142,11 +142,13 @@ def test_a_thinner_one_is_told_to_be_uncertain():
     assert np.all(np.abs(np.where(grows > 0, -grows, w) - np.sqrt(2.5e-13 * bending(2, 2))) < 2 * found.uncertainty)
 
 
-@pytest.mark.parametrize(("section", "cause"), [
-    (Rectangle(height=1e-9, width=1e-9), "rounding of the stiffness hides the 6 lowest modes"),
-    (Rectangle(height=1e-80, width=1e-80), "its inertia comes to")])
-def test_extreme_proportions_are_refused(section, cause):
-    """They gave six zeros, or an error of LAPACK."""
+@pytest.mark.parametrize(("width", "cause"), [
+    (1e-9, "rounding of the stiffness hides the 6 lowest modes"), (1e-80, "its inertia comes to")])
+def test_extreme_proportions_are_refused(width, cause, monkeypatch):
+    """They gave six zeros, or an error of LAPACK. The second is beyond the bounds of scenes, which are off here."""
+    monkeypatch.setattr("funicular.validation.LIMITS", {})
+    monkeypatch.setattr("funicular.validation.OTHER_LIMITS", (0.0, 1e308))
+    section = Rectangle(height=width, width=width)
     scene = Scene(gravity=(0, 0, 0))
     scene.clamp(scene.cable("beam", start=(0, 0, 0), end=(1, 0, 0), elements=4, section=section, material=STEEL), s=0.0)
     with pytest.raises(SceneError, match=f"modes: .*{cause}.*; "):

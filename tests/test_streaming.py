@@ -285,7 +285,7 @@ def test_a_run_that_cannot_start_leaves_the_older_file(uninterrupted, tmp_path):
     path = tmp_path / "x.nc"
     short().run(**SETTINGS, save=path)
     with pytest.raises(SceneError, match=r"bytes of results, more than the .* that are free on the disk"):
-        short().run(duration=1.0, output_step=1e-15, save=path)
+        short().run(duration=1.0, output_step=1e-12, save=path)
     assert content(path) == uninterrupted
 
 

@@ -98,7 +98,7 @@ def test_one_blas_thread_at_rest_and_for_modes(compute, two_blas_threads, monkey
     from funicular.redundancy import settle
 
     seen = set()
-    for module in ("static", "modal"):  # what both call at first
+    for module in ("static_problem", "modal"):  # what both call at first
         monkeypatch.setattr(f"funicular.{module}.settle", lambda *a: (seen.update(blas_threads()), settle(*a))[1])
     compute()
     assert seen == {1}

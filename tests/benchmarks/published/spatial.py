@@ -98,7 +98,7 @@ def frame(kind: Kind, elements: int, force: float) -> Scene:
 
 def lowest_square(scene: Scene) -> float:
     """Of the natural angular frequency about equilibrium; negative where it is not stable."""
-    modes = scene.modes(1, about=scene.equilibrium())
+    modes = scene.modes(1, about=scene.equilibrium(seek_stable=False))  # on the branch that stays in its plane
     return float(modes.angular_frequency[0] ** 2 - modes.growth_rate[0] ** 2)
 
 
