@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
+import warnings
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from funicular.errors import near, shown_path
+from funicular.errors import FunicularWarning, near, shown_path
 
 if TYPE_CHECKING:
     from funicular.modal_bodies import ModalBody
@@ -173,6 +174,7 @@ def of_mesh(body: ModalBody) -> Shape:
 
     A unit of each mode moves the mass by 1 m in the mean square.
     """
+    from funicular.modal import KNOWN
     from funicular.model import build
     from funicular.scene import Scene
 
@@ -183,7 +185,14 @@ def of_mesh(body: ModalBody) -> Shape:
         still = 0
     else:
         still = 3 if cable.dim == 2 else 6 if cable.kind_of_element.director else 5
-    found = scene.modes(body.modes + still)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", FunicularWarning)  # that rounding may hide the rigid motions, which are known
+        found = scene.modes(body.modes + still)
+    elastic, error = found.angular_frequency[still:], found.uncertainty[still:]
+    if np.any(error > KNOWN * elastic):
+        worst = np.max(error / np.maximum(elastic, np.finfo(float).tiny))
+        warnings.warn(f"{body.where}: rounding of the stiffness may change the frequencies of its modes by up to "
+                      f"{100 * min(worst, 1.0):.2g} %; take fewer elements", FunicularWarning, stacklevel=2)
     model = build(scene).cables[0]
     mass = cable.material.density * cable.section.area * cable.length
     vectors = found[f"{cable.name}.nodal_vectors"][still:]
