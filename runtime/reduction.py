@@ -1,9 +1,10 @@
 """From supports and joins to unknowns: every dof of the cables is linear in unknowns and in what motions prescribe.
 
 Pins and clamps hold dofs; a cable clamped at a node keeps the direction of its slope and one unknown, its length;
-joined nodes share the position, and rigidly joined ones the gradient of the deformation, so that slopes of one are
-constant combinations of those of the other (Shabana, Computational Continuum Mechanics, ch. 6: structural
-discontinuities).
+joined nodes share the position. Of rigidly joined ones in line, or in space, slopes of one are constant combinations of
+those of the other: they share the gradient of the deformation (Shabana, Computational Continuum Mechanics, ch. 6:
+structural discontinuities). At an angle in the plane they share the turn of the section alone: the gradient would make
+the section of one beam the tangent of the other, where a moment shears its last element, the more the shorter that is.
 """
 
 from __future__ import annotations
@@ -146,13 +147,12 @@ class Supports:
                                                             float(turned[d]))])
 
     def join(self, master: Node, slave: Node, rigid: bool) -> None:
-        """Positions equal; rigid: slopes too, as they stand to each other at the start."""
+        """Positions equal; rigid: slopes too, or what turns with the section, as they stand at the start."""
         for dof, of in zip(slave.dofs("r"), master.dofs("r"), strict=True):
             self.rows[dof] = self._combined({of: 1.0})
         if rigid:
-            names = [name for name in slave.names if name in ("r_x", "r_y", "r_z")]
-            for name in names:
-                for dof, combination in zip(slave.dofs(name), _slope(master, slave, name), strict=True):
+            for name, rows in _shared(master, slave).items():
+                for dof, combination in zip(slave.dofs(name), rows, strict=True):
                     self.rows[dof] = self._combined(combination)
 
     def _combined(self, combination: dict[int, float]) -> Row:
@@ -201,20 +201,38 @@ class Supports:
         return Reduction(place.astype(int), combinations, n, numbering, prescribed)
 
 
+def _shared(master: Node, slave: Node) -> dict[str, list[dict[int, float]]]:
+    """Of rigidly joined nodes: rows over the master's slopes, component by component, by the slave's nodal vector."""
+    names = [name for name in slave.names if name in ("r_x", "r_y", "r_z")]
+    if master.dim == 3 or (master.directors and slave.directors and _in_line(master, slave)):
+        return {name: _slope(master, slave, name) for name in names}
+    turns, with_it = ((node.directors or ["r_x"])[0] for node in (master, slave))
+    return {with_it: _turned(master.vector(turns), master.dofs(turns), slave.vector(with_it))}
+
+
+def _in_line(master: Node, slave: Node) -> bool:
+    a, b = master.vector("r_x"), slave.vector("r_x")
+    return bool(abs(a[0] * b[1] - a[1] * b[0]) <= PARALLEL * np.linalg.norm(a) * np.linalg.norm(b))
+
+
+def _turned(vector: np.ndarray, at: range, drawn: np.ndarray) -> list[dict[int, float]]:
+    """Rows over a vector in the plane of one that turns and stretches with it: a product of complex numbers."""
+    square = float(vector @ vector)
+    a = float(vector @ drawn) / square
+    b = float(vector[0] * drawn[1] - vector[1] * drawn[0]) / square
+    return [{at[0]: a, at[1]: -b}, {at[0]: b, at[1]: a}]
+
+
 def _slope(master: Node, slave: Node, name: str) -> list[dict[int, float]]:
-    """Rows over the master's slopes of the slave's nodal vector `name`, component by component."""
+    """Rows over the master's slopes of the slave's nodal vector `name`: the gradient of the deformation is one."""
     drawn = slave.vector(name)
     slopes = [n for n in ("r_x", "r_y", "r_z") if n in master.names]
     if len(slopes) == master.dim:
         weights = np.linalg.solve(np.array([master.vector(n) for n in slopes]).T, drawn)
         return [{master.dofs(n)[d]: float(w) for n, w in zip(slopes, weights, strict=True) if w}
                 for d in range(master.dim)]
-    tangent = master.vector("r_x")
-    square, at = float(tangent @ tangent), master.dofs("r_x")
-    if master.dim == 2:  # turned and stretched: a product of complex numbers
-        a = float(tangent @ drawn) / square
-        b = float(tangent[0] * drawn[1] - tangent[1] * drawn[0]) / square
-        return [{at[0]: a, at[1]: -b}, {at[0]: b, at[1]: a}]
+    tangent, at = master.vector("r_x"), master.dofs("r_x")
+    square = float(tangent @ tangent)
     ratio = float(tangent @ drawn) / square
     if name != "r_x" or np.linalg.norm(np.cross(tangent, drawn)) > PARALLEL * square:
         raise SceneError(slave.where, "cables without a section of their own cannot be joined rigidly at an angle: "

@@ -140,8 +140,9 @@ class Motion(Support):
 class Join(Part):
     """Joins the node at ``s`` (m) of one cable to the node at arc-length ``at`` of another one, ``to``.
 
-    They share their position. With rotation "rigid" (a frame's corner) they share the gradient of the deformation, too:
-    slopes of one are the other's, turned by the angle at which they are drawn. With "free" they turn freely (a hinge).
+    They share their position. With rotation "rigid" (a frame's corner) their sections turn together, at the angle at
+    which they are drawn; in line, and in space, they share the gradient of the deformation, all slopes. With "free"
+    they turn freely (a hinge).
     """
 
     kind: ClassVar[str] = "join"

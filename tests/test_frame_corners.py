@@ -1,0 +1,46 @@
+"""Rigid joins of beams at an angle: they share the turn of the section, whatever the length of the elements."""
+
+import numpy as np
+import pytest
+from funicular import Material, Rectangle, Scene
+
+STEEL = Material(youngs_modulus=2e11, poisson_ratio=0.3, density=7850)
+SECTION = Rectangle(height=0.1, width=0.15)
+COLUMN, ARM, FORCE = 1.0, 0.8, 10.0
+
+
+def bracket(element: str, angle: float, elements: int, joined: bool, law: str = "structural") -> Scene:
+    """A column, clamped at its foot, and on its top an arm at ``angle`` (rad) from the level, with a force down."""
+    scene = Scene(gravity=(0, 0, 0))
+    along = np.array([np.cos(angle), np.sin(angle), 0])
+    parts = {"elements": elements, "element": element, "section": SECTION, "material": STEEL, "law": law}
+    scene.cable("column", start=(0, 0, 0), end=(0, COLUMN, 0), up=(-1, 0, 0), **parts)
+    scene.cable("arm", start=(0, COLUMN, 0), end=ARM * along + (0, COLUMN, 0), up=(-along[1], along[0], 0), **parts)
+    scene.clamp("column", s=0)
+    names = ["column", "arm"]
+    ends = {"column": COLUMN, "arm": 0.0}
+    if not joined:  # the arm's place from the other side
+        names.reverse()
+    scene.join(names[0], s=ends[names[0]], to=names[1], at=ends[names[1]], name="corner")
+    scene.force("arm", s=ARM, value=(0, -FORCE, 0))
+    return scene
+
+
+def sinking(angle: float) -> float:
+    """Of the tip, in m, by Castigliano's theorem: bending, shear and stretch of arm and column."""
+    EA, EI = 2e11 * SECTION.area, 2e11 * SECTION.second_moment_yy
+    GA = 2e11 / 2.6 * SECTION.area * SECTION.shear_factors(0.3)[0]
+    c, s = np.cos(angle), np.sin(angle)
+    arm = (c * ARM) ** 2 * ARM / 3 / EI + c * c * ARM / GA + s * s * ARM / EA
+    return FORCE * (arm + (c * ARM) ** 2 * COLUMN / EI + COLUMN / EA)
+
+
+@pytest.mark.parametrize("joined", [True, False])
+@pytest.mark.parametrize("angle", [0.0, np.pi / 4, -np.pi / 3])
+@pytest.mark.parametrize("element", ["beam12p"])
+def test_a_bracket_sinks_as_timoshenko_says_however_short_its_elements(element, angle, joined):
+    """While the gradient of the deformation was shared, 2 elements a part sank 1.7 % too much, 32 30 %."""
+    for elements in (2, 32):
+        state = bracket(element, angle, elements, joined).equilibrium()
+        assert -state["arm.position"][-1, 1] + COLUMN + ARM * np.sin(angle) == pytest.approx(sinking(angle), rel=2e-5)
+        assert abs(state["corner.moment"][2]) == pytest.approx(FORCE * ARM * np.cos(angle), rel=1e-4)
