@@ -142,11 +142,9 @@ def test_a_thinner_one_is_told_to_be_uncertain():
     assert np.all(np.abs(np.where(grows > 0, -grows, w) - np.sqrt(2.5e-13 * bending(2, 2))) < 2 * found.uncertainty)
 
 
-@pytest.mark.parametrize(("section", "cause"), [
-    (Rectangle(height=1e-9, width=1e-9), "rounding of the stiffness hides the 6 lowest modes"),
-    (Rectangle(height=1e-80, width=1e-80), "its inertia comes to")])
-def test_extreme_proportions_are_refused(section, cause):
-    """They gave six zeros, or an error of LAPACK."""
+def test_extreme_proportions_are_refused():
+    """They gave six zeros. Sections thinner than 1e-12 m are refused when they are made."""
+    section, cause = Rectangle(height=1e-9, width=1e-9), "rounding of the stiffness hides the 6 lowest modes"
     scene = Scene(gravity=(0, 0, 0))
     scene.clamp(scene.cable("beam", start=(0, 0, 0), end=(1, 0, 0), elements=4, section=section, material=STEEL), s=0.0)
     with pytest.raises(SceneError, match=f"modes: .*{cause}.*; "):
