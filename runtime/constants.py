@@ -14,11 +14,13 @@ POINTS = 5
 
 
 def constants(cable: Cable, axial: float = 1.0) -> np.ndarray:
-    """(1, n), or (elements, n) where they differ because the stress-free shape is curved; axial: a factor of EA."""
+    """(1, n), or (elements, n) where they differ because the stress-free shape is curved; axial: a factor of EA, of a
+    cable's law alone.
+    """
     kernels, length = kernels_of(cable.library), cable.length / cable.elements
     S = section_stiffness(cable.stiffness_law, cable.section, cable.material, cable.dim)
     if axial != 1.0:
-        S = np.concatenate([S[:1] * axial, S[1:]])
+        S = S * [axial, 1.0, axial][: len(S)]  # of EA, EI, and EA of the upper modes of an assumed strain
     reference = cable.reference
     shapes = [None] if reference is None else reference if cable.is_curved else reference[:1]
     return np.array([element_constants(kernels, cable.element, cable.kernel_law, length, S, e0) for e0 in shapes])

@@ -23,7 +23,7 @@ class Softening:
         load = float(np.abs(problem.load_vector()[positions]).sum())
         for k, (model, cable) in enumerate(zip(problem.model.cables, problem.scene.cables.values(), strict=True)):
             S = section_stiffness(cable.stiffness_law, cable.section, cable.material, cable.dim)
-            if S.shape != (2,):
+            if S.shape not in ((2,), (3,)):  # EA, EI, and EA of the upper modes of an assumed strain
                 continue
             least = max(load, BENDING * S[1] / model.length**2) / S[0]
             if least < 1.0:

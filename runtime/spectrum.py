@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from funicular.counting import equilibrating, negatives
+from funicular.inertia import equilibrating, negatives
 from scipy.linalg import eigh, qr
 from scipy.sparse import block_array, csc_array, diags_array
 from scipy.sparse.linalg import splu

@@ -16,11 +16,11 @@ SLENDER = General(area=AREA, second_moment_yy=1e-12, second_moment_zz=1e-12)
 CASES = [((10, 0), 10.5), ((10, 0), 10.05), ((10, 4), 11.5), ((20, 5), 21.0)]
 
 
-def rope(end, length, elements=20, element="cable12", section=SLENDER, points=None) -> Scene:
+def rope(end, length, elements=20, element="cable12", section=SLENDER, points=None, **how) -> Scene:
     scene = Scene()
     drawn = {"start": (0, 0, 0), "end": (*end, 0)} if points is None else {"points": points, "rest": "straight"}
     scene.cable("rope", elements=elements, element=element, rest_length=length, section=section,
-                material=Material(youngs_modulus=E, poisson_ratio=0.3, density=DENSITY), **drawn)
+                material=Material(youngs_modulus=E, poisson_ratio=0.3, density=DENSITY), **drawn, **how)
     scene.pin("rope", s=0)
     scene.pin("rope", s=length)
     return scene
@@ -41,6 +41,32 @@ def hangs(scene, end, length, **settings):
 @pytest.mark.parametrize(("end", "length"), CASES)
 def test_drawn_straight(end, length, element):
     hangs(rope(end, length, element=element), end, length)
+
+
+@pytest.mark.parametrize("membrane", ["assumed", "reduced"])
+@pytest.mark.parametrize(("end", "length"), CASES)
+def test_drawn_straight_with_another_axial_strain(end, length, membrane):
+    """Their section has three stiffnesses: the search did not soften them, and ended at straight, folded states."""
+    hangs(rope(end, length, membrane=membrane), end, length)
+
+
+@pytest.mark.parametrize("membrane", ["full", "assumed", "reduced"])
+def test_compressed_and_straight_is_unstable(membrane):
+    """Without weight and without the search for a stable state Newton's method leaves it straight."""
+    scene = rope((1, 0), 1.001, section=Circle(radius=0.001), membrane=membrane)
+    scene.gravity = (0, 0, 0)
+    with pytest.warns(FunicularWarning, match="the state is unstable: .* its energy; a small disturbance leaves it"):
+        state = scene.equilibrium(seek_stable=False)
+    assert not state.stable
+    np.testing.assert_allclose(state["rope.position"][:, 1:], 0, atol=1e-12)
+
+
+def test_two_thousand_elements():
+    """Counted by a sparse factorisation: a dense one would take 1.2 GB and minutes."""
+    u = np.linspace(0, 1, 41)[:, None]
+    points = np.hstack([10 * u, -4 * np.sqrt(3 / 8 * 10 * 0.5) * u * (1 - u), 0 * u])
+    state = hangs(rope((10, 0), 10.5, 2000, points=points), (10, 0), 10.5)
+    assert str(state.stability) == "stable"
 
 
 @pytest.mark.parametrize("elements", [20, 96])
