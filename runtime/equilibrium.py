@@ -102,8 +102,8 @@ class Equilibrium:
 
     @property
     def stable(self) -> bool:
-        """Whether no direction lowers the energy."""
-        return self.stability.unstable == 0
+        """Whether no direction lowers the energy; False also where that could not be counted."""
+        return self.stability.known and self.stability.unstable == 0
 
     def keys(self) -> list[str]:
         """Names of all quantities."""

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import TYPE_CHECKING
 
 import numpy as np
 from funicular.anchors import Anchor
 from funicular.cables import EXACT, Cable
 from funicular.elements import built_in
-from funicular.errors import SceneError, near
+from funicular.errors import FunicularWarning, SceneError, near
 from funicular.loads import DistributedForce, Force, Moment
 from funicular.modal_bodies import ModalBody
 from funicular.springs import Spring
@@ -108,6 +109,24 @@ def check_join(scene: Scene, join: Join) -> None:
     if all(holders):
         raise SceneError(join.where, f"both nodes are held already, by the {holders[0].where} and the "
                          f"{holders[1].where}", "leave one of them out")
+    if join.rotation == "rigid" and _shears_the_end(a, join.s, b, join.at):
+        message = (f"{join.where}: the join shares the slopes of both cables, so that a moment on one shears the last "
+                   "element of the other: the corner is too soft, the more so the shorter the elements are; "
+                   'take scene.joint("weld", ...) instead, with up for an element without section axes')
+        scene.messages.append(message)
+        warnings.warn(message, FunicularWarning, stacklevel=4)
+
+
+def _shears_the_end(a: Cable, s: float, b: Cable, at: float) -> bool:
+    """Whether a rigid join in space ties the tangent of one cable to the section of the other.
+
+    In the plane, joins at an angle share the turn of the section alone (reduction.py), which is not linear in space.
+    """
+    if 2 in (a.dim, b.dim):
+        return False
+    directors = [bool(cable.kind_of_element.director) for cable in (a, b)]
+    return any(directors) and (not all(directors) or
+                               float(np.linalg.norm(np.cross(a.axes_at(s)[0], b.axes_at(at)[0]))) > EXACT)
 
 
 def placed_load(scene: Scene, load: Force | DistributedForce | Moment) -> Part:

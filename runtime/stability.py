@@ -24,16 +24,20 @@ class Stability:
 
     follower: the stiffness is not symmetric, since loads turn with what they act on. There is no energy then: unstable
     counts negative real eigenvalues, which are directions of divergence; flutter is not looked for. bound: unstable is
-    the count of the symmetric part (of more than 1500 unknowns), which is not less than that of divergence.
+    the count of the symmetric part (of more than 1500 unknowns), which is not less than that of divergence. known:
+    False where no factorisation of the stiffness was accurate enough to count; the numbers are zero then.
     """
 
     unstable: int
     neutral: int
     follower: bool = False
     bound: bool = False
+    known: bool = True
 
     def __str__(self) -> str:
         """In words."""
+        if not self.known:
+            return "of unknown stability: no factorisation of its stiffness is accurate enough to count"
         if not self.unstable:
             return "stable"
         if self.bound:
@@ -49,6 +53,13 @@ def stability(problem: StaticProblem) -> Stability:
     K, C, units = problem.stiffness()
     if not K.shape[0]:
         return Stability(0, 0)
+    try:
+        return _counted(K, C, units)
+    except ArithmeticError:
+        return Stability(0, 0, known=False)
+
+
+def _counted(K, C, units: np.ndarray) -> Stability:
     if abs(K - K.T).max() <= ASYMMETRY * (abs(K).max() or 1.0):
         found = inertia(K, C, units)
         return Stability(found.negative, found.zero)

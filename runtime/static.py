@@ -54,7 +54,8 @@ def _note(problem: StaticProblem, state: Equilibrium) -> None:
         names = " and ".join(f'"{name}"' for name in rubbing)
         problem.messages.append(f"friction of {names} is left out: at rest slides move freely")
     if not state.stable:
-        problem.messages.append(f"the state is {state.stability}; a small disturbance leaves it")
+        leaves = "; a small disturbance leaves it" * state.stability.known
+        problem.messages.append(f"the state is {state.stability}{leaves}")
     state.messages = problem.messages
     for message in problem.messages:
         warnings.warn(message, FunicularWarning, stacklevel=4)

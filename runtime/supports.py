@@ -141,8 +141,9 @@ class Join(Part):
     """Joins the node at ``s`` (m) of one cable to the node at arc-length ``at`` of another one, ``to``.
 
     They share their position. With rotation "rigid" (a frame's corner) their sections turn together, at the angle at
-    which they are drawn; in line, and in space, they share the gradient of the deformation, all slopes. With "free"
-    they turn freely (a hinge).
+    which they are drawn; in line, and in space, they share the gradient of the deformation, all slopes. In space that
+    makes a corner of beams, and a beam joined to a cable, too soft, which a `FunicularWarning` says: take a `Joint` of
+    the kind "weld". With "free" they turn freely (a hinge).
     """
 
     kind: ClassVar[str] = "join"

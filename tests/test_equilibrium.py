@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from funicular import Circle, General, Material, Scene
-from funicular.errors import EquilibriumError, SceneError, UnknownResultError
+from funicular.errors import EquilibriumError, FunicularWarning, SceneError, UnknownResultError
 from scenery import add_cable, add_rider
 from scipy.optimize import brentq
 
@@ -198,3 +198,13 @@ def test_a_state_of_another_scene_is_refused():
     with pytest.raises(UnknownResultError, match=r'no result "tie\.tensoin"; did you mean "tie\.tension"'):
         state["tie.tensoin"]
     assert "tie.tension" in state.keys()
+
+
+def test_a_stability_that_cannot_be_counted_is_no_stability(monkeypatch):
+    def no_count(*_):
+        raise ArithmeticError
+
+    monkeypatch.setattr("funicular.stability.inertia", no_count)
+    with pytest.warns(FunicularWarning, match="^the state is of unknown stability: no factorisation of its stiffness"):
+        rest = truss(1.0).equilibrium()
+    assert not rest.stable and rest.unstable_directions == 0
