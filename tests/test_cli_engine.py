@@ -75,7 +75,10 @@ def test_ctrl_c_keeps_what_was_computed(tmp_path):
     # a shell's background jobs ignore Ctrl-C, and so would their children: the run under test must not
     listen = partial(signal.signal, signal.SIGINT, signal.default_int_handler)
     process = subprocess.Popen(long, cwd=tmp_path, stderr=subprocess.PIPE, text=True, preexec_fn=listen)
-    time.sleep(3)  # the start takes a fraction of a second, the whole run minutes
+    end = time.monotonic() + 60
+    while not any(tmp_path.iterdir()) and time.monotonic() < end:  # until the first rows are written
+        time.sleep(0.1)
+    time.sleep(1)  # the whole run takes minutes
     process.send_signal(signal.SIGINT)
     _, told = process.communicate(timeout=30)
     assert process.returncode == 130

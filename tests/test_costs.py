@@ -18,11 +18,15 @@ from test_newton_matrix import tied
 def test_each_slide_and_joint_is_in_the_report(integrator):
     scene = tied()
     scene.joint("distance", ("link", 1.0), (1.1, -1, 1), name="stay")
-    run = scene.run(0.01, output_step=0.01, tol=1e-3, integrator=integrator)
-    costs, report = run.report["us_per_step"], run.report
-    assert set(costs) == {*scene.slides, *scene.joints}
-    assert min(costs.values()) > 0
-    assert sum(costs.values()) < 1e6 * report["time_s"]["solve_cpu"] / report["steps"]
+    for _ in range(5):  # costs are elapsed time: on a busy machine something else may be among them
+        run = scene.run(0.01, output_step=0.01, tol=1e-3, integrator=integrator)
+        costs, report = run.report["us_per_step"], run.report
+        assert set(costs) == {*scene.slides, *scene.joints}
+        assert min(costs.values()) > 0
+        if sum(costs.values()) < 1e6 * report["time_s"]["solve_cpu"] / report["steps"]:
+            break
+    else:
+        pytest.fail("costs of slides and joints are more than all of a step")
     text = dict(run.summary_rows())["slides and joints"]
     assert text.startswith(f"{sum(costs.values()):.3g} µs of a step: ")
     assert max(costs, key=costs.__getitem__) in text and text.endswith("and 2 more")
