@@ -93,7 +93,7 @@ def modes(scene: Scene, n: int, about: Equilibrium | None = None) -> Modes:
     dofs = np.array([engine.spread(np.append(x, np.zeros(model.n_band + model.n_border_dof + model.n_extra - len(x))))
                      for x in vectors.T])
     found = _named(model, np.where(np.abs(squares) <= error, 0.0, squares), dofs, error)
-    found.messages += _without_friction(scene) + _uncertain(found, np.sqrt(after))
+    found.messages += _without_friction(scene) + _uncertain(found, np.sqrt(max(after, 0.0)))
     for message in found.messages:
         warnings.warn(message, FunicularWarning, stacklevel=3)
     return found

@@ -448,7 +448,7 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Meter, initial=No
     if largest > 1e-9 * (1.0 + np.max(np.abs(model.v) * model.weight, initial=0.0)):
         messages.append(f"initial velocities broke a joint: changed by up to {largest:.3g} m/s to keep it")
         warnings.warn(messages[-1], FunicularWarning, stacklevel=3)
-    for jump in velocity_jumps(scene):
+    for jump in velocity_jumps(scene, settings.duration):
         messages.append(jump)
         warnings.warn(jump, FunicularWarning, stacklevel=3)
     if status is None:

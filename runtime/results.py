@@ -355,7 +355,8 @@ def check_writable(path: str | os.PathLike) -> Path:
     """The path without links. Raises ResultFileError if no file can be written there; leaves nothing behind."""
     try:
         resolved = Path(path).resolve()  # a link keeps pointing to what it did
-        probe = resolved.with_name(f".{resolved.name}.{os.getpid()}.probe")  # longer than other names that are needed
+        own = threading.get_native_id()  # several threads may look at once
+        probe = resolved.with_name(f".{resolved.name}.{own}.probe")  # longer than other names that are needed
         if resolved.is_dir():
             cause, remedy = "this is a directory", "add a name"
         elif resolved.exists() and not resolved.is_file():
