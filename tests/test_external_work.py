@@ -97,7 +97,9 @@ CASES = {
     "motion-rotation": lambda: moved(rotation=((0, 0, 1), RISE)),
     "motion-both": lambda: moved(displacement=(0, RISE, 0), rotation=((0, 0, 1), RISE)),
 }
-BOUNDS = {"genalpha": 5e-5, "radau": 1e-5, "explicit": 1e-5}
+WORK, BALANCE = 1e-5, {"genalpha": 5e-5, "radau": 1e-5, "explicit": 1e-5}
+KINKS = {"revolute": 3e-5}
+"""The power has kinks at the knots of its table, over which genalpha's steps go: an error of order 2."""
 QUICK = ("slide-tangent", "slide-section", "slide-tangent-sticking", "revolute-rope", "motion-one-direction")
 """The others are slow."""
 
@@ -105,7 +107,7 @@ QUICK = ("slide-tangent", "slide-section", "slide-tangent-sticking", "revolute-r
 def work_of_outputs(case: str, run) -> float | None:
     """J by the reported forces and rates; None where they are no functions of time, or not all reported."""
     t = run.time
-    if case.endswith("over-a-node"):  # forces jump; wre a frame turns otherwise, an impulse
+    if case.endswith("over-a-node"):  # forces jump; where a frame turns otherwise, an impulse
         return None
     if case.startswith("slide"):
         power = run["drive.traction"] * run["drive.s_rate"]
@@ -129,7 +131,7 @@ def work_of_outputs(case: str, run) -> float | None:
 def test_external_work_is_force_times_rate_with_every_integrator(case):
     """To 1e-5 of what is exchanged at tol = 1e-6; explicitly where no cross-section vibrates.
 
-    genalpha's forces are of order 2 in its larger steps: 3.2e-5 at most, and a quarter of it with half the step.
+    The balance of energies has the error of the motion in it as well: genalpha's velocities are of order 2.
     """
     scene, works = CASES[case](), []
     stiff = any(cable.element.startswith("beam") for cable in scene.cables.values())
@@ -138,11 +140,11 @@ def test_external_work_is_force_times_rate_with_every_integrator(case):
         balance, works = run.energy_balance(), [*works, run["energy.external"][-1]]
         by_outputs = work_of_outputs(case, run)
         print(case, integrator, works[-1], np.abs(balance.relative).max(), by_outputs, run.report["steps"])
-        close = BOUNDS[integrator]
-        assert np.abs(balance.relative).max() < close
+        close = KINKS.get(case, WORK) if integrator == "genalpha" else WORK
+        assert np.abs(balance.relative).max() < BALANCE[integrator]
         if by_outputs is not None:
             assert works[-1] == pytest.approx(by_outputs, abs=close * balance.exchanged)
-    assert works == pytest.approx([works[-1]] * len(works), abs=BOUNDS["genalpha"] * balance.exchanged)
+    assert works == pytest.approx([works[-1]] * len(works), abs=KINKS.get(case, WORK) * balance.exchanged)
     assert abs(works[0]) > 1e-3 * balance.exchanged
 
 

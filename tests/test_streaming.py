@@ -436,7 +436,7 @@ def test_kill(whole, tmp_path):
         assert running.wait() == -signal.SIGKILL
         check_killed(path, whole[0])
         least = times(path)
-    assert 300 < least < 601
+    assert 300 < least <= 601  # or on the way out
     check_resumed(path, whole[0])
 
 

@@ -6,23 +6,6 @@
 #define LEAST_MOTION 1e-10 /* of the largest coordinate: less is what step control and rounding leave of rest */
 #define ROUNDING 1e-14     /* of the energies */
 
-/* What joints whose frame goes with a slide put on its s: a moment does work where the frame turns along the cable. */
-static double force_of_links(const fu_model *model, const fu_state *state, int s)
-{
-    double force = 0.0;
-    for (int k = 0; k < model->n_links; ++k) {
-        const fu_link *link = &model->links[k];
-        double phi[6], J[6 * 2 * FU_END_COORDINATES];
-        int at[2 * FU_END_COORDINATES];
-        if ((link->ends[0].slide < 0 && link->ends[1].slide < 0) || fu_link_is_idle(link, state)) continue;
-        const int n = fu_link_residual(model, link, state, phi, at, J);
-        for (int i = 0; i < n; ++i)
-            for (int r = 0; r < link->kernel->rows && at[i] == s; ++r)
-                if (!(link->idle >> r & 1)) force += J[r * n + i] * state->multipliers[6 * k + r];
-    }
-    return force;
-}
-
 /* R of a slide by the force that a Newton method solves for, 0 where nothing brakes it; t and u as brakes.c has them */
 static double resistance(const fu_model *model, const fu_state *state, int j, double t[3], double u[3])
 {
@@ -35,31 +18,17 @@ static double resistance(const fu_model *model, const fu_state *state, int j, do
     return braking.R;
 }
 
-/* Power of what drives slides and joints: from the forces that a Newton method solves for, else from eq 38. */
-static double driving_power(const fu_run *run, const fu_state *state)
+/* Power of what drives slides and joints, by the multipliers that eq 38 left. */
+static double driving_power(const fu_run *run)
 {
     const fu_model *model = run->model;
     const fu_accelerator *work = &run->accelerator;
     double power = 0.0;
-    if (!run->integrator->newton) {
-        for (int r = 0; r < model->n_joints + model->n_links; ++r)
-            for (int c = 0; c < work->rows[r].rows; ++c)
-                power += work->multipliers[work->rows[r].first + c] * work->rows[r].rate[c];
-        for (int j = 0; j < model->n_joints; ++j)
-            if (model->joints[j].drive >= 0) power -= work->resistance[j] * work->slides[j].s_rate;
-        return power;
-    }
-    for (int j = 0; j < model->n_joints; ++j) {
-        double phi[3], g[FU_SLIDE_COORDINATES], t[3], u[3], rate, second;
-        int at[FU_SLIDE_COORDINATES + 1];
-        if (state->mode[j] != FU_HELD || model->joints[j].drive < 0) continue;
-        fu_slide_held(model, state, j, &rate, &second);
-        fu_slide_residual(model, state, j, phi, g);
-        const int s = fu_slide_coordinates(model, state, j, at);
-        power += (g[s] + force_of_links(model, state, at[s]) - resistance(model, state, j, t, u)) * rate;
-    }
-    for (int k = 0; k < model->n_links; ++k)
-        if (model->links[k].signal >= 0) power += fu_link_driving(model, &model->links[k], state);
+    for (int r = 0; r < model->n_joints + model->n_links; ++r)
+        for (int c = 0; c < work->rows[r].rows; ++c)
+            power += work->multipliers[work->rows[r].first + c] * work->rows[r].rate[c];
+    for (int j = 0; j < model->n_joints; ++j)
+        if (model->joints[j].drive >= 0) power -= work->resistance[j] * work->slides[j].s_rate;
     return power;
 }
 
@@ -80,11 +49,12 @@ double fu_dissipated_power(const fu_run *run, const fu_state *state)
     return power;
 }
 
-/* power of the loads, of what drives slides and joints and, with the forces that the supports give, of the motions */
+/* power of the loads, of what drives slides and joints, by the last call of fu_accelerations, and, with the forces that
+ * the supports give, of the motions */
 double fu_external_power(fu_run *run, const fu_state *state, const double *reaction)
 {
     const fu_model *model = run->model;
-    double power = driving_power(run, state);
+    double power = driving_power(run);
     if (model->n_dead_loads || model->n_loads) {
         for (int i = 0; i < model->n_dof; ++i) run->work[i] = 0.0;
         fu_loads(model, state->t, state->q, run->work);
@@ -97,24 +67,35 @@ double fu_external_power(fu_run *run, const fu_state *state, const double *react
     return power;
 }
 
-/* The step just made, by the trapezoidal rule: as good as a method of order 2. */
+/* whether anything drives a slide or a joint */
+static int has_drives(const fu_model *model)
+{
+    int driven = 0;
+    for (int j = 0; j < model->n_joints; ++j) driven |= model->joints[j].drive >= 0;
+    for (int k = 0; k < model->n_links; ++k) driven |= model->links[k].signal >= 0;
+    return driven;
+}
+
+/* The step just made, of a method of order 2: what goes to heat by the trapezoidal rule. Work from outside by that rule less
+ * its error, -h^3/12 of the second derivative of the power, which three instants tell; and the force of what drives the
+ * scene from eq 38, as it is reported, since the multipliers that Newton's method finds are off by h^2 of it. */
 void fu_book_trapezoid(fu_run *run, double h)
 {
+    if (has_drives(run->model))
+        fu_accelerations(run->model, &run->next, &run->accelerator, run->work, 0, 0);
     const double dissipated = fu_dissipated_power(run, &run->next);
     const double external = fu_external_power(run, &run->next, run->force);
     run->dissipated += 0.5 * h * (run->dissipated_power + dissipated);
     run->external += 0.5 * h * (run->external_power + external);
+    if (run->power_step > 0.0) {
+        const double slope = (external - run->external_power) / h;
+        const double before = (run->external_power - run->power_before) / run->power_step;
+        run->external -= h * h * h / 6.0 * (slope - before) / (h + run->power_step);
+    }
+    run->power_before = run->external_power;
+    run->power_step = h;
     run->dissipated_power = dissipated;
     run->external_power = external;
-}
-
-/* whether anything outside can do work on the scene at an instant: what drives a slide or a joint, or moves a support */
-static int is_driven(const fu_model *model)
-{
-    int driven = model->n_motions > 0;
-    for (int j = 0; j < model->n_joints; ++j) driven |= model->joints[j].drive >= 0;
-    for (int k = 0; k < model->n_links; ++k) driven |= model->links[k].signal >= 0;
-    return driven;
 }
 
 /* An impact: velocities change at an instant so that constraints hold that they broke, M change = H' L. What is lost is
@@ -128,7 +109,7 @@ void fu_impact(fu_run *run, const double *change, double restitution)
     const double before = fu_kinetic_energy(model, now->q, now->v);
     for (int i = 0; i < model->n_dof; ++i) now->v[i] += change[i];
     run->dissipated += lost;
-    if (is_driven(model)) run->external += fu_kinetic_energy(model, now->q, now->v) - before + lost;
+    if (has_drives(model) || model->n_motions) run->external += fu_kinetic_energy(model, now->q, now->v) - before + lost;
 }
 
 /* Whether anything moves beyond what step control and rounding leave of a scene at rest */

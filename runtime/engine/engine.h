@@ -401,7 +401,6 @@ int fu_link_residual(const fu_model *model, const fu_link *link, const fu_state 
 int fu_between_cables(const fu_link *link);
 int fu_ties_a_frame(const fu_model *model, int joint);
 int fu_link_tangent(const fu_model *model, const fu_link *link, const fu_state *state, int *at, double *J, double *K);
-double fu_link_driving(const fu_model *model, const fu_link *link, const fu_state *state);
 void fu_link_terms(const fu_model *model, const fu_link *link, const fu_state *state, const fu_slide_state *slides,
                    const fu_rows *of_slides, fu_rows *rows);
 
@@ -608,6 +607,7 @@ struct fu_run {
     double h, h_factored, contraction, last_error;
     double since; /* energy.c: how long before `now` the acceleration there belongs, s */
     double dissipated, dissipated_power, external, external_power; /* J, W */
+    double power_before, power_step; /* W, s: the external power a step before, and how long that was; 0 where none is */
     double recorded; /* s: time of the last row */
     double usual; /* s: the step that is wanted, were it not for an event or an output time */
     double motion, least_motion, extent; /* m: largest so far, assumed at least, largest coordinate of a position */

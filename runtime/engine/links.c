@@ -226,17 +226,3 @@ void fu_link_outputs(const fu_model *model, const fu_state *state, const fu_acce
         }
     }
 }
-
-/* power that a driven joint's multipliers give to the scene */
-double fu_link_driving(const fu_model *model, const fu_link *link, const fu_state *state)
-{
-    const double *multipliers = state->multipliers + 6 * (link - model->links);
-    const double none[3] = {0.0};
-    double phi_t[6], Q_d[6], power = 0.0;
-    link_view view;
-    look(model, link, state, 0, &view);
-    const double driving[2] = {view.rate, view.second};
-    link->kernel->motion(view.gap, view.place[0].A, view.place[1].A, view.c, none, none, none, driving, phi_t, Q_d);
-    for (int r = 0; r < link->kernel->rows; ++r) power += multipliers[r] * phi_t[r];
-    return power;
-}
