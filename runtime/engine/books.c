@@ -18,6 +18,15 @@ static double resistance(const fu_model *model, const fu_state *state, int j, do
     return braking.R;
 }
 
+/* whether anything drives a slide or a joint */
+static int has_drives(const fu_model *model)
+{
+    int driven = 0;
+    for (int j = 0; j < model->n_joints; ++j) driven |= model->joints[j].drive >= 0;
+    for (int k = 0; k < model->n_links; ++k) driven |= model->links[k].signal >= 0;
+    return driven;
+}
+
 /* Power of what drives slides and joints, by the multipliers that eq 38 left. */
 static double driving_power(const fu_run *run)
 {
@@ -54,7 +63,7 @@ double fu_dissipated_power(const fu_run *run, const fu_state *state)
 double fu_external_power(fu_run *run, const fu_state *state, const double *reaction)
 {
     const fu_model *model = run->model;
-    double power = driving_power(run);
+    double power = has_drives(model) ? driving_power(run) : 0.0;
     if (model->n_dead_loads || model->n_loads) {
         for (int i = 0; i < model->n_dof; ++i) run->work[i] = 0.0;
         fu_loads(model, state->t, state->q, run->work);
@@ -67,33 +76,34 @@ double fu_external_power(fu_run *run, const fu_state *state, const double *react
     return power;
 }
 
-/* whether anything drives a slide or a joint */
-static int has_drives(const fu_model *model)
+/* What drives give in the step just made: by the force of eq 38, as it is reported, since the multipliers that Newton's
+ * method finds are off by h^2 of it, and by the trapezoidal rule less its error, -h^3/12 of the second derivative of the
+ * power, which three instants tell. Returns what that is beyond the trapezoidal rule. */
+static double beyond_trapezoid(fu_run *run, double h)
 {
-    int driven = 0;
-    for (int j = 0; j < model->n_joints; ++j) driven |= model->joints[j].drive >= 0;
-    for (int k = 0; k < model->n_links; ++k) driven |= model->links[k].signal >= 0;
-    return driven;
+    const double power = driving_power(run);
+    double beyond = 0.0;
+    if (run->drive_step > 0.0) {
+        const double slope = (power - run->drive_power) / h;
+        const double before = (run->drive_power - run->drive_power_before) / run->drive_step;
+        beyond = -h * h * h / 6.0 * (slope - before) / (h + run->drive_step);
+    }
+    run->drive_power_before = run->drive_power;
+    run->drive_power = power;
+    run->drive_step = run->drive_step < 0.0 ? 0.0 : h;
+    return beyond;
 }
 
-/* The step just made, of a method of order 2: what goes to heat by the trapezoidal rule. Work from outside by that rule less
- * its error, -h^3/12 of the second derivative of the power, which three instants tell; and the force of what drives the
- * scene from eq 38, as it is reported, since the multipliers that Newton's method finds are off by h^2 of it. */
+/* The step just made, by the trapezoidal rule, as good as a method of order 2; drives better. */
 void fu_book_trapezoid(fu_run *run, double h)
 {
-    if (has_drives(run->model))
-        fu_accelerations(run->model, &run->next, &run->accelerator, run->work, 0, 0);
+    const int driven = has_drives(run->model);
+    if (driven) fu_accelerations(run->model, &run->next, &run->accelerator, run->work, 0, 0);
     const double dissipated = fu_dissipated_power(run, &run->next);
     const double external = fu_external_power(run, &run->next, run->force);
     run->dissipated += 0.5 * h * (run->dissipated_power + dissipated);
     run->external += 0.5 * h * (run->external_power + external);
-    if (run->power_step > 0.0) {
-        const double slope = (external - run->external_power) / h;
-        const double before = (run->external_power - run->power_before) / run->power_step;
-        run->external -= h * h * h / 6.0 * (slope - before) / (h + run->power_step);
-    }
-    run->power_before = run->external_power;
-    run->power_step = h;
+    if (driven) run->external += beyond_trapezoid(run, h);
     run->dissipated_power = dissipated;
     run->external_power = external;
 }

@@ -153,8 +153,8 @@ static int possible_numbers(const fu_run *run)
     const fu_model *model = run->model;
     const double positive[] = {run->h, run->ceiling};
     const double numbers[] = {run->motion, run->least_motion, run->extent, run->contraction, run->since, run->dissipated,
-                              run->dissipated_power, run->external, run->external_power, run->power_before,
-                              run->power_step, run->closed, run->allowed,
+                              run->dissipated_power, run->external, run->external_power, run->drive_power,
+                              run->drive_power_before, run->drive_step, run->closed, run->allowed,
                               run->round_off, run->newton_tolerance, run->statistics.h_min, run->statistics.h_max,
                               run->statistics.error_sum, run->books.exchanged, run->books.grown, run->books.lost};
     const long counts[] = {run->statistics.steps, run->statistics.rejected, run->statistics.newton_iterations,

@@ -607,7 +607,8 @@ struct fu_run {
     double h, h_factored, contraction, last_error;
     double since; /* energy.c: how long before `now` the acceleration there belongs, s */
     double dissipated, dissipated_power, external, external_power; /* J, W */
-    double power_before, power_step; /* W, s: the external power a step before, and how long that was; 0 where none is */
+    double drive_power, drive_power_before, drive_step; /* W, W, s: of drives; a step before; how long that
+                                                          * was, 0 where only the first is known, -1 none */
     double recorded; /* s: time of the last row */
     double usual; /* s: the step that is wanted, were it not for an event or an output time */
     double motion, least_motion, extent; /* m: largest so far, assumed at least, largest coordinate of a position */

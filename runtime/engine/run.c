@@ -142,7 +142,7 @@ static int start_scheme(fu_run *run, int project)
     if (fu_complete(run, now)) return FU_SINGULAR;
     run->dissipated_power = fu_dissipated_power(run, now);
     run->external_power = fu_external_power(run, now, run->force);
-    run->power_step = 0.0;
+    run->drive_step = -1.0;
     for (int j = 0; j < model->n_joints; ++j) run->s_slope[j] = joints[j].s_rate;
     return run->integrator->start(run);
 }
