@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.progress import Progress
 from rich.table import Table
 
-WIDE = 200  # columns that the whole table takes
+WIDE = 220  # columns that the whole table takes
 
 
 class Report:
