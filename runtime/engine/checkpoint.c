@@ -80,13 +80,6 @@ long fu_save(const fu_run *run, char *bytes)
     return c.size;
 }
 
-static int all_finite(const double *numbers, long n)
-{
-    for (long i = 0; i < n; ++i)
-        if (!isfinite(numbers[i])) return 0;
-    return 1;
-}
-
 static int in_range(int value, int least, int most)
 {
     return value >= least && value <= most;
@@ -132,12 +125,12 @@ static int slides_on_their_elements(const fu_model *model, const fu_state *state
 
 static int finite_state(const fu_model *model, const fu_state *state)
 {
-    return all_finite(&state->t, 1) && all_finite(state->q, model->n_q) && all_finite(state->v, model->n_dof) &&
-           all_finite(state->acceleration, model->n_dof) && all_finite(state->a, model->n_dof) &&
-           all_finite(state->s, model->n_joints) && all_finite(state->f, 3L * model->n_joints) &&
-           all_finite(state->spring, 3L * model->n_springs) && all_finite(state->multipliers, 6L * model->n_links) &&
-           all_finite(state->hold, model->n_joints) && all_finite(state->director, 3L * model->n_joints) &&
-           all_finite(state->memory, model->n_memory);
+    return fu_all_finite(&state->t, 1) && fu_all_finite(state->q, model->n_q) && fu_all_finite(state->v, model->n_dof) &&
+           fu_all_finite(state->acceleration, model->n_dof) && fu_all_finite(state->a, model->n_dof) &&
+           fu_all_finite(state->s, model->n_joints) && fu_all_finite(state->f, 3L * model->n_joints) &&
+           fu_all_finite(state->spring, 3L * model->n_springs) && fu_all_finite(state->multipliers, 6L * model->n_links) &&
+           fu_all_finite(state->hold, model->n_joints) && fu_all_finite(state->director, 3L * model->n_joints) &&
+           fu_all_finite(state->memory, model->n_memory);
 }
 
 /* whether a run stands where fu_pause leaves one: at the time of its last row, without a factored matrix */
@@ -166,8 +159,8 @@ static int possible_numbers(const fu_run *run)
         if (counts[i] < 0) return 0;
     for (int k = 0; k < run->n_watches; ++k)
         if (!in_range(run->late[k], -1, 1)) return 0;
-    return all_finite(numbers, sizeof numbers / sizeof *numbers) && all_finite(run->books.first, FU_ENERGIES) &&
-           all_finite(run->first, model->n_q) && all_finite(run->s_slope, model->n_joints) &&
+    return fu_all_finite(numbers, sizeof numbers / sizeof *numbers) && fu_all_finite(run->books.first, FU_ENERGIES) &&
+           fu_all_finite(run->first, model->n_q) && fu_all_finite(run->s_slope, model->n_joints) &&
            run->motion >= 0.0 && run->least_motion >= 0.0 && run->extent >= 0.0 &&
            in_range(run->stopped_joint, 0, last_of(model->n_joints)) &&
            in_range(run->turned, 0, MOST_COUNT) && in_range(run->holds, 0, 1) && in_range(run->rest_start, 0, 1) &&

@@ -694,6 +694,7 @@ int fu_reach_end(fu_run *run, int joint, int side, int *what);
 int fu_act(fu_run *run, const fu_watch *watch, int side, int *what);
 
 /* run.c: the time loop */
+int fu_all_finite(const double *numbers, long n);
 int fu_prepare(fu_run *run);
 int fu_start(fu_run *run);
 int fu_advance(fu_run *run, double seconds);

@@ -72,7 +72,7 @@ static double size(const fu_model *model, const double *origin, const double *q)
     return largest;
 }
 
-static int all_finite(const double *numbers, long n)
+int fu_all_finite(const double *numbers, long n)
 {
     for (long i = 0; i < n; ++i)
         if (!isfinite(numbers[i])) return 0;
@@ -83,12 +83,12 @@ static int is_finite_row(const fu_model *model, const fu_record *r, long row)
 {
     const long q = model->n_q, v = model->n_dof, joints = model->n_joints, links = model->n_links;
     const double energies[] = {r->kinetic[row], r->elastic[row], r->potential[row], r->dissipated[row], r->external[row]};
-    return all_finite(energies, sizeof energies / sizeof *energies) && all_finite(r->q + row * q, q) &&
-           all_finite(r->v + row * v, v) && all_finite(r->acceleration + row * v, v) &&
-           all_finite(r->reaction + row * v, v) && all_finite(r->s + row * joints, joints) &&
-           all_finite(r->joint + row * joints * FU_JOINT_OUTPUTS, joints * FU_JOINT_OUTPUTS) &&
-           all_finite(r->link + row * links * FU_LINK_OUTPUTS, links * FU_LINK_OUTPUTS) &&
-           all_finite(r->spring + 3 * row * model->n_springs, 3L * model->n_springs);
+    return fu_all_finite(energies, sizeof energies / sizeof *energies) && fu_all_finite(r->q + row * q, q) &&
+           fu_all_finite(r->v + row * v, v) && fu_all_finite(r->acceleration + row * v, v) &&
+           fu_all_finite(r->reaction + row * v, v) && fu_all_finite(r->s + row * joints, joints) &&
+           fu_all_finite(r->joint + row * joints * FU_JOINT_OUTPUTS, joints * FU_JOINT_OUTPUTS) &&
+           fu_all_finite(r->link + row * links * FU_LINK_OUTPUTS, links * FU_LINK_OUTPUTS) &&
+           fu_all_finite(r->spring + 3 * row * model->n_springs, 3L * model->n_springs);
 }
 
 /* FU_SINGULAR, FU_UNSTABLE, FU_NO_CONVERGENCE for a row that is not finite, which does not count, or FU_RUNNING */
