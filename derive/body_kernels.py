@@ -9,7 +9,7 @@ from types import ModuleType
 
 import numpy as np
 from funicular.derive.frames import cross
-from funicular.derive.stages import Derivation, Program
+from funicular.derive.stages import DirectionalDerivative, Program
 
 
 def build(body: ModuleType) -> list[Program]:
@@ -27,7 +27,7 @@ def _position(p: Program, body: ModuleType, b: np.ndarray, u: np.ndarray):
     return A, at, body.tangents(p, b, A)
 
 
-def _jacobian(p: Program, at: np.ndarray, by: list[Derivation]) -> np.ndarray:
+def _jacobian(p: Program, at: np.ndarray, by: list[DirectionalDerivative]) -> np.ndarray:
     p_q = np.stack([d.array(at) for d in by], axis=1)
     p.output("p", at, "m", "position R + A u")
     p.output("p_q", p_q, "1, m", "derivatives by translation and rotation about body axes")
@@ -40,7 +40,7 @@ def point(body: ModuleType) -> Program:
     b, u, w = body.configuration(p), body.attachment(p), body.velocity(p)
     A, at, by = _position(p, body, b, u)
     _jacobian(p, at, by)
-    along = Derivation(p, "dt", body.rate(b, A, w))
+    along = DirectionalDerivative(p, "dt", body.rate(b, A, w))
     speed = along.array(at)
     p.output("v", speed, "m/s", "velocity")
     p.output("bias", along.array(speed), "m/s^2", "acceleration at zero accelerations of the coordinates")
@@ -145,7 +145,7 @@ def inertia_tangent(body: ModuleType) -> Program:
     w = body.velocity(p)
     force = _gyroscopic(p, body, J, w)
     p.output("M", _mass_matrix(body, mass, J), "kg, kg m^2", "mass matrix")
-    p.output("D", np.stack([Derivation(p, f"d_w{k}", {symbol: 1}).array(force) for k, symbol in enumerate(w)], axis=1),
+    p.output("D", np.stack([DirectionalDerivative(p, f"d_w{k}", {symbol: 1}).array(force) for k, symbol in enumerate(w)], axis=1),
              "kg m/s", "derivative of the inertia force by w")
     return p
 

@@ -11,7 +11,7 @@ from funicular.derive import body_kernels, element_kernels, law_kernels, modal_k
 from funicular.derive.bodies import BODIES, RIDERS, modal
 from funicular.derive.bodies.point import Point
 from funicular.derive.elements import ELEMENTS
-from funicular.derive.joints import brake, frame, pair, slide
+from funicular.derive.joints import frame, pair, resistance, slide
 from funicular.derive.laws import DAMPED_LIKE, law_like, law_name, structural
 from funicular.derive.spec import Element, Family
 
@@ -71,14 +71,14 @@ def _frame(dim: int) -> Family:
                   ("joints.frame",), role="frame", facts={"dim": dim}, dim=dim)
 
 
-def _brake(dim: int) -> Family:
-    return Family(brake.BRAKES[dim], f"friction and buffers of slides in {_SPACE[dim]}", partial(brake.build, dim),
-                  ("joints.brake",), role="brake", facts={"dim": dim}, dim=dim)
+def _resistance(dim: int) -> Family:
+    return Family(resistance.RESISTANCES[dim], f"friction and buffers of slides in {_SPACE[dim]}", partial(resistance.build, dim),
+                  ("joints.resistance",), role="resistance", facts={"dim": dim}, dim=dim)
 
 
 def _joint(dim: int, name: str) -> Family:
     return Family(f"joint_{name}", f"{name.replace('_', ' ')} joint between two frames", partial(pair.build, dim, name),
-                  ("joints.pair",), role="pair", facts={"dim": dim, "rows": pair.rows(dim, name)}, dim=dim)
+                  ("joints.pair",), role="joint", facts={"dim": dim, "rows": pair.rows(dim, name)}, dim=dim)
 
 
 _SPACE = {2: "the plane", 3: "space"}
@@ -92,7 +92,7 @@ def of_element(element: Element) -> list[Family]:
 
 def families() -> dict[str, Family]:
     """Every family by name: elements, their laws, bodies, the slide for each pair of element and rider, joints,
-    brakes.
+    resistances.
     """
     of_role: dict[str, list[Family]] = {"element": [], "law": [], "slide": []}
     for element in ELEMENTS.values():
@@ -102,7 +102,7 @@ def families() -> dict[str, Family]:
     every = [*of_role["element"], *of_role["law"], *map(_body, BODIES.values()),
              *(_modal(name, of) for name, of in modal.FRAMES.items()),
              *of_role["slide"],
-             *map(_frame, frame.FRAMES), *joints, *map(_brake, brake.BRAKES)]
+             *map(_frame, frame.FRAMES), *joints, *map(_resistance, resistance.RESISTANCES)]
     return {f.name: f for f in every}
 
 

@@ -21,7 +21,7 @@ from funicular.derive.bodies.modal import (
     skew,
     vector_product,
 )
-from funicular.derive.stages import Derivation, Program
+from funicular.derive.stages import DirectionalDerivative, Program
 
 
 def build(name: str, frame: ModuleType) -> list[Program]:
@@ -208,7 +208,7 @@ class Point:
     def by_mode(self, phi: np.ndarray, psi: np.ndarray, values: np.ndarray) -> np.ndarray:
         """Derivatives by eta of a mode."""
         along = dict(zip([*self.u, *self.theta], [*phi, *psi], strict=True))
-        return Derivation(self.program, "d_eta", along).array(values)
+        return DirectionalDerivative(self.program, "d_eta", along).array(values)
 
 
 def anchor(name: str, frame: ModuleType) -> Program:
@@ -222,7 +222,7 @@ def anchor(name: str, frame: ModuleType) -> Program:
     turns = np.zeros((point.turns, frame.N_VELOCITY), dtype=int).astype(object)
     turns[:, dim:] = np.stack([point.turned(e) for e in np.eye(point.turns, dtype=int)], axis=1)
     p.stage("along the motion")
-    along = Derivation(p, "dt", frame.rate(point.b, point.A, w)
+    along = DirectionalDerivative(p, "dt", frame.rate(point.b, point.A, w)
                        | dict(zip([*point.u, *point.theta], [*u1, *theta1], strict=True)))
     velocity = p.vector("v", along.array(point.at))
     omega = p.vector("spin", point.turned(w[dim:] + point.relative(theta1)))

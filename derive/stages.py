@@ -4,7 +4,7 @@ A `Program` is one kernel: inputs, then named stages of scalar definitions (each
 earlier definition), then outputs. Enters: SymPy expressions. Leaves: the same, ordered and named, for
 `printer` (text), `verify` (50 digits) and the operation counts.
 
-Differentiation goes through the stages by the chain rule and never expands them: a `Derivation` is fixed by
+Differentiation goes through the stages by the chain rule and never expands them: a `DirectionalDerivative` is fixed by
 its value on the inputs (or on a cut of intermediate symbols) and adds its own definitions to the program.
 """
 
@@ -71,10 +71,10 @@ class Program:
         """Open a stage; the definitions that follow belong to it."""
         self.stages.append(Stage(title))
 
-    def define(self, name: str, expr: sp.Expr, moves_as: sp.Expr | None = None) -> sp.Expr:
+    def define(self, name: str, expr: sp.Expr, derivative_of: sp.Expr | None = None) -> sp.Expr:
         """Give an expression a name. Numbers and bare symbols pass through: a name would say nothing more.
 
-        `moves_as` is an expression that differs from this one by a constant: derivatives are taken of that one instead.
+        `derivative_of` is an expression that differs from this one by a constant: derivatives are taken of that one instead.
         """
         expr = sp.sympify(expr)
         if expr.is_Number or expr.is_Symbol:
@@ -85,7 +85,7 @@ class Program:
         self._taken.add(unique)
         symbol = sp.Symbol(unique)
         self.stages[-1].definitions.append((symbol, expr))
-        self.definition[symbol] = expr if moves_as is None else moves_as
+        self.definition[symbol] = expr if derivative_of is None else derivative_of
         return symbol
 
     def once(self, name: str, expr: sp.Expr) -> sp.Expr:
@@ -165,7 +165,7 @@ def _is_below(expr: sp.Expr) -> bool:
     return bool(expr.is_Pow and expr.exp.is_Rational and expr.exp < 0)
 
 
-class Derivation:
+class DirectionalDerivative:
     """A first-order differential operator on a program, fixed by its values on some of its symbols.
 
     `on` gives its value there (an input, or a definition taken as independent: a cut); every other definition
@@ -216,7 +216,7 @@ def jacobian(program: Program, values: np.ndarray, wrt: Sequence[sp.Symbol],
     Definitions in `constant` count as constants, whatever they depend on.
     """
     fixed = dict.fromkeys(constant, 0)
-    columns = [Derivation(program, f"d_{_plain(s)}", {s: 1, **{o: 0 for o in wrt if o != s}, **fixed}).array(values)
+    columns = [DirectionalDerivative(program, f"d_{_plain(s)}", {s: 1, **{o: 0 for o in wrt if o != s}, **fixed}).array(values)
                for s in wrt]
     return np.stack(columns, axis=-1)
 

@@ -8,7 +8,7 @@ import numpy as np
 import sympy as sp
 from funicular.derive.frames import spatial
 from funicular.derive.laws.structural import Configuration
-from funicular.derive.stages import Derivation
+from funicular.derive.stages import DirectionalDerivative
 from funicular.derive.structural_middle import Middle
 
 ZERO = sp.S.Zero
@@ -32,7 +32,7 @@ class Velocity:
             rates = {s: rates[s] + speed * motion[s] for s in rates}
         for frame, spin, directors in zip(configuration.frames, spins, self.directors, strict=True):
             rates |= {s: value for s, value in frame.rates(spin, *directors).items() if s not in rates}
-        self.rate = Derivation(program, "v", {s: program.define(f"v_{s.name}", r) for s, r in rates.items()})
+        self.rate = DirectionalDerivative(program, "v", {s: program.define(f"v_{s.name}", r) for s, r in rates.items()})
 
     def strains(self) -> list[sp.Expr]:
         """Rates of the strains."""

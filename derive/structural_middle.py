@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 import sympy as sp
 from funicular.derive.laws.structural import Configuration
-from funicular.derive.stages import Derivation
+from funicular.derive.stages import DirectionalDerivative
 
 ZERO = sp.S.Zero
 
@@ -27,7 +27,7 @@ class Middle:
         self.scalars = [s for s in (*configuration.mean, *configuration.gibbs) if s.is_Symbol]
         held, n = {r: ZERO for r in resultants if r.is_Symbol}, len(self.components)
         self.by_component, self.by_scalar = (
-            [Derivation(self.program, f"d_{s.name}", held | dict.fromkeys(symbols, ZERO) | {s: sp.S.One})
+            [DirectionalDerivative(self.program, f"d_{s.name}", held | dict.fromkeys(symbols, ZERO) | {s: sp.S.One})
              for s in symbols] for symbols in (self.components, self.scalars))
         along, curvature = configuration.middle[:n], configuration.middle[n:]
         by_component = self._named("d", _columns(self.by_component, along))
@@ -56,5 +56,5 @@ class Middle:
         return upper + np.triu(upper, 1).T
 
 
-def _columns(derivations: Sequence[Derivation], values: Sequence[sp.Expr]) -> np.ndarray:
+def _columns(derivations: Sequence[DirectionalDerivative], values: Sequence[sp.Expr]) -> np.ndarray:
     return np.stack([by.array(np.array(values)) for by in derivations], axis=-1)

@@ -15,7 +15,7 @@ from funicular.derive.frames import spatial
 from funicular.derive.gram import DIRECTIONS
 from funicular.derive.gram_tangent import from_others
 from funicular.derive.laws.structural import Configuration
-from funicular.derive.stages import Derivation
+from funicular.derive.stages import DirectionalDerivative
 from funicular.derive.structural_forces import ZERO, Forces, Slot, Velocity, across
 
 
@@ -24,7 +24,7 @@ class Moved:
     """A unit motion: derivatives of the forces on the parts, and what derives the forces on the directors, by node."""
 
     changes: np.ndarray
-    directors: list[Derivation]
+    directors: list[DirectionalDerivative]
 
 
 class Tangent(Forces):
@@ -47,7 +47,7 @@ class Tangent(Forces):
             moved = self._scalars_moved[column]
             by_scalar = {v: self.program.define(f"dV_{s.name}_{column}", row.dot(moved))
                          for v, s, row in zip(self.middle.gradient, self.middle.scalars, hessian, strict=True)}
-            rate = Derivation(self.program, f"turn{column}", self.held | motion | by_scalar)
+            rate = DirectionalDerivative(self.program, f"turn{column}", self.held | motion | by_scalar)
             for row in range(column + 1):
                 self.parts[row, column] = self.program.define(f"P_{row}_{column}", rate(forces[row]))
         self._mirror()
@@ -172,7 +172,7 @@ class Tangent(Forces):
             still = dict.fromkeys(frame.rates(*np.zeros((3, 3), dtype=int)), ZERO)
             moments = {self.moments[node][k]: changes[configuration.turn(node, k)] for k in self.law.spins}
             of_frame = rates if vector != "x" and node == n else {}
-            by_node.append(Derivation(program, f"by_{vector}{n + 1}_{j}", still | of_frame | moments))
+            by_node.append(DirectionalDerivative(program, f"by_{vector}{n + 1}_{j}", still | of_frame | moments))
         return Moved(changes, by_node)
 
     def _block(self, of: Slot, to: Slot, moved: list[Moved], symmetric: bool) -> np.ndarray:

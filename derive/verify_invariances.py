@@ -20,12 +20,12 @@ FAR = 2.0**13  # above 10^4 lengths of the sample element; a power of two, so th
 
 def invariances(family: Family, k: Numbers, states: list[State]) -> Iterator[Invariance]:
     """The invariances of a family; the worst of each over its states is up to the caller."""
-    from funicular.derive.verify_joints import brake_invariances, frame_invariances, joint_invariances
+    from funicular.derive.verify_joints import frame_invariances, joint_invariances, resistance_invariances
     from funicular.derive.verify_modal import invariances as modal
     from funicular.derive.verify_slide_invariances import slide
 
     table = {"element": element, "law": law, "slide": slide, "body": body, "modal": modal,
-             "frame": frame_invariances, "pair": joint_invariances, "brake": brake_invariances}
+             "frame": frame_invariances, "joint": joint_invariances, "resistance": resistance_invariances}
     for s in states:
         yield from table[family.role](family, k, s)
 

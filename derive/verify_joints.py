@@ -24,12 +24,12 @@ FREE = {"spherical": "rx ry rz", "revolute": "rz", "revolute_angle": "", "univer
 
 
 def samples(family: Family, random: np.random.Generator) -> dict[str, np.ndarray]:
-    """Inputs of the kernels of a frame, a joint or a brake."""
+    """Inputs of the kernels of a frame, a joint or a resistance."""
     dim, turns = family.dim, TURNS[family.dim]
     if family.role == "frame":
         names = ("a", "b", "a_rate", "b_rate", "a_second", "b_second")
         return {name: random.normal(size=dim) for name in names} | {"m": random.normal(size=turns)}
-    if family.role == "brake":
+    if family.role == "resistance":
         return ({name: random.normal(size=dim) for name in ("t", "u", "f")}
                 | {"friction": np.array([0.4, 0.7, 0.3, 0.0, 1e-30]), "buffer": np.array([5.0, 0.6, 0.2, -1.0])})
     c = random.uniform(0.3, 1.2)
@@ -204,7 +204,7 @@ def joint_invariances(family: Family, k: Numbers, s: State) -> Iterator[tuple[st
 
 
 
-def brake_relations(family: Family) -> list[Relation]:
+def resistance_relations(family: Family) -> list[Relation]:
     """What each derivative of R is one of."""
     dim = family.dim
 
@@ -216,7 +216,7 @@ def brake_relations(family: Family) -> list[Relation]:
             Relation("force", "R_x", "dR by x", 1, moved("buffer", 2), 1)]
 
 
-def brake_invariances(family: Family, k: Numbers, s: State) -> Iterator[tuple[str, float, float]]:
+def resistance_invariances(family: Family, k: Numbers, s: State) -> Iterator[tuple[str, float, float]]:
     """Friction against the motion, as large as the normal force makes it; a buffer of its own."""
     i = s["t"] / np.linalg.norm(s["t"])
     length, v = np.linalg.norm(s["t"]), i @ s["u"]

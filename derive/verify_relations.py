@@ -15,13 +15,13 @@ from funicular.derive.verify_motion import RIDERS, cross, exponential, spin, tur
 
 def relations(family: Family) -> list[Relation]:
     """The relations of a family's kernels."""
-    from funicular.derive.verify_joints import brake_relations, frame_relations, joint_relations
+    from funicular.derive.verify_joints import frame_relations, joint_relations, resistance_relations
     from funicular.derive.verify_modal import modal
     from funicular.derive.verify_slide import slide
 
     table: dict[str, Callable[[Family], list[Relation]]] = {
         "element": element, "law": law, "slide": slide, "body": body, "modal": modal,
-        "frame": frame_relations, "pair": joint_relations, "brake": brake_relations}
+        "frame": frame_relations, "joint": joint_relations, "resistance": resistance_relations}
     return table[family.role](family)
 
 

@@ -579,11 +579,11 @@ void joint_planar_distance_motion(const fu_real *gap, const fu_real *A1, const f
 void joint_planar_locked_force(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
 void joint_planar_locked_motion(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
 
-/* brake: friction and buffers of slides in space */
-void brake_force(const fu_real *t, const fu_real *u, const fu_real *f, const fu_real *friction, const fu_real *buffer, fu_real *R, fu_real *R_t, fu_real *R_u, fu_real *R_f, fu_real *R_x);
+/* resistance: friction and buffers of slides in space */
+void resistance_force(const fu_real *t, const fu_real *u, const fu_real *f, const fu_real *friction, const fu_real *buffer, fu_real *R, fu_real *R_t, fu_real *R_u, fu_real *R_f, fu_real *R_x);
 
-/* planar_brake: friction and buffers of slides in the plane */
-void planar_brake_force(const fu_real *t, const fu_real *u, const fu_real *f, const fu_real *friction, const fu_real *buffer, fu_real *R, fu_real *R_t, fu_real *R_u, fu_real *R_f, fu_real *R_x);
+/* planar_resistance: friction and buffers of slides in the plane */
+void planar_resistance_force(const fu_real *t, const fu_real *u, const fu_real *f, const fu_real *friction, const fu_real *buffer, fu_real *R, fu_real *R_t, fu_real *R_u, fu_real *R_f, fu_real *R_x);
 
 /* What the engine needs of a element. */
 typedef struct {
@@ -599,7 +599,7 @@ typedef struct {
     void (*slopes)(fu_real l, fu_real x, fu_real *S);
     void (*follower_force)(fu_real l, fu_real x, const fu_real *e, const fu_real *c, fu_real *f, fu_real *K);
     void (*moment)(fu_real l, fu_real x, const fu_real *e, const fu_real *M, fu_real *f, fu_real *K);
-} fu_element;
+} fu_element_kernels;
 
 /* What the engine needs of a law. */
 typedef struct {
@@ -615,7 +615,7 @@ typedef struct {
     void (*damping_tangent)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
     void (*dissipation)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
     void (*algorithmic_force)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
-} fu_law;
+} fu_law_kernels;
 
 /* What the engine needs of a body. */
 typedef struct {
@@ -630,7 +630,7 @@ typedef struct {
     void (*inertia_tangent)(fu_real mass, const fu_real *J, const fu_real *w, fu_real *M, fu_real *D);
     void (*kinetic_energy)(fu_real mass, const fu_real *J, const fu_real *w, fu_real *T);
     void (*discrete_point)(const fu_real *b, const fu_real *u, const fu_real *b_next, fu_real *P);
-} fu_body;
+} fu_body_kernels;
 
 /* What the engine needs of a modal. */
 typedef struct {
@@ -650,7 +650,7 @@ typedef struct {
     void (*anchor_force)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *f, const fu_real *m, fu_real *K);
     void (*anchor_mode_force)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *f, const fu_real *m, fu_real *K, fu_real *K_frame);
     void (*anchor_pair_force)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K);
-} fu_modal;
+} fu_modal_kernels;
 
 /* What the engine needs of a slide. */
 typedef struct {
@@ -662,7 +662,7 @@ typedef struct {
     void (*residual)(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *phi, fu_real *g);
     void (*tangent)(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *f, fu_real *J, fu_real *K);
     void (*discrete_gradient)(fu_real l, fu_real x, fu_real x_next, const fu_real *e, const fu_real *e_next, const fu_real *b, const fu_real *b_next, fu_real *G);
-} fu_slide;
+} fu_slide_kernels;
 
 /* What the engine needs of a frame. */
 typedef struct {
@@ -671,42 +671,42 @@ typedef struct {
     void (*axes)(const fu_real *a, const fu_real *b, fu_real *A, fu_real *T);
     void (*motion)(const fu_real *a, const fu_real *b, const fu_real *a_rate, const fu_real *b_rate, const fu_real *a_second, const fu_real *b_second, fu_real *omega, fu_real *alpha);
     void (*moment)(const fu_real *a, const fu_real *b, const fu_real *m, fu_real *g, fu_real *K);
-} fu_frame;
+} fu_frame_kernels;
 
-/* What the engine needs of a pair. */
+/* What the engine needs of a joint. */
 typedef struct {
     const char *name;
     int dim;
     int rows;
     void (*force)(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *f, fu_real *phi, fu_real *J, fu_real *K);
     void (*motion)(const fu_real *gap, const fu_real *A1, const fu_real *A2, const fu_real *c, const fu_real *gap_rate, const fu_real *omega1, const fu_real *omega2, const fu_real *c_rate, fu_real *phi_t, fu_real *Q_d);
-} fu_pair;
+} fu_joint_kernels;
 
-/* What the engine needs of a brake. */
+/* What the engine needs of a resistance. */
 typedef struct {
     const char *name;
     int dim;
     void (*force)(const fu_real *t, const fu_real *u, const fu_real *f, const fu_real *friction, const fu_real *buffer, fu_real *R, fu_real *R_t, fu_real *R_u, fu_real *R_f, fu_real *R_x);
-} fu_brake;
+} fu_resistance_kernels;
 
 /* Every table, one entry a family. */
 typedef struct {
     int n_elements;
-    const fu_element *elements;
+    const fu_element_kernels *elements;
     int n_laws;
-    const fu_law *laws;
+    const fu_law_kernels *laws;
     int n_bodys;
-    const fu_body *bodys;
+    const fu_body_kernels *bodys;
     int n_modals;
-    const fu_modal *modals;
+    const fu_modal_kernels *modals;
     int n_slides;
-    const fu_slide *slides;
+    const fu_slide_kernels *slides;
     int n_frames;
-    const fu_frame *frames;
-    int n_pairs;
-    const fu_pair *pairs;
-    int n_brakes;
-    const fu_brake *brakes;
+    const fu_frame_kernels *frames;
+    int n_joints;
+    const fu_joint_kernels *joints;
+    int n_resistances;
+    const fu_resistance_kernels *resistances;
 } fu_tables;
 extern const fu_tables fu_all;
 
@@ -725,10 +725,10 @@ static inline const void *fu_find(const fu_tables *tables, const char *role, con
         if (!strcmp(tables->slides[i].name, name)) return &tables->slides[i];
     for (int i = 0; i < tables->n_frames && !strcmp(role, "frame"); ++i)
         if (!strcmp(tables->frames[i].name, name)) return &tables->frames[i];
-    for (int i = 0; i < tables->n_pairs && !strcmp(role, "pair"); ++i)
-        if (!strcmp(tables->pairs[i].name, name)) return &tables->pairs[i];
-    for (int i = 0; i < tables->n_brakes && !strcmp(role, "brake"); ++i)
-        if (!strcmp(tables->brakes[i].name, name)) return &tables->brakes[i];
+    for (int i = 0; i < tables->n_joints && !strcmp(role, "joint"); ++i)
+        if (!strcmp(tables->joints[i].name, name)) return &tables->joints[i];
+    for (int i = 0; i < tables->n_resistances && !strcmp(role, "resistance"); ++i)
+        if (!strcmp(tables->resistances[i].name, name)) return &tables->resistances[i];
     return 0;
 }
 

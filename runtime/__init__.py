@@ -18,8 +18,8 @@ from funicular.materials import Material
 from funicular.results import Run, load_run
 from funicular.scene import Scene
 from funicular.scene_file import bundled_scenes, load_scene
-from funicular.sections import Circle, General, Rectangle, Tube
-from funicular.signals import Harmonic, Pulse, Ramp, Table
+from funicular.sections import Circle, GeneralSection, Rectangle, Tube
+from funicular.signals import Harmonic, Pulse, Ramp, TableSignal
 
 __all__ = [
     "Buffer",
@@ -30,7 +30,7 @@ __all__ = [
     "Friction",
     "FunicularError",
     "FunicularWarning",
-    "General",
+    "GeneralSection",
     "HardStop",
     "Harmonic",
     "Material",
@@ -41,7 +41,7 @@ __all__ = [
     "Run",
     "Scene",
     "SceneError",
-    "Table",
+    "TableSignal",
     "Tube",
     "UnknownResultError",
     "__version__",

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from funicular.anchors import Anchor
-from funicular.holding import EndModel, Holder
+from funicular.anchors import Attachment
+from funicular.holding import AttachmentBuilder, AttachmentModel
 from funicular.parts import DistributedForce, Force, Moment
-from funicular.placing import placed_end
+from funicular.placing import placed_attachment
 from funicular.scene import Scene
 from funicular.signals import Constant, value_at
 
@@ -45,7 +45,7 @@ class DeadLoad:
 
 @dataclass
 class LoadModel:
-    """A load that turns with what it acts on; spot: of a modal body, as of an `EndModel`."""
+    """A load that turns with what it acts on; spot: of a modal body, as of an `AttachmentModel`."""
 
     kind: int
     signal: int
@@ -62,7 +62,7 @@ class SpringModel:
     """Two ends and what is between them; unknown: the place of its force."""
 
     name: str
-    ends: list[EndModel]
+    ends: list[AttachmentModel]
     dim: int
     unknown: int
     stiffness: float
@@ -74,7 +74,7 @@ class SpringModel:
 class Actions:
     """Translates the loads and springs of a scene."""
 
-    def __init__(self, scene: Scene, holder: Holder):
+    def __init__(self, scene: Scene, holder: AttachmentBuilder):
         self.scene, self.holder, self.cables = scene, holder, holder.cables
         self.cable_index, self.body_index = holder.cable_index, holder.body_index
         self.signals: list[SignalModel] = []
@@ -106,8 +106,8 @@ class Actions:
                 self._along_cable(load.on, number, points, value, load.follower)
         else:
             kind = BODY_MOMENT if isinstance(load, Moment) else BODY_FOLLOWER if load.follower else BODY_FORCE
-            anchor = Anchor(on=load.on, s=load.s, at=getattr(load, "at", None))
-            end = self.holder.end(placed_end(self.scene, anchor, load.where))
+            anchor = Attachment(on=load.on, s=load.s, at=getattr(load, "at", None))
+            end = self.holder.end(placed_attachment(self.scene, anchor, load.where))
             self.turning.append(LoadModel(kind, number, end.body, 0, 0.0, end.u, tuple(value), end.spot))
 
     def _distributed(self, load: DistributedForce, number: int, value: np.ndarray) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from funicular.actions import GAUSS
-from funicular.holding import CARRIED, UP, EndModel
+from funicular.holding import CARRIED, UP, AttachmentModel
 from funicular.libraries import kernels_of
 from funicular.parts import DistributedForce, Moment
 from funicular.recording import end_points, spatial
@@ -153,18 +153,18 @@ class CableActions:
 
     def _slides(self) -> None:
         """Riders: their force at s, with the opposite on what rides; and moments of slides that keep axes."""
-        for joint in self.model.joints:
+        for joint in self.model.slides:
             force, s = self.at.value(f"{joint.name}.force"), self.at.value(f"{joint.name}.s")
             cable = self.model.cables[joint.cable]
             element, x = at_element(cable, np.clip(s, 0.0, cable.length * cable.n_elements))
             N = shape_on_axis(cable, x)
             self._add(joint.cable, element, x, -N[:, :, None] * force[:, None, : self.dim])
             self._on_end(joint.rider, force, None)
-        for link in self.model.links:
+        for link in self.model.joints:
             if link.slide is None:
                 continue
             moment = self.at.value(f"{link.slide}.moment")
-            joint = next(j for j in self.model.joints if j.name == link.slide)
+            joint = next(j for j in self.model.slides if j.name == link.slide)
             cable = self.model.cables[joint.cable]
             s = np.clip(self.at.value(f"{link.slide}.s"), 0.0, cable.length * cable.n_elements)
             element, x = at_element(cable, s)
@@ -173,7 +173,7 @@ class CableActions:
             self._on_end(link.ends[1], None, moment)
 
     def _joints(self) -> None:
-        for link in self.model.links:
+        for link in self.model.joints:
             if link.slide is not None or all(end.cable < 0 for end in link.ends):
                 continue
             force, moment = self.at.value(f"{link.name}.force"), self.at.value(f"{link.name}.moment")
@@ -183,11 +183,11 @@ class CableActions:
                 gap = self._end_point(other) - self._end_point(one)
                 self._on_end(one, -force, -moment - np.cross(gap, force))
 
-    def _end_point(self, end: EndModel) -> np.ndarray:
+    def _end_point(self, end: AttachmentModel) -> np.ndarray:
         """(T, 3): where an end is."""
         if end.body < 0:
             return end_points(self.model, end, self.at.q)
-        body = self.model.rigids[end.body]
+        body = self.model.bodies[end.body]
         arm = body.centre + end.u
         if end.spot is not None:
             arm = spatial(end.spot[0] + self.at.value(f"{body.name}.modal_coordinates") @ end.spot[1])
@@ -200,7 +200,7 @@ class CableActions:
                 self._on_end(spring.ends[0], force, None)
                 self._on_end(spring.ends[1], -force, None)
 
-    def _on_end(self, end: EndModel, force: np.ndarray | None, moment: np.ndarray | None) -> None:
+    def _on_end(self, end: AttachmentModel, force: np.ndarray | None, moment: np.ndarray | None) -> None:
         """A force and a moment (T, 3) on what carries an end, where that is a cable."""
         if end.cable < 0:
             return
@@ -213,7 +213,7 @@ class CableActions:
             f = f + self._couple(cable, end, np.full(self.times, end.element), np.full(self.times, x), moment)
         self._add(end.cable, end.element, x, f)
 
-    def _couple(self, cable: CableModel, end: EndModel, element, x, moment: np.ndarray) -> np.ndarray:
+    def _couple(self, cable: CableModel, end: AttachmentModel, element, x, moment: np.ndarray) -> np.ndarray:
         """(T, vectors, dim): of a moment (T, 3) on the frame that an end has of its cable, T' m."""
         e = element_coordinates(cable, self.at.q, element)
         S = rows(cable.kernel("slopes"), self.times, cable.length, x)[:, :, 0]  # (T, xyz, vectors)
@@ -233,7 +233,7 @@ class CableActions:
         g = rows(kernel, self.times, *vectors, m)[0].reshape(self.times, 2, self.dim)
         return sum(S[:, slope, :, None] * g[:, k, None] for k, slope in enumerate(end.slopes) if slope >= 0)
 
-    def _x_of(self, cable: CableModel, end: EndModel) -> float:
+    def _x_of(self, cable: CableModel, end: AttachmentModel) -> float:
         """x of an end in its element, from its shape functions: those of positions and slopes weigh a line's points."""
         straight = np.zeros(len(end.N))
         names = [*cable.vectors, *cable.vectors]

@@ -11,7 +11,7 @@ from funicular import curves
 from funicular.elements import ElementKind, built_in, of_library
 from funicular.errors import near
 from funicular.materials import Material
-from funicular.sections import AnySection, Circle, General, Tube
+from funicular.sections import AnySection, Circle, GeneralSection, Tube
 from funicular.stiffness import KERNEL_LAWS, kernel_law
 from funicular.validation import Count, Name, Part, Vector, one_of, positive, show, shown, xyz
 from pydantic import PlainValidator, ValidationInfo, model_validator
@@ -230,15 +230,15 @@ class Cable(Part):
             if given:
                 raise ValueError(f"section.{min(given)} is given, but {self.element} has neither shear nor torsion",
                                  "leave it out, or take " + _others(kind.dim, cable=False))
-            if isinstance(section, General) and section.has_rotary:
+            if isinstance(section, GeneralSection) and section.has_rotary:
                 raise ValueError(f"section.rotary_moment is given, but {self.element} has no rotary inertia",
                                  "leave it out, or take " + _others(kind.dim, cable=False))
         elif self.law == "structural":
             needed = {"shear_factors"} | ({"torsion_constant"} if kind.dim == 3 else set())
-            if isinstance(section, General) and (missing := needed - given):
+            if isinstance(section, GeneralSection) and (missing := needed - given):
                 raise ValueError(f'law "structural" needs section.{min(missing)}, which a general section does not '
                                  "tell", "give it to the section")
-        elif isinstance(section, General):
+        elif isinstance(section, GeneralSection):
             raise ValueError(f'law "{self.law}" integrates over the shape of the section, which a general section does '
                              "not tell", 'take law="structural", a rectangle, circle or tube, or '
                              + _others(kind.dim, cable=True))
@@ -248,7 +248,7 @@ class Cable(Part):
         return self
 
     def _refuse_unequal_bending(self) -> None:
-        across = self.section.second_moment_yy, self.section.second_moment_zz
+        across = self.section.second_moment_about_z, self.section.second_moment_about_y
         if self.dim == 3 and abs(across[0] - across[1]) > EXACT * max(across):
             raise ValueError(f"{self.element} has one bending stiffness: its section needs equal second moments, "
                              f"got {show(across, 'm⁴')}", 'take a square, a circle or a tube, or element="beam24"')

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from funicular.anchors import Anchor
+from funicular.anchors import Attachment
 from funicular.cables import EXACT
 from funicular.errors import SceneError
 from funicular.joints import DRIVEN, LINES, POINTS, Joint
@@ -36,7 +36,7 @@ def _holds_position(support: Support) -> bool:
     return not isinstance(support, Motion) or (support.displacement is not None and None not in support.displacement)
 
 
-def _node(scene: Scene, end: Anchor) -> Node | None:
+def _node(scene: Scene, end: Attachment) -> Node | None:
     if end.on not in scene.cables or (node := scene.cables[end.on].node_at(end.s)) is None:
         return None
     return end.on, node
@@ -55,7 +55,7 @@ def check_other_joints(scene: Scene, joint: Joint, near: float) -> None:
                 break
 
 
-def _clash(scene: Scene, joint: Joint, other: Joint, ends: tuple[Anchor, Anchor], near: float) -> str | None:
+def _clash(scene: Scene, joint: Joint, other: Joint, ends: tuple[Attachment, Attachment], near: float) -> str | None:
     """What is wrong with two joints between the same two bodies; ``ends`` are the other's, in the order of joint's."""
     between = f"{called(joint.a)} and {called(joint.b)}"
     if "weld" in (joint.pair, other.pair):
@@ -73,12 +73,12 @@ def _clash(scene: Scene, joint: Joint, other: Joint, ends: tuple[Anchor, Anchor]
     return None
 
 
-def move_as_one(scene: Scene, one: Anchor, other: Anchor) -> bool:
+def move_as_one(scene: Scene, one: Attachment, other: Attachment) -> bool:
     """Whether two ends are on one body, both on the ground, or at one place of a cable."""
     return one.on == other.on and (one.s is None or abs(one.s - other.s) <= EXACT * scene.cables[one.on].length)
 
 
-def called(end: Anchor) -> str:
+def called(end: Attachment) -> str:
     """What messages call that which an end is on."""
     if end.on is None:
         return "the ground"

@@ -36,7 +36,7 @@ def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
     _, q, v, _ = engine.now()
     where, (state, folded) = place(model, dof, joint), condition(model, dof, q, v)
     if status == "unstable":
-        grown, _, exchanged, in_motion, _ = engine.books
+        grown, _, exchanged, in_motion, _ = engine.balance
         exchanged = max(exchanged, in_motion)
         return (f"energy came from nowhere at {when}: {grown:.3g} J, where {exchanged:.3g} J were exchanged; fastest "
                 f"is {where} ({state}); {KEPT}. {_too_large(engine, settings)}")
@@ -77,11 +77,11 @@ def _too_large(engine, settings: RunSettings) -> str:
 def place(model: Model, dof: int, joint: int | None = None) -> str:
     """What a dof, or a joint, is of."""
     if joint is not None:
-        return f'slide "{model.joints[joint].name}" on cable "{model.cables[model.joints[joint].cable].name}"'
+        return f'slide "{model.slides[joint].name}" on cable "{model.cables[model.slides[joint].cable].name}"'
     if (found := _node(model, dof)) is not None:
         cable, node = found
         return f'cable "{cable.name}" at s = {node * cable.length:.6g} m'
-    return [f'body "{body.name}"' for body in model.rigids if body.dof <= dof][-1]
+    return [f'body "{body.name}"' for body in model.bodies if body.dof <= dof][-1]
 
 
 def condition(model: Model, dof: int, q: np.ndarray, v: np.ndarray) -> tuple[str, bool]:
@@ -127,7 +127,7 @@ def notes(engine, settings: RunSettings) -> list[str]:
 
 def unexplained(engine, settings: RunSettings) -> list[str]:
     """A note where energy has come or gone that nothing in the scene explains; empty where the balance closes."""
-    grown, lost, exchanged, in_motion, rounding = engine.books
+    grown, lost, exchanged, in_motion, rounding = engine.balance
     off, fixed = max(grown, lost), settings.step is not None
     quiet = QUIET_LOSS if fixed else min(max(QUIET_LOSS, 100 * settings.tol), LOOSE_LOSS)
     if not off > quiet * max(exchanged, STEADY * in_motion) + rounding:

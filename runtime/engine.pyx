@@ -40,7 +40,7 @@ ACTIONS = {FU_STUCK: "stuck", FU_BROKE_LOOSE: "broke loose", FU_TURNED: "turned 
            FU_RESTS: "came to rest at the end", FU_FREED: "left the end", FU_FLEW: "left", FU_ENTERED: "entered the buffer",
            FU_CAME_OUT: "left the buffer"}
 ENDS = {"error": FU_END_IS_ERROR, "leave": FU_END_IS_OPEN, "hard": FU_END_IS_HARD, "buffer": FU_END_IS_BUFFERED}
-JOINT_OUTPUTS = ("s_rate", "s_acceleration", "force", "multiplier", "traction", "residual")
+SLIDE_OUTPUTS = ("s_rate", "s_acceleration", "force", "multiplier", "traction", "residual")
 
 
 cdef const void *_found(list tables, str role, str name) except NULL:
@@ -124,7 +124,7 @@ cdef class Engine(Statics):
         c.columns = <fu_piece *>self._ints(np.zeros(3 * 2 * m * system.n_chains))
         c.D_real, c.pivot_band, c.pivot_border = self._zeros(1.0 * m * m), self._ints(np.zeros(n)), self._ints(np.zeros(m))
         self.run.scratch = self._zeros(12 * self.model.n_dof + 3 * self.model.n_q + 7 + n + m
-                                        + 8 * self.model.n_joints)
+                                        + 8 * self.model.n_slides)
 
     def use_threads(self, int threads):
         """Let so many threads share the elements; whether that is possible: OpenMP was there when this was built."""
@@ -149,10 +149,10 @@ cdef class Engine(Statics):
                  "traction": FU_WATCH_TRACTION, "function": FU_WATCH_CALL}
         numbers = [(kinds[watch.kind], watch.index, watch.direction, watch.value) for watch in watches]
         cdef int i, k, side
-        for i in range(self.model.n_joints):
-            j = &self.joints[i]
+        for i in range(self.model.n_slides):
+            j = &self.slides[i]
             if j.drive < 0 and (j.sticks or FU_END_IS_HARD in (j.stops[0].kind, j.stops[1].kind)):
-                numbers.append((FU_WATCH_GRIP, i, 1, 0.0))
+                numbers.append((FU_WATCH_STICK, i, 1, 0.0))
             for k, side in enumerate((-1, 1)):
                 if j.drive < 0 and j.stops[k].kind == FU_END_IS_BUFFERED:
                     numbers.append((FU_WATCH_BUFFER, i, 0, side))
@@ -172,17 +172,17 @@ cdef class Engine(Statics):
         """t, q, v, s of a state."""
         m = &self.model
         return (state.t, np.array([state.q[i] for i in range(m.n_q)]), np.array([state.v[i] for i in range(m.n_dof)]),
-                np.array([state.s[i] for i in range(m.n_joints)]))
+                np.array([state.s[i] for i in range(m.n_slides)]))
 
-    def start(self, *, duration, output_step, tol, step, method, first_step, room=None, rest_start=False):
-        """Allocate output rows, `room` of them or all, and compute the consistent start; method: see integrators.py.
+    def start(self, *, duration, output_step, tol, step, method, first_step, capacity=None, rest_start=False):
+        """Allocate output rows, `capacity` of them or all, and compute the consistent start; method: see integrators.py.
 
         Returns a status where that failed, else None, and the change of velocities that the joints asked for.
         """
         run = &self.run
         run.duration, run.output_step, run.tol = duration, output_step, tol
         run.fixed_step, run.h, run.rest_start = step, first_step, rest_start
-        run.order, run.slack, run.caution = method.order, method.slack, method.caution
+        run.order, run.error_overestimate, run.retry_factor = method.order, method.error_overestimate, method.retry_factor
         if method.name == "explicit":
             run.integrator = &fu_explicit_method
             self._tableau(method)
@@ -196,7 +196,7 @@ cdef class Engine(Statics):
         else:
             run.integrator = &fu_genalpha_method
             run.scheme.alpha_m, run.scheme.alpha_f, run.scheme.beta, run.scheme.gamma = method.parameters
-        rows = int(np.ceil(duration / output_step * (1 - 1e-12))) + 2 if room is None else room
+        rows = int(np.ceil(duration / output_step * (1 - 1e-12))) + 2 if capacity is None else capacity
         m = &self.model
         r = &run.record
         r.time, r.kinetic, r.elastic = self._named("time", rows), self._named("kinetic", rows), self._named("elastic", rows)
@@ -205,8 +205,8 @@ cdef class Engine(Statics):
         r.acceleration = self._named("acceleration", (rows, m.n_dof))
         r.reaction, r.external = self._named("reaction", (rows, m.n_dof)), self._named("external", rows)
         r.spring = self._named("spring", (rows, m.n_springs, 3))
-        r.s, r.joint = self._named("s", (rows, m.n_joints)), self._named("joint", (rows, m.n_joints, FU_JOINT_OUTPUTS))
-        r.link = self._named("link", (rows, m.n_links, FU_LINK_OUTPUTS))
+        r.s, r.slide = self._named("s", (rows, m.n_slides)), self._named("slide", (rows, m.n_slides, FU_SLIDE_OUTPUTS))
+        r.joint = self._named("joint", (rows, m.n_joints, FU_JOINT_OUTPUTS))
         cdef int status = fu_start(run)
         if status:
             return STATUS[status], np.zeros(m.n_dof)
@@ -278,12 +278,12 @@ cdef class Engine(Statics):
         """Number of output rows since the start."""
         return self.run.record.n
 
-    def joint_row(self, joints):
-        """Split joint numbers (..., FU_JOINT_OUTPUTS) by name; see fu_joint_output."""
+    def slide_row(self, slides):
+        """Split slides' numbers (..., FU_SLIDE_OUTPUTS) by name; see fu_slide_output."""
         sizes = (1, 1, 3, 2, 1, 3)
         ends = np.cumsum(sizes)
-        return {name: joints[..., end - size:end] if size > 1 else joints[..., end - 1]
-                for name, size, end in zip(JOINT_OUTPUTS, sizes, ends)}
+        return {name: slides[..., end - size:end] if size > 1 else slides[..., end - 1]
+                for name, size, end in zip(SLIDE_OUTPUTS, sizes, ends)}
 
     @property
     def statistics(self):
@@ -298,8 +298,8 @@ cdef class Engine(Statics):
 
     def costs(self):
         """(slides + joints,): what each takes of a step, in seconds, timed by itself in less than 1 ms; see costs.c."""
-        cdef double[::1] seconds = np.zeros(self.model.n_joints + self.model.n_links + 1)
-        fu_costs(&self.run, &seconds[0])
+        cdef double[::1] seconds = np.zeros(self.model.n_slides + self.model.n_joints + 1)
+        fu_part_timing(&self.run, &seconds[0])
         return np.asarray(seconds)[:-1]
 
     @property
@@ -339,7 +339,7 @@ cdef class Engine(Statics):
         Why is None where energy grew, and where no step was tried that failed.
         """
         f = self.run.failure
-        return CAUSES[f.cause], f.dof, f.joint if f.cause != FU_NO_FAILURE and f.joint >= 0 else None
+        return CAUSES[f.cause], f.dof, f.slide if f.cause != FU_NO_FAILURE and f.slide >= 0 else None
 
     @property
     def jammed(self):
@@ -347,9 +347,9 @@ cdef class Engine(Statics):
         return self.run.accelerator.jammed
 
     @property
-    def books(self):
+    def balance(self):
         """Energy that has come from nowhere, that went there, was exchanged, in motion, and what rounding makes, J."""
-        b = self.run.books
+        b = self.run.balance
         return b.grown, b.lost, b.exchanged, b.in_motion, b.rounding
 
     @property
@@ -369,30 +369,30 @@ cdef class Engine(Statics):
         """What `compliance` needs before `start`; whether there are consistent slides and a mass matrix."""
         return fu_prepare(&self.run) == FU_RUNNING
 
-    def idle(self, rows):
+    def redundant_rows(self, rows):
         """Let no multiplier stand for these rows of joints, (link, row) each, which others imply."""
-        for link, row in rows:
-            self.links[link].idle |= 1 << row
+        for joint, row in rows:
+            self.joints[joint].redundant_rows |= 1 << row
 
     def wander(self, along):
         """What is left of the joints' equations, (links, 6), after a small way `along` (n_dof,) the freedom that they
-        leave; None where no way leads back onto them. See fu_wander.
+        leave; None where no way leads back onto them. See fu_probe_mechanism.
         """
-        cdef double[::1] way = np.ascontiguousarray(along, dtype=float)
-        cdef double[::1] left = np.zeros(6 * self.model.n_links + 1)
-        if fu_wander(&self.run, &way[0], &left[0]):
+        cdef double[::1] path = np.ascontiguousarray(along, dtype=float)
+        cdef double[::1] left = np.zeros(6 * self.model.n_joints + 1)
+        if fu_probe_mechanism(&self.run, &path[0], &left[0]):
             return None
-        return np.asarray(left)[:6 * self.model.n_links].reshape(-1, 6)
+        return np.asarray(left)[:6 * self.model.n_joints].reshape(-1, 6)
 
     def held(self):
-        """(links, FU_LINK_OUTPUTS): force and moment of joints on their second ends, and residual, in the static state."""
+        """(links, FU_JOINT_OUTPUTS): force and moment of joints on their second ends, and residual, in the static state."""
         cdef int k, r
-        cdef double[::1] out = np.zeros(FU_LINK_OUTPUTS * self.model.n_links + 1)
-        for k in range(self.model.n_links):
-            for r in range(self.links[k].kernel.rows):
-                self.run.accelerator.multipliers[self.links[k].multiplier + r] = self.run.next.multipliers[6 * k + r]
-        fu_link_outputs(&self.model, &self.run.next, &self.run.accelerator, <fu_link_output *>&out[0])
-        return np.asarray(out)[:FU_LINK_OUTPUTS * self.model.n_links].reshape(-1, FU_LINK_OUTPUTS)
+        cdef double[::1] out = np.zeros(FU_JOINT_OUTPUTS * self.model.n_joints + 1)
+        for k in range(self.model.n_joints):
+            for r in range(self.joints[k].kernel.rows):
+                self.run.accelerator.multipliers[self.joints[k].multiplier + r] = self.run.next.multipliers[6 * k + r]
+        fu_joint_outputs(&self.model, &self.run.next, &self.run.accelerator, <fu_joint_output *>&out[0])
+        return np.asarray(out)[:FU_JOINT_OUTPUTS * self.model.n_joints].reshape(-1, FU_JOINT_OUTPUTS)
 
     @property
     def extent(self):

@@ -9,12 +9,12 @@ import numpy as np
 from funicular.errors import SceneError, UnknownResultError, near
 from funicular.recording import (
     body_state,
-    join_force,
-    link_state,
+    joint_state,
     modal_state,
     spatial,
     spring_state,
     support_reaction,
+    tie_force,
 )
 
 if TYPE_CHECKING:
@@ -135,7 +135,7 @@ class Equilibrium:
     def start(self, model: Model) -> None:
         """Put a freshly built model of the same scene into this state."""
         model.q = self.placed["q"].copy()
-        for joint, s in zip(model.joints, self.placed["s"], strict=True):
+        for joint, s in zip(model.slides, self.placed["s"], strict=True):
             cable = model.cables[joint.cable]
             joint.s = float(s)
             at = s / cable.length
@@ -149,22 +149,22 @@ class Equilibrium:
             vectors = spatial(q[0, cable.coordinates].reshape(cable.shape))
             found[f"{cable.name}.nodal_vectors"] = vectors
             found[f"{cable.name}.position"] = vectors[:, cable.vectors.index("r")]
-        for body in model.rigids:
+        for body in model.bodies:
             state = body_state(model, body, q)
             state |= modal_state(model, body, state, q) if body.modes else {}
             found |= {f"{body.name}.{name}": value[0] for name, value in state.items()}
-        for k, joint in enumerate(model.joints):
+        for k, joint in enumerate(model.slides):
             found[f"{joint.name}.s"] = self.placed["s"][k]
             found[f"{joint.name}.force"] = self.placed["force"][k]
-        for link, numbers in zip(model.links, self.held, strict=True):
-            values = link_state(link, numbers)
+        for link, numbers in zip(model.joints, self.held, strict=True):
+            values = joint_state(link, numbers)
             found |= {f"{link.name}.{name}": values[name]
                       for name in (("force", "moment") if link.slide is None else ("moment",))}
         for part in scene.supports:
             given_ = support_reaction(model, scene, part, reaction, q)
             found |= {f"{part.label}.{name}": value[0] for name, value in given_.items()}
-        for name, join in scene.joins.items():
-            found |= {f"{name}.{part}": value[0] for part, value in join_force(model, scene, join, reaction, q).items()}
+        for name, join in scene.ties.items():
+            found |= {f"{name}.{part}": value[0] for part, value in tie_force(model, scene, join, reaction, q).items()}
         for k, spring in enumerate(model.springs):
             values = spring_state(model, spring, self.placed["spring"][k][None], q)
             found |= {f"{spring.name}.{name}": value[0] for name, value in values.items()}

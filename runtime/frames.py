@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from funicular.anchors import Anchor
+from funicular.anchors import Attachment
 from funicular.cables import Cable
 from funicular.joints import Joint
 from funicular.slides import Slide
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from funicular.scene import Scene
 
 
-class EndAxes(NamedTuple):
+class JointAxes(NamedTuple):
     """(3, 3) each: the axes of a joint as columns, in the frames of its two ends; equal in the ground's at the start.
 
     Frame of an end: a body's axes, the ground's, or at a cable `section_frame`, else `cable_frame`.
@@ -61,7 +61,7 @@ def _unit(vector: np.ndarray) -> np.ndarray:
     return vector / np.linalg.norm(vector)
 
 
-def end_frame(scene: Scene, end: Anchor, up=None) -> np.ndarray:
+def end_frame(scene: Scene, end: Attachment, up=None) -> np.ndarray:
     """(3, 3): the frame of a complete end; ``up`` completes that of a cable without section axes."""
     if end.on is None:
         return np.eye(3)
@@ -71,12 +71,12 @@ def end_frame(scene: Scene, end: Anchor, up=None) -> np.ndarray:
     return section_frame(cable, end.s) if draws_section(cable) else cable_frame(cable, end.s, up)
 
 
-def joint_axes(scene: Scene, joint: Joint) -> EndAxes:
+def joint_axes(scene: Scene, joint: Joint) -> JointAxes:
     """The axes of a joint of the scene in the frames of its ends."""
-    return EndAxes(*(end_frame(scene, end, joint.up).T @ joint.axes for end in (joint.a, joint.b)))
+    return JointAxes(*(end_frame(scene, end, joint.up).T @ joint.axes for end in (joint.a, joint.b)))
 
 
-def slide_axes(scene: Scene, slide: Slide) -> EndAxes:
+def slide_axes(scene: Scene, slide: Slide) -> JointAxes:
     """The axes that a slide of frame "tangent" or "section" keeps together: a in the cable's frame, b in the rider's.
 
     z along the tangent, x along the height, y along the width. With roll "held" the cable's frame is that of
@@ -86,4 +86,4 @@ def slide_axes(scene: Scene, slide: Slide) -> EndAxes:
     frame = (section_frame(along, slide.s) if slide.frame == "section" and draws_section(along)
              else cable_frame(along, slide.s, slide.up))
     order = np.eye(3)[:, [1, 2, 0]]
-    return EndAxes(order, end_frame(scene, slide.rider).T @ frame @ order)
+    return JointAxes(order, end_frame(scene, slide.rider).T @ frame @ order)

@@ -44,7 +44,7 @@ class Friction(Part):
         return self.coefficient + self.rolling
 
     @property
-    def holding(self) -> float:
+    def static_friction(self) -> float:
         """The same at rest; nothing where it does not stick."""
         return self.static + self.rolling if self.sticks else 0.0
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from funicular.anchors import Anchor
+from funicular.anchors import Attachment
 from funicular.frames import draws_section, has_section, joint_axes, slide_axes
 from funicular.joints import DRIVEN, Joint
 from funicular.libraries import kernels_of
@@ -24,8 +24,8 @@ SECTIONS = {2: np.array([[0.0, 1.0], [-1.0, 0.0]]), 3: np.eye(3)[:, [2, 0, 1]]}
 
 
 @dataclass
-class EndModel:
-    """fu_end of engine.h: -1 for what it is not on; mass and length are scales of it, kg and m.
+class AttachmentModel:
+    """fu_attachment of engine.h: -1 for what it is not on; mass and length are scales of it, kg and m.
 
     spot: of a modal body's node, where it is undeformed, and its displacements and turns by modes.
     """
@@ -47,23 +47,23 @@ class EndModel:
 
 
 @dataclass
-class LinkModel:
+class JointModel:
     """A joint between two ends; unknown, multiplier: places of its rows; signal: that drives it, or -1.
 
-    slide: the one beside which it ties a rider's axes to the cable; idle: rows that other joints imply (redundancy.py);
+    slide: the one beside which it ties a rider's axes to the cable; redundant_rows: those that other joints imply (redundancy.py);
     reversed: the first end is the joint's b.
     """
 
     name: str
     kernel: str
-    ends: tuple[EndModel, EndModel]
+    ends: tuple[AttachmentModel, AttachmentModel]
     unknown: int
     multiplier: int
     signal: int
     base: float
     scale: np.ndarray
     slide: str | None = None
-    idle: set[int] = field(default_factory=set)
+    redundant_rows: set[int] = field(default_factory=set)
     reversed: bool = False
 
     @property
@@ -72,7 +72,7 @@ class LinkModel:
         return len(self.scale)
 
 
-class Holder:
+class AttachmentBuilder:
     """Makes ends of anchors; `cables` and `rigids` are the models, in the scene's order."""
 
     def __init__(self, scene: Scene, cables: list, rigids: list):
@@ -86,20 +86,20 @@ class Holder:
         element = min(max(int(s // model.length), 0), model.n_elements - 1)
         return element, s - element * model.length
 
-    def end(self, anchor: Anchor, axes: np.ndarray | None = None, up=None) -> EndModel:
+    def end(self, anchor: Attachment, axes: np.ndarray | None = None, up=None) -> AttachmentModel:
         """The end of a complete anchor, with axes (3, 3) in the frame of what carries it where it has some."""
         none = np.zeros(0)
         axes = self._axes(axes)
         if anchor.on is None:
-            return EndModel(-1, -1, 0, -1, anchor.at, none, none, 0.0, 0.0, axes=axes)
+            return AttachmentModel(-1, -1, 0, -1, anchor.at, none, none, 0.0, 0.0, axes=axes)
         if anchor.on in self.body_index:
             body = self.rigids[self.body_index[anchor.on]]
             length = float(np.sqrt(np.max(np.linalg.eigvalsh(body.inertia)) / body.mass))
             part = self.scene.bodies[anchor.on]
             if isinstance(part, ModalBody):
-                return EndModel(-1, self.body_index[anchor.on], 0, -1, (0.0,) * 3, none, none, body.mass, length,
+                return AttachmentModel(-1, self.body_index[anchor.on], 0, -1, (0.0,) * 3, none, none, body.mass, length,
                                 axes=axes, spot=self._spot(part.spot(anchor.at)))
-            return EndModel(-1, self.body_index[anchor.on], 0, -1, part.arm(anchor.at), none, none, body.mass, length,
+            return AttachmentModel(-1, self.body_index[anchor.on], 0, -1, part.arm(anchor.at), none, none, body.mass, length,
                             axes=axes)
         found = self._on_cable(anchor.on, anchor.s, axes, up, draws_section(self.scene.cables[anchor.on]))
         found.element, x = self.element(anchor.on, anchor.s)
@@ -110,7 +110,7 @@ class Holder:
             found.S = np.array([slopes[k, 0] if k >= 0 else 0 * found.N for k in found.slopes])
         return found
 
-    def on_slide(self, slide: Slide, number: int, axes: np.ndarray) -> EndModel:
+    def on_slide(self, slide: Slide, number: int, axes: np.ndarray) -> AttachmentModel:
         """The cable's frame where a slide is."""
         section = slide.frame == "section" and draws_section(self.scene.cables[slide.along])
         found = self._on_cable(slide.along, slide.s, self._axes(axes), slide.up, section)
@@ -119,7 +119,7 @@ class Holder:
             found.slopes = (0, CARRIED)
         return found
 
-    def _on_cable(self, name: str, s: float, axes: np.ndarray | None, up, section: bool) -> EndModel:
+    def _on_cable(self, name: str, s: float, axes: np.ndarray | None, up, section: bool) -> AttachmentModel:
         """An end with the frame of the section, or of the tangent with the director or up."""
         cable, index = self.scene.cables[name], self.cable_index[name]
         length = self.cables[index].length
@@ -130,7 +130,7 @@ class Holder:
         slopes = (0, "xyz".index(director[-1]) if director and up is None and cable.dim == 3 else UP)
         if section:
             slopes, axes = (1, 2 if cable.dim == 3 else UP), None if axes is None else SECTIONS[cable.dim] @ axes
-        return EndModel(index, -1, 0, -1, (0.0,) * 3, np.zeros(0), np.zeros(0), mass, length,
+        return AttachmentModel(index, -1, 0, -1, (0.0,) * 3, np.zeros(0), np.zeros(0), mass, length,
                         FRAMES[self.scene.dim], slopes, (0.0,) * 3 if up is None else up, axes)
 
     def _spot(self, spot) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -145,7 +145,7 @@ class Holder:
         return np.array([[x[0], -x[1]], [x[1], x[0]]])
 
 
-def linked(holder: Holder, joint: Joint, signal, unknown: int, multiplier: int) -> LinkModel:
+def linked(holder: AttachmentBuilder, joint: Joint, signal, unknown: int, multiplier: int) -> JointModel:
     """The model of a joint; signal(s): number of a signal."""
     scene = holder.scene
     at = joint_axes(scene, joint)
@@ -172,7 +172,7 @@ def linked(holder: Holder, joint: Joint, signal, unknown: int, multiplier: int) 
     return link
 
 
-def tied(holder: Holder, slide: Slide, number: int, unknown: int, multiplier: int) -> LinkModel:
+def tied(holder: AttachmentBuilder, slide: Slide, number: int, unknown: int, multiplier: int) -> JointModel:
     """What keeps a rider's axes to the frame of its cable, beside slide number `number`."""
     dim = holder.scene.dim
     at = slide_axes(holder.scene, slide)
@@ -183,13 +183,13 @@ def tied(holder: Holder, slide: Slide, number: int, unknown: int, multiplier: in
     return link
 
 
-def _link(name: str, kind: str, dim: int, ends: list[EndModel], unknown: int, multiplier: int, signal: int,
-          base: float) -> LinkModel:
+def _link(name: str, kind: str, dim: int, ends: list[AttachmentModel], unknown: int, multiplier: int, signal: int,
+          base: float) -> JointModel:
     kernel = f"joint_{'planar_' * (dim == 2)}{kind}"
-    return LinkModel(name, kernel, tuple(ends), unknown, multiplier, signal, base, _scales(kernel, dim, ends))
+    return JointModel(name, kernel, tuple(ends), unknown, multiplier, signal, base, _scales(kernel, dim, ends))
 
 
-def _scales(kernel: str, dim: int, ends: list[EndModel]) -> np.ndarray:
+def _scales(kernel: str, dim: int, ends: list[AttachmentModel]) -> np.ndarray:
     """(rows,): kg, and kg m where a row is about turns alone: no displacement of the points changes it."""
     eye, ones = np.eye(dim), np.ones(dim)
     force = getattr(kernels_of(None), f"{kernel}_force")

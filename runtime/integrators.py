@@ -33,7 +33,7 @@ class GeneralisedAlpha:
     """alpha_m, alpha_f, beta, gamma for a spectral radius at infinite frequency (Chung & Hulbert 1993)."""
 
     spectral_radius: float
-    name, order, slack, caution = "genalpha", 2, 2.0, 0.0
+    name, order, error_overestimate, retry_factor = "genalpha", 2, 2.0, 0.0
 
     @property
     def parameters(self) -> tuple[float, float, float, float]:
@@ -51,7 +51,7 @@ class EnergyMomentum:
     """
 
     spectral_radius: float = 1.0
-    name, order, slack, caution = "energy", 2, 1.0, 0.0
+    name, order, error_overestimate, retry_factor = "energy", 2, 1.0, 0.0
 
     @property
     def parameters(self) -> tuple[float, float, float, float]:
@@ -72,7 +72,7 @@ class Explicit:
     interval for each evaluation, so that it is the cheaper one at any tolerance.
     """
 
-    name, slack, caution = "explicit", 1.0, 0.0
+    name, error_overestimate, retry_factor = "explicit", 1.0, 0.0
 
     def __init__(self) -> None:
         from scipy.integrate import DOP853
@@ -86,11 +86,11 @@ class Radau:
     """Radau IIA of three stages, of order 5 (Hairer & Wanner 1996, IV.5 and IV.8), from its nodes.
 
     Steps are chosen by an embedded estimate of order 3 and, for vibrations, by one of the method's own order that
-    follows from it (engine/radau.c). After a step that failed the next ones stay below ``caution`` of it for a while:
+    follows from it (engine/radau.c). After a step that failed the next ones stay below ``retry_factor`` of it for a while:
     factorisations are dear.
     """
 
-    name, order, slack, caution = "radau", 3, 1.0, 0.65
+    name, order, error_overestimate, retry_factor = "radau", 3, 1.0, 0.65
 
     def __init__(self) -> None:
         root = np.sqrt(6.0)
@@ -150,7 +150,7 @@ def regularised_decay(scene: Scene, slide: Slide) -> float:
 def slowest_rate(scene: Scene, model: Model, duration: float) -> float:
     """rad/s of the motion as a whole: a pendulum as long as the scene, or what crosses it, or the run."""
     points = [node.vector("r") for nodes in model.nodes.values() for node in nodes]
-    points += [model.q[b.configuration : b.configuration + model.dim] for b in model.rigids]
+    points += [model.q[b.configuration : b.configuration + model.dim] for b in model.bodies]
     size = float(np.max(np.ptp(points, axis=0)))
     if size == 0.0:
         return 1.0 / duration

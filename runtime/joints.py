@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated, ClassVar
 
 import numpy as np
-from funicular.anchors import AnyAnchor
+from funicular.anchors import AnyAttachment
 from funicular.signals import AnySignal, Integral, Signal
 from funicular.validation import Name, Part, Vector, direction, one_of, positive
 from pydantic import Field, model_validator
@@ -51,8 +51,8 @@ class Joint(Part):
     kind: ClassVar[str] = "joint"
     pair: Annotated[str, one_of(KINDS)] = Field(alias="kind")
     name: Name | None = None
-    a: AnyAnchor
-    b: AnyAnchor
+    a: AnyAttachment
+    b: AnyAttachment
     axis: Annotated[Vector | None, direction()] = None
     second_axis: Annotated[Vector | None, direction()] = None
     up: Annotated[Vector | None, direction()] = None

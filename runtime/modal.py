@@ -156,7 +156,7 @@ def _owner(scene: Scene, model, unknown: int) -> str:
     for name, nodes in model.nodes.items():
         if dof < model.cables[list(model.nodes).index(name)].coordinates.stop and nodes:
             return scene.cables[name].where
-    return next(scene.bodies[body.name].where for body in reversed(model.rigids) if body.dof <= dof)
+    return next(scene.bodies[body.name].where for body in reversed(model.bodies) if body.dof <= dof)
 
 
 def fastest(K: csc_array, M: csc_array, unknowns=slice(None)) -> float:
@@ -170,10 +170,10 @@ def condensed(full: csc_array, model) -> tuple[csc_array, csc_array]:
     """Stiffness over coordinates and free arc-lengths, springs' forces eliminated; the constraints on them."""
     n = model.n_band + model.n_border_dof
     dim = model.dim
-    arc = np.array([n + j.unknown for j in model.joints if j.drive < 0], dtype=int)
-    held = [n + j.unknown + 1 + d for j in model.joints for d in range(dim)]
-    held += [n + link.unknown + r for link in model.links for r in range(link.rows)
-             if r not in link.idle]
+    arc = np.array([n + j.unknown for j in model.slides if j.drive < 0], dtype=int)
+    held = [n + j.unknown + 1 + d for j in model.slides for d in range(dim)]
+    held += [n + link.unknown + r for link in model.joints for r in range(link.rows)
+             if r not in link.redundant_rows]
     springs = np.array([n + s.unknown + d for s in model.springs for d in range(dim)], dtype=int)
     kept = np.concatenate([np.arange(n), arc])
     full = full.tocsr()
@@ -250,17 +250,17 @@ def _named(model, squares: np.ndarray, dofs: np.ndarray, error: np.ndarray) -> M
     size = np.abs(roots)  # sqrt(square + error) - sqrt(square)
     uncertainty = error / (size + np.sqrt(size**2 + error))
     shapes = {}
-    modal = [body for body in model.rigids if body.modes]
+    modal = [body for body in model.bodies if body.modes]
     for k, mode in enumerate(dofs):
         largest = max([np.abs(mode[list(node.dofs("r"))]).max() for nodes in model.nodes.values() for node in nodes]
-                      + [np.abs(mode[b.dof : b.dof + model.dim]).max() for b in model.rigids]
+                      + [np.abs(mode[b.dof : b.dof + model.dim]).max() for b in model.bodies]
                       + [np.abs(_nodes(model, body, mode[None])).max() for body in modal])
         dofs[k] = mode / (largest or np.abs(mode).max() or 1.0)
     for cable in model.cables:
         vectors = spatial(dofs[:, cable.coordinates].reshape(len(dofs), *cable.shape))
         shapes[f"{cable.name}.nodal_vectors"] = vectors
         shapes[f"{cable.name}.displacement"] = vectors[:, :, cable.vectors.index("r")]
-    for body in model.rigids:
+    for body in model.bodies:
         turn = dofs[:, body.dof + model.dim : body.dof + (6 if model.dim == 3 else 3)]
         shapes[f"{body.name}.displacement"] = spatial(dofs[:, body.dof : body.dof + model.dim])
         shapes[f"{body.name}.rotation"] = turn if model.dim == 3 else np.pad(turn, ((0, 0), (2, 0)))

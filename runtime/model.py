@@ -20,7 +20,7 @@ from funicular.elements import gauge
 from funicular.ends import Buffer, HardStop, Stop
 from funicular.errors import FunicularWarning, SceneError
 from funicular.friction import Friction
-from funicular.holding import EndModel, Holder, LinkModel, linked, tied
+from funicular.holding import AttachmentBuilder, AttachmentModel, JointModel, linked, tied
 from funicular.integrators import choose
 from funicular.libraries import kernels_of, tables_of
 from funicular.long_runs import LongRun
@@ -40,7 +40,7 @@ from funicular.watching import Watcher
 from scipy.sparse import csr_array
 
 MOST_OUTPUT = 4e9  # bytes
-BRAKES = {2: "planar_brake", 3: "brake"}
+RESISTANCES = {2: "planar_resistance", 3: "resistance"}
 BODIES = {2: ("planar_rigid", 4, 3), 3: ("rigid", 7, 6)}
 """Kernels, length of the configuration and dofs of a rigid body, by dimension of the scene."""
 RIDERS = {2: "planar_point", 3: "point"}
@@ -88,7 +88,7 @@ class ShapeModel:
 
 
 @dataclass
-class RigidModel:
+class BodyModel:
     """One body: kernels of its frame, inertia, where its coordinates are; `shape` is that of a modal one.
 
     The engine's frame is at the mass centre of a rigid body, `centre` in its axes from the origin that the user sees.
@@ -115,28 +115,28 @@ class RigidModel:
 
 
 @dataclass
-class JointModel:
+class SlideModel:
     """One slide: kernels, its cable and its rider, its unknowns, what drives it, and where it starts.
 
-    native: the kernels take the rider's own configuration; room: multipliers that it has; drive: a signal, or -1;
-    brake: kernels of friction and buffers, or none; ends: what waits at the start and at the end of the cable.
+    rider_is_rigid: the kernels take the rider's own configuration; max_multipliers: how many it may have; drive: a signal, or -1;
+    resistance: kernels of friction and buffers, or none; ends: what waits at the start and at the end of the cable.
     """
 
     name: str
     kernel: str
     cable: int
-    rider: EndModel
-    native: bool
+    rider: AttachmentModel
+    rider_is_rigid: bool
     unknown: int
     multiplier: int
-    room: int
+    max_multipliers: int
     drive: int
     carries_director: bool
     mass: float
     s: float
     element: int
     director: np.ndarray
-    brake: str = ""
+    resistance: str = ""
     friction: Friction | None = None
     ends: tuple[str | Stop, str | Stop] = ("error", "error")
 
@@ -147,9 +147,9 @@ class Model:
 
     dim: int
     cables: list[CableModel]
-    rigids: list[RigidModel]
+    bodies: list[BodyModel]
+    slides: list[SlideModel]
     joints: list[JointModel]
-    links: list[LinkModel]
     springs: list[SpringModel]
     signals: list[SignalModel]
     motions: list[MotionModel]
@@ -184,10 +184,10 @@ class Model:
     def kernels(self) -> list[str]:
         """Names of the kernel families that the scene touches."""
         return sorted({c.element for c in self.cables} | {f"{c.element}_{c.law}" for c in self.cables}
-                      | {j.kernel for j in self.joints} | {b.kernel for b in self.rigids}
-                      | {link.kernel for link in self.links}
-                      | {j.brake for j in self.joints if j.brake}
-                      | {b.modal_kernel for b in self.rigids if b.modes})
+                      | {slide.kernel for slide in self.slides} | {body.kernel for body in self.bodies}
+                      | {joint.kernel for joint in self.joints}
+                      | {slide.resistance for slide in self.slides if slide.resistance}
+                      | {body.modal_kernel for body in self.bodies if body.modes})
 
 
 @dataclass
@@ -215,7 +215,7 @@ def build(scene: Scene) -> Model:
     nodes = {c.name: [Node(scene.cables[c.name].where, c.vectors,
                            c.first + k * int(np.prod(c.shape[1:])), vectors)
                       for k, vectors in enumerate(nodal[c.name])] for c in cables}
-    holder = Holder(scene, cables, rigids)
+    holder = AttachmentBuilder(scene, cables, rigids)
     actions = Actions(scene, holder)
     elements = np.array([(node.first, 2 * node.vectors.size) for each in nodes.values() for node in each[:-1]],
                         dtype=int).reshape(-1, 2)
@@ -224,8 +224,8 @@ def build(scene: Scene) -> Model:
         actions.load(load)
     joints = []
     for slide in scene.slides.values():
-        joints.append(_joint(slide, scene, holder, actions.signal, len(joints), sum(joint.room for joint in joints)))
-    links, used, held = [], (1 + dim) * len(joints), sum(joint.room for joint in joints)
+        joints.append(_joint(slide, scene, holder, actions.signal, len(joints), sum(joint.max_multipliers for joint in joints)))
+    links, used, held = [], (1 + dim) * len(joints), sum(joint.max_multipliers for joint in joints)
     for k, part in enumerate([*scene.slides.values(), *scene.joints.values()]):
         if k >= len(joints):
             links.append(linked(holder, part, actions.signal, used, held))
@@ -300,14 +300,14 @@ def _cable_weights(cable: Cable) -> np.ndarray:
     return np.repeat(np.tile(list(unit), cable.elements + 1), cable.dim)
 
 
-def _bodies(scene: Scene, at: int) -> list[RigidModel]:
+def _bodies(scene: Scene, at: int) -> list[BodyModel]:
     """Bodies in the scene's order, their coordinates from `at` on."""
     dim, made, dof = scene.dim, [], at
     kernel, n_configuration, n_velocity = BODIES[dim]
     for body in scene.bodies.values():
         shape = _shape(body, np.array(scene.gravity)[:dim]) if isinstance(body, ModalBody) else None
         centre = np.zeros(3) if shape else np.array(body.centre)
-        made.append(RigidModel(body.name, kernel, body.mass, np.array(body.inertia), centre, at, dof, shape))
+        made.append(BodyModel(body.name, kernel, body.mass, np.array(body.inertia), centre, at, dof, shape))
         at += n_configuration + made[-1].modes
         dof += n_velocity + made[-1].modes
     return made
@@ -319,7 +319,7 @@ def _shape(body: ModalBody, gravity: np.ndarray) -> ShapeModel:
                       gravity, shape)
 
 
-def _dofs(body: RigidModel, dim: int) -> int:
+def _dofs(body: BodyModel, dim: int) -> int:
     return BODIES[dim][2] + body.modes
 
 
@@ -353,7 +353,7 @@ def _body_weights(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
     return np.concatenate([np.ones(dim), np.full(1 if dim == 2 else 3, np.sqrt(largest / body.mass)), modes])
 
 
-def _body_gravity(body: RigidModel, gravity: np.ndarray) -> np.ndarray:
+def _body_gravity(body: BodyModel, gravity: np.ndarray) -> np.ndarray:
     """Of a modal body nothing: its weight turns and deforms with it, and is among its forces."""
     weight = np.zeros(_dofs(body, len(gravity)))
     if not body.modes:
@@ -361,26 +361,26 @@ def _body_gravity(body: RigidModel, gravity: np.ndarray) -> np.ndarray:
     return weight
 
 
-def _joint(slide: Slide, scene: Scene, holder: Holder, signal, number: int, multiplier: int) -> JointModel:
+def _joint(slide: Slide, scene: Scene, holder: AttachmentBuilder, signal, number: int, multiplier: int) -> SlideModel:
     along, dim = scene.cables[slide.along], scene.dim
     axes = along.axes_at(slide.s)
     at = slide.s / along.length * along.elements
     node = along.node_at(slide.s)
     body = scene.bodies.get(slide.body)
-    native = isinstance(body, RigidBody)
+    rider_is_rigid = isinstance(body, RigidBody)
     if node is not None:  # on a node: the element that the rider moves into
         forward = body is None or np.dot(axes[0], body.velocity) >= 0
         at = node if forward else node - 1
     rider = holder.end(slide.rider)
     driven, ends, friction = slide.prescribed is not None, (slide.at_start, slide.at_end), slide.friction
     may_hold = driven or (friction is not None and friction.sticks) or any(isinstance(end, HardStop) for end in ends)
-    brakes = friction is not None or any(isinstance(end, Buffer) for end in ends)
-    return JointModel(
+    resistances = friction is not None or any(isinstance(end, Buffer) for end in ends)
+    return SlideModel(
         slide.name,
-        f"slide_{along.element}_{BODIES[dim][0] if native else RIDERS[dim]}",
+        f"slide_{along.element}_{BODIES[dim][0] if rider_is_rigid else RIDERS[dim]}",
         holder.cable_index[slide.along],
         rider,
-        native,
+        rider_is_rigid,
         (1 + dim) * number,
         multiplier,
         dim - 1 + may_hold,
@@ -390,8 +390,8 @@ def _joint(slide: Slide, scene: Scene, holder: Holder, signal, number: int, mult
         slide.s,
         int(np.clip(np.floor(at), 0, along.elements - 1)),
         axes[1],
-        BRAKES[dim] * brakes,
-        friction if brakes else None,
+        RESISTANCES[dim] * resistances,
+        friction if resistances else None,
         ends,
     )
 
@@ -433,7 +433,7 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Meter, initial=No
         step=settings.step or 0.0,
         method=method,
         first_step=min(output_step, 1e-3 * settings.duration),
-        room=None if stream is None else pace.room,
+        capacity=None if stream is None else pace.room,
     )
     if status == "singular" and engine.jammed >= 0:
         slide = list(scene.slides.values())[engine.jammed]
@@ -472,7 +472,7 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Meter, initial=No
 
 def _check_conserves(model: Model, scene: Scene, engine, method) -> None:
     """Raise SceneError for what has no discrete gradient, or lacks the algorithmic dissipation that is asked for."""
-    for body in model.rigids:
+    for body in model.bodies:
         if body.modes:
             raise SceneError(scene.bodies[body.name].where, 'integrator "energy" does not know modal bodies',
                              'take "radau" with a small tol, or "genalpha"')
@@ -490,9 +490,9 @@ def _check_conserves(model: Model, scene: Scene, engine, method) -> None:
         if slide.friction is not None or (slide.at_start, slide.at_end) != ("error", "error"):
             raise SceneError(slide.where, 'integrator "energy" knows neither friction nor ends of cables',
                              "take another integrator: genalpha, radau and explicit do")
-    parts = [*(scene.joints[link.name] for link in model.links if link.slide is None),
-             *(slide for slide, joint in zip(scene.slides.values(), model.joints, strict=True)
-               if not joint.native or joint.drive >= 0 or slide.frame != "point")]
+    parts = [*(scene.joints[link.name] for link in model.joints if link.slide is None),
+             *(slide for slide, joint in zip(scene.slides.values(), model.slides, strict=True)
+               if not joint.rider_is_rigid or joint.drive >= 0 or slide.frame != "point")]
     for part in parts:
         raise SceneError(part.where, 'integrator "energy" has no discrete gradient of it',
                          "take another integrator: genalpha and radau know all joints")
@@ -500,7 +500,7 @@ def _check_conserves(model: Model, scene: Scene, engine, method) -> None:
 
 def _check_size(model: Model, settings: RunSettings, stream: Stream | None) -> float:
     """Bytes of a row; refuses what no memory holds or, for a stream, what does not fit on its disk."""
-    per_row = 8 * (model.n_q + 3 * model.n_dof + 12 * len(model.joints) + 7 * len(model.links)
+    per_row = 8 * (model.n_q + 3 * model.n_dof + 12 * len(model.slides) + 7 * len(model.joints)
                    + 3 * len(model.springs) + 6)
     need = per_row * settings.duration / settings.output_step
     most, where = (MOST_OUTPUT, "") if stream is None else (stream.free, " that are free on the disk")

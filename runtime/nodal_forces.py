@@ -47,7 +47,7 @@ def tied_cables(scene: Scene, model: Model, cable: int) -> list[int]:
     found, new = {model.cables[cable].name}, [model.cables[cable].name]
     while new:
         name = new.pop()
-        for join in scene.joins.values():
+        for join in scene.ties.values():
             pair = {join.cable, join.to}
             if name in pair:
                 new += pair - found

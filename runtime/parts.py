@@ -8,13 +8,29 @@ from funicular.loads import DistributedForce, Force, Moment
 from funicular.modal_bodies import ModalBody
 from funicular.slides import Slide
 from funicular.springs import Spring
-from funicular.supports import Clamp, Join, Motion, Pin
+from funicular.supports import Clamp, Motion, Pin, Tie
 
-KINDS = (Cable, Pin, Clamp, Motion, Join, RigidBody, ModalBody, Joint, Slide, Force, DistributedForce,
+KINDS = (Cable, Pin, Clamp, Motion, Tie, RigidBody, ModalBody, Joint, Slide, Force, DistributedForce,
          Moment, Spring, Event)
 
 PARTS = {part.kind: part for part in KINDS}
 """The kinds of parts by their names in scene files and in messages."""
 
-__all__ = ["EXACT", "PARTS", "Cable", "Clamp", "DistributedForce", "Event", "Force", "Join", "Joint", "ModalBody",
-           "Moment", "Motion", "Pin", "RigidBody", "Slide", "Spring"]
+__all__ = [
+         "EXACT",
+         "PARTS",
+         "Cable",
+         "Clamp",
+         "DistributedForce",
+         "Event",
+         "Force",
+         "Joint",
+         "ModalBody",
+         "Moment",
+         "Motion",
+         "Pin",
+         "RigidBody",
+         "Slide",
+         "Spring",
+         "Tie",
+]

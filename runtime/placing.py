@@ -6,14 +6,14 @@ import warnings
 from typing import TYPE_CHECKING
 
 import numpy as np
-from funicular.anchors import Anchor
+from funicular.anchors import Attachment
 from funicular.cables import EXACT, Cable
 from funicular.elements import built_in
 from funicular.errors import FunicularWarning, SceneError, near
 from funicular.loads import DistributedForce, Force, Moment
 from funicular.modal_bodies import ModalBody
 from funicular.springs import Spring
-from funicular.supports import Join, Support
+from funicular.supports import Support, Tie
 from funicular.validation import Part, show
 
 if TYPE_CHECKING:
@@ -56,17 +56,17 @@ def node_of(scene: Scene, support: Support) -> Node:
     return support.cable, scene.cables[support.cable].node_at(support.s)
 
 
-def ends_of(scene: Scene, join: Join) -> tuple[Node, Node]:
+def ends_of(scene: Scene, join: Tie) -> tuple[Node, Node]:
     """The nodes that a join of the scene ties: that of its cable, and the other one."""
     return ((join.cable, scene.cables[join.cable].node_at(join.s)), (join.to, scene.cables[join.to].node_at(join.at)))
 
 
-def joined(scene: Scene, node: Node, without: Join | None = None) -> set[Node]:
+def joined(scene: Scene, node: Node, without: Tie | None = None) -> set[Node]:
     """All nodes that joins, but for ``without``, tie to ``node``, itself included."""
     found, new = {node}, [node]
     while new:
         at = new.pop()
-        for join in scene.joins.values():
+        for join in scene.ties.values():
             if at[0] not in (join.cable, join.to):
                 continue
             pair = set(ends_of(scene, join))
@@ -94,7 +94,7 @@ def check_support(scene: Scene, support: Support) -> None:
                      f"is already {HELD[other.kind]}")
 
 
-def check_join(scene: Scene, join: Join) -> None:
+def check_tie(scene: Scene, join: Tie) -> None:
     """A join needs two nodes at one place, not joined yet, of which at most one is held."""
     one = node_at(scene, join.cable, join.where, join.s)
     other = node_at(scene, join.to, join.where, join.at, "at")
@@ -141,7 +141,7 @@ def placed_load(scene: Scene, load: Force | DistributedForce | Moment) -> Part:
         load = load.model_copy(update={"start": start, "stop": stop})
     else:
         at = getattr(load, "at", None)
-        end = placed_end(scene, Anchor(on=load.on, s=load.s, at=at), load.where)
+        end = placed_attachment(scene, Attachment(on=load.on, s=load.s, at=at), load.where)
         update = {} if isinstance(scene.bodies.get(load.on), ModalBody) else {"s": end.s}  # a moment's s says all
         update |= {"at": end.at, "s": end.s} if isinstance(load, Force) else {}
         load = load.model_copy(update=update)
@@ -168,7 +168,7 @@ def _check_without_section(load: Part, cable: Cable) -> None:
             f"possible is one along the tangent, (F, 0, 0), or take {with_axes}")
 
 
-def placed_end(scene: Scene, end: Anchor, where: str, prefix: str = "") -> Anchor:
+def placed_attachment(scene: Scene, end: Attachment, where: str, prefix: str = "") -> Attachment:
     """Where on a cable or a body something acts, complete."""
     if end.on is None:
         return end
@@ -195,7 +195,7 @@ def placed_end(scene: Scene, end: Anchor, where: str, prefix: str = "") -> Ancho
     raise SceneError(where, f'{prefix}there is no cable or body "{end.on}"', near(end.on, known))
 
 
-def point_of(scene: Scene, end: Anchor) -> np.ndarray:
+def point_of(scene: Scene, end: Attachment) -> np.ndarray:
     """(3,): where a complete end starts, in m."""
     if end.on is None:
         return np.array(end.at)
@@ -204,7 +204,7 @@ def point_of(scene: Scene, end: Anchor) -> np.ndarray:
 
 def placed_spring(scene: Scene, spring: Spring) -> Spring:
     """The spring with its ends and its length complete."""
-    a, b = (placed_end(scene, getattr(spring, name), spring.where, f"{name}: ") for name in ("a", "b"))
+    a, b = (placed_attachment(scene, getattr(spring, name), spring.where, f"{name}: ") for name in ("a", "b"))
     points = point_of(scene, a), point_of(scene, b)
     distance = float(np.linalg.norm(points[1] - points[0]))
     if not distance > 1e-12 * (1 + np.abs(points).max()):

@@ -6,14 +6,14 @@ import warnings
 from typing import TYPE_CHECKING
 
 import numpy as np
-from funicular.anchors import Anchor
+from funicular.anchors import Attachment
 from funicular.cables import EXACT
 from funicular.contradictions import called, check_other_joints, check_supports, move_as_one
 from funicular.elements import built_in
 from funicular.errors import FunicularWarning, SceneError
 from funicular.frames import cable_frame, has_section
 from funicular.joints import DRIVEN, LINES, POINTS, UNITS, Joint
-from funicular.placing import placed_end, point_of
+from funicular.placing import placed_attachment, point_of
 from funicular.validation import show
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ UPRIGHT = 1e-3
 
 def placed_joint(scene: Scene, joint: Joint) -> Joint:
     """The joint with its ends, axis and length complete, sure to be one that its ends can hold; tells of a gap."""
-    a, b = (placed_end(scene, getattr(joint, name), joint.where, f"{name}: ") for name in ("a", "b"))
+    a, b = (placed_attachment(scene, getattr(joint, name), joint.where, f"{name}: ") for name in ("a", "b"))
     if move_as_one(scene, a, b):
         raise SceneError(joint.where, f"joins {called(a)} to itself", "give it two ends")
     joint = joint.model_copy(update={"a": a, "b": b} | _completed(scene, joint, a, b))
@@ -68,7 +68,7 @@ def check_drive(scene: Scene, joint: Joint) -> None:
                          f"{show(start, UNITS[name])}", 'let it start there, or start with initial="equilibrium"')
 
 
-def _completed(scene: Scene, joint: Joint, a: Anchor, b: Anchor) -> dict:
+def _completed(scene: Scene, joint: Joint, a: Attachment, b: Attachment) -> dict:
     """What is left out and follows from the scene."""
     if joint.pair == "revolute" and joint.axis is None:
         if scene.dim == 3:

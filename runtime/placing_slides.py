@@ -11,7 +11,7 @@ from funicular.cables import EXACT, Cable
 from funicular.ends import Buffer
 from funicular.errors import FunicularWarning, SceneError
 from funicular.frames import cable_frame, has_section
-from funicular.placing import cable_at, placed_end, point_of
+from funicular.placing import cable_at, placed_attachment, point_of
 from funicular.placing_joints import check_up, elements_with_sections
 from funicular.slides import Slide
 from funicular.validation import show
@@ -28,7 +28,7 @@ def placed_slide(scene: Scene, slide: Slide) -> Slide:
     if slide.body in scene.cables and slide.body_s is None:
         raise SceneError(slide.where, f'cable "{slide.body}" rides and needs the arc-length of its point',
                          f'give body=("{slide.body}", s)')
-    rider = placed_end(scene, slide.rider, slide.where, "body: ")
+    rider = placed_attachment(scene, slide.rider, slide.where, "body: ")
     cable = cable_at(scene, slide.along, slide.where, slide.s)
     place = {"body_s": rider.s} if rider.at is None else {"body_s": None, "at": rider.at}
     slide = slide.model_copy(update={"s": min(max(slide.s, 0.0), cable.length)} | place)

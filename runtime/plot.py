@@ -15,7 +15,7 @@ from funicular.rotations import rotate
 from funicular.section_forces import even, jumps, of_run, with_sides
 
 if TYPE_CHECKING:
-    from funicular.anchors import Anchor
+    from funicular.anchors import Attachment
     from funicular.results import Run
     from funicular.scene import Scene
     from matplotlib.cm import ScalarMappable
@@ -119,7 +119,7 @@ def rider_path(run: Run, slide: str) -> np.ndarray:
     return anchor_path(run, run.scene.slides[slide].rider)
 
 
-def anchor_path(run: Run, anchor: Anchor) -> np.ndarray:
+def anchor_path(run: Run, anchor: Attachment) -> np.ndarray:
     """(time, 3): where an anchor was, in m."""
     if anchor.on is None:
         return np.broadcast_to(anchor.at, (len(run.time), 3))

@@ -14,7 +14,7 @@ from funicular.scene import Scene
 from funicular.settings import RunSettings
 
 if TYPE_CHECKING:
-    from funicular.holding import LinkModel
+    from funicular.holding import JointModel
     from funicular.model import Model
     from funicular.watching import Watcher
 
@@ -31,7 +31,7 @@ class Rows:
     pins: dict[str, dict]
     clamps: dict[str, dict]
     motions: dict[str, dict]
-    joins: dict[str, dict]
+    ties: dict[str, dict]
     joints: dict[str, dict]
     springs: dict[str, dict]
     energy: dict[str, np.ndarray]
@@ -72,7 +72,7 @@ def support_reaction(model: Model, scene: Scene, part, reaction: np.ndarray, q: 
     return given(model, [model.nodes[cable][k] for cable, k in nodes], reaction, q)
 
 
-def join_force(model: Model, scene: Scene, join, reaction: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray]:
+def tie_force(model: Model, scene: Scene, join, reaction: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray]:
     """Force and moment of a join on the node of its `cable`: what the nodes on that side of it are given.
 
     A support on that side gives a part that is not the join's: then it is minus what the other side is given.
@@ -143,19 +143,19 @@ def named(model: Model, scene: Scene, engine) -> Rows:
             "vector_names": cable.vectors,
         }
     bodies, modal = {}, {}
-    for body in model.rigids:
+    for body in model.bodies:
         state = body_state(model, body, q)
         bodies[body.name] = state | body_rates(model, body, state["orientation"], v, a)
         if body.modes:
             modal[body.name] = modal_state(model, body, state, q, v)
     slides = {}
-    for k, joint in enumerate(model.joints):
-        slides[joint.name] = {"s": rows["s"][:, k], **engine.joint_row(rows["joint"][:, k])}
+    for k, joint in enumerate(model.slides):
+        slides[joint.name] = {"s": rows["s"][:, k], **engine.slide_row(rows["slide"][:, k])}
         slides[joint.name]["residual"] = np.linalg.norm(slides[joint.name]["residual"], axis=-1)
 
-    for k, link in enumerate(model.links):
+    for k, link in enumerate(model.joints):
         if link.slide is not None:
-            slides[link.slide]["moment"] = link_state(link, rows["link"][:, k])["moment"]
+            slides[link.slide]["moment"] = joint_state(link, rows["joint"][:, k])["moment"]
 
     def held(part) -> dict[str, np.ndarray]:
         return support_reaction(model, scene, part, rows["reaction"], q)
@@ -169,9 +169,9 @@ def named(model: Model, scene: Scene, engine) -> Rows:
         pins={pin.label: {"force": held(pin)["force"]} for pin in scene.pins},
         clamps={clamp.label: held(clamp) for clamp in scene.clamps},
         motions={motion.label: held(motion) for motion in scene.motions},
-        joins={name: join_force(model, scene, join, rows["reaction"], q) for name, join in scene.joins.items()},
-        joints={link.name: link_state(link, rows["link"][:, k])
-                for k, link in enumerate(model.links) if link.slide is None},
+        ties={name: tie_force(model, scene, join, rows["reaction"], q) for name, join in scene.ties.items()},
+        joints={link.name: joint_state(link, rows["joint"][:, k])
+                for k, link in enumerate(model.joints) if link.slide is None},
         springs={spring.name: spring_state(model, spring, rows["spring"][:, k], q)
                  for k, spring in enumerate(model.springs)},
         energy={name: rows[name] for name in ("kinetic", "elastic", "potential", "dissipated", "external")},
@@ -209,14 +209,14 @@ def recorded(model: Model, scene: Scene, engine, settings: RunSettings, status: 
 def _costs(model: Model, engine) -> dict[str, float]:
     """µs of a step that each slide and joint takes by itself; a slide that ties its rider's axes has both its parts."""
     found: dict[str, float] = {}
-    if model.joints or model.links:
-        for part, seconds in zip([*model.joints, *model.links], engine.costs(), strict=True):
+    if model.slides or model.joints:
+        for part, seconds in zip([*model.slides, *model.joints], engine.costs(), strict=True):
             found[part.name] = found.get(part.name, 0.0) + 1e6 * float(seconds)
     return found
 
 
-def link_state(link: LinkModel, numbers: np.ndarray) -> dict[str, np.ndarray]:
-    """Force and moment on the end b, and residual, from the engine's numbers (..., FU_LINK_OUTPUTS) of a joint."""
+def joint_state(link: JointModel, numbers: np.ndarray) -> dict[str, np.ndarray]:
+    """Force and moment on the end b, and residual, from the engine's numbers (..., FU_JOINT_OUTPUTS) of a joint."""
     sign = -1.0 if link.reversed else 1.0  # that has its ends at one point
     return {"force": sign * numbers[..., :3], "moment": sign * numbers[..., 3:6], "residual": numbers[..., 6]}
 
@@ -242,7 +242,7 @@ def end_points(model: Model, end, q: np.ndarray) -> np.ndarray:
         vectors = q[:, start : start + len(end.N) * model.dim].reshape(len(q), -1, model.dim)
         return spatial(np.einsum("k,tkd->td", end.N, vectors))
     if end.body >= 0:
-        body = model.rigids[end.body]
+        body = model.bodies[end.body]
         state, arm = body_state(model, body, q), body.centre + end.u
         if end.spot is not None:
             eta = modal_state(model, body, state, q)["modal_coordinates"]
@@ -255,7 +255,7 @@ def _message(model: Model, engine, status: str, settings: RunSettings, watcher: 
     when = f"t = {engine.time:.6g} s of {settings.duration:.6g} s"
     match status:
         case "end_of_cable":
-            joint = model.joints[engine.stopped_joint]
+            joint = model.slides[engine.stopped_joint]
             cable = model.cables[joint.cable]
             middle = 0.5 * cable.n_elements * cable.length
             end = "end" if engine.stopped_s > middle else "start"

@@ -335,7 +335,7 @@ def supports(scene: Scene, nodes: dict[str, list[Node]], signal) -> Supports:
             made.displace(rooted[-1], [None if s is None else signal(s) for s in motion.displacement])
         if motion.rotation is not None:
             made.rotate(rooted[-1], np.array(motion.rotation.axis), signal(motion.rotation.angle))
-    links = [(at(join.cable, join.s), at(join.to, join.at), join.rotation == "rigid") for join in scene.joins.values()]
+    links = [(at(join.cable, join.s), at(join.to, join.at), join.rotation == "rigid") for join in scene.ties.values()]
     done = {node.first for node in rooted}
     # a node with directors can give the slopes of one without, not the other way round
     starts = sorted((node for link in links for node in link[:2] if node.first not in done),

@@ -29,8 +29,8 @@ def settle(model: Model, engine) -> list[str]:
     a scene without these equations. Raises SceneError where slides, or what drives joints, hold the same, and for a
     start in a singular position.
     """
-    riders = [(joint.rider.body, joint.rider.cable) for joint in model.joints]
-    if not model.links and len(set(riders)) == len(riders):
+    riders = [(joint.rider.body, joint.rider.cable) for joint in model.slides]
+    if not model.joints and len(set(riders)) == len(riders):
         return []  # slides of different bodies never do: each acts on its own body, whose mass is not zero
     if not engine.prepare():
         return []  # start tells why
@@ -45,15 +45,15 @@ def settle(model: Model, engine) -> list[str]:
         return []
     idle = [_left_out(model, row, others, owner) for row, others in follows.items()]
     for k, row in idle:
-        model.links[k].idle.add(row)
-    engine.idle(idle)
+        model.joints[k].redundant_rows.add(row)
+    engine.redundant_rows(idle)
     _check_that_they_follow(model, engine, idle, _listed([owner[k] for row in follows for k in (*follows[row], row)]))
     told = []
     for k in dict.fromkeys(k for k, _ in idle):
-        link = model.links[k]
+        link = model.joints[k]
         own = range(link.multiplier, link.multiplier + link.rows)
         names = _listed([owner[other] for row in own for other in follows.get(row, ()) if other not in own])
-        told.append(f"over-constrained: {len(link.idle)} of the {link.rows} equations of {owner[own[0]]} follow from "
+        told.append(f"over-constrained: {len(link.redundant_rows)} of the {link.rows} equations of {owner[own[0]]} follow from "
                     f"those of {names} and are left out, without force or moment of their own")
     return told
 
@@ -63,7 +63,7 @@ def _left_out(model: Model, row: int, others: list[int], owner: list[str]) -> tu
     names = _listed([owner[k] for k in (*others, row)])
     if _driven(model) & {row, *others}:
         raise SceneError("scene", f"is over-constrained: {names} drive or hold the same", "leave one of them out")
-    for k, link in enumerate(model.links):
+    for k, link in enumerate(model.joints):
         if 0 <= row - link.multiplier < link.rows and link.slide is None:
             return k, row - link.multiplier
     raise SceneError("scene", f"is over-constrained: {names} hold the same",
@@ -87,7 +87,7 @@ def _check_that_they_follow(model: Model, engine, idle: list[tuple[int, int]], n
 
 def redundant(model: Model, engine, ratio: float = NEARLY) -> str:
     """Names of slides and joints that hold nearly the same at the time reached; empty where there are none."""
-    if not model.links and len(model.joints) < 2:
+    if not model.joints and len(model.slides) < 2:
         return ""
     S = _compliance(engine)
     if S is None or not np.any(np.diag(S) > 0):
@@ -137,9 +137,9 @@ def _following(S: np.ndarray) -> dict[int, list[int]]:
 def _owners(model: Model) -> list[str]:
     """What each multiplier is of, as messages call it."""
     names = [""] * model.n_multipliers
-    for joint in model.joints:
-        names[joint.multiplier : joint.multiplier + joint.room] = [f'slide "{joint.name}"'] * joint.room
-    for link in model.links:
+    for joint in model.slides:
+        names[joint.multiplier : joint.multiplier + joint.max_multipliers] = [f'slide "{joint.name}"'] * joint.max_multipliers
+    for link in model.joints:
         kind = "joint" if link.slide is None else "slide"
         names[link.multiplier : link.multiplier + link.rows] = [f'{kind} "{link.name}"'] * link.rows
     return names
@@ -147,8 +147,8 @@ def _owners(model: Model) -> list[str]:
 
 def _driven(model: Model) -> set[int]:
     """The multipliers of what signals drive: the last of each joint's."""
-    return ({joint.multiplier + joint.room - 1 for joint in model.joints if joint.drive >= 0}
-            | {link.multiplier + link.rows - 1 for link in model.links if link.signal >= 0})
+    return ({joint.multiplier + joint.max_multipliers - 1 for joint in model.slides if joint.drive >= 0}
+            | {link.multiplier + link.rows - 1 for link in model.joints if link.signal >= 0})
 
 
 def _listed(names: list[str]) -> str:

@@ -60,7 +60,7 @@ QUANTITIES = {
     "pins": {"force": _SUPPORT["force"]},
     "clamps": _SUPPORT,
     "motions": _SUPPORT,
-    "joins": _SUPPORT,
+    "ties": _SUPPORT,
     "joints": {
         "force": (_XYZ, "N", "force on what carries the end b, at that end"),
         "moment": (_XYZ, "N m", "moment on what carries the end b, about that end"),

@@ -19,7 +19,6 @@ from funicular.parts import (
     DistributedForce,
     Event,
     Force,
-    Join,
     Joint,
     ModalBody,
     Moment,
@@ -28,8 +27,9 @@ from funicular.parts import (
     RigidBody,
     Slide,
     Spring,
+    Tie,
 )
-from funicular.placing import check_join, check_support, placed_load, placed_spring
+from funicular.placing import check_support, check_tie, placed_load, placed_spring
 from funicular.plane import check_plane
 from funicular.progress import progress_bar
 from funicular.results import Run
@@ -74,7 +74,7 @@ class Scene:
         self.pins: list[Pin] = []
         self.clamps: list[Clamp] = []
         self.motions: list[Motion] = []
-        self.joins: dict[str, Join] = {}
+        self.ties: dict[str, Tie] = {}
         self.bodies: dict[str, RigidBody | ModalBody] = {}
         self.joints: dict[str, Joint] = {}
         self.slides: dict[str, Slide] = {}
@@ -199,10 +199,10 @@ class Scene:
         """
         return self.add(Motion(cable=cable, s=s, displacement=displacement, rotation=rotation))
 
-    def join(self, cable: Cable | str, *, s: float, to: Cable | str, at: float, rotation: str = "rigid",
-             name: str | None = None) -> Join:
-        """Join nodes of two cables, at ``s`` and ``at`` (m), rigidly or as a hinge; see `Join`. Raises SceneError."""
-        return self.add(Join(cable=cable, s=s, to=to, at=at, rotation=rotation, **_named(name)))
+    def tie(self, cable: Cable | str, *, s: float, to: Cable | str, at: float, rotation: str = "rigid",
+             name: str | None = None) -> Tie:
+        """Tie nodes of two cables, at ``s`` and ``at`` (m), rigidly or as a hinge; see `Tie`. Raises SceneError."""
+        return self.add(Tie(cable=cable, s=s, to=to, at=at, rotation=rotation, **_named(name)))
 
     def force(self, on: Cable | RigidBody | str, *, value, s: float | None = None, at=None, scale=1.0,
               follower: bool = False, name: str | None = None) -> Force:
@@ -242,7 +242,7 @@ class Scene:
 
     def joint(self, kind: str, a, b, *, axis=None, second_axis=None, up=None, angle=None, distance=None, velocity=None,
               length: float | None = None, name: str | None = None) -> Joint:
-        """Join two ends, free or driven by a signal.
+        """Tie two ends, free or driven by a signal.
 
         kind: "spherical", "revolute", "universal", "prismatic", "cylindrical", "weld" or "distance"; a, b: the ends, as
         of a spring; axis, second_axis, up: directions; angle (rad), distance (m) or velocity (rad/s, m/s): signals;
@@ -286,7 +286,7 @@ class Scene:
 
         Returns the part as it stands in the scene. Raises SceneError.
         """
-        if isinstance(part, Join | Joint | Force | DistributedForce | Moment | Spring | Event) and part.name is None:
+        if isinstance(part, Tie | Joint | Force | DistributedForce | Moment | Spring | Event) and part.name is None:
             part = part.model_copy(update={"name": self._free_name(part.kind)})
         if hasattr(part, "name"):
             self._claim(part)
@@ -299,9 +299,9 @@ class Scene:
             case Pin() | Clamp() | Motion():
                 check_support(self, part)
                 {"pin": self.pins, "clamp": self.clamps, "motion": self.motions}[part.kind].append(part)
-            case Join():
-                check_join(self, part)
-                self.joins[part.name] = part
+            case Tie():
+                check_tie(self, part)
+                self.ties[part.name] = part
             case Joint():
                 from funicular.placing_joints import placed_joint
 
@@ -338,7 +338,7 @@ class Scene:
 
     def parts(self) -> Iterator[Part]:
         """All parts, in an order in which they can be added."""
-        for group in (self.cables, self.supports, self.joins, self.bodies, self.joints, self.slides, self.loads,
+        for group in (self.cables, self.supports, self.ties, self.bodies, self.joints, self.slides, self.loads,
                       self.springs, self.events):
             yield from group.values() if isinstance(group, dict) else group
 
@@ -487,7 +487,7 @@ class Scene:
     def _part_named(self, name: str, kind: str) -> Part | None:
         """The part whose name that is: results are addressed by name, so that all but events share one space of names.
         """
-        groups = (self.cables, self.joins, self.bodies, self.joints, self.slides, self.loads, self.springs)
+        groups = (self.cables, self.ties, self.bodies, self.joints, self.slides, self.loads, self.springs)
         return next((group[name] for group in ([self.events] if kind == "event" else groups) if name in group), None)
 
     def _claim(self, part: Part) -> None:

@@ -13,7 +13,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from funicular.anchors import Anchor
+from funicular.anchors import Attachment
 from funicular.ends import Stop
 from funicular.errors import SceneError, near, shown_path
 from funicular.parts import PARTS
@@ -163,7 +163,7 @@ def _data(value: Any) -> Any:
     match value:
         case Constant():
             return value.constant
-        case Anchor():
+        case Attachment():
             return value.data()
         case Rotation():
             return [value.axis, _data(value.angle)]

@@ -126,7 +126,7 @@ def jumps(scene, name: str) -> np.ndarray:
     anchors += [end for part in (*scene.springs.values(), *scene.joints.values()) for end in (part.a, part.b)]
     places += [anchor.s for anchor in anchors if anchor.on == name]
     places += [support.s for support in scene.supports if support.cable == name]
-    for join in scene.joins.values():
+    for join in scene.ties.values():
         places += [s for on, s in ((join.cable, join.s), (join.to, join.at)) if on == name]
     for load in scene.loads.values():
         if getattr(load, "cable", None) == name:

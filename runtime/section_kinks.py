@@ -9,7 +9,7 @@ from funicular.cable_actions import positions, shape_on_axis
 from funicular.recording import spatial
 from funicular.section_balance import Cuts, balanced, resultants
 from funicular.section_layer import Kink, held
-from funicular.supports import Clamp, Join, Motion
+from funicular.supports import Clamp, Motion, Tie
 
 if TYPE_CHECKING:
     from funicular.cable_actions import CableActions
@@ -51,8 +51,8 @@ def _of_nodes(scene: Scene, cable: Cable, model: CableModel, forces: ElementForc
     """Supports and joins; a section that they keep from turning holds the direction of the line."""
     found: list[Kink] = []
     places: dict[int, bool] = {}
-    for part in (*scene.supports, *scene.joins.values()):
-        ends = [(part.cable, part.s)] + ([(part.to, part.at)] if isinstance(part, Join) else [])
+    for part in (*scene.supports, *scene.ties.values()):
+        ends = [(part.cable, part.s)] + ([(part.to, part.at)] if isinstance(part, Tie) else [])
         for on, s in ends:
             if on == cable.name:
                 node = cable.node_at(s)
@@ -82,4 +82,4 @@ def _normal(model: CableModel, vectors: np.ndarray) -> np.ndarray:
 
 def _holds(part) -> bool:
     return (isinstance(part, Clamp) or (isinstance(part, Motion) and part.rotation is not None)
-            or (isinstance(part, Join) and part.rotation == "rigid"))
+            or (isinstance(part, Tie) and part.rotation == "rigid"))

@@ -73,12 +73,12 @@ class Section(Part):
         return float(self.moments()[0])
 
     @property
-    def second_moment_yy(self) -> float:
+    def second_moment_about_z(self) -> float:
         """∫y²dA in m⁴: resists bending in the plane of the axis and ``up``."""
         return float(self.moments()[1])
 
     @property
-    def second_moment_zz(self) -> float:
+    def second_moment_about_y(self) -> float:
         """∫z²dA in m⁴: resists bending out of the plane of the axis and ``up``."""
         return float(self.moments()[2])
 
@@ -124,7 +124,7 @@ class Circle(Section):
         return _disc(self.radius)
 
     def _shape_torsion_constant(self) -> float:
-        return self.second_moment_yy + self.second_moment_zz
+        return self.second_moment_about_z + self.second_moment_about_y
 
     def _shape_shear_factors(self, poisson_ratio: float) -> tuple[float, float]:
         return _ring_shear_factors(poisson_ratio, 0.0)
@@ -153,16 +153,16 @@ class Tube(Section):
         return _disc(self.outer_radius) - _disc(self.inner_radius)
 
     def _shape_torsion_constant(self) -> float:
-        return self.second_moment_yy + self.second_moment_zz
+        return self.second_moment_about_z + self.second_moment_about_y
 
     def _shape_shear_factors(self, poisson_ratio: float) -> tuple[float, float]:
         return _ring_shear_factors(poisson_ratio, self.inner_radius / self.outer_radius)
 
 
-class General(Section):
+class GeneralSection(Section):
     """A section known by its constants alone, for cables and for structural beams.
 
-    area in m²; second_moment_yy (∫y²dA) and second_moment_zz in m⁴, equal if only one is given; for beams
+    area in m²; second_moment_about_z (∫y²dA) and second_moment_about_y in m⁴, equal if only one is given; for beams
     torsion_constant in m⁴ and shear_factors (ky, kz). rotary_moment_yy and rotary_moment_zz in m⁴, for beams: what
     times the density is the rotary inertia per length in kg m, of a section whose mass is elsewhere than its stiffness;
     equal if only one is given, the second moments if none is.
@@ -170,17 +170,17 @@ class General(Section):
 
     shape: ClassVar[str] = "general"
     area_: Annotated[float, positive("m²")] = Field(alias="area")
-    yy: Annotated[float, positive("m⁴")] = Field(alias="second_moment_yy")
-    zz: Annotated[float, positive("m⁴")] = Field(default_factory=lambda data: data["yy"], alias="second_moment_zz")
+    yy: Annotated[float, positive("m⁴")] = Field(alias="second_moment_about_z")
+    zz: Annotated[float, positive("m⁴")] = Field(default_factory=lambda data: data["yy"], alias="second_moment_about_y")
     rotary_yy: Annotated[float, positive("m⁴")] | None = Field(None, alias="rotary_moment_yy")
     rotary_zz: Annotated[float, positive("m⁴")] | None = Field(None, alias="rotary_moment_zz")
 
     @model_validator(mode="after")
-    def _twists_less_than_a_disc(self) -> General:
+    def _twists_less_than_a_disc(self) -> GeneralSection:
         """Warping only ever lowers J below the polar moment."""
         constant, polar = self.given_torsion_constant, self.yy + self.zz
         if constant is not None and constant > polar * (1 + 1e-9):
-            raise ValueError(f"torsion_constant must not exceed second_moment_yy + second_moment_zz = {polar:.6g} m⁴, "
+            raise ValueError(f"torsion_constant must not exceed second_moment_about_z + second_moment_about_y = {polar:.6g} m⁴, "
                              f"got {constant:.6g} m⁴")
         return self
 
@@ -212,7 +212,7 @@ def _disc(r: float) -> np.ndarray:
     return pi * np.array([r**2, r**4 / 4, r**4 / 4, r**6 / 8, r**6 / 24, r**6 / 8])
 
 
-SHAPES = {section.shape: section for section in (Rectangle, Circle, Tube, General)}
+SHAPES = {section.shape: section for section in (Rectangle, Circle, Tube, GeneralSection)}
 
 
 def _section(value: Any) -> Section:

@@ -107,7 +107,7 @@ class Constant(Signal):
         return np.array([0.0, 1.0]), np.eye(1, DEGREE + 1) * self.constant
 
 
-class Table(Signal):
+class TableSignal(Signal):
     """Values at given times, in s: a cubic spline through them, or straight lines.
 
     Before the first time and after the last one the value stays; interpolation: "cubic" (twice continuously
@@ -120,7 +120,7 @@ class Table(Signal):
     interpolation: Annotated[str, one_of(("cubic", "linear"))] = "cubic"
 
     @model_validator(mode="after")
-    def _is_a_function(self) -> Table:
+    def _is_a_function(self) -> TableSignal:
         if len(self.time) != len(self.values):
             raise ValueError(f"time and value must be of equal length, got {len(self.time)} and {len(self.values)}")
         steps = np.diff(self.time)
@@ -274,7 +274,7 @@ class Integral(Signal):
         return self.rate.phase - pi / 2
 
 
-FORMS = {signal.form: signal for signal in (Table, Ramp, Harmonic, Pulse)}
+FORMS = {signal.form: signal for signal in (TableSignal, Ramp, Harmonic, Pulse)}
 
 
 def signal(value: Any) -> Signal:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar
 
-from funicular.anchors import Anchor
+from funicular.anchors import Attachment
 from funicular.ends import CableEnd, Stop
 from funicular.friction import Friction
 from funicular.signals import AnySignal, Integral, Signal
@@ -71,9 +71,9 @@ class Slide(Part):
         return self
 
     @property
-    def rider(self) -> Anchor:
+    def rider(self) -> Attachment:
         """The point that rides."""
-        return Anchor(on=self.body, at=self.at) if self.body_s is None else Anchor(on=self.body, s=self.body_s)
+        return Attachment(on=self.body, at=self.at) if self.body_s is None else Attachment(on=self.body, s=self.body_s)
 
     @property
     def prescribed(self) -> Signal | None:

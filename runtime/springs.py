@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar
 
-from funicular.anchors import AnyAnchor
+from funicular.anchors import AnyAttachment
 from funicular.validation import Name, Part, not_negative
 from pydantic import model_validator
 
@@ -19,8 +19,8 @@ class Spring(Part):
 
     kind: ClassVar[str] = "spring"
     name: Name | None = None
-    a: AnyAnchor
-    b: AnyAnchor
+    a: AnyAttachment
+    b: AnyAttachment
     stiffness: Annotated[float, not_negative("N/m")]
     damping: Annotated[float, not_negative("N s/m")] = 0.0
     length: Annotated[float, not_negative("m")] | None = None

@@ -49,7 +49,7 @@ class StaticProblem:
         stiffness, _ = condensed(self.engine.matrix(0.0, 0.0, 1.0), self.model)
         self.fastest = max(fastest(stiffness, self.mass, points), self._falls(drawn, points))
         n = self.model.n_band + self.model.n_border_dof
-        arcs = [n + slide.unknown for slide in self.model.joints if slide.drive < 0]
+        arcs = [n + slide.unknown for slide in self.model.slides if slide.drive < 0]
         self.coordinates = np.append(np.arange(n), np.array(arcs, dtype=int))
         self.places = _places(self.model)
         self.iterations = 0
@@ -65,7 +65,7 @@ class StaticProblem:
         """The scene's size in m."""
         model = self.model
         lengths = [cable.length * cable.n_elements for cable in model.cables]
-        lengths += [np.linalg.norm(model.q[b.configuration : b.configuration + model.dim]) for b in model.rigids]
+        lengths += [np.linalg.norm(model.q[b.configuration : b.configuration + model.dim]) for b in model.bodies]
         gaps = [end_points(model, s.ends[1], model.q[None]) - end_points(model, s.ends[0], model.q[None])
                 for s in model.springs]
         return max([*lengths, *(np.linalg.norm(gap) for gap in gaps)], default=0.0) or 1.0
@@ -133,7 +133,7 @@ class StaticProblem:
     def move(self, change: np.ndarray) -> None:
         """Move the state; slides that leave their element enter the next."""
         self.engine.move(change)
-        if self.model.joints:
+        if self.model.slides:
             self.engine.place(0.0, **self.engine.placed())
 
     def newton(self) -> bool:
@@ -161,7 +161,7 @@ class StaticProblem:
     def on_cables(self) -> bool:
         """Whether no slide is past an end of its cable, where the last element would go on for ever."""
         ends = np.array([self.model.cables[j.cable].length * self.model.cables[j.cable].n_elements
-                         for j in self.model.joints])
+                         for j in self.model.slides])
         s = self.engine.placed()["s"]
         past = np.maximum(-s, s - ends)
         return bool(np.all(past <= self.settings.tolerance * self.size))
@@ -170,7 +170,7 @@ class StaticProblem:
 def _places(model) -> np.ndarray:
     """Entries of the configuration that are coordinates of points."""
     nodes = [node.dofs("r") for cable in model.nodes.values() for node in cable]
-    bodies = [range(body.configuration, body.configuration + model.dim) for body in model.rigids]
+    bodies = [range(body.configuration, body.configuration + model.dim) for body in model.bodies]
     return np.array([place for part in (*nodes, *bodies) for place in part], dtype=int)
 
 

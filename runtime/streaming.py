@@ -377,5 +377,5 @@ def _programs(scene: Scene) -> str:
 
 def _start_of(model: Model) -> str:
     """Digest of the state that a run starts from."""
-    places = [(joint.s, joint.element, joint.director.tolist()) for joint in model.joints]
+    places = [(joint.s, joint.element, joint.director.tolist()) for joint in model.slides]
     return _digest(model.q.tobytes(), model.v.tobytes(), repr(places).encode())

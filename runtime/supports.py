@@ -137,7 +137,7 @@ class Motion(Support):
         return self
 
 
-class Join(Part):
+class Tie(Part):
     """Joins the node at ``s`` (m) of one cable to the node at arc-length ``at`` of another one, ``to``.
 
     They share their position. With rotation "rigid" (a frame's corner) their sections turn together, at the angle at
@@ -146,7 +146,7 @@ class Join(Part):
     the kind "weld". With "free" they turn freely (a hinge).
     """
 
-    kind: ClassVar[str] = "join"
+    kind: ClassVar[str] = "tie"
     name: Name | None = None
     cable: Reference
     s: Annotated[float, finite("m")]
@@ -159,4 +159,4 @@ class Join(Part):
         """How messages name the join."""
         if data.get("name") is not None:
             return super().place(data)
-        return f"join of {_called(data.get('cable'))} and {_called(data.get('to'))}"
+        return f"tie of {_called(data.get('cable'))} and {_called(data.get('to'))}"

@@ -68,7 +68,7 @@ class Watch:
             self.kind, self.index = "function", 0  # the engine knows the mass centre, and not the body's origin
             return
         if name in scene.bodies:
-            start = getattr(model.rigids[list(scene.bodies).index(name)], of)
+            start = getattr(model.bodies[list(scene.bodies).index(name)], of)
         else:
             start = model.nodes[name][scene.cables[name].node_at(event.s)].dofs("r")[0]
         self.index = start + AXES.index(axis[0])
@@ -94,11 +94,11 @@ class State:
 
     def names(self) -> list[str]:
         """Bodies, cables and slides that the state has quantities of."""
-        return [part.name for part in (*self._model.rigids, *self._model.cables, *self._model.joints)]
+        return [part.name for part in (*self._model.bodies, *self._model.cables, *self._model.joints)]
 
     def _all(self, name: str) -> dict[str, Any]:
         model = self._model
-        for body in model.rigids:
+        for body in model.bodies:
             if body.name == name:
                 state = body_state(model, body, self._q[None])
                 state |= body_rates(model, body, state["orientation"], self._v[None])
@@ -107,7 +107,7 @@ class State:
             if cable.name == name:
                 return {"nodal_vectors": spatial(self._q[cable.coordinates].reshape(cable.shape)),
                         "nodal_velocity": spatial(self._v[cable.coordinates].reshape(cable.shape))}
-        slides = [joint.name for joint in model.joints]
+        slides = [joint.name for joint in model.slides]
         return {"s": float(self._s[slides.index(name)])} if name in slides else {}
 
 
@@ -139,14 +139,14 @@ class Watcher:
 
     def acts(self, which: int, what: str, time: float, s: float) -> None:
         """Note what a slide has done of itself: stuck, struck the end, and so on."""
-        self.happened.append({"name": self.model.joints[which].name, "time": time, "what": what, "s": s})
+        self.happened.append({"name": self.model.slides[which].name, "time": time, "what": what, "s": s})
 
     def happens(self, which: int, time: float, q: np.ndarray, v: np.ndarray, s: np.ndarray) -> bool:
         """Note an event; whether the run goes on."""
         event, state = self.watches[which].event, State(self.model, q, v, s)
-        at = {f"{body.name}.{k}": state[f"{body.name}.{k}"].tolist() for body in self.model.rigids
+        at = {f"{body.name}.{k}": state[f"{body.name}.{k}"].tolist() for body in self.model.bodies
               for k in ("position", "velocity")}
-        at |= {f"{joint.name}.s": state[f"{joint.name}.s"] for joint in self.model.joints}
+        at |= {f"{joint.name}.s": state[f"{joint.name}.s"] for joint in self.model.slides}
         self.happened.append({"name": event.name, "time": time, "state": at})
         if event.action == "stop":
             self.stopped_by = event.name

@@ -215,6 +215,6 @@ CEILINGS = {
     "joint_planar_weld": {"force": 25, "motion": 23},
     "joint_planar_distance": {"force": 27, "motion": 21},
     "joint_planar_locked": {"force": 25, "motion": 23},
-    "brake": {"force": 338},
-    "planar_brake": {"force": 207},
+    "resistance": {"force": 338},
+    "planar_resistance": {"force": 207},
 }

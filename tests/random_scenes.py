@@ -47,8 +47,8 @@ def signals(draw, size: float, time: float, from_zero: bool = False):
     value = size * draw(st.sampled_from([0.0, 1.0, -0.1]))
     kinds = [fu.Ramp(start=0, end=time, after=value), fu.Pulse(start=0, end=time, height=value),
              fu.Harmonic(amplitude=value, frequency=1 / time),
-             fu.Table(time=[0, time, 3 * time], value=[0, value, -value]),
-             fu.Table(time=[0, time], value=[0, value], interpolation="linear")]
+             fu.TableSignal(time=[0, time, 3 * time], value=[0, value, -value]),
+             fu.TableSignal(time=[0, time], value=[0, value], interpolation="linear")]
     return draw(st.sampled_from(kinds if from_zero else [*kinds, value]))
 
 
@@ -95,7 +95,7 @@ def parts(draw):
             made += draw(st.sampled_from([[], [("pin", {"cable": made[-1][1].get("name", "wire"), "s": s})]])
                          if draw(st.booleans()) else supports(("wire", "rope")[k], s, numbers))
     if cables == 2 and draw(st.booleans()):
-        made.append(("join", {"cable": "wire", "s": size, "to": "rope", "at": 0.0,
+        made.append(("tie", {"cable": "wire", "s": size, "to": "rope", "at": 0.0,
                               "rotation": draw(st.sampled_from(["rigid", "free"]))}))
     for k in range(draw(st.integers(0 if cables else 1, 2))):
         made += draw(bodies("AB"[k], 0.3 + 0.2 * k, numbers, material, section))

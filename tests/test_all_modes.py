@@ -4,7 +4,7 @@ import warnings
 
 import numpy as np
 import pytest
-from funicular import Circle, Friction, FunicularWarning, General, Material, Rectangle, Scene, SceneError
+from funicular import Circle, Friction, FunicularWarning, GeneralSection, Material, Rectangle, Scene, SceneError
 
 STEEL = Material(youngs_modulus=2e11, poisson_ratio=0.3, density=7850)
 SQUARE = Rectangle(height=0.02, width=0.02)
@@ -24,7 +24,7 @@ def beam(elements, element="cable12", rest_length=1.0, section=SQUARE, material=
 
 def bending(n: int, each: int, compression: float = 0.0) -> np.ndarray:
     """(n each,) squares of the angular frequencies of the pinned beam: w² = ((k π)² EI - P) (k π)² / ρA at 1 m."""
-    area, inertia = SQUARE.area, SQUARE.second_moment_yy
+    area, inertia = SQUARE.area, SQUARE.second_moment_about_z
     k = (np.arange(1, n + 1) * np.pi) ** 2
     return np.repeat((k * 2e11 * inertia - compression) * k / (7850 * area), each)
 
@@ -65,7 +65,7 @@ def test_a_body_on_a_spherical_joint(elements):
     here = found(elements)
     assert np.all(here[:3] == 0)
     np.testing.assert_allclose(here[3::2], here[4::2], rtol=1e-6)
-    assert here[3] == pytest.approx(np.sqrt(48 * 2e11 * SQUARE.second_moment_yy / (2.0 + 17 / 35 * 7850 * SQUARE.area)),
+    assert here[3] == pytest.approx(np.sqrt(48 * 2e11 * SQUARE.second_moment_about_z / (2.0 + 17 / 35 * 7850 * SQUARE.area)),
                                     rel=2e-3)  # Rayleigh's estimate, the beam's share of the mass 17/35
     np.testing.assert_allclose(here[3:], found(32)[3:], rtol=3e-4)
 
@@ -81,14 +81,14 @@ def test_free_motions_are_counted(elements, element):
                 material=STEEL, **kind)
     found, zeros = scene.modes(8).angular_frequency, 5 if element == "cable12" else 6
     assert np.all(found[:zeros] == 0)
-    first = 4.730040745**2 * np.sqrt(2e11 * SQUARE.second_moment_yy / (7850 * SQUARE.area))
+    first = 4.730040745**2 * np.sqrt(2e11 * SQUARE.second_moment_about_z / (7850 * SQUARE.area))
     np.testing.assert_allclose(found[zeros : zeros + 2], first, rtol=3e-2 if elements == 3 else 4e-3)
 
 
 @pytest.mark.parametrize("elements", [12, 128])
 def test_unstable_motions_are_counted(elements):
     """A beam under five times its Euler load: two pairs of modes grow, the others vibrate more slowly."""
-    euler = np.pi**2 * 2e11 * SQUARE.second_moment_yy
+    euler = np.pi**2 * 2e11 * SQUARE.second_moment_about_z
     strain = 5 * euler / (2e11 * SQUARE.area)
     found = beam(elements, rest_length=1 / (1 - strain)).modes(8)
     expected = bending(4, 2, 5 * euler)
@@ -102,7 +102,7 @@ def test_a_heavy_body_on_a_light_string(elements, mass):
     """A string of 1e-6 kg, EA 1e5 N: the body swings at w² = 4 T / (M L) below the string's own frequencies, which are
     up to 3e5 times as high, and jumps along it at 4 EA / (M L) where it is held.
     """
-    scene = beam(elements, rest_length=1 / (1 + 1e-3), section=General(area=1e-6, second_moment_yy=1e-20),
+    scene = beam(elements, rest_length=1 / (1 + 1e-3), section=GeneralSection(area=1e-6, second_moment_about_z=1e-20),
                  material=Material(youngs_modulus=1e11, poisson_ratio=0, density=1.0))
     scene.rigid_body("body", mass=mass, inertia=(1e-3 * mass,) * 3, position=(0.5, 0, 0))
     on_node = elements % 2 == 0

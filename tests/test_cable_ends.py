@@ -5,7 +5,7 @@ Tolerances without another reason are what the wire's own motion leaves (see wir
 
 import numpy as np
 import pytest
-from funicular import Buffer, EndOfCableError, Friction, HardStop, Material, Rectangle, Scene, Table
+from funicular import Buffer, EndOfCableError, Friction, HardStop, Material, Rectangle, Scene, TableSignal
 from scenery import largest, to_the_end
 from scipy.optimize import brentq
 from wires import LENGTH, MASS, G, block, told, unbalanced
@@ -86,7 +86,7 @@ def test_a_block_bounces_until_it_rests(integrator):
 def test_a_stop_pushes_and_never_pulls(integrator):
     """The force on a rider at the stop turns round at 1 s, and takes it away: 20 N (t - 1) from there on."""
     scene = block(3.5, 1.0, weight=0, at_end=HardStop(restitution=0))
-    scene.force("A", value=(1, 0, 0), scale=Table(time=(0, 2), value=(20, -20), interpolation="linear"))
+    scene.force("A", value=(1, 0, 0), scale=TableSignal(time=(0, 2), value=(20, -20), interpolation="linear"))
     run = scene.run(1.5, integrator=integrator, tol=1e-6)
     assert told(run) == ["struck the end", "left the end"]
     assert run.report["events"][1]["time"] == pytest.approx(1.0, abs=1e-10)
@@ -99,7 +99,7 @@ def test_friction_helps_a_stop_to_hold():
     """It is let go of where the force exceeds 0.5 20 N, not where it turns round."""
     scene = block(3.5, 1.0, weight=20.0, slope=0.0, at_end=HardStop(restitution=0),
                   friction=Friction(coefficient=0.1, static_coefficient=0.5, model="stick"))
-    scene.force("A", value=(1, 0, 0), scale=Table(time=(0, 2), value=(20, -20), interpolation="linear"))
+    scene.force("A", value=(1, 0, 0), scale=TableSignal(time=(0, 2), value=(20, -20), interpolation="linear"))
     run = scene.run(1.8, integrator="radau")
     assert told(run) == ["struck the end", "left the end"]
     assert run.report["events"][1]["time"] == pytest.approx(1.5, abs=1e-9)

@@ -59,6 +59,6 @@ def test_timing_takes_little_and_changes_nothing():
         engine.start(duration=0.02, output_step=0.01, tol=1e-4, step=0.0, method=GeneralisedAlpha(0.8), first_step=1e-4)
         assert engine.advance(after_each, interval=0.0) == "completed"
         rows = engine.rows()
-        ends.append(np.concatenate([rows[name][-1].ravel() for name in ("q", "v", "acceleration", "link")]))
+        ends.append(np.concatenate([rows[name][-1].ravel() for name in ("q", "v", "acceleration", "joint")]))
     assert (ends[0] == ends[1]).all()
     assert len(taken) > 10 and min(taken) < 1e-3  # measured: 0.25 ms

@@ -19,7 +19,7 @@ from operation_ceilings import CEILINGS
 
 
 @dataclass
-class Derivation:
+class DirectionalDerivative:
     """Generated files from the specs, processor seconds that they took, and hashes of another process's."""
 
     files: dict[str, str]
@@ -32,13 +32,13 @@ def hashes(files: dict[str, str]) -> str:
 
 
 @pytest.fixture(scope="module")
-def derivation() -> Derivation:
+def derivation() -> DirectionalDerivative:
     script = "from funicular.derive import drift; from test_derive import hashes; print(hashes(drift.generate()))"
     other = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True,
                              cwd=Path(__file__).parent, env={**os.environ, "PYTHONHASHSEED": "4242"})
     start = time.process_time()
     files = drift.generate()
-    return Derivation(files, time.process_time() - start, other.communicate()[0].strip())
+    return DirectionalDerivative(files, time.process_time() - start, other.communicate()[0].strip())
 
 
 @pytest.fixture(scope="module")

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from funicular import Circle, General, Material, Scene
+from funicular import Circle, GeneralSection, Material, Scene
 from funicular.errors import EquilibriumError, FunicularWarning, SceneError, UnknownResultError
 from scenery import add_cable, add_rider
 from scipy.optimize import brentq
@@ -14,14 +14,14 @@ def truss(load: float) -> Scene:
     """Two hinged bars, 1 m to each side and RISE high, so stout that they do not buckle; engineering strain."""
     scene = Scene(gravity=(0, 0, 0))
     bar = {"elements": 1, "element": "cable8p", "strain": "engineering",
-           "section": General(area=1e-2, second_moment_yy=1e-4, second_moment_zz=1e-4),
+           "section": GeneralSection(area=1e-2, second_moment_about_z=1e-4, second_moment_about_y=1e-4),
            "material": Material(youngs_modulus=STIFFNESS / 1e-2, poisson_ratio=0, density=1000)}
     left = scene.cable("left", start=(-1, 0, 0), end=(0, RISE, 0), **bar)
     right = scene.cable("right", start=(0, RISE, 0), end=(1, 0, 0), **bar)
     length = np.hypot(1, RISE)
     scene.pin(left, s=0)
     scene.pin(right, s=length)
-    scene.join(left, s=length, to=right, at=0, rotation="free")
+    scene.tie(left, s=length, to=right, at=0, rotation="free")
     scene.force(left, s=length, value=(0, -load, 0))
     return scene
 
@@ -93,7 +93,7 @@ def test_a_slack_cable_hangs():
     u = np.linspace(0, 1, 41)[:, None]
     drawn = np.hstack([u, -1.2 * u * (1 - u), 0 * u])
     cable = scene.cable("chain", points=drawn, elements=40, element="cable12", rest="straight", rest_length=1.2,
-                        section=General(area=1e-4, second_moment_yy=1e-15, second_moment_zz=1e-15),
+                        section=GeneralSection(area=1e-4, second_moment_about_z=1e-15, second_moment_about_y=1e-15),
                         material=Material(youngs_modulus=1e11, poisson_ratio=0, density=1e4))
     scene.pin(cable, s=0)
     scene.pin(cable, s=1.2)
@@ -142,7 +142,7 @@ def test_section_forces_at_rest():
     """A weight at the end of a rope: its tension everywhere, the rope's own below."""
     scene = Scene()
     rope = scene.cable("rope", start=(0, 0, 0), end=(0, -2, 0), up=(1, 0, 0), elements=4, element="cable12",
-                       section=General(area=1e-4, second_moment_yy=1e-9, second_moment_zz=1e-9),
+                       section=GeneralSection(area=1e-4, second_moment_about_z=1e-9, second_moment_about_y=1e-9),
                        material=Material(youngs_modulus=1e9, poisson_ratio=0, density=1e4))
     scene.pin(rope, s=0)
     scene.force(rope, s=2.0, value=(0, -50, 0))

@@ -6,7 +6,7 @@ integral of the reported forces times rates (Simpson's rule over a fine output),
 
 import numpy as np
 import pytest
-from funicular import Friction, FunicularWarning, Harmonic, Material, Ramp, Rectangle, Scene, SceneError, Table
+from funicular import Friction, FunicularWarning, Harmonic, Material, Ramp, Rectangle, Scene, SceneError, TableSignal
 from funicular.rotations import rotate
 from funicular.scene_file import loads
 from scipy.integrate import simpson
@@ -15,7 +15,7 @@ SECTION = Rectangle(height=0.02, width=0.02)
 SOFT = Material(youngs_modulus=2e7, poisson_ratio=0.0, density=2000, damping_time=2e-3)
 TIME = 0.1
 OUTPUTS = 400
-SWING = Table(time=(0, 0.03, 0.06, 0.1, 0.2), value=(0, 0.05, 0.15, 0.2, 0.3))
+SWING = TableSignal(time=(0, 0.03, 0.06, 0.1, 0.2), value=(0, 0.05, 0.15, 0.2, 0.3))
 RISE = Ramp(start=0.0, end=TIME, after=0.2)
 WITHIN = Ramp(start=0.0, end=TIME, before=0.6, after=0.95)
 OVER_A_NODE = Ramp(start=0.0, end=TIME, before=0.6, after=1.2)
@@ -187,7 +187,7 @@ def test_a_direction_that_a_motion_leaves_free_bears_no_force():
 def test_a_motion_that_starts_with_a_jump_of_velocity_is_noted():
     with pytest.warns(FunicularWarning, match=r'motion on "rope" at s = 3 m: displacement y starts at 1 m/s, but its '
                                               r"node at 0 m/s; this jump"):
-        run = moved(displacement=(0, Table(time=(0, 1), value=(0, 1), interpolation="linear"), 0)).run(0.01)
+        run = moved(displacement=(0, TableSignal(time=(0, 1), value=(0, 1), interpolation="linear"), 0)).run(0.01)
     assert any("this jump" in message for message in run.report["messages"])
     run = moved(displacement=(0, RISE, 0)).run(0.01)
     assert run.report["messages"] == []

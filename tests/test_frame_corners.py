@@ -26,14 +26,14 @@ def bracket(element: str, angle: float, elements: int, joined: bool, weld: bool 
     if weld:
         scene.joint("weld", *((name, ends[name]) for name in names), name="corner")
     else:
-        scene.join(names[0], s=ends[names[0]], to=names[1], at=ends[names[1]], name="corner")
+        scene.tie(names[0], s=ends[names[0]], to=names[1], at=ends[names[1]], name="corner")
     scene.force("arm", s=ARM, value=(0, -FORCE, 0))
     return scene
 
 
 def sinking(angle: float) -> float:
     """Of the tip, in m, by Castigliano's theorem: bending, shear and stretch of arm and column."""
-    EA, EI = 2e11 * SECTION.area, 2e11 * SECTION.second_moment_yy
+    EA, EI = 2e11 * SECTION.area, 2e11 * SECTION.second_moment_about_z
     GA = 2e11 / 2.6 * SECTION.area * SECTION.shear_factors(0.3)[0]
     c, s = np.cos(angle), np.sin(angle)
     arm = (c * ARM) ** 2 * ARM / 3 / EI + c * c * ARM / GA + s * s * ARM / EA
@@ -71,7 +71,7 @@ def in_line(other: str) -> Scene:
     parts = {"elements": 2, "section": Rectangle(height=0.1, width=0.1), "material": STEEL, "up": (0, 1, 0)}
     scene.cable("beam", start=(0, 0, 0), end=(1, 0, 0), element="beam24", law="structural", **parts)
     scene.cable("more", start=(1, 0, 0), end=(2, 0, 0), element=other, **parts)
-    scene.join("beam", s=1, to="more", at=0)
+    scene.tie("beam", s=1, to="more", at=0)
     return scene
 
 

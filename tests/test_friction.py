@@ -5,7 +5,7 @@ Tolerances without another reason are what the wire's own motion leaves (see wir
 
 import numpy as np
 import pytest
-from funicular import Buffer, Friction, HardStop, Scene, SceneError, Table, streaming
+from funicular import Buffer, Friction, HardStop, Scene, SceneError, TableSignal, streaming
 from funicular.results import load_run
 from scenery import add_cable, largest
 from test_streaming import Killed, content, failing
@@ -70,7 +70,7 @@ def test_thrown_upwards_it_stops_then_slides_back_or_sticks(integrator, mu):
 def test_it_breaks_loose_where_the_force_exceeds_the_grip(integrator):
     """A force of 20 N/s against 0.5 20 N; then it slides with 0.3 20 N against it."""
     scene = block(1.0, weight=20.0, slope=0.0, friction=stick(0.3, static_coefficient=0.5))
-    scene.force("A", value=(1, 0, 0), scale=Table(time=(0, 2), value=(0, 40), interpolation="linear"))
+    scene.force("A", value=(1, 0, 0), scale=TableSignal(time=(0, 2), value=(0, 40), interpolation="linear"))
     run = scene.run(1.0, integrator=integrator, tol=1e-5)
     (event,) = run.report["events"]
     assert event["what"] == "broke loose" and event["time"] == pytest.approx(0.5, abs=1e-10)  # measured 2.5e-12

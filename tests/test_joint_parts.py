@@ -5,8 +5,8 @@ import warnings
 
 import numpy as np
 import pytest
-from funicular import Circle, FunicularWarning, Harmonic, Material, Ramp, Scene, SceneError, Table, load_run
-from funicular.anchors import Anchor
+from funicular import Circle, FunicularWarning, Harmonic, Material, Ramp, Scene, SceneError, TableSignal, load_run
+from funicular.anchors import Attachment
 from funicular.frames import cable_frame, end_frame, joint_axes
 from funicular.joints import KINDS, Joint
 from funicular.placing_joints import check_drive
@@ -45,7 +45,7 @@ def refused(complaint):
 def test_ends_and_names_are_completed(scene):
     joint = scene.joint("spherical", "A", (0, 2, 0))
     assert (joint.pair, joint.name, joint.a, joint.b) == (
-        "spherical", "joint_1", Anchor(on="A", at=(0, 0, 0)), Anchor(at=(0, 2, 0)))
+        "spherical", "joint_1", Attachment(on="A", at=(0, 0, 0)), Attachment(at=(0, 2, 0)))
     assert scene.joint("spherical", ("rope", 2 + 1e-12), (2, 1, 0)).a.s == 2
     assert scene.joint("distance", scene.bodies["B"], (1, 5, 0), name="rod").length == 3
     assert list(scene.joints) == ["joint_1", "joint_2", "rod"]
@@ -95,8 +95,8 @@ def test_the_frame_of_a_cable_is_that_of_its_elements(scene):
 @pytest.mark.parametrize(("drive", "expected", "rate"), [
     ({"kind": "revolute", "axis": (0, 0, 1), "angle": RISE}, 1.0, 0.0),
     ({"kind": "cylindrical", "axis": (0, 0, 1), "velocity": 3}, 6.0, 3.0),
-    ({"kind": "prismatic", "axis": (0, 0, 1), "velocity": Table(time=[0, 2], value=[0, 2])}, 2.0, 2.0),
-    ({"kind": "prismatic", "axis": (0, 0, 1), "distance": Table(time=[0, 2], value=[0, 7])}, 7.0, 3.5)])
+    ({"kind": "prismatic", "axis": (0, 0, 1), "velocity": TableSignal(time=[0, 2], value=[0, 2])}, 2.0, 2.0),
+    ({"kind": "prismatic", "axis": (0, 0, 1), "distance": TableSignal(time=[0, 2], value=[0, 7])}, 7.0, 3.5)])
 def test_what_drives_is_a_signal_from_zero_on(scene, drive, expected, rate):
     joint = scene.joint(a="A", b=(0, 2, 0), **drive)
     check_drive(scene, joint)
@@ -138,7 +138,7 @@ def test_a_body_that_a_slide_moves_away(scene):
     scene.joint("spherical", "C", (1, 1.001, 0))
     with pytest.warns(FunicularWarning, match=r"moved by 0.001 m"):
         scene.slide("C", along="rope", s=1)
-    scene.joints["joint_1"] = scene.joints["joint_1"].model_copy(update={"b": Anchor(at=(1, 1.1, 0))})
+    scene.joints["joint_1"] = scene.joints["joint_1"].model_copy(update={"b": Attachment(at=(1, 1.1, 0))})
     with pytest.raises(SceneError, match=r"its ends are 0.1 m apart at the start"):
         scene.check()
 
@@ -267,7 +267,7 @@ def test_supports_and_joins_hold_already(scene):
     with pytest.raises(SceneError, match=r'joint "joint_1": holds cable "rope" at s = 0 m to the ground, but'):
         scene.check()
     scene.cable("tail", start=(2, 1, 0), end=(4, 1, 0), elements=2, element="cable12", **THIN)
-    scene.join("rope", s=2, to="tail", at=0)
+    scene.tie("rope", s=2, to="tail", at=0)
     with refused('joint "joint_2": holds cable "rope" at s = 2 m to cable "tail" at s = 0 m, but their nodes are '
                  "joined already; leave one of them out"):
         scene.joint("spherical", ("rope", 2), ("tail", 0))
@@ -298,7 +298,7 @@ def test_round_trip(scene):
     scene.joint("universal", ("A", (1 / 3, 0, 0)), (-7 / 75, 2, -0.32), axis=(0, 1, 0),
                 second_axis=(1, 0, 1), name="cross")
     scene.joint("revolute", ("beam", 0), (0, 0, 0), axis=(0, 1, 0), angle=Harmonic(amplitude=1, frequency=2))
-    scene.joint("distance", "A", "B", velocity=Table(time=[0, 1], value=[0, 1]))
+    scene.joint("distance", "A", "B", velocity=TableSignal(time=[0, 1], value=[0, 1]))
     scene.joint("weld", ("rope", 2), (2, 1, 0), up=(0, 0, 1))
     copy = loads(scene.to_toml(), "copy")
     assert vars(copy) == vars(scene) and copy.to_toml() == scene.to_toml()

@@ -5,7 +5,7 @@ Bounds without another reason are about twice what was measured.
 
 import numpy as np
 import pytest
-from funicular import Harmonic, Material, Ramp, Rectangle, Scene, Table
+from funicular import Harmonic, Material, Ramp, Rectangle, Scene, TableSignal
 from funicular.rotations import rotate
 from numpy.testing import assert_allclose
 from scenery import largest
@@ -227,7 +227,7 @@ def test_a_driven_hinge_gives_the_torque_that_its_motion_takes(integrator):
 
 
 def test_a_lift_pulls_with_its_weight_and_inertia():
-    rise = Table(time=[0, 1, 2], value=[0, 0.3, 1.0])
+    rise = TableSignal(time=[0, 1, 2], value=[0, 0.3, 1.0])
     scene = rod()
     scene.joint("prismatic", (0, 0, 0), LEFT, axis=(0, 1, 0), distance=rise, name="lift")
     with pytest.warns(match="initial velocities"):

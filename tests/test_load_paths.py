@@ -4,7 +4,7 @@ import warnings
 
 import numpy as np
 import pytest
-from funicular import Circle, FunicularWarning, General, Material, Rectangle, Scene
+from funicular import Circle, FunicularWarning, GeneralSection, Material, Rectangle, Scene
 from funicular.engine import Engine
 from funicular.model import build
 from funicular.redundancy import settle
@@ -116,14 +116,14 @@ def test_a_moment_bends_to_an_arc_at_every_part_of_it(settings):
 def lees_frame(load: float, follower: bool, elements: int, beam: bool = False) -> Scene:
     scene = Scene(gravity=(0, 0, 0))
     kind = ({"element": "beam12p", "law": "structural", "section": Rectangle(height=2, width=3)} if beam else
-            {"element": "cable8p", "section": General(area=6, second_moment_yy=2, second_moment_zz=2)})
+            {"element": "cable8p", "section": GeneralSection(area=6, second_moment_about_z=2, second_moment_about_y=2)})
     legs = {"elements": elements, **kind,
             "material": Material(youngs_modulus=7.2e6, poisson_ratio=0.3, density=1)}
     scene.cable("column", start=(0, 0, 0), end=(0, 120, 0), up=(-1, 0, 0), **legs)
     scene.cable("beam", start=(0, 120, 0), end=(120, 120, 0), **legs)
     scene.pin("column", s=0)
     scene.pin("beam", s=120)
-    scene.join("column", s=120, to="beam", at=0, rotation="rigid")
+    scene.tie("column", s=120, to="beam", at=0, rotation="rigid")
     scene.force("beam", s=24.0, value=(0, -load, 0), follower=follower)
     return scene
 

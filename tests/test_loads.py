@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from funicular import Harmonic, Material, Ramp, Rectangle, Scene
-from funicular import Table as TimeTable
+from funicular import TableSignal as TimeTable
 from scenery import SQUARE, TABLE_1, add_cable, add_rider, largest
 from scipy.special import fresnel
 
@@ -180,7 +180,7 @@ def corner(rotation) -> dict[str, np.ndarray]:
     scene.cable("leg", start=(0, 0, 0), end=(0, -1, 0), up=(1, 0, 0), **square)
     scene.cable("arm", start=(0, -1, 0), end=(1, -1, 0), **square)
     scene.clamp("leg", s=0.0)
-    scene.join("leg", s=1.0, to="arm", at=0.0, rotation=rotation, name="corner")
+    scene.tie("leg", s=1.0, to="arm", at=0.0, rotation=rotation, name="corner")
     run = scene.run(0.3, tol=1e-4)
     assert books(run) < 1e-3
     found = {name: run[f"{name}.nodal_vectors"][:, node] for name, node in (("leg", -1), ("arm", 0))}

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from funicular import Circle, General, Material, Rectangle, Scene, SceneError, Tube
+from funicular import Circle, GeneralSection, Material, Rectangle, Scene, SceneError, Tube
 
 RUBBER = Material(youngs_modulus=1e6, poisson_ratio=0.5, density=1100)
 
@@ -85,11 +85,11 @@ def test_a_slide_that_keeps_its_roll_on_a_cable_on_end():
 
 def test_rotary_inertia_apart_from_the_stiffness():
     """Twisting of a clamped beam: (π / 2 L) sqrt(GJ / ρI_p), its shear as that of a rod of the same G J."""
-    stiff = {"area": 1e-4, "second_moment_yy": 1e-9, "torsion_constant": 2e-9, "shear_factors": (1, 1)}
+    stiff = {"area": 1e-4, "second_moment_about_z": 1e-9, "torsion_constant": 2e-9, "shear_factors": (1, 1)}
     material = Material(youngs_modulus=2e11, shear_modulus=8e10, density=7850)
 
     def turning(**rotary):
-        modes = cable(section=General(**stiff, **rotary), material=material, elements=8).modes(14)
+        modes = cable(section=GeneralSection(**stiff, **rotary), material=material, elements=8).modes(14)
         moves, turns = (np.abs(modes["wire.nodal_vectors"][:, -1, vector]).max(axis=1) for vector in (0, 2))
         return modes.angular_frequency[np.flatnonzero(turns > 1e6 * moves)[0]]
 
@@ -104,7 +104,7 @@ def test_rotary_inertia_slows_bending():
     material = Material(youngs_modulus=2e11, shear_modulus=8e10, density=7850)
 
     def lowest(rotary):
-        section = General(area=1e-2, second_moment_yy=1e-8, torsion_constant=2e-8, shear_factors=(1, 1),
+        section = GeneralSection(area=1e-2, second_moment_about_z=1e-8, torsion_constant=2e-8, shear_factors=(1, 1),
                           rotary_moment_yy=rotary)
         scene = Scene(gravity=(0, 0, 0))
         beam = scene.cable("wire", start=(0, 0, 0), end=(1, 0, 0), elements=32, element="beam12p", law="structural",
@@ -117,7 +117,7 @@ def test_rotary_inertia_slows_bending():
 
 
 def test_rotary_inertia_in_a_file():
-    scene = cable(section=General(area=1e-4, second_moment_yy=1e-9, torsion_constant=2e-9, shear_factors=(1, 1),
+    scene = cable(section=GeneralSection(area=1e-4, second_moment_about_z=1e-9, torsion_constant=2e-9, shear_factors=(1, 1),
                                   rotary_moment_zz=3e-9))
     assert "rotary_moment_zz = 3e-09" in scene.to_toml()
     from funicular.scene_file import loads
@@ -128,4 +128,4 @@ def test_rotary_inertia_in_a_file():
 def test_a_cable_has_no_rotary_inertia():
     with pytest.raises(SceneError, match=r"section\.rotary_moment is given, but cable12 has no rotary inertia; leave "
                                          'it out, or take element="beam24"'):
-        cable(element="cable12", law=None, section=General(area=1, second_moment_yy=1, rotary_moment_yy=2))
+        cable(element="cable12", law=None, section=GeneralSection(area=1, second_moment_about_z=1, rotary_moment_yy=2))

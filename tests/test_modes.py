@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from funicular import FunicularWarning, General, Material, Rectangle, Scene, SceneError
+from funicular import FunicularWarning, GeneralSection, Material, Rectangle, Scene, SceneError
 from scenery import SQUARE, TABLE_1, add_cable
 
-THIN = General(area=1e-4, second_moment_yy=1e-14, second_moment_zz=1e-14)
+THIN = GeneralSection(area=1e-4, second_moment_about_z=1e-14, second_moment_about_y=1e-14)
 WIRE = Material(youngs_modulus=1e9, poisson_ratio=0, density=1e4)
 
 
@@ -80,7 +80,7 @@ def test_about_an_equilibrium():
     """A hanging chain's frequencies are sqrt(g / L) times zeros of J0 over 2."""
     scene = Scene()
     chain = scene.cable("chain", start=(0, 0, 0), end=(0, -1, 0), up=(1, 0, 0), elements=24, element="cable12",
-                        section=General(area=1e-4, second_moment_yy=1e-17, second_moment_zz=1e-17),
+                        section=GeneralSection(area=1e-4, second_moment_about_z=1e-17, second_moment_about_y=1e-17),
                         material=Material(youngs_modulus=1e11, poisson_ratio=0, density=1e4))
     scene.pin(chain, s=0.0)
     found = scene.modes(6, about=scene.equilibrium()).angular_frequency
@@ -92,7 +92,7 @@ def test_a_state_that_is_not_stable_grows():
     """A chain that stands on its end, straight by symmetry."""
     scene = Scene(gravity=(0, 9.81, 0))
     chain = scene.cable("chain", start=(0, 0, 0), end=(0, -1, 0), up=(1, 0, 0), elements=6, element="cable8p",
-                        section=General(area=1e-4, second_moment_yy=1e-12, second_moment_zz=1e-12),
+                        section=GeneralSection(area=1e-4, second_moment_about_z=1e-12, second_moment_about_y=1e-12),
                         material=Material(youngs_modulus=1e9, poisson_ratio=0, density=1e4))
     scene.pin(chain, s=0.0)
     with pytest.warns(FunicularWarning, match="the state is unstable: 12 independent directions lower its energy"):

@@ -68,8 +68,8 @@ def frame() -> Scene:
     scene.motion("leg", s=0.0,
                  displacement=(0, Ramp(start=0, end=0.5, after=0.1), Harmonic(amplitude=0.1, frequency=2.0)),
                  rotation=((0, 1, 0), Ramp(start=0, end=1)))
-    scene.join("leg", s=1.0, to="arm", at=0.0)
-    scene.join("arm", s=scene.cables["arm"].length, to="rope", at=scene.cables["rope"].length, rotation="free")
+    scene.tie("leg", s=1.0, to="arm", at=0.0)
+    scene.tie("arm", s=scene.cables["arm"].length, to="rope", at=scene.cables["rope"].length, rotation="free")
     scene.clamp("rope", s=0.0)
     return scene
 
@@ -83,8 +83,8 @@ def star() -> Scene:
     for name, start, element in legs:
         scene.cable(name, start=start, end=(1, 0, 0), elements=3, element=element, section=square, material=steel)
         scene.pin(name, s=0.0)
-    scene.join("a", s=1.0, to="b", at=scene.cables["b"].length)
-    scene.join("a", s=1.0, to="c", at=scene.cables["c"].length, rotation="free")
+    scene.tie("a", s=1.0, to="b", at=scene.cables["b"].length)
+    scene.tie("a", s=1.0, to="c", at=scene.cables["c"].length, rotation="free")
     scene.rigid_body("A", mass=1.0, inertia=(0.02, 0.03, 0.04), position=(0.9, -0.1, 0.05), velocity=(1, 0.2, 0.1))
     scene.slide("A", along="a", s=0.9, at=(0, 0.1, -0.05))
     scene.spring(("a", 1.0), (1.0, 1.0, 0.1), stiffness=300.0, damping=2.0)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from funicular import General, Material, Scene
+from funicular import GeneralSection, Material, Scene
 from numpy.testing import assert_allclose
 from scenery import SQUARE
 from test_joints import LEFT, rod
@@ -122,7 +122,7 @@ def test_a_chain_that_hangs_from_a_slide():
     scene = Scene()
     wire(scene, elements=2, length=1.0)
     scene.cable("chain", start=(0.5, 0, 0), end=(0.5, -1, 0), elements=12, element="cable12", up=(1, 0, 0),
-                section=General(area=1e-4, second_moment_yy=1e-16, second_moment_zz=1e-16),
+                section=GeneralSection(area=1e-4, second_moment_about_z=1e-16, second_moment_about_y=1e-16),
                 material=Material(youngs_modulus=1e10, poisson_ratio=0, density=1e4))
     scene.slide(("chain", 0.0), along="wire", s=0.5, drive=0.5)
     found = scene.modes(6, about=scene.equilibrium()).angular_frequency

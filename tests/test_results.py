@@ -155,7 +155,7 @@ def test_work_from_outside_is_no_residual():
 
 def test_supports_joins_and_springs_have_results(recording):
     turn = {"force": np.ones((101, 3)), "moment": np.full((101, 3), 2.0)}
-    recording.clamps, recording.motions, recording.joins = {"wire@0.5": turn}, {"wire@1": turn}, {"corner": turn}
+    recording.clamps, recording.motions, recording.ties = {"wire@0.5": turn}, {"wire@1": turn}, {"corner": turn}
     recording.springs = {"tie": {"tension": np.zeros(101), "length": np.ones(101)}}
     recording.energy["external"] = np.zeros(101)
     run = Run.from_recording(recording, load_scene("paper51"), RunSettings(duration=1.0))

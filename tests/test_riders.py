@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from funicular import Material, Rectangle, Scene, Table
+from funicular import Material, Rectangle, Scene, TableSignal
 from funicular.rotations import rotate
 from numpy.testing import assert_allclose
 from scenery import largest
@@ -132,7 +132,7 @@ def test_a_driven_slide_pulls_with_weight_and_inertia(integrator):
     mass = 1e-3  # next to nothing beside the cable's, which stays straight
     scene.rigid_body("A", mass=mass, inertia=(1e-6, 1e-6, 1e-6), position=0.2 * up)
     scene.force("A", at=(0, 0, 0), value=(0, -mass * G, 0))
-    way = Table(time=[0, 0.05, 0.1], value=[0.2, 0.205, 0.24])
+    way = TableSignal(time=[0, 0.05, 0.1], value=[0.2, 0.205, 0.24])
     scene.slide("A", along="wire", s=0.2, drive=way, name="trolley")
     run = scene.run(0.1, tol=1e-5, integrator=integrator, output_step=0.01)
     assert_allclose(run["trolley.s"], way.value(run.time), atol=1e-9)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from funicular import (
     Circle,
-    General,
+    GeneralSection,
     Harmonic,
     Material,
     Pulse,
@@ -14,7 +14,7 @@ from funicular import (
     Rectangle,
     Scene,
     SceneError,
-    Table,
+    TableSignal,
     Tube,
     bundled_scenes,
     load_scene,
@@ -88,7 +88,7 @@ def test_round_trip_of_everything_else():
 def test_round_trip_of_shapes_supports_loads_and_springs():
     scene = Scene(gravity=(0, 0, -1))
     soft = Material(youngs_modulus=1e6, density=1e3, shear_modulus=4e5, mass_damping=0.1)
-    constants = General(area=1e-4, second_moment_yy=1e-9, torsion_constant=2e-9, shear_factors=(0.8, 0.9))
+    constants = GeneralSection(area=1e-4, second_moment_about_z=1e-9, torsion_constant=2e-9, shear_factors=(0.8, 0.9))
     common = {"material": soft, "elements": 2}
     scene.cable("ring", curve=lambda u: (np.sin(u), np.cos(u), u / 3), element="beam24", law="structural",
                 section=constants, up=(0, 0, 1), rest_length=1.1, **common)
@@ -97,14 +97,14 @@ def test_round_trip_of_shapes_supports_loads_and_springs():
     scene.cable("bar", start=(1, 0, 0), end=(2, 0, 0), law="poisson_split",
                 section=Rectangle(height=0.1, width=0.2, torsion_constant=1e-5), **common)
     scene.clamp("ring", s=1.1, hold="all")
-    scene.motion("bar", s=0, displacement=(Table(time=[0, 1, 2], value=[0, 1 / 3, 1]), 0, Ramp(start=0, end=0.1)),
+    scene.motion("bar", s=0, displacement=(TableSignal(time=[0, 1, 2], value=[0, 1 / 3, 1]), 0, Ramp(start=0, end=0.1)),
                  rotation=((1, 2, 2), Pulse(start=0, end=1, height=-2)))
     scene.motion("bar", s=1, rotation=((1, 0, 0), 0))
-    scene.join("rope", s=0, to="ring", at=0, rotation="free")
+    scene.tie("rope", s=0, to="ring", at=0, rotation="free")
     scene.rigid_body("A", mass=1, inertia=(1, 1, 1), position=(0, 0, 3))
     scene.force("A", value=(0, 0, 1 / 7), at=(0, 0, 1), follower=True, scale=Harmonic(amplitude=2, frequency=3))
     scene.force("ring", s=0.5, value=(0, 0, 1), scale=0.5, name="push")
-    scene.distributed_force("bar", value=(0, 1, 0), stop=0.3, scale=Table(time=[0, 1], value=[2, 3],
+    scene.distributed_force("bar", value=(0, 1, 0), stop=0.3, scale=TableSignal(time=[0, 1], value=[2, 3],
                                                                            interpolation="linear"))
     scene.moment("bar", s=1, value=(1, 0, 0))
     scene.spring("A", (0, 0, 9), stiffness=3)
@@ -151,7 +151,7 @@ duration = 1
 initial = "equilibrium"
 """, "x.toml")
     assert scene.motions[0].displacement[1] == Ramp(start=0, end=1, after=0.1)
-    assert scene.loads["push"].scale == Table(time=[0, 1, 2], value=[0, 1, 0])
+    assert scene.loads["push"].scale == TableSignal(time=[0, 1, 2], value=[0, 1, 0])
     assert scene.springs["spring_1"].length == 2
     assert (scene.equilibrium_settings, scene.run_settings) == (
         {"load_steps": 3}, {"duration": 1.0, "initial": "equilibrium"})

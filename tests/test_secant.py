@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import sympy as sp
-from funicular.derive.secant import Secant
+from funicular.derive.secant import DiscreteGradient
 from funicular.derive.stages import Program
 
 
@@ -13,7 +13,7 @@ def staged():
     x, y = law.input("x", (), "1", ""), law.input("y", (), "1", "")
     law.stage("function")
     root = law.define("root", sp.sqrt(x**2 + y))
-    strain = law.define("strain", (x**2 + y - 1) / (root + 1), moves_as=root)
+    strain = law.define("strain", (x**2 + y - 1) / (root + 1), derivative_of=root)
     inverse = law.define("inverse", 1 / (x * y + 2))
     return law, (x, y), 3 * strain**2 * inverse**3 - x * y**2 + sp.sqrt(y) ** 3 + 7
 
@@ -31,7 +31,7 @@ def gradient(now, then):
     law, inputs, expr = staged()
     program = Program("step", "", "")
     ends = [tuple(program.input(f"{s}{k}", (), "1", "") for k in (0, 1)) for s in inputs]
-    secant = Secant(program, law, dict(zip(inputs, ends, strict=True)))
+    secant = DiscreteGradient(program, law, dict(zip(inputs, ends, strict=True)))
     program.stage("gradient")
     D = secant.gradient(expr, inputs)
     values = {symbol: sp.Rational(v) for pair, both in zip(ends, zip(now, then, strict=True), strict=True)
@@ -71,7 +71,7 @@ def test_other_powers_are_refused():
     law.stage("function")
     program = Program("step", "", "")
     ends = tuple(program.input(f"x{k}", (), "1", "") for k in (0, 1))
-    secant = Secant(program, law, {x: ends})
+    secant = DiscreteGradient(program, law, {x: ends})
     program.stage("gradient")
     with pytest.raises(ValueError, match="kernels have products, quotients and square roots"):
         secant.gradient(x ** sp.Rational(1, 3), [x])

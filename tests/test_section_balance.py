@@ -7,7 +7,7 @@ import pytest
 from funicular import (
     Circle,
     FunicularWarning,
-    General,
+    GeneralSection,
     Harmonic,
     Material,
     Rectangle,
@@ -94,9 +94,9 @@ def frame_of_beams():
     cable(scene, element="beam24")
     scene.clamp("rope", s=0)
     cable(scene, "leg", "beam24", 3, (3, 0, 0), (3, 0, 2))
-    scene.join("rope", s=3.0, to="leg", at=0.0, name="corner")
+    scene.tie("rope", s=3.0, to="leg", at=0.0, name="corner")
     arm = cable(scene, "arm", "cable12", 3, (6, 0, 0), (8, -0.5, 0))
-    scene.join("rope", s=6.0, to="arm", at=0.0, rotation="free", name="hinge")
+    scene.tie("rope", s=6.0, to="arm", at=0.0, rotation="free", name="hinge")
     scene.spring(("rope", 2.2), ("leg", 1.3), stiffness=500, damping=5, length=0.3)
     scene.spring(("arm", 0.7), (8, 3, 0), stiffness=300, length=2)
     for name, x in (("A", 4.5), ("B", 1.5), ("C", 5.2), ("E", 2.4)):
@@ -234,7 +234,7 @@ def test_forces_between_cuts(name):
         assert_allclose(before - after, -run[f"{slide.name}.force"], atol=1e-9 * scale)
     for name, cable in run.scene.cables.items():
         held = {(support.cable, support.s): run[f"{support.label}.force"] for support in run.scene.supports}
-        tied = {(on, s) for join in run.scene.joins.values() for on, s in ((join.cable, join.s), (join.to, join.at))}
+        tied = {(on, s) for join in run.scene.ties.values() for on, s in ((join.cable, join.s), (join.to, join.at))}
         riding = {(slide.rider.on, slide.rider.s) for slide in run.scene.slides.values()}
         riding |= {(end.on, end.s) for joint in run.scene.joints.values() for end in (joint.a, joint.b)}
         for s, sign in ((0.0, -1), (cable.length, 1)):
@@ -338,7 +338,7 @@ def kinked_rope(elements):
     """1000 N on a slack rope without weight, at rest."""
     scene = Scene(gravity=(0, 0, 0))
     scene.cable("rope", points=[(0, 0, 0), (5, -3.3, 0), (10, 0, 0)], rest="straight", rest_length=12,
-                elements=elements, element="cable8p", section=General(area=1e-4, second_moment_yy=1e-9),
+                elements=elements, element="cable8p", section=GeneralSection(area=1e-4, second_moment_about_z=1e-9),
                 material=Material(youngs_modulus=1e9, poisson_ratio=0.3, density=1000))
     scene.pin("rope", s=0)
     scene.pin("rope", s=12)
@@ -371,7 +371,7 @@ class TestTautBending:
         """A clamp, a force, a moment, a load along some of it; E I 1 N m^2, 1.32 kN: bends over 27 mm."""
         scene = Scene(gravity=(0, 0, 0))
         scene.cable("rope", start=(0, 0, 0), end=(10, 0, 0), rest_length=9.9, elements=elements, element=element,
-                    section=General(area=1e-4, second_moment_yy=1e-9),
+                    section=GeneralSection(area=1e-4, second_moment_about_z=1e-9),
                     material=Material(youngs_modulus=1e9, poisson_ratio=0.3, density=1000))
         scene.clamp("rope", s=0)
         scene.pin("rope", s=9.9)

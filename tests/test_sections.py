@@ -5,7 +5,7 @@ import re
 
 import numpy as np
 import pytest
-from funicular import Circle, General, Rectangle, SceneError, Tube
+from funicular import Circle, GeneralSection, Rectangle, SceneError, Tube
 from numpy.testing import assert_allclose
 from scipy.integrate import dblquad
 
@@ -27,7 +27,7 @@ def quadrature(half_width, half_height):
 def test_moments_agree_with_quadrature(section, half_width, half_height):
     assert_allclose(section.moments(), quadrature(half_width, half_height), rtol=1e-7)
     assert_allclose(
-        [section.area, section.second_moment_yy, section.second_moment_zz], section.moments()[:3], rtol=1e-15
+        [section.area, section.second_moment_about_z, section.second_moment_about_y], section.moments()[:3], rtol=1e-15
     )
 
 
@@ -35,8 +35,8 @@ def test_a_tube_is_a_disc_less_a_disc():
     tube = Tube(outer_radius=0.02, inner_radius=0.015)
     radius, area = (0.02 + 0.015) / 2, np.pi * (0.02**2 - 0.015**2)
     assert_allclose(tube.moments(), Circle(radius=0.02).moments() - Circle(radius=0.015).moments(), rtol=1e-14)
-    assert_allclose(tube.second_moment_yy, area * (0.02**2 + 0.015**2) / 4, rtol=1e-14)
-    assert radius**2 * area / 2 < tube.second_moment_yy < 1.03 * radius**2 * area / 2  # a thin ring's, nearly
+    assert_allclose(tube.second_moment_about_z, area * (0.02**2 + 0.015**2) / 4, rtol=1e-14)
+    assert radius**2 * area / 2 < tube.second_moment_about_z < 1.03 * radius**2 * area / 2  # a thin ring's, nearly
 
 
 def test_torsion_constant_of_a_square():
@@ -82,31 +82,31 @@ def test_data_replaces_what_a_shape_has():
 
 
 def test_a_section_by_its_constants():
-    section = General(area=2, second_moment_yy=3, torsion_constant=4, shear_factors=(1, 0.5))
-    assert (section.area, section.second_moment_yy, section.second_moment_zz) == (2, 3, 3)
+    section = GeneralSection(area=2, second_moment_about_z=3, torsion_constant=4, shear_factors=(1, 0.5))
+    assert (section.area, section.second_moment_about_z, section.second_moment_about_y) == (2, 3, 3)
     assert (section.torsion_constant, section.shear_factors(0.1)) == (4, (1, 0.5))
     assert section.moments()[:3].tolist() == [2, 3, 3] and np.isnan(section.moments()[3:]).all()
-    assert General(area=2, second_moment_yy=3, second_moment_zz=5).second_moment_zz == 5
+    assert GeneralSection(area=2, second_moment_about_z=3, second_moment_about_y=5).second_moment_about_y == 5
 
 
 @pytest.mark.parametrize(("changes", "complaint"), [
     ({"area": 0}, "area must be positive, got 0 m²"),
-    ({"second_moment_yy": -1}, "second_moment_yy must be positive, got -1 m⁴"),
-    ({"second_moment_zz": math.nan}, "second_moment_zz must be finite, got nan m⁴"),
+    ({"second_moment_about_z": -1}, "second_moment_about_z must be positive, got -1 m⁴"),
+    ({"second_moment_about_y": math.nan}, "second_moment_about_y must be finite, got nan m⁴"),
     ({"torsion_constant": 0}, "torsion_constant must be positive, got 0 m⁴"),
     ({"torsion_constant": 7},
-     "torsion_constant must not exceed second_moment_yy + second_moment_zz = 6 m⁴, got 7 m⁴"),
+     "torsion_constant must not exceed second_moment_about_z + second_moment_about_y = 6 m⁴, got 7 m⁴"),
     ({"shear_factors": (1, 0)}, "shear_factors must be positive, got (1, 0); give (ky, kz), 1 for no correction"),
     ({"shear_factors": 0.8}, "shear_factors must be 2 numbers, got 0.8"),
-    ({"second_moment": 1}, '"second_moment" is not known here; did you mean "second_moment_zz"?'),
+    ({"second_moment": 1}, '"second_moment" is not known here; did you mean "second_moment_about_y"?'),
 ])
 def test_general_is_refused(changes, complaint):
     with pytest.raises(SceneError, match="^" + re.escape(f"General: {complaint}") + "$"):
-        General(**{"area": 2, "second_moment_yy": 3, "second_moment_zz": 3} | changes)
+        GeneralSection(**{"area": 2, "second_moment_about_z": 3, "second_moment_about_y": 3} | changes)
 
 
 def test_what_a_general_section_does_not_know():
-    with pytest.raises(SceneError, match=r"^General: has no torsion_constant; give it, in m⁴$"):
-        _ = General(area=2, second_moment_yy=3).torsion_constant
-    with pytest.raises(SceneError, match=r"^General: has no shear_factors; give \(ky, kz\)$"):
-        General(area=2, second_moment_yy=3).shear_factors(0.3)
+    with pytest.raises(SceneError, match=r"^GeneralSection: has no torsion_constant; give it, in m⁴$"):
+        _ = GeneralSection(area=2, second_moment_about_z=3).torsion_constant
+    with pytest.raises(SceneError, match=r"^GeneralSection: has no shear_factors; give \(ky, kz\)$"):
+        GeneralSection(area=2, second_moment_about_z=3).shear_factors(0.3)

@@ -5,21 +5,21 @@ import re
 
 import numpy as np
 import pytest
-from funicular import Harmonic, Pulse, Ramp, SceneError, Table
+from funicular import Harmonic, Pulse, Ramp, SceneError, TableSignal
 from funicular.signals import Constant, Integral, signal
 from numpy.testing import assert_allclose
 
 TIMES = np.linspace(-0.5, 3.5, 801)
 EVERY = [
     Constant(constant=2.0),
-    Table(time=[0, 0.5, 2, 3], value=[0, 1, -1, 4]),
-    Table(time=[0, 0.5, 2, 3], value=[0, 1, -1, 4], interpolation="linear"),
+    TableSignal(time=[0, 0.5, 2, 3], value=[0, 1, -1, 4]),
+    TableSignal(time=[0, 0.5, 2, 3], value=[0, 1, -1, 4], interpolation="linear"),
     Ramp(start=0.5, end=2, before=1, after=-3),
     Pulse(start=1, end=3),
     Pulse(start=1, end=3, rise=0.25, height=-2),
     Harmonic(amplitude=2, frequency=0.7, phase=0.3, offset=1),
 ]
-SMOOTH = [s for s in EVERY if not isinstance(s, Table)]
+SMOOTH = [s for s in EVERY if not isinstance(s, TableSignal)]
 
 
 @pytest.mark.parametrize("each", EVERY, ids=lambda s: s.form)
@@ -46,11 +46,11 @@ def test_derivatives_are_those_of_values_everywhere(each, derivative):
 def test_a_table_passes_through_its_points_and_stays_beyond_them():
     time, value = [0, 0.5, 2, 3], [0, 1, -1, 4]
     for kind in ("cubic", "linear"):
-        table = Table(time=time, value=value, interpolation=kind)
+        table = TableSignal(time=time, value=value, interpolation=kind)
         assert_allclose(table.value(time), value, atol=1e-14)
         assert_allclose(table.value([-9, 99]), [0, 4], atol=1e-14)
     assert table.value(1.25) == 0.0
-    assert_allclose(Table(time=[0, 1, 2, 4], value=[0, 1, 8, 64]).value(3), 27, rtol=1e-14)
+    assert_allclose(TableSignal(time=[0, 1, 2, 4], value=[0, 1, 8, 64]).value(3), 27, rtol=1e-14)
 
 
 def test_ramps_and_pulses():
@@ -73,11 +73,11 @@ def test_numbers_and_tables_are_signals():
     (lambda: Pulse(start=0, end=1, rise=0.6), "Pulse: rise must not exceed half of the pulse, 0.5 s, got 0.6 s"),
     (lambda: Harmonic(amplitude=1, frequency=0), "Harmonic: frequency must be positive, got 0 Hz"),
     (lambda: Harmonic(amplitde=1, frequency=1), 'Harmonic: "amplitde" is not known here; did you mean "amplitude"?'),
-    (lambda: Table(time=[0], value=[1]), "Table: time must be a list of 2 numbers or more, got [0]"),
-    (lambda: Table(time=[0, 1], value=[1, 2, 3]), "Table: time and value must be of equal length, got 2 and 3"),
-    (lambda: Table(time=[0, 2, 1], value=[1, 2, 3]), "Table: time must increase, got 1 s after 2 s"),
-    (lambda: Table(time=[0, 1], value=[1, "2"]), "Table: value must be a number, got '2'"),
-    (lambda: Table(time=[0, 1], value=[1, 2], interpolation="cubik"),
+    (lambda: TableSignal(time=[0], value=[1]), "Table: time must be a list of 2 numbers or more, got [0]"),
+    (lambda: TableSignal(time=[0, 1], value=[1, 2, 3]), "Table: time and value must be of equal length, got 2 and 3"),
+    (lambda: TableSignal(time=[0, 2, 1], value=[1, 2, 3]), "Table: time must increase, got 1 s after 2 s"),
+    (lambda: TableSignal(time=[0, 1], value=[1, "2"]), "Table: value must be a number, got '2'"),
+    (lambda: TableSignal(time=[0, 1], value=[1, 2], interpolation="cubik"),
      'Table: interpolation "cubik" is not known; did you mean "cubic"?'),
 ])
 def test_refused(make, complaint):
@@ -88,14 +88,14 @@ def test_refused(make, complaint):
 @pytest.mark.parametrize("interpolation", ["cubic", "linear"])
 def test_a_table_ends_on_its_slope(interpolation):
     """A motion that a run ends with does not stop with a jolt; after it the value stays."""
-    table = Table(time=[0, 1, 2, 3], value=[0, 2, 4, 6], interpolation=interpolation)
+    table = TableSignal(time=[0, 1, 2, 3], value=[0, 2, 4, 6], interpolation=interpolation)
     assert table.value(3.0, derivative=1) == pytest.approx(2)
     assert table.value(3.0) == pytest.approx(6)
     assert table.value(3.1, derivative=1) == 0
     assert table.value(3.1) == 6
 
 
-@pytest.mark.parametrize("rate", [*EVERY, Ramp(start=-2, end=-1, after=3), Table(time=[2, 3], value=[5, 7])],
+@pytest.mark.parametrize("rate", [*EVERY, Ramp(start=-2, end=-1, after=3), TableSignal(time=[2, 3], value=[5, 7])],
                          ids=lambda s: s.form)
 def test_the_integral_of_a_signal(rate):
     """From t = 0 on, both ways, across all breaks and beyond them."""

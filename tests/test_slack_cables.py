@@ -6,13 +6,13 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from catenary import end_forces
-from funicular import Circle, FunicularWarning, General, Material, Scene
+from funicular import Circle, FunicularWarning, GeneralSection, Material, Scene
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_bvp
 
 AREA, E, DENSITY, G = np.pi * 1e-4, 1e11, 7850.0, 9.81
 WEIGHT, AXIAL, BENDING = DENSITY * AREA * G, E * AREA, E * np.pi / 4 * 1e-8
-SLENDER = General(area=AREA, second_moment_yy=1e-12, second_moment_zz=1e-12)
+SLENDER = GeneralSection(area=AREA, second_moment_about_z=1e-12, second_moment_about_y=1e-12)
 CASES = [((10, 0), 10.5), ((10, 0), 10.05), ((10, 4), 11.5), ((20, 5), 21.0)]
 
 

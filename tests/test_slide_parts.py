@@ -16,7 +16,7 @@ from funicular import (
     Scene,
     SceneError,
 )
-from funicular.anchors import Anchor
+from funicular.anchors import Attachment
 from funicular.frames import cable_frame, end_frame, slide_axes
 from funicular.scene_file import loads
 from numpy.testing import assert_allclose
@@ -44,14 +44,14 @@ def refused(complaint):
 def test_what_a_slide_is_by_itself(scene):
     slide = scene.slide("A", along="beam", s=0.5)
     assert (slide.frame, slide.roll, slide.up, slide.prescribed, slide.friction) == ("point", "free", None, None, None)
-    assert (slide.at_start, slide.at_end, slide.rider) == ("error", "error", Anchor(on="A", at=(0, 0, 0)))
+    assert (slide.at_start, slide.at_end, slide.rider) == ("error", "error", Attachment(on="A", at=(0, 0, 0)))
     scene.check()  # nothing that the engine lacks
 
 
 def test_a_cable_rides(scene):
     slide = scene.slide((scene.cables["link"], 1e-13), along="beam", s=1.0, frame="section")
     assert (slide.name, slide.body, slide.body_s, slide.rider) == ("link_on_beam", "link", 1e-13,
-                                                                   Anchor(on="link", s=1e-13))
+                                                                   Attachment(on="link", s=1e-13))
     with refused('slide "t": holds the same point of cable "link" on cable "beam" as slide "link_on_beam"; leave one '
                  "of them out, or give them different points body_s"):
         scene.slide(("link", 1e-13), along="beam", s=1.0, name="t")

@@ -46,7 +46,7 @@ def test_the_motion_is_the_published_one():
 def started(folder) -> tuple:
     """The scene's model at the published start, which has deformed a little: engine, and the rod's place in q and v."""
     model = build(machine(folder))
-    rod, slider = (next(body for body in model.rigids if body.name == name) for name in ("rod", "slider"))
+    rod, slider = (next(body for body in model.bodies if body.name == name) for name in ("rod", "slider"))
     angle, angle_rate = START["q"][0], -CRANK * SPEED / (ROD + START["q"][4])
     model.q[rod.configuration + 3 : rod.configuration + 7] = np.cos(angle / 2), 0, 0, np.sin(angle / 2)
     model.q[rod.configuration + 7 : rod.configuration + 11] = START["q"][1:]

@@ -9,7 +9,7 @@ import pytest
 import sympy as sp
 from funicular.derive import moments
 from funicular.derive.printer import c_expression
-from funicular.derive.stages import Derivation, Program, jacobian
+from funicular.derive.stages import DirectionalDerivative, Program, jacobian
 from funicular.derive.verify_exact import ExactProgram, source
 
 a, b, c = sp.symbols("a b c")
@@ -51,7 +51,7 @@ def test_a_second_derivation_follows_a_path():
     p, values, v = chain()
     t = sp.Symbol("t")
     velocity = (2, -1, 3)
-    along = Derivation(p, "dt", dict(zip(v, velocity, strict=True)))
+    along = DirectionalDerivative(p, "dt", dict(zip(v, velocity, strict=True)))
     second = along(along(values[0]))
     path = expanded(p, values[0]).subs({s: s + t * w for s, w in zip(v, velocity, strict=True)}, simultaneous=True)
     point = {s: sp.Rational(k, 7) for s, k in zip(v, (3, -5, 4), strict=True)}
@@ -63,8 +63,8 @@ def test_a_cut_hides_what_is_below_it():
     p, _, v = chain()
     length = p.symbols["v"][0]
     cut = sp.Symbol("length")
-    assert Derivation(p, "d", {cut: 1})(p.definition[sp.Symbol("inverse")]) == -(cut**-2)
-    assert Derivation(p, "e", {cut: 0, **dict.fromkeys(v, 0), length: 1})(cut) == 0
+    assert DirectionalDerivative(p, "d", {cut: 1})(p.definition[sp.Symbol("inverse")]) == -(cut**-2)
+    assert DirectionalDerivative(p, "e", {cut: 0, **dict.fromkeys(v, 0), length: 1})(cut) == 0
 
 
 def test_a_definition_that_moves_as_another_is_differentiated_as_that_one():
@@ -73,7 +73,7 @@ def test_a_definition_that_moves_as_another_is_differentiated_as_that_one():
     square = p.input("square", (), "1", "r . r - 1")
     p.stage("all")
     length = p.define("length", sp.sqrt(1 + square))
-    strain = p.define("strain", square / (1 + length), moves_as=length)
+    strain = p.define("strain", square / (1 + length), derivative_of=length)
     point = {square: sp.Rational(9, 16)}
     d = jacobian(p, np.array([strain]), [square])[0, 0]
     assert expanded(p, d).subs(point) == sp.diff(sp.sqrt(1 + square) - 1, square).subs(point) == sp.Rational(2, 5)

@@ -182,7 +182,7 @@ def everything() -> Scene:
                     material=material, up=(0, 0, 1))
     scene.motion("wire", s=0.0, displacement=(0, Harmonic(amplitude=0.01, frequency=5.0), 0))
     scene.pin("arm", s=0.5)
-    scene.join("wire", s=1.5, to="arm", at=0.0, rotation="free")
+    scene.tie("wire", s=1.5, to="arm", at=0.0, rotation="free")
     scene.rigid_body("A", mass=1.0, inertia=(1e-3, 2e-3, 3e-3), position=(0.48, 0, 0), velocity=(1, 0, 0),
                      angular_velocity=(1, 2, 3))
     scene.slide("A", along="wire", s=0.48, name="trolley")

@@ -23,7 +23,7 @@ from types import ModuleType
 import numpy as np
 from funicular.derive.bodies import planar_rigid, rigid
 from funicular.derive.frames import cross
-from funicular.derive.stages import Derivation, Program
+from funicular.derive.stages import DirectionalDerivative, Program
 
 FRAMES = {"modal": rigid, "planar_modal": planar_rigid}
 SOURCE = "paper eq 12; Shabana, Dynamics of Multibody Systems, 2013, ch. 5"
@@ -113,7 +113,7 @@ class Motion:
 
     def by_velocity(self, values: np.ndarray) -> np.ndarray:
         """Derivatives by w."""
-        return np.stack([Derivation(self.program, f"d_w{k}", {symbol: 1}).array(values)
+        return np.stack([DirectionalDerivative(self.program, f"d_w{k}", {symbol: 1}).array(values)
                          for k, symbol in enumerate(self.w)], axis=-1)
 
     def by_configuration(self, values: np.ndarray) -> np.ndarray:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 import sympy as sp
-from funicular.derive.stages import Derivation, Program
+from funicular.derive.stages import DirectionalDerivative, Program
 
 NAME, DIM, N_CONFIGURATION, N_VELOCITY = "planar_rigid", 2, 4, 3
 DOC, SOURCE = "planar rigid body", "paper eq 12 (q_r) in the plane"
@@ -39,10 +39,10 @@ def rate(b: np.ndarray, A: np.ndarray, w: np.ndarray) -> dict[sp.Symbol, sp.Expr
     return dict(zip(b, [*w[:2], *(w[2] * A[:, 1])], strict=True))
 
 
-def tangents(program: Program, b: np.ndarray, A: np.ndarray) -> list[Derivation]:
+def tangents(program: Program, b: np.ndarray, A: np.ndarray) -> list[DirectionalDerivative]:
     """The three derivations: two translations and the rotation."""
     units = np.eye(N_VELOCITY, dtype=int)
-    return [Derivation(program, f"d_{name}", rate(b, A, units[k])) for k, name in enumerate(("X", "Y", "th"))]
+    return [DirectionalDerivative(program, f"d_{name}", rate(b, A, units[k])) for k, name in enumerate(("X", "Y", "th"))]
 
 
 def origin(b: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import sympy as sp
-from funicular.derive.stages import AXES, Derivation, Program
+from funicular.derive.stages import AXES, DirectionalDerivative, Program
 
 
 @dataclass(frozen=True)
@@ -41,10 +41,10 @@ class Point:
         """Value on b of the derivation along the velocity w."""
         return dict(zip(b, w, strict=True))
 
-    def tangents(self, program: Program, b: np.ndarray, A: None) -> list[Derivation]:
+    def tangents(self, program: Program, b: np.ndarray, A: None) -> list[DirectionalDerivative]:
         """Derivations along the axes."""
         units = np.eye(self.DIM, dtype=int)
-        return [Derivation(program, f"d_{AXES[k].upper()}", self.rate(b, A, units[k])) for k in range(self.DIM)]
+        return [DirectionalDerivative(program, f"d_{AXES[k].upper()}", self.rate(b, A, units[k])) for k in range(self.DIM)]
 
     def origin(self, b: np.ndarray) -> np.ndarray:
         """Where the arm starts."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 import sympy as sp
 from funicular.derive.frames import cross
-from funicular.derive.stages import Derivation, Program
+from funicular.derive.stages import DirectionalDerivative, Program
 
 NAME, DIM, N_CONFIGURATION, N_VELOCITY = "rigid", 3, 7, 6
 DOC, SOURCE = "rigid body", "paper eq 12 (q_r); Haug 1989, ch. 9"
@@ -49,10 +49,10 @@ def rate(b: np.ndarray, A: np.ndarray, w: np.ndarray) -> dict[sp.Symbol, sp.Expr
     return dict(zip([*b[:3], *A.ravel()], [*w[:3], *turning.ravel()], strict=True))
 
 
-def tangents(program: Program, b: np.ndarray, A: np.ndarray) -> list[Derivation]:
+def tangents(program: Program, b: np.ndarray, A: np.ndarray) -> list[DirectionalDerivative]:
     """The six derivations: three translations, three rotations about body axes."""
     units = np.eye(N_VELOCITY, dtype=int)
-    return [Derivation(program, f"d_{name}", rate(b, A, units[k]))
+    return [DirectionalDerivative(program, f"d_{name}", rate(b, A, units[k]))
             for k, name in enumerate(("X", "Y", "Z", "th1", "th2", "th3"))]
 
 

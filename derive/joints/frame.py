@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 from funicular.derive.frames import cross, tangent_frame, turning
-from funicular.derive.stages import Derivation, Program
+from funicular.derive.stages import DirectionalDerivative, Program
 
 FRAMES = {3: "frame", 2: "planar_frame"}
 TURNS = {3: 3, 2: 1}
@@ -58,7 +58,7 @@ def motion(dim: int) -> Program:
     p.stage("angular velocity")
     omega = [p.define(f"omega_{k}", row.dot(rate)) for k, row in enumerate(f.T)]
     p.stage("angular acceleration")
-    along = Derivation(p, "dt", dict(zip([*f.entries(), *rate], [*rate, *second], strict=True)))
+    along = DirectionalDerivative(p, "dt", dict(zip([*f.entries(), *rate], [*rate, *second], strict=True)))
     p.output("omega", omega, "rad/s", "angular velocity in global axes")
     p.output("alpha", along.array(np.array(omega, dtype=object)), "rad/s^2", "its rate")
     return p
@@ -71,7 +71,7 @@ def moment(dim: int) -> Program:
     m = p.input("m", TURNS[dim], "N m", "moment in global axes, held fixed")
     p.stage("force on the vectors, and its derivative")
     g = np.array([p.define(f"g_{k}", m.dot(column)) for k, column in enumerate(f.T.T)])
-    by = [Derivation(p, f"d{k}", {symbol: 1}) for k, symbol in enumerate(f.entries())]
+    by = [DirectionalDerivative(p, f"d{k}", {symbol: 1}) for k, symbol in enumerate(f.entries())]
     p.output("g", g, "N m", "T' m")
     p.output("K", np.stack([d.array(g) for d in by], axis=1), "N m", "derivatives of T' m by a and b")
     return p

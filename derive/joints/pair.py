@@ -12,7 +12,7 @@ from collections.abc import Callable
 import numpy as np
 import sympy as sp
 from funicular.derive.joints.frame import TURNS, spun
-from funicular.derive.stages import Derivation, Program
+from funicular.derive.stages import DirectionalDerivative, Program
 
 
 class Pair:
@@ -25,14 +25,14 @@ class Pair:
         self.A2 = program.input("A2", (dim, dim), "1", "axes of the second frame, by columns")
         self.c = program.input("c", 3, "m or rad, 1, 1", "what drives the joint (else unused), its cosine and sine")
 
-    def along(self, tag: str, gap, turn_1, turn_2, more: dict | None = None) -> Derivation:
+    def along(self, tag: str, gap, turn_1, turn_2, more: dict | None = None) -> DirectionalDerivative:
         """The derivation that moves the gap and turns both frames."""
         on = dict(zip(self.gap, gap, strict=True)) | (more or {})
         for A, turn in ((self.A1, turn_1), (self.A2, turn_2)):
             on |= dict(zip(A.ravel(), spun(np.array(turn), A).ravel(), strict=True))
-        return Derivation(self.program, tag, on)
+        return DirectionalDerivative(self.program, tag, on)
 
-    def moves(self) -> list[Derivation]:
+    def moves(self) -> list[DirectionalDerivative]:
         """By the gap, by the turn of the first frame, by that of the second."""
         n = self.dim + 2 * self.turns
         return [self.along(f"d{k}", *np.split(unit, [self.dim, self.dim + self.turns]))

@@ -15,9 +15,9 @@ from funicular.derive import body_kernels
 from funicular.derive.axis import Axis
 from funicular.derive.bodies.point import Point
 from funicular.derive.frames import cross, tangent_frame
-from funicular.derive.secant import STATES, Secant
+from funicular.derive.secant import STATES, DiscreteGradient
 from funicular.derive.spec import Element
-from funicular.derive.stages import Derivation, Program, jacobian
+from funicular.derive.stages import DirectionalDerivative, Program, jacobian
 
 ENTRIES = {2: ("l", "m"), 3: ("l", "m1", "m2")}  # of C, by dim
 _C_DOC = "constraint in the tangent frame: C_l, then C_m across the cable"
@@ -32,8 +32,8 @@ class Slide:
         self.axis = Axis(program, element)
         self.e = self.axis.coordinates()
         self.b, self.u = rider.configuration(program), rider.attachment(program)
-        self.by_s = Derivation(program, "ds", {self.axis.x: 1})
-        self.by_e = [Derivation(program, f"de{k}", {symbol: 1}) for k, symbol in enumerate(self.e.ravel())]
+        self.by_s = DirectionalDerivative(program, "ds", {self.axis.x: 1})
+        self.by_e = [DirectionalDerivative(program, f"de{k}", {symbol: 1}) for k, symbol in enumerate(self.e.ravel())]
         program.stage("centreline at s and rider's point (eq 19)")
         self.axes = rider.axes(program, self.b)
         self.by_rider = rider.tangents(program, self.b, self.axes)
@@ -84,7 +84,7 @@ class Slide:
         C_s[0] += self.A_t[:, 0].dot(self.t)
         return C_s
 
-    def through_cut(self, derivation: Derivation) -> np.ndarray:
+    def through_cut(self, derivation: DirectionalDerivative) -> np.ndarray:
         """Derivative of C along a derivation, by the chain rule through the cut."""
         return self.C_cut.dot(derivation.array(np.array(self.cut, dtype=object)))
 
@@ -127,7 +127,7 @@ def _terms(name: str, element: Element, rider: ModuleType | Point) -> Program:
     motion = dict(zip(slide.e.ravel(), v.ravel(), strict=True)) | {slide.axis.x: s_rate}
     motion |= slide.rider.rate(slide.b, slide.axes, w)
     # velocities are held: the derivation knows s_rate as a constant, not as the function of q that it is
-    along = Derivation(p, "dt", motion | {s_rate: 0})
+    along = DirectionalDerivative(p, "dt", motion | {s_rate: 0})
     Q_d = slide.named("Q_d", along.array(along.array(C)))
     p.stage("H (eq 31) and W (eq 37)")
     H = C_q[1:] + np.outer(C_s[1:], G)
@@ -199,7 +199,7 @@ def _discrete_gradient(name: str, element: Element, rider: ModuleType | Point) -
     x_next = p.input("x_next", (), "m", "x at the end of the step")
     e = p.input("e", (element.n_vectors, element.dim), "m, 1", "nodal vectors (eq 1)")
     e_next = p.input("e_next", e.shape, "m, 1", "nodal vectors at the end of the step")
-    secant = Secant(p, law, {axis.length: (length, length), axis.x: (x, x_next)})
+    secant = DiscreteGradient(p, law, {axis.length: (length, length), axis.x: (x, x_next)})
     p.stage("mean shape functions, and their divided differences")
     mean = np.array([p.define(f"mean_N_{node}", secant.mean(n)) for node, n in zip(element.names, N, strict=True)])
     slope = np.array([p.define(f"D_N_{node}", *secant.gradient(n, [axis.x]))

@@ -21,7 +21,7 @@ from funicular.derive.laws.cable_blocks import by_vectors, named_blocks, spread
 from funicular.derive.laws.cable_damping import Damping
 from funicular.derive.laws.cable_points import gathered, on_vectors, values
 from funicular.derive.laws.cable_section import resultants
-from funicular.derive.secant import Secant, staged
+from funicular.derive.secant import DiscreteGradient, staged
 from funicular.derive.stages import Program, jacobian
 
 SOURCE = "DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)"
@@ -146,7 +146,7 @@ class Cable(Damping):
             return program.define(f"eps{tag}", a1 / 2)
         length = program.once(f"len{tag}", sp.sqrt(1 + a1))
         program.once(f"inv_len{tag}", 1 / length)
-        return program.define(f"eps{tag}", a1 / (1 + length), moves_as=length)  # |r'| - 1
+        return program.define(f"eps{tag}", a1 / (1 + length), derivative_of=length)  # |r'| - 1
 
     def _at_points(self, program: Program, rule: str, names: str, points: list[Point], c: np.ndarray) -> list[tuple]:
         """Invariants, vectors and series at each point: a - 1, b, c of r' and (l/2) r'', as far as named."""
@@ -199,7 +199,7 @@ class Cable(Damping):
         if self.strain == "green":
             inverse = program.define(f"inv_a{tag}", 1 / a)
         else:
-            inverse = program.define(f"inv_a{tag}", sp.Symbol(f"inv_len{tag}") ** 2, moves_as=1 / a)
+            inverse = program.define(f"inv_a{tag}", sp.Symbol(f"inv_len{tag}") ** 2, derivative_of=1 / a)
         scale = program.define(f"scale{tag}", factor * inverse ** (3 if self.strain == "green" else 2))
         return strain, program.define(f"cross2{tag}", a * c - b * b) * scale, scale
 
@@ -232,7 +232,7 @@ class Cable(Damping):
         law, c = staged(program, now)
         terms = list(self._terms(law, A, c, w))
         inputs = zip(c.ravel(), zip(now.ravel(), then.ravel(), strict=True), strict=True)
-        secant = Secant(program, law, dict(inputs))
+        secant = DiscreteGradient(program, law, dict(inputs))
         f = np.zeros((len(self.gram.names), self.gram.element.dim), dtype=object)
         for names, group in groupby(terms, key=lambda term: term.names):
             group = list(group)

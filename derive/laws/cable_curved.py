@@ -106,5 +106,5 @@ class CurvedCable(Cable):
         scale = program.define(f"scale{tag}", inverse**3 if self.strain == "green" else at.inverse * inverse**2)
         k2 = program.define(f"k2{tag}", ((1 + a1) * c - b * b) * scale)
         kappa = program.define(f"kappa{tag}", sp.sqrt(k2 + at.rounding))
-        change = program.define(f"dk{tag}", (k2 - at.kappa2) / (kappa + at.kappa), moves_as=kappa - at.kappa)
+        change = program.define(f"dk{tag}", (k2 - at.kappa2) / (kappa + at.kappa), derivative_of=kappa - at.kappa)
         return at.stretch * (EA * strain**2 / 2 + EI * change * (change / 2 + at.straight)), strain, scale

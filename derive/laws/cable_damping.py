@@ -14,7 +14,7 @@ import numpy as np
 import sympy as sp
 from funicular.derive.laws.cable_blocks import named_blocks, spread
 from funicular.derive.spec import Element, x
-from funicular.derive.stages import Derivation, Program, jacobian
+from funicular.derive.stages import DirectionalDerivative, Program, jacobian
 
 
 class Damping:
@@ -101,7 +101,7 @@ class Damping:
             columns = []
             for s, v in zip(still, moving, strict=True):
                 others = {o: 0 for o in (*still, *moving) if o not in (s, v)}
-                columns.append(Derivation(program, f"d_{s.name}", {s: 1, v: rate, **others}).array(force))
+                columns.append(DirectionalDerivative(program, f"d_{s.name}", {s: 1, v: rate, **others}).array(force))
             K = np.array([[program.define(f"K_{a.name}_{b.name}", columns[j][i]) for j, b in enumerate(still)]
                           for i, a in enumerate(still)])
             d = range(len(factors))

@@ -13,7 +13,7 @@ import numpy as np
 import sympy as sp
 from funicular.derive.frames import cross, spatial
 from funicular.derive.gram_point import axis
-from funicular.derive.stages import Derivation, Program, jacobian
+from funicular.derive.stages import DirectionalDerivative, Program, jacobian
 
 
 def resultants(law, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, w: sp.Expr, c0=None) -> tuple:
@@ -40,7 +40,7 @@ def resultants(law, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, 
     by_a, by_b, by_c = (program.define(f"W_{name}", value) for name, value in zip("abc", W, strict=True))
     program.stage("forces on r' and r''")
     slope = program.vector("slope", by_b * r[0] + 2 * by_c * r[1])
-    change = Derivation(program, "dx", along).array(slope)
+    change = DirectionalDerivative(program, "dx", along).array(slope)
     force = 2 * by_a * r[0] + by_b * r[1] - change
     program.stage("moment and curvature")
     normal = program.vector("n", cross(spatial(r[0]), spatial(r[1])))

@@ -11,45 +11,45 @@
 
 static int n_rows(const fu_model *model)
 {
-    return model->n_joints + model->n_links;
+    return model->n_slides + model->n_joints;
 }
 
 static void evaluate(const fu_model *model, const fu_state *state, fu_accelerator *work)
 {
     ++work->evaluated;
-    for (int j = 0; j < model->n_joints; ++j) {
-        const fu_joint *joint = &model->joints[j];
+    for (int j = 0; j < model->n_slides; ++j) {
+        const fu_slide *slide = &model->slides[j];
         fu_rows *rows = &work->rows[j];
-        rows->first = joint->multiplier;
-        rows->room = joint->room;
-        rows->idle = 0;
-        for (int c = 0; c < rows->room; ++c) rows->scale[c] = joint->mass;
-        fu_slide_terms(model, state, j, rows, &work->slides[j]);
+        rows->first = slide->multiplier;
+        rows->max_multipliers = slide->max_multipliers;
+        rows->redundant_rows = 0;
+        for (int c = 0; c < rows->max_multipliers; ++c) rows->scale[c] = slide->mass;
+        fu_slide_terms(model, state, j, rows, &work->slide_states[j]);
     }
-    for (int k = 0; k < model->n_links; ++k) {
-        const fu_link *link = &model->links[k];
-        fu_rows *rows = &work->rows[model->n_joints + k];
-        rows->first = link->multiplier;
-        rows->room = rows->rows = link->kernel->rows;
-        memcpy(rows->scale, link->scale, sizeof rows->scale);
-        fu_link_terms(model, link, state, work->slides, work->rows, rows);
+    for (int k = 0; k < model->n_joints; ++k) {
+        const fu_joint *joint = &model->joints[k];
+        fu_rows *rows = &work->rows[model->n_slides + k];
+        rows->first = joint->multiplier;
+        rows->max_multipliers = rows->rows = joint->kernel->rows;
+        memcpy(rows->scale, joint->scale, sizeof rows->scale);
+        fu_joint_terms(model, joint, state, work->slide_states, work->rows, rows);
     }
 }
 
 /* How one slide moves. */
-void fu_slide_now(const fu_model *model, const fu_state *state, int j, fu_slide_state *slide)
+void fu_slide_now(const fu_model *model, const fu_state *state, int j, fu_slide_state *slide_state)
 {
     fu_rows unused;
-    fu_slide_terms(model, state, j, &unused, slide);
+    fu_slide_terms(model, state, j, &unused, slide_state);
 }
 
 /* ds/dt of one slide; zero where s is held for good */
 double fu_slide_rate(const fu_model *model, const fu_state *state, int j)
 {
-    fu_slide_state slide;
-    if (state->mode[j] == FU_HELD && model->joints[j].drive < 0) return 0.0;
-    fu_slide_now(model, state, j, &slide);
-    return slide.s_rate;
+    fu_slide_state slide_state;
+    if (state->mode[j] == FU_LOCKED && model->slides[j].drive < 0) return 0.0;
+    fu_slide_now(model, state, j, &slide_state);
+    return slide_state.s_rate;
 }
 
 /* M is constant, that of rigid bodies by body axes: its band is factored once, and its border's columns are solved. */
@@ -84,9 +84,9 @@ static int factor_border(const fu_model *model, const fu_state *state, fu_accele
     border(model, state->q, work);
     for (int r = 0; r < n_rows(model); ++r) {
         const fu_rows *rows = &work->rows[r];
-        for (int c = 0; c < rows->room; ++c) {
+        for (int c = 0; c < rows->max_multipliers; ++c) {
             const int row = fu_extra(model, rows->first + c);
-            if (c >= rows->rows || rows->idle >> c & 1)
+            if (c >= rows->rows || rows->redundant_rows >> c & 1)
                 fu_add(model, s, row, row, rows->scale[c]); /* not in use: its multiplier is nil */
             else
                 for (int k = 0; k < rows->n; ++k) { /* rows in kg, so that the border is of one scale */
@@ -104,11 +104,11 @@ static void solve(const fu_model *model, fu_accelerator *work, const double *for
     double *x = work->rhs, *lambda = x + model->n_band + model->n_border_dof;
     fu_gather(model, force, x);
     for (int r = 0; r < n_rows(model); ++r)
-        for (int c = 0; c < work->rows[r].room; ++c) lambda[work->rows[r].first + c] *= work->rows[r].scale[c];
+        for (int c = 0; c < work->rows[r].max_multipliers; ++c) lambda[work->rows[r].first + c] *= work->rows[r].scale[c];
     fu_system_solve(&work->mass, model->lapack, x);
     fu_spread(model, x, solution);
     for (int r = 0; r < n_rows(model); ++r)
-        for (int c = 0; c < work->rows[r].room; ++c) lambda[work->rows[r].first + c] *= work->rows[r].scale[c];
+        for (int c = 0; c < work->rows[r].max_multipliers; ++c) lambda[work->rows[r].first + c] *= work->rows[r].scale[c];
 }
 
 /* -sum_k H_ck x_k: what the right sides lose to known accelerations or velocities */
@@ -124,11 +124,11 @@ static void force_of(const fu_model *model, const fu_accelerator *work, int j, c
 {
     const fu_rows *rows = &work->rows[j];
     const int dim = model->dim;
-    const double *by_point = work->slides[j].by_point;
+    const double *by_point = work->slide_states[j].by_point;
     for (int d = 0; d < dim; ++d) {
         f[d] = 0.0;
         for (int c = 0; c < rows->rows; ++c) f[d] -= by_point[c * dim + d] * lambda[rows->first + c];
-        if (model->joints[j].brake) f[d] += by_point[(dim - 1) * dim + d] * work->braking[j];
+        if (model->slides[j].resistance) f[d] += by_point[(dim - 1) * dim + d] * work->resistance[j];
     }
 }
 
@@ -137,30 +137,30 @@ static void force_of(const fu_model *model, const fu_accelerator *work, int j, c
 static void add_force_of_frame(const fu_model *model, const fu_accelerator *work, int j, const double *lambda, double *f)
 {
     const int dim = model->dim;
-    const double *G = work->slides[j].by_point + (dim - 1) * dim;
-    for (const fu_rows *rows = work->rows + model->n_joints; rows < work->rows + n_rows(model); ++rows)
+    const double *G = work->slide_states[j].by_point + (dim - 1) * dim;
+    for (const fu_rows *rows = work->rows + model->n_slides; rows < work->rows + n_rows(model); ++rows)
         for (int c = 0; c < rows->rows && rows->slide == j; ++c)
             for (int d = 0; d < dim; ++d) f[d] -= G[d] * rows->by_s[c] * lambda[rows->first + c];
 }
 
 /* r_x, and the velocity along it, of a slide on its cable */
-static void along(const fu_model *model, const fu_slide_state *slide, double *t, double *u)
+static void along(const fu_model *model, const fu_slide_state *slide_state, double *t, double *u)
 {
     const int dim = model->dim;
-    const double *G = slide->by_point + (dim - 1) * dim;
+    const double *G = slide_state->by_point + (dim - 1) * dim;
     double square = 0.0;
     for (int d = 0; d < dim; ++d) square += G[d] * G[d];
     for (int d = 0; d < dim; ++d) {
         t[d] = G[d] / square;
-        u[d] = t[d] * slide->s_rate;
+        u[d] = t[d] * slide_state->s_rate;
     }
 }
 
 /* By how much a slide's R should change where its law asks for `change`: by the secant of the last sweep, as what friction
  * presses on the cable or takes off it hangs on R almost linearly. */
-static double towards(fu_accelerator *work, int n_joints, int j, double change)
+static double towards(fu_accelerator *work, int n_slides, int j, double change)
 {
-    double *last = work->braking + n_joints + 1 + 2 * j;
+    double *last = work->resistance + n_slides + 1 + 2 * j;
     const double slope = last[0] != 0.0 ? (last[1] - change) / last[0] : 0.0;
     last[0] = last[0] == 0.0 ? TRIAL * change : slope > STEEP ? change / slope : change;
     last[1] = change;
@@ -171,46 +171,46 @@ static double towards(fu_accelerator *work, int n_joints, int j, double change)
  * do not give; and what it takes. */
 static void resist(const fu_model *model, const fu_state *state, fu_accelerator *work, const double *lambda)
 {
-    for (int j = 0; j < model->n_joints; ++j) {
+    for (int j = 0; j < model->n_slides; ++j) {
         double t[3], u[3], f[3];
-        fu_braking braking;
-        work->resistance[j] = 0.0;
-        if (model->joints[j].drive < 0 || !fu_is_braked(model, state, j)) continue;
-        along(model, &work->slides[j], t, u);
+        fu_resistance resistance;
+        work->driven_resistance[j] = 0.0;
+        if (model->slides[j].drive < 0 || !fu_has_resistance(model, state, j)) continue;
+        along(model, &work->slide_states[j], t, u);
         force_of(model, work, j, lambda, f);
-        fu_braking_of(model, state, j, t, u, f, &braking);
-        work->resistance[j] = braking.R;
-        work->braking[model->n_joints] += fu_brake_power(model, state, j, t, u, f);
+        fu_resistance_at(model, state, j, t, u, f, &resistance);
+        work->driven_resistance[j] = resistance.R;
+        work->resistance[model->n_slides] += fu_resistance_power(model, state, j, t, u, f);
     }
 }
 
 /* R of all slides by these multipliers, or null: by the forces of the state; work->work follows by G' R. Returns the
  * largest change over the force. */
-static double brake(const fu_model *model, const fu_state *state, fu_accelerator *work, const double *lambda)
+static double resistance(const fu_model *model, const fu_state *state, fu_accelerator *work, const double *lambda)
 {
-    double largest = 0.0, *steps = work->braking + model->n_joints + 1;
-    work->braking[model->n_joints] = 0.0;
-    for (int j = 0; j < model->n_joints; ++j) {
+    double largest = 0.0, *steps = work->resistance + model->n_slides + 1;
+    work->resistance[model->n_slides] = 0.0;
+    for (int j = 0; j < model->n_slides; ++j) {
         double t[3], u[3], f[3], size = 0.0;
-        fu_braking braking;
-        if (!lambda) work->braking[j] = steps[2 * j] = 0.0;
-        if (!model->joints[j].brake || state->mode[j] != FU_SLIDES) continue;
-        along(model, &work->slides[j], t, u);
+        fu_resistance resistance;
+        if (!lambda) work->resistance[j] = steps[2 * j] = 0.0;
+        if (!model->slides[j].resistance || state->mode[j] != FU_SLIDES) continue;
+        along(model, &work->slide_states[j], t, u);
         if (lambda) force_of(model, work, j, lambda, f);
         else memcpy(f, state->f + 3 * j, sizeof f);
-        fu_braking_of(model, state, j, t, u, f, &braking);
-        work->braking[model->n_joints] += fu_brake_power(model, state, j, t, u, f);
-        const double change = braking.R - work->braking[j];
-        const double step = lambda ? towards(work, model->n_joints, j, change) : change;
+        fu_resistance_at(model, state, j, t, u, f, &resistance);
+        work->resistance[model->n_slides] += fu_resistance_power(model, state, j, t, u, f);
+        const double change = resistance.R - work->resistance[j];
+        const double step = lambda ? towards(work, model->n_slides, j, change) : change;
         for (int d = 0; d < model->dim; ++d) size = fmax(size, fabs(f[d]));
-        size = fabs(change) / fmax(size, fabs(braking.R));
+        size = fabs(change) / fmax(size, fabs(resistance.R));
         if (change != 0.0 && !(size <= largest)) {
             largest = size;
             work->jammed = j;
         }
-        work->braking[j] += step;
+        work->resistance[j] += step;
         for (int k = 0; k < work->rows[j].n; ++k)
-            work->work[work->rows[j].at[k]] += work->slides[j].G[k] * step;
+            work->work[work->rows[j].at[k]] += work->slide_states[j].G[k] * step;
     }
     return largest;
 }
@@ -221,15 +221,15 @@ static double brake(const fu_model *model, const fu_state *state, fu_accelerator
 static int settle(const fu_model *model, const fu_state *state, fu_accelerator *work, double *acceleration)
 {
     double *lambda = work->rhs + model->n_band + model->n_border_dof, last = INFINITY;
-    if (model->n_brakes) brake(model, state, work, 0);
+    if (model->n_resistances) resistance(model, state, work, 0);
     for (int sweep = 0;; ++sweep) {
         for (int r = 0; r < n_rows(model); ++r)
-            for (int c = 0; c < work->rows[r].room; ++c)
+            for (int c = 0; c < work->rows[r].max_multipliers; ++c)
                 lambda[work->rows[r].first + c] = c < work->rows[r].rows
                     ? work->rows[r].W[c] + minus_H(&work->rows[r], c, work->prescribed) : 0.0;
         solve(model, work, work->work, acceleration);
-        if (!model->n_brakes) return 0;
-        const double change = brake(model, state, work, lambda);
+        if (!model->n_resistances) return 0;
+        const double change = resistance(model, state, work, lambda);
         if (change <= SETTLED || (change <= NEARLY && change >= last)) break;
         if (!(change < 1e30) || sweep == MOST_SWEEPS) return 1;
         last = change;
@@ -267,7 +267,7 @@ int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *
 
 /* Eq 38. `joints` may be null, and `reaction`: what supports give to each dof, zero to rounding where it is free. */
 int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerator *work, double *acceleration,
-                     fu_joint_output *joints, double *reaction)
+                     fu_slide_output *slides, double *reaction)
 {
     double *lambda = work->rhs + model->n_band + model->n_border_dof, *prescribed = work->prescribed;
     work->jammed = -1;
@@ -286,28 +286,28 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
     resist(model, state, work, lambda);
     for (int i = 0; i < model->n_dof; ++i) acceleration[i] += prescribed[i];
     memcpy(work->multipliers, lambda, sizeof(double) * (size_t)model->n_multipliers);
-    if (joints)
-        for (int j = 0; j < model->n_joints; ++j) {
+    if (slides)
+        for (int j = 0; j < model->n_slides; ++j) {
             const fu_rows *rows = &work->rows[j];
-            const fu_slide_state *slide = &work->slides[j];
+            const fu_slide_state *slide_state = &work->slide_states[j];
             const int dim = model->dim;
-            fu_joint_output *out = &joints[j];
-            *out = (fu_joint_output){0};
-            out->s_rate = slide->s_rate;
-            out->s_acceleration = slide->s_bias;
-            for (int k = 0; k < rows->n; ++k) out->s_acceleration += slide->G[k] * acceleration[rows->at[k]];
+            fu_slide_output *out = &slides[j];
+            *out = (fu_slide_output){0};
+            out->s_rate = slide_state->s_rate;
+            out->s_acceleration = slide_state->s_bias;
+            for (int k = 0; k < rows->n; ++k) out->s_acceleration += slide_state->G[k] * acceleration[rows->at[k]];
             for (int c = 0; c < dim - 1 && c < rows->rows; ++c) out->multiplier[c] = lambda[rows->first + c];
             double pull = 0.0, square = 0.0;
             force_of(model, work, j, lambda, out->force);
             for (int d = 0; d < dim; ++d) {
-                const double G = slide->by_point[(dim - 1) * dim + d]; /* along the tangent */
-                out->residual[d] = slide->C[d];
+                const double G = slide_state->by_point[(dim - 1) * dim + d]; /* along the tangent */
+                out->residual[d] = slide_state->C[d];
                 pull += G * out->force[d];
                 square += G * G;
             }
             if (square > 0.0) out->traction = pull / sqrt(square);
-            if (model->joints[j].drive >= 0 && state->mode[j] == FU_HELD)
-                out->traction = -lambda[rows->first + dim - 1] - work->resistance[j];
+            if (model->slides[j].drive >= 0 && state->mode[j] == FU_LOCKED)
+                out->traction = -lambda[rows->first + dim - 1] - work->driven_resistance[j];
             add_force_of_frame(model, work, j, lambda, out->force);
         }
     if (reaction) {
@@ -318,9 +318,9 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
             for (int c = 0; c < rows->rows; ++c)
                 for (int k = 0; k < rows->n; ++k)
                     reaction[rows->at[k]] += rows->H[c * rows->n + k] * lambda[rows->first + c];
-            if (r < model->n_joints && model->joints[r].brake)
+            if (r < model->n_slides && model->slides[r].resistance)
                 for (int k = 0; k < rows->n; ++k)
-                    reaction[rows->at[k]] -= work->slides[r].G[k] * work->braking[r];
+                    reaction[rows->at[k]] -= work->slide_states[r].G[k] * work->resistance[r];
         }
     }
     return 0;
@@ -337,11 +337,11 @@ static int project(const fu_model *model, const fu_state *state, fu_accelerator 
     if (info) return info;
     if (struck >= 0)
         work->rows[struck].rate[model->dim - 1] =
-            model->joints[struck].stops[state->contact[struck] > 0].restitution * work->slides[struck].s_rate;
+            model->slides[struck].stops[state->contact[struck] > 0].restitution * work->slide_states[struck].s_rate;
     for (int i = 0; i < model->n_dof; ++i) work->work[i] = 0.0;
     for (int r = 0; r < n_rows(model); ++r) {
         const fu_rows *rows = &work->rows[r];
-        for (int c = rows->rows; c < rows->room; ++c) lambda[rows->first + c] = 0.0;
+        for (int c = rows->rows; c < rows->max_multipliers; ++c) lambda[rows->first + c] = 0.0;
         for (int c = 0; c < rows->rows; ++c)
             lambda[rows->first + c] = of_velocities ? minus_H(rows, c, state->v) - rows->rate[c] : -rows->C[c];
     }
@@ -363,9 +363,9 @@ int fu_project_velocities(const fu_model *model, const fu_state *state, fu_accel
 
 /* change = that of v where a slide, which the state holds for that, strikes its stop: M change + H' L + G' P = 0, so that
  * momentum changes by what the stop gives alone */
-int fu_strike(const fu_model *model, const fu_state *state, fu_accelerator *work, int joint, double *change)
+int fu_strike(const fu_model *model, const fu_state *state, fu_accelerator *work, int slide, double *change)
 {
-    return project(model, state, work, 1, joint, change);
+    return project(model, state, work, 1, slide, change);
 }
 
 /* Newton step for s of a joint where it stands with this s, and the tangent */
@@ -381,7 +381,7 @@ static double evaluate_constraint(const fu_model *model, const fu_state *state, 
 /* Newton for C_l(s) = 0 (eq 21) on the curve of the element that holds s; 0 when it converged. */
 int fu_find_arc_length(const fu_model *model, const fu_state *state, int j, double *s)
 {
-    const double length = model->cables[model->joints[j].cable].length;
+    const double length = model->cables[model->slides[j].cable].length;
     double step = 0.0, tangent[3];
     for (int i = 0; i < 50; ++i) {
         step = evaluate_constraint(model, state, j, *s, tangent);
@@ -395,8 +395,8 @@ int fu_find_arc_length(const fu_model *model, const fu_state *state, int j, doub
  * the tangent has swung onto it, the axis least along the tangent takes over. */
 void fu_carry_directors(const fu_model *model, fu_state *state)
 {
-    for (int j = 0; j < model->n_joints; ++j) {
-        if (!model->joints[j].carries_director) continue;
+    for (int j = 0; j < model->n_slides; ++j) {
+        if (!model->slides[j].carries_director) continue;
         double *d = state->director + 3 * j, i[3];
         evaluate_constraint(model, state, j, state->s[j], i);
         double along = i[0] * d[0] + i[1] * d[1] + i[2] * d[2];

@@ -191,7 +191,7 @@ void fu_algorithmic_forces(fu_run *run, const double *q, double *force)
 }
 
 /* The step is taken: the memory at its end. Returns the work of the stresses, J. */
-double fu_algorithmic_book(fu_run *run, const double *q)
+double fu_algorithmic_account(fu_run *run, const double *q)
 {
     const fu_algorithmic *a = &run->algorithmic;
     double work = 0.0;

@@ -287,14 +287,14 @@ double fu_dissipation(const fu_model *model, const double *q, const double *v)
     return total;
 }
 
-double fu_length(const fu_model *model, int joint)
+double fu_length(const fu_model *model, int slide)
 {
-    const fu_cable *cable = &model->cables[model->joints[joint].cable];
+    const fu_cable *cable = &model->cables[model->slides[slide].cable];
     return cable->n_elements * cable->length;
 }
 
 /* arc-length at an element's first node */
-double fu_element_start(const fu_model *model, int joint, int element)
+double fu_element_start(const fu_model *model, int slide, int element)
 {
-    return element * model->cables[model->joints[joint].cable].length;
+    return element * model->cables[model->slides[slide].cable].length;
 }

@@ -3,7 +3,7 @@
 
 #define RIGID_DOFS 6
 
-static void of_rigid_mass_times(const fu_rigid *body, const double *b, const double *a, double *f)
+static void of_rigid_mass_times(const fu_body *body, const double *b, const double *a, double *f)
 {
     const double rest[RIGID_DOFS] = {0};
     (void)b;
@@ -11,7 +11,7 @@ static void of_rigid_mass_times(const fu_rigid *body, const double *b, const dou
 }
 
 /* the gyroscopic moment */
-static void of_rigid_forces(const fu_rigid *body, const double *b, const double *w, double *f)
+static void of_rigid_forces(const fu_body *body, const double *b, const double *w, double *f)
 {
     const double none[RIGID_DOFS] = {0};
     double part[RIGID_DOFS];
@@ -20,7 +20,7 @@ static void of_rigid_forces(const fu_rigid *body, const double *b, const double 
     for (int i = body->kernel->dim; i < body->kernel->velocity; ++i) f[i] += part[i];
 }
 
-static void of_rigid_mass(const fu_rigid *body, const double *b, double *M)
+static void of_rigid_mass(const fu_body *body, const double *b, double *M)
 {
     const double rest[RIGID_DOFS] = {0};
     double unused[RIGID_DOFS * RIGID_DOFS];
@@ -28,14 +28,14 @@ static void of_rigid_mass(const fu_rigid *body, const double *b, double *M)
     body->kernel->inertia_tangent(body->mass, body->J, rest, M, unused);
 }
 
-static void of_rigid_tangent(const fu_rigid *body, const fu_instant *at, double *D, double *K)
+static void of_rigid_tangent(const fu_body *body, const fu_instant *at, double *D, double *K)
 {
     double unused[RIGID_DOFS * RIGID_DOFS];
     (void)K; /* none: in body axes it does not depend on the attitude */
     body->kernel->inertia_tangent(body->mass, body->J, at->w, unused, D);
 }
 
-static double of_rigid_kinetic_energy(const fu_rigid *body, const double *b, const double *w)
+static double of_rigid_kinetic_energy(const fu_body *body, const double *b, const double *w)
 {
     double energy;
     (void)b;
@@ -43,13 +43,13 @@ static double of_rigid_kinetic_energy(const fu_rigid *body, const double *b, con
     return energy;
 }
 
-static double none_at(const fu_rigid *body, const double *b)
+static double none_at(const fu_body *body, const double *b)
 {
     (void)body, (void)b;
     return 0.0;
 }
 
-static double none_along(const fu_rigid *body, const double *b, const double *w)
+static double none_along(const fu_body *body, const double *b, const double *w)
 {
     (void)body, (void)b, (void)w;
     return 0.0;
@@ -58,7 +58,7 @@ static double none_along(const fu_rigid *body, const double *b, const double *w)
 const fu_matter fu_rigid_matter = {1,       of_rigid_mass_times,     of_rigid_forces, of_rigid_mass, of_rigid_tangent,
                                    of_rigid_kinetic_energy, none_at, none_at,         none_along};
 
-int fu_body_dofs(const fu_rigid *body)
+int fu_body_dofs(const fu_body *body)
 {
     return body->kernel->velocity + body->modes;
 }
@@ -66,8 +66,8 @@ int fu_body_dofs(const fu_rigid *body)
 /* f = M a, on the bodies' dofs */
 void fu_bodies_mass_times(const fu_model *model, const double *q, const double *a, double *f)
 {
-    for (int k = 0; k < model->n_rigids; ++k) {
-        const fu_rigid *body = &model->rigids[k];
+    for (int k = 0; k < model->n_bodies; ++k) {
+        const fu_body *body = &model->bodies[k];
         body->matter->mass_times(body, q + body->configuration, a + body->dof, f + body->dof);
     }
 }
@@ -75,15 +75,15 @@ void fu_bodies_mass_times(const fu_model *model, const double *q, const double *
 /* f += what stands on the left of the equations of motion at zero accelerations */
 void fu_bodies_forces(const fu_model *model, const double *q, const double *v, double *f)
 {
-    for (int k = 0; k < model->n_rigids; ++k) {
-        const fu_rigid *body = &model->rigids[k];
+    for (int k = 0; k < model->n_bodies; ++k) {
+        const fu_body *body = &model->bodies[k];
         body->matter->forces(body, q + body->configuration, v + body->dof, f + body->dof);
     }
 }
 
 /* system += weights.inertia M + weights.stiffness (K + weights.rate D) of a body at a state; psi: what moved it there, or
  * null. Without acceleration K is that of rest. */
-static void add_body(const fu_model *model, const fu_rigid *body, const fu_state *at, const double *psi, fu_weights weights,
+static void add_body(const fu_model *model, const fu_body *body, const fu_state *at, const double *psi, fu_weights weights,
                      fu_system *system)
 {
     double few[3 * RIGID_DOFS * RIGID_DOFS];
@@ -106,23 +106,23 @@ static void add_body(const fu_model *model, const fu_rigid *body, const fu_state
 
 void fu_bodies_matrix(const fu_model *model, const fu_state *at, const double *psi, fu_weights weights, fu_system *system)
 {
-    for (int k = 0; k < model->n_rigids; ++k) add_body(model, &model->rigids[k], at, psi, weights, system);
+    for (int k = 0; k < model->n_bodies; ++k) add_body(model, &model->bodies[k], at, psi, weights, system);
 }
 
 /* system += M of the bodies in which it is constant, or of the others */
 void fu_bodies_mass(const fu_model *model, const double *q, int constant, fu_system *system)
 {
     const fu_state at = {.q = (double *)q, .v = (double *)model->zero};
-    for (int k = 0; k < model->n_rigids; ++k)
-        if (model->rigids[k].matter->constant == constant)
-            add_body(model, &model->rigids[k], &at, 0, (fu_weights){1.0, 0.0, 0.0}, system);
+    for (int k = 0; k < model->n_bodies; ++k)
+        if (model->bodies[k].matter->constant == constant)
+            add_body(model, &model->bodies[k], &at, 0, (fu_weights){1.0, 0.0, 0.0}, system);
 }
 
 double fu_bodies_kinetic_energy(const fu_model *model, const double *q, const double *v)
 {
     double total = 0.0;
-    for (int k = 0; k < model->n_rigids; ++k) {
-        const fu_rigid *body = &model->rigids[k];
+    for (int k = 0; k < model->n_bodies; ++k) {
+        const fu_body *body = &model->bodies[k];
         total += body->matter->kinetic_energy(body, q + body->configuration, v + body->dof);
     }
     return total;
@@ -131,8 +131,8 @@ double fu_bodies_kinetic_energy(const fu_model *model, const double *q, const do
 double fu_bodies_elastic_energy(const fu_model *model, const double *q)
 {
     double total = 0.0;
-    for (int k = 0; k < model->n_rigids; ++k)
-        total += model->rigids[k].matter->elastic_energy(&model->rigids[k], q + model->rigids[k].configuration);
+    for (int k = 0; k < model->n_bodies; ++k)
+        total += model->bodies[k].matter->elastic_energy(&model->bodies[k], q + model->bodies[k].configuration);
     return total;
 }
 
@@ -140,8 +140,8 @@ double fu_bodies_elastic_energy(const fu_model *model, const double *q)
 double fu_bodies_potential_energy(const fu_model *model, const double *q)
 {
     double total = 0.0;
-    for (int k = 0; k < model->n_rigids; ++k) {
-        const fu_rigid *body = &model->rigids[k];
+    for (int k = 0; k < model->n_bodies; ++k) {
+        const fu_body *body = &model->bodies[k];
         const double *b = q + body->configuration;
         for (int i = 0; i < body->kernel->dim; ++i) total -= model->gravity[body->dof + i] * b[i];
         total += body->matter->potential_energy(body, b);
@@ -152,8 +152,8 @@ double fu_bodies_potential_energy(const fu_model *model, const double *q)
 double fu_bodies_dissipation(const fu_model *model, const double *q, const double *v)
 {
     double total = 0.0;
-    for (int k = 0; k < model->n_rigids; ++k) {
-        const fu_rigid *body = &model->rigids[k];
+    for (int k = 0; k < model->n_bodies; ++k) {
+        const fu_body *body = &model->bodies[k];
         total += body->matter->dissipation(body, q + body->configuration, v + body->dof);
     }
     return total;

@@ -7,23 +7,23 @@
 #define ROUNDING 1e-14     /* of the energies */
 
 /* R of a slide by the force that a Newton method solves for, 0 where nothing brakes it; t and u as brakes.c has them */
-static double resistance(const fu_model *model, const fu_state *state, int j, double t[3], double u[3])
+static double driven_resistance(const fu_model *model, const fu_state *state, int j, double t[3], double u[3])
 {
     double J[3 * (FU_SLIDE_COORDINATES + 1)], K[(FU_SLIDE_COORDINATES + 1) * (FU_SLIDE_COORDINATES + 1)];
-    fu_braking braking;
-    if (!fu_is_braked(model, state, j)) return 0.0;
+    fu_resistance resistance;
+    if (!fu_has_resistance(model, state, j)) return 0.0;
     fu_slide_tangent(model, state, j, state->f + 3 * j, J, K);
     fu_slide_motion(model, state, j, J, t, u);
-    fu_braking_of(model, state, j, t, u, state->f + 3 * j, &braking);
-    return braking.R;
+    fu_resistance_at(model, state, j, t, u, state->f + 3 * j, &resistance);
+    return resistance.R;
 }
 
 /* whether anything drives a slide or a joint */
 static int has_drives(const fu_model *model)
 {
     int driven = 0;
-    for (int j = 0; j < model->n_joints; ++j) driven |= model->joints[j].drive >= 0;
-    for (int k = 0; k < model->n_links; ++k) driven |= model->links[k].signal >= 0;
+    for (int j = 0; j < model->n_slides; ++j) driven |= model->slides[j].drive >= 0;
+    for (int k = 0; k < model->n_joints; ++k) driven |= model->joints[k].signal >= 0;
     return driven;
 }
 
@@ -33,11 +33,11 @@ static double driving_power(const fu_run *run)
     const fu_model *model = run->model;
     const fu_accelerator *work = &run->accelerator;
     double power = 0.0;
-    for (int r = 0; r < model->n_joints + model->n_links; ++r)
+    for (int r = 0; r < model->n_slides + model->n_joints; ++r)
         for (int c = 0; c < work->rows[r].rows; ++c)
             power += work->multipliers[work->rows[r].first + c] * work->rows[r].rate[c];
-    for (int j = 0; j < model->n_joints; ++j)
-        if (model->joints[j].drive >= 0) power -= work->resistance[j] * work->slides[j].s_rate;
+    for (int j = 0; j < model->n_slides; ++j)
+        if (model->slides[j].drive >= 0) power -= work->driven_resistance[j] * work->slide_states[j].s_rate;
     return power;
 }
 
@@ -47,13 +47,13 @@ double fu_dissipated_power(const fu_run *run, const fu_state *state)
 {
     const fu_model *model = run->model;
     double power = fu_dissipation(model, state->q, state->v);
-    if (!model->n_brakes) return power;
-    if (!run->integrator->newton) return power + run->accelerator.braking[model->n_joints];
-    for (int j = 0; j < model->n_joints; ++j) {
+    if (!model->n_resistances) return power;
+    if (!run->integrator->newton) return power + run->accelerator.resistance[model->n_slides];
+    for (int j = 0; j < model->n_slides; ++j) {
         double t[3], u[3];
-        if (!fu_is_braked(model, state, j)) continue;
-        resistance(model, state, j, t, u);
-        power += fu_brake_power(model, state, j, t, u, state->f + 3 * j);
+        if (!fu_has_resistance(model, state, j)) continue;
+        driven_resistance(model, state, j, t, u);
+        power += fu_resistance_power(model, state, j, t, u, state->f + 3 * j);
     }
     return power;
 }
@@ -95,7 +95,7 @@ static double beyond_trapezoid(fu_run *run, double h)
 }
 
 /* The step just made, by the trapezoidal rule, as good as a method of order 2; drives better. */
-void fu_book_trapezoid(fu_run *run, double h)
+void fu_account_trapezoid(fu_run *run, double h)
 {
     const int driven = has_drives(run->model);
     if (driven) fu_accelerations(run->model, &run->next, &run->accelerator, run->work, 0, 0);
@@ -139,20 +139,20 @@ static double rounding(const fu_run *run, const double energies[FU_ENERGIES])
 
 /* The energy balance at an output: kinetic, elastic, potential, dissipated, and minus external energy. Not zero where
  * energy has come from nowhere, as where an explicit method's step is beyond its limit. */
-int fu_check_books(fu_run *run, const double energies[FU_ENERGIES], int first)
+int fu_check_energy_balance(fu_run *run, const double energies[FU_ENERGIES], int first)
 {
-    fu_books *books = &run->books;
+    fu_energy_balance *balance = &run->balance;
     double grown = 0.0, changes = 0.0;
     for (int k = 0; k < FU_ENERGIES; ++k) {
-        if (first) books->first[k] = energies[k];
-        grown += energies[k] - books->first[k];
-        changes += fabs(energies[k] - books->first[k]);
+        if (first) balance->first[k] = energies[k];
+        grown += energies[k] - balance->first[k];
+        changes += fabs(energies[k] - balance->first[k]);
     }
-    books->exchanged = fmax(books->exchanged, 0.5 * changes);
-    books->in_motion = fmax(books->in_motion, energies[0]);
-    books->rounding = fmax(books->rounding, rounding(run, energies));
-    books->grown = fmax(books->grown, grown);
-    books->lost = fmax(books->lost, -grown);
-    if (run->motion <= BEGUN * run->size || grown <= MOST_GROWTH * fmax(books->exchanged, books->in_motion)) return 0;
+    balance->exchanged = fmax(balance->exchanged, 0.5 * changes);
+    balance->in_motion = fmax(balance->in_motion, energies[0]);
+    balance->rounding = fmax(balance->rounding, rounding(run, energies));
+    balance->grown = fmax(balance->grown, grown);
+    balance->lost = fmax(balance->lost, -grown);
+    if (run->motion <= BEGUN * run->size || grown <= MOST_GROWTH * fmax(balance->exchanged, balance->in_motion)) return 0;
     return fu_fail(run, FU_NO_FAILURE, run->now.v, -1);
 }

@@ -28,22 +28,22 @@ static void copy(copier *c, void *data, size_t size)
 
 static void copy_state(copier *c, const fu_model *model, fu_state *state)
 {
-    const size_t dofs = sizeof(double) * (size_t)model->n_dof, joints = (size_t)model->n_joints;
+    const size_t dofs = sizeof(double) * (size_t)model->n_dof, slides = (size_t)model->n_slides;
     copy(c, &state->t, sizeof state->t);
     copy(c, state->q, sizeof(double) * (size_t)model->n_q);
     copy(c, state->v, dofs);
     copy(c, state->acceleration, dofs);
     copy(c, state->a, dofs);
-    copy(c, state->s, sizeof(double) * joints);
-    copy(c, state->f, 3 * sizeof(double) * joints);
+    copy(c, state->s, sizeof(double) * slides);
+    copy(c, state->f, 3 * sizeof(double) * slides);
     copy(c, state->spring, 3 * sizeof(double) * (size_t)model->n_springs);
-    copy(c, state->multipliers, 6 * sizeof(double) * (size_t)model->n_links);
-    copy(c, state->hold, sizeof(double) * joints);
-    copy(c, state->element, sizeof(int) * joints);
-    copy(c, state->mode, sizeof(int) * joints);
-    copy(c, state->way, sizeof(int) * joints);
-    copy(c, state->contact, sizeof(int) * joints);
-    copy(c, state->director, 3 * sizeof(double) * joints);
+    copy(c, state->multipliers, 6 * sizeof(double) * (size_t)model->n_joints);
+    copy(c, state->locked_s, sizeof(double) * slides);
+    copy(c, state->element, sizeof(int) * slides);
+    copy(c, state->mode, sizeof(int) * slides);
+    copy(c, state->slip_direction, sizeof(int) * slides);
+    copy(c, state->contact, sizeof(int) * slides);
+    copy(c, state->director, 3 * sizeof(double) * slides);
     copy(c, state->memory, sizeof(double) * (size_t)model->n_memory);
 }
 
@@ -55,7 +55,7 @@ static void copy_all(copier *c, fu_run *run)
     copy_state(c, model, &run->now);
     copy_state(c, model, &run->next);
     copy(c, run->first, sizeof(double) * (size_t)model->n_q);
-    copy(c, run->s_slope, sizeof(double) * (size_t)model->n_joints);
+    copy(c, run->s_slope, sizeof(double) * (size_t)model->n_slides);
     copy(c, run->watched, sizeof(double) * (size_t)run->n_watches);
     copy(c, run->late, sizeof(int) * (size_t)run->n_watches);
     copy(c, &run->record.n, sizeof run->record.n);
@@ -92,31 +92,31 @@ static int last_of(int n)
 }
 
 /* whether a slide can be in its mode: only then is there room for the multiplier that holds it */
-static int possible_mode(const fu_joint *joint, int mode)
+static int possible_mode(const fu_slide *slide, int mode)
 {
-    const fu_terminal *ends = joint->stops;
+    const fu_end_stop *ends = slide->stops;
     if (mode == FU_LEFT) return ends[0].kind == FU_END_IS_OPEN || ends[1].kind == FU_END_IS_OPEN;
-    if (joint->drive >= 0) return mode == FU_HELD;
-    if (mode == FU_HELD) return joint->sticks || ends[0].kind == FU_END_IS_HARD || ends[1].kind == FU_END_IS_HARD;
+    if (slide->drive >= 0) return mode == FU_LOCKED;
+    if (mode == FU_LOCKED) return slide->sticks || ends[0].kind == FU_END_IS_HARD || ends[1].kind == FU_END_IS_HARD;
     return mode == FU_SLIDES;
 }
 
 /* whether what tells where slides are can be: it leads to places in memory */
 static int possible_places(const fu_model *model, const fu_state *state)
 {
-    for (int j = 0; j < model->n_joints; ++j) {
-        const fu_joint *joint = &model->joints[j];
-        if (!in_range(state->element[j], 0, model->cables[joint->cable].n_elements - 1)) return 0;
-        if (!possible_mode(joint, state->mode[j])) return 0;
-        if (!in_range(state->way[j], -1, 1) || !in_range(state->contact[j], -1, 1)) return 0;
+    for (int j = 0; j < model->n_slides; ++j) {
+        const fu_slide *slide = &model->slides[j];
+        if (!in_range(state->element[j], 0, model->cables[slide->cable].n_elements - 1)) return 0;
+        if (!possible_mode(slide, state->mode[j])) return 0;
+        if (!in_range(state->slip_direction[j], -1, 1) || !in_range(state->contact[j], -1, 1)) return 0;
     }
     return 1;
 }
 
 static int slides_on_their_elements(const fu_model *model, const fu_state *state)
 {
-    for (int j = 0; j < model->n_joints; ++j) {
-        const double length = model->cables[model->joints[j].cable].length;
+    for (int j = 0; j < model->n_slides; ++j) {
+        const double length = model->cables[model->slides[j].cable].length;
         const double x = state->s[j] - fu_element_start(model, j, state->element[j]);
         if (state->mode[j] != FU_LEFT && !(x >= -ASIDE * length && x <= (1.0 + ASIDE) * length)) return 0;
     }
@@ -127,9 +127,9 @@ static int finite_state(const fu_model *model, const fu_state *state)
 {
     return fu_all_finite(&state->t, 1) && fu_all_finite(state->q, model->n_q) && fu_all_finite(state->v, model->n_dof) &&
            fu_all_finite(state->acceleration, model->n_dof) && fu_all_finite(state->a, model->n_dof) &&
-           fu_all_finite(state->s, model->n_joints) && fu_all_finite(state->f, 3L * model->n_joints) &&
-           fu_all_finite(state->spring, 3L * model->n_springs) && fu_all_finite(state->multipliers, 6L * model->n_links) &&
-           fu_all_finite(state->hold, model->n_joints) && fu_all_finite(state->director, 3L * model->n_joints) &&
+           fu_all_finite(state->s, model->n_slides) && fu_all_finite(state->f, 3L * model->n_slides) &&
+           fu_all_finite(state->spring, 3L * model->n_springs) && fu_all_finite(state->multipliers, 6L * model->n_joints) &&
+           fu_all_finite(state->locked_s, model->n_slides) && fu_all_finite(state->director, 3L * model->n_slides) &&
            fu_all_finite(state->memory, model->n_memory);
 }
 
@@ -149,7 +149,7 @@ static int possible_numbers(const fu_run *run)
                               run->dissipated_power, run->external, run->external_power, run->drive_power,
                               run->drive_power_before, run->drive_step, run->closed, run->allowed,
                               run->round_off, run->newton_tolerance, run->statistics.h_min, run->statistics.h_max,
-                              run->statistics.error_sum, run->books.exchanged, run->books.grown, run->books.lost};
+                              run->statistics.error_sum, run->balance.exchanged, run->balance.grown, run->balance.lost};
     const long counts[] = {run->statistics.steps, run->statistics.rejected, run->statistics.newton_iterations,
                            run->statistics.factorisations, run->statistics.crossings, run->statistics.newton_failures,
                            run->statistics.evaluations, run->accelerator.evaluated};
@@ -159,14 +159,14 @@ static int possible_numbers(const fu_run *run)
         if (counts[i] < 0) return 0;
     for (int k = 0; k < run->n_watches; ++k)
         if (!in_range(run->late[k], -1, 1)) return 0;
-    return fu_all_finite(numbers, sizeof numbers / sizeof *numbers) && fu_all_finite(run->books.first, FU_ENERGIES) &&
-           fu_all_finite(run->first, model->n_q) && fu_all_finite(run->s_slope, model->n_joints) &&
+    return fu_all_finite(numbers, sizeof numbers / sizeof *numbers) && fu_all_finite(run->balance.first, FU_ENERGIES) &&
+           fu_all_finite(run->first, model->n_q) && fu_all_finite(run->s_slope, model->n_slides) &&
            run->motion >= 0.0 && run->least_motion >= 0.0 && run->extent >= 0.0 &&
-           in_range(run->stopped_joint, 0, last_of(model->n_joints)) &&
+           in_range(run->stopped_joint, 0, last_of(model->n_slides)) &&
            in_range(run->turned, 0, MOST_COUNT) && in_range(run->holds, 0, 1) && in_range(run->rest_start, 0, 1) &&
-           in_range(run->struggle, -MOST_COUNT, MOST_COUNT) && in_range(run->failure.cause, FU_NO_FAILURE, FU_JAM) &&
+           in_range(run->net_rejections, -MOST_COUNT, MOST_COUNT) && in_range(run->failure.cause, FU_NO_FAILURE, FU_JAM) &&
            in_range(run->failure.dof, 0, last_of(model->n_dof)) &&
-           in_range(run->failure.joint, -1, last_of(model->n_joints));
+           in_range(run->failure.slide, -1, last_of(model->n_slides));
 }
 
 /* Take up again, after fu_start of the same model and settings; the rows before, so many, are not in the arrays. Not zero

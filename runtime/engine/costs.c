@@ -16,25 +16,25 @@ static void work_of_slide(const fu_run *run, int j, int what)
     const fu_state *now = &run->now;
     double phi[3], J[3 * (FU_SLIDE_COORDINATES + 1)], K[(FU_SLIDE_COORDINATES + 1) * (FU_SLIDE_COORDINATES + 1)];
     double s = now->s[j];
-    fu_slide_state slide;
+    fu_slide_state slide_state;
     if (what == RESIDUAL) {
         fu_slide_residual(model, now, j, phi, K);
-        if (model->joints[j].brake && now->mode[j] == FU_SLIDES) fu_slide_tangent(model, now, j, now->f + 3 * j, J, K);
+        if (model->slides[j].resistance && now->mode[j] == FU_SLIDES) fu_slide_tangent(model, now, j, now->f + 3 * j, J, K);
     } else if (what == TANGENT) fu_slide_tangent(model, now, j, now->f + 3 * j, J, K);
-    else if (what == TERMS) fu_slide_now(model, now, j, &slide);
+    else if (what == TERMS) fu_slide_now(model, now, j, &slide_state);
     else fu_find_arc_length(model, now, j, &s);
 }
 
 static void work_of_link(const fu_run *run, int k, int what)
 {
-    const fu_link *link = &run->model->links[k];
-    double phi[6], J[6 * 2 * FU_END_COORDINATES], K[4 * FU_END_COORDINATES * FU_END_COORDINATES];
+    const fu_joint *joint = &run->model->joints[k];
+    double phi[6], J[6 * 2 * FU_ATTACHMENT_COORDINATES], K[4 * FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
     int at[2 * FU_SLIDE_COORDINATES];
     fu_rows rows;
-    if (what == RESIDUAL) fu_link_residual(run->model, link, &run->now, phi, at, J);
-    else if (what == TANGENT) fu_link_tangent(run->model, link, &run->now, at, J, K);
+    if (what == RESIDUAL) fu_joint_residual(run->model, joint, &run->now, phi, at, J);
+    else if (what == TANGENT) fu_joint_tangent(run->model, joint, &run->now, at, J, K);
     else if (what == TERMS)
-        fu_link_terms(run->model, link, &run->now, run->accelerator.slides, run->accelerator.rows, &rows);
+        fu_joint_terms(run->model, joint, &run->now, run->accelerator.slide_states, run->accelerator.rows, &rows);
 }
 
 /* seconds of one call; of many parts each has little time, and the first call tells */
@@ -54,21 +54,21 @@ static double timed(const fu_run *run, void (*work)(const fu_run *, int, int), i
 }
 
 /* seconds a step: of each slide, then of each joint between ends */
-void fu_costs(const fu_run *run, double *seconds)
+void fu_part_timing(const fu_run *run, double *seconds)
 {
     const fu_model *model = run->model;
     const fu_statistics *s = &run->statistics;
-    const long n = model->n_joints + model->n_links;
+    const long n = model->n_slides + model->n_joints;
     /* methods that iterate on residuals make eq 38 at outputs and at starts alone, the others in each evaluation */
     const double counts[WORKS] = {s->evaluations ? 0.0 : (double)s->newton_iterations, (double)s->factorisations,
                                   (double)run->accelerator.evaluated, (double)s->evaluations};
     for (int k = 0; k < n; ++k) {
-        const int slide = k < model->n_joints;
+        const int slide = k < model->n_slides;
         seconds[k] = 0.0;
         for (int what = 0; what < WORKS; ++what)
             if (counts[what] > 0.0 && s->steps > 0)
                 seconds[k] += counts[what] / (double)s->steps
-                              * timed(run, slide ? work_of_slide : work_of_link, slide ? k : k - model->n_joints, what,
+                              * timed(run, slide ? work_of_slide : work_of_link, slide ? k : k - model->n_slides, what,
                                       BUDGET / (double)(n * WORKS));
     }
 }

@@ -20,11 +20,11 @@ static void multiply(int n, int k, int m, const double *A, const double *B, doub
 
 /* The two vectors of a cable's frame: `rows` holds their derivatives by the element's coordinates and, on a slide, by s. */
 typedef struct {
-    double value[2][3], rate[2][3], second[2][3], rows[6 * FU_END_COORDINATES];
+    double value[2][3], rate[2][3], second[2][3], rows[6 * FU_ATTACHMENT_COORDINATES];
     double S[2][3 * FU_MAX_COORDINATES]; /* shape functions of each: themselves, their first and second derivative by x */
 } frame_vectors;
 
-static void vectors_of(const fu_model *model, const fu_end *end, const fu_state *state, double s_rate, int n_own,
+static void vectors_of(const fu_model *model, const fu_attachment *end, const fu_state *state, double s_rate, int n_own,
                        frame_vectors *w)
 {
     const int on_slide = end->slide >= 0;
@@ -74,10 +74,10 @@ static void vectors_of(const fu_model *model, const fu_end *end, const fu_state 
 }
 
 /* number of the end's own coordinates, and their numbers for fu_add; on a slide the last is s */
-int fu_end_coordinates(const fu_model *model, const fu_end *end, const fu_state *state, int *at)
+int fu_attachment_coordinates(const fu_model *model, const fu_attachment *end, const fu_state *state, int *at)
 {
     if (end->body >= 0) {
-        const fu_rigid *body = &model->rigids[end->body];
+        const fu_body *body = &model->bodies[end->body];
         const int n = fu_body_dofs(body);
         for (int i = 0; i < n; ++i) at[i] = body->dof + i;
         return n;
@@ -87,18 +87,18 @@ int fu_end_coordinates(const fu_model *model, const fu_end *end, const fu_state 
     const int element = end->slide >= 0 ? state->element[end->slide] : end->element, n = cable->coordinates;
     for (int i = 0; i < n; ++i) at[i] = cable->first + element * cable->per_node + i;
     if (end->slide < 0) return n;
-    at[n] = fu_extra(model, model->joints[end->slide].unknown);
+    at[n] = fu_extra(model, model->slides[end->slide].unknown);
     return n + 1;
 }
 
-static void point_of(const fu_model *model, const fu_end *end, const fu_state *state, fu_place *place)
+static void point_of(const fu_model *model, const fu_attachment *end, const fu_state *state, fu_attachment_state *place)
 {
     const int dim = model->dim, n = place->n;
     for (int d = 0; d < 3; ++d) place->v[d] = place->bias[d] = 0.0;
     memcpy(place->p, end->u, sizeof place->p);
     memset(place->P, 0, sizeof(double) * (size_t)(dim * n));
     if (end->body >= 0) {
-        const fu_rigid *body = &model->rigids[end->body];
+        const fu_body *body = &model->bodies[end->body];
         body->kernel->point(state->q + body->configuration, end->u, state->v + body->dof, place->p, place->P, place->v,
                             place->bias);
     } else if (end->cable >= 0 && end->slide < 0) {
@@ -115,7 +115,7 @@ static void point_of(const fu_model *model, const fu_end *end, const fu_state *s
     }
 }
 
-static void axes_of(const fu_model *model, const fu_end *end, const fu_state *state, double s_rate, fu_place *place)
+static void axes_of(const fu_model *model, const fu_attachment *end, const fu_state *state, double s_rate, fu_attachment_state *place)
 {
     const int dim = model->dim, n = place->n, turns = dim == 3 ? 3 : 1;
     double A[9];
@@ -123,7 +123,7 @@ static void axes_of(const fu_model *model, const fu_end *end, const fu_state *st
     for (int d = 0; d < 3; ++d) place->omega[d] = place->alpha[d] = 0.0;
     memset(place->T, 0, sizeof(double) * (size_t)(turns * n));
     if (end->body >= 0) {
-        const fu_rigid *body = &model->rigids[end->body];
+        const fu_body *body = &model->bodies[end->body];
         double unused[36];
         body->kernel->frame(state->q + body->configuration, model->zero, A, place->T, unused);
         multiply(turns, n, 1, place->T, state->v + body->dof, place->omega); /* at omega' = 0 the axes' own bias is nil */
@@ -143,12 +143,12 @@ static void axes_of(const fu_model *model, const fu_end *end, const fu_state *st
 }
 
 /* The node of a modal body: all at once. */
-static void of_modes(const fu_model *model, const fu_end *end, const fu_state *state, fu_place *place)
+static void of_modes(const fu_model *model, const fu_attachment *end, const fu_state *state, fu_attachment_state *place)
 {
-    const fu_rigid *body = &model->rigids[end->body];
+    const fu_body *body = &model->bodies[end->body];
     const int dim = model->dim;
     fu_modal_point at;
-    fu_modal_anchor(body, &end->spot, state->q + body->configuration, state->v + body->dof, &at, place->P, place->T);
+    fu_modal_attachment_state(body, &end->spot, state->q + body->configuration, state->v + body->dof, &at, place->P, place->T);
     memset(place->p, 0, sizeof place->p);
     memset(place->v, 0, sizeof place->v);
     memset(place->bias, 0, sizeof place->bias);
@@ -161,11 +161,11 @@ static void of_modes(const fu_model *model, const fu_end *end, const fu_state *s
 }
 
 /* Where an end stands and how it moves: its point, its axes, or both; s_rate: of its slide, where velocities count. */
-void fu_end_place(const fu_model *model, const fu_end *end, const fu_state *state, double s_rate, int what,
-                  fu_place *place)
+void fu_attachment_at(const fu_model *model, const fu_attachment *end, const fu_state *state, double s_rate, int what,
+                  fu_attachment_state *place)
 {
-    place->n = fu_end_coordinates(model, end, state, place->at);
-    if (end->body >= 0 && model->rigids[end->body].modes) {
+    place->n = fu_attachment_coordinates(model, end, state, place->at);
+    if (end->body >= 0 && model->bodies[end->body].modes) {
         of_modes(model, end, state, place);
         return;
     }
@@ -174,17 +174,17 @@ void fu_end_place(const fu_model *model, const fu_end *end, const fu_state *stat
 }
 
 /* K (n x n) += derivative by the end's coordinates of P' f + T' m at a fixed force f and moment m; either may be null */
-void fu_end_curvature(const fu_model *model, const fu_end *end, const fu_state *state, const double *f, const double *m,
+void fu_geometric_stiffness(const fu_model *model, const fu_attachment *end, const fu_state *state, const double *f, const double *m,
                       int n, double *K)
 {
     const int dim = model->dim;
     if (end->body >= 0) {
-        const fu_rigid *body = &model->rigids[end->body];
+        const fu_body *body = &model->bodies[end->body];
         const double *b = state->q + body->configuration;
-        double p[3], A[9], P[18], part[FU_END_COORDINATES * FU_END_COORDINATES];
+        double p[3], A[9], P[18], part[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
         if (body->modes) {
             const double none[3] = {0.0};
-            fu_modal_anchor_force(body, &end->spot, b, f ? f : none, m ? m : none, part);
+            fu_modal_attachment_force(body, &end->spot, b, f ? f : none, m ? m : none, part);
             for (int i = 0; i < n * n; ++i) K[i] += part[i];
             return;
         }
@@ -200,7 +200,7 @@ void fu_end_curvature(const fu_model *model, const fu_end *end, const fu_state *
     }
     if (!m || !end->frame) return;
     frame_vectors w;
-    double g[6], of_frame[36], half[6 * FU_END_COORDINATES];
+    double g[6], of_frame[36], half[6 * FU_ATTACHMENT_COORDINATES];
     vectors_of(model, end, state, 0.0, n, &w);
     end->frame->moment(w.value[0], w.value[1], m, g, of_frame);
     multiply(2 * dim, 2 * dim, n, of_frame, w.rows, half);

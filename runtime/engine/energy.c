@@ -62,9 +62,9 @@ static void kinematics(fu_run *run, double h)
     fu_between(model, now->q, next->q, m.q);
 }
 
-static const double *configuration(const fu_model *model, const fu_state *state, const fu_joint *joint)
+static const double *configuration(const fu_model *model, const fu_state *state, const fu_slide *slide)
 {
-    return state->q + model->rigids[joint->rider.body].configuration;
+    return state->q + model->bodies[slide->rider.body].configuration;
 }
 
 static void residual(fu_run *run, double h)
@@ -79,25 +79,25 @@ static void residual(fu_run *run, double h)
     fu_algorithmic_forces(run, m.q, run->force);
     fu_rate_forces(model, m.q, m.v, run->force);
     fu_external_forces(model, now->t + 0.5 * h, m.q, run->force);
-    for (int j = 0; j < model->n_joints; ++j) {
-        const fu_joint *joint = &model->joints[j];
-        const double length = model->cables[joint->cable].length, start = fu_element_start(model, j, now->element[j]);
+    for (int j = 0; j < model->n_slides; ++j) {
+        const fu_slide *slide = &model->slides[j];
+        const double length = model->cables[slide->cable].length, start = fu_element_start(model, j, now->element[j]);
         const double *f = next->f + 3 * j;
         double G[3 * FU_MAX_COORDINATES], phi[3], unused[FU_MAX_COORDINATES];
         int at[FU_SLIDE_COORDINATES + 1];
         fu_slide_coordinates(model, next, j, at);
-        joint->kernel->discrete_gradient(length, now->s[j] - start, next->s[j] - start, now->q + at[0], next->q + at[0],
-                                         configuration(model, now, joint), configuration(model, next, joint), G);
-        joint->kernel->residual(length, next->s[j] - start, next->q + at[0], configuration(model, next, joint), joint->rider.u,
+        slide->kernel->discrete_gradient(length, now->s[j] - start, next->s[j] - start, now->q + at[0], next->q + at[0],
+                                         configuration(model, now, slide), configuration(model, next, slide), G);
+        slide->kernel->residual(length, next->s[j] - start, next->q + at[0], configuration(model, next, slide), slide->rider.u,
                                 f, phi, unused);
-        const int s = joint->kernel->coordinates, dim = joint->kernel->dim, n = s + 1;
+        const int s = slide->kernel->coordinates, dim = slide->kernel->dim, n = s + 1;
         double along = 0.0;
         for (int d = 0; d < dim; ++d) {
             for (int i = 0; i < s; ++i) run->force[at[i]] += f[d] * G[d * n + i];
             along += f[d] * G[d * n + s];
-            extra[joint->unknown + 1 + d] = -joint->mass * phi[d];
+            extra[slide->unknown + 1 + d] = -slide->mass * phi[d];
         }
-        extra[joint->unknown] = -scale * along;
+        extra[slide->unknown] = -scale * along;
     }
     for (int k = 0; k < model->n_springs; ++k) {
         const fu_spring *spring = &model->springs[k];
@@ -119,24 +119,24 @@ static void joint_matrix(fu_run *run, int j, double stiffness)
     const fu_model *model = run->model;
     const fu_state *now = &run->now, *next = &run->next;
     fu_system *system = &run->newton;
-    const fu_joint *joint = &model->joints[j];
-    const fu_rigid *rider = &model->rigids[joint->rider.body];
-    const double length = model->cables[joint->cable].length, start = fu_element_start(model, j, now->element[j]);
-    const int s = joint->kernel->coordinates, n = s + 1, dim = joint->kernel->dim;
-    const int turns = model->cables[joint->cable].coordinates;
+    const fu_slide *slide = &model->slides[j];
+    const fu_body *rider = &model->bodies[slide->rider.body];
+    const double length = model->cables[slide->cable].length, start = fu_element_start(model, j, now->element[j]);
+    const int s = slide->kernel->coordinates, n = s + 1, dim = slide->kernel->dim;
+    const int turns = model->cables[slide->cable].coordinates;
     double G[3 * FU_MAX_COORDINATES], J[3 * FU_MAX_COORDINATES], K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
     int at[FU_SLIDE_COORDINATES + 1];
     fu_slide_coordinates(model, next, j, at);
-    joint->kernel->discrete_gradient(length, now->s[j] - start, next->s[j] - start, now->q + at[0], next->q + at[0],
-                                     configuration(model, now, joint), configuration(model, next, joint), G);
-    joint->kernel->tangent(length, next->s[j] - start, next->q + at[0], configuration(model, next, joint), joint->rider.u,
+    slide->kernel->discrete_gradient(length, now->s[j] - start, next->s[j] - start, now->q + at[0], next->q + at[0],
+                                     configuration(model, now, slide), configuration(model, next, slide), G);
+    slide->kernel->tangent(length, next->s[j] - start, next->q + at[0], configuration(model, next, slide), slide->rider.u,
                            next->f + 3 * j, J, K);
     fu_cayley_columns(rider->kernel, J, dim, n, turns, run->psi + rider->dof);
     fu_cayley_columns(rider->kernel, K, n, n, turns, run->psi + rider->dof);
     for (int i = 0; i < n; ++i) {
         for (int d = 0; d < dim; ++d) {
-            fu_add(model, system, at[i], at[s] + 1 + d, joint->mass * G[d * n + i]);
-            fu_add(model, system, at[s] + 1 + d, at[i], joint->mass * J[d * n + i]);
+            fu_add(model, system, at[i], at[s] + 1 + d, slide->mass * G[d * n + i]);
+            fu_add(model, system, at[s] + 1 + d, at[i], slide->mass * J[d * n + i]);
         }
         for (int k = 0; k < n; ++k)
             if (K[i * n + k] != 0.0) fu_add(model, system, at[i], at[k], stiffness * K[i * n + k]);
@@ -174,7 +174,7 @@ static void matrix(fu_run *run, double h)
     fu_bodies_matrix(model, &state, 0, (fu_weights){1.0, rate, stiffness}, &run->newton);
     mean_stress(run, stiffness);
     fu_loads_matrix(model, run->now.t + 0.5 * h, m.q, 0, stiffness, &run->newton);
-    for (int j = 0; j < model->n_joints; ++j) joint_matrix(run, j, stiffness);
+    for (int j = 0; j < model->n_slides; ++j) joint_matrix(run, j, stiffness);
     for (int k = 0; k < model->n_springs; ++k)
         fu_spring_matrix(model, &model->springs[k], &state, 0, rate, stiffness, model->springs[k].mass, &run->newton);
 }
@@ -223,9 +223,9 @@ static void book(fu_run *run, double h)
     run->since = 0.5 * h;
     for (int i = 0; i < model->n_dof; ++i) m.force[i] = 0.0;
     fu_rate_forces(model, m.q, m.v, m.force);
-    const int n_flexible = model->n_rigids ? model->rigids[0].dof : model->n_dof; /* gyroscopic moments do no work */
+    const int n_flexible = model->n_bodies ? model->bodies[0].dof : model->n_dof; /* gyroscopic moments do no work */
     for (int i = 0; i < n_flexible; ++i) run->dissipated += m.force[i] * run->psi[i];
-    run->dissipated += fu_algorithmic_book(run, m.q);
+    run->dissipated += fu_algorithmic_account(run, m.q);
     for (int k = 0; k < model->n_springs; ++k)
         run->dissipated += h * fu_discrete_spring(model, &model->springs[k], now->q, next->q, h, force);
     for (int i = 0; i < model->n_dof; ++i) m.force[i] = 0.0;

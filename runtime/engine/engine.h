@@ -18,15 +18,15 @@
 #include "kernels.h"
 
 #define FU_MAX_COORDINATES 32 /* of one element, or of the kernels of a slide on it; model.py checks */
-#define FU_END_COORDINATES 40 /* of what an end is on, s among them; model.py checks */
-#define FU_SLIDE_COORDINATES (FU_MAX_COORDINATES + FU_END_COORDINATES)
-#define FU_ROW_COORDINATES (2 * (FU_END_COORDINATES + FU_SLIDE_COORDINATES))
+#define FU_ATTACHMENT_COORDINATES 40 /* of what an end is on, s among them; model.py checks */
+#define FU_SLIDE_COORDINATES (FU_MAX_COORDINATES + FU_ATTACHMENT_COORDINATES)
+#define FU_ROW_COORDINATES (2 * (FU_ATTACHMENT_COORDINATES + FU_SLIDE_COORDINATES))
 #define FU_MAX_RATES 128 /* of strain, of one element; engine.pyx checks */
 #define FU_SIGNAL_TERMS 7 /* coefficients of a piece of a signal */
 
 typedef struct {
-    const fu_element *kernel;
-    const fu_law *law;
+    const fu_element_kernels *kernel;
+    const fu_law_kernels *law;
     const fu_law_blocks *blocks; /* null where there are none */
     int n_elements;
     int first;        /* first dof and first entry in q */
@@ -47,23 +47,23 @@ typedef struct {
 } fu_instant;
 
 /* What bodies are made of: bodies.c, modal.c. b, w, a and f begin with the body's own entries. */
-typedef struct fu_rigid fu_rigid;
+typedef struct fu_body fu_body;
 typedef struct {
     int constant; /* its M is, in body axes, and it has no K */
-    void (*mass_times)(const fu_rigid *body, const double *b, const double *a, double *f); /* f = M a */
-    void (*forces)(const fu_rigid *body, const double *b, const double *w, double *f); /* f += what is left without a */
-    void (*mass)(const fu_rigid *body, const double *b, double *M);
-    void (*tangent)(const fu_rigid *body, const fu_instant *at, double *D, double *K);
-    double (*kinetic_energy)(const fu_rigid *body, const double *b, const double *w);
-    double (*elastic_energy)(const fu_rigid *body, const double *b);
-    double (*potential_energy)(const fu_rigid *body, const double *b); /* less what model->gravity gives */
-    double (*dissipation)(const fu_rigid *body, const double *b, const double *w);
+    void (*mass_times)(const fu_body *body, const double *b, const double *a, double *f); /* f = M a */
+    void (*forces)(const fu_body *body, const double *b, const double *w, double *f); /* f += what is left without a */
+    void (*mass)(const fu_body *body, const double *b, double *M);
+    void (*tangent)(const fu_body *body, const fu_instant *at, double *D, double *K);
+    double (*kinetic_energy)(const fu_body *body, const double *b, const double *w);
+    double (*elastic_energy)(const fu_body *body, const double *b);
+    double (*potential_energy)(const fu_body *body, const double *b); /* less what model->gravity gives */
+    double (*dissipation)(const fu_body *body, const double *b, const double *w);
 } fu_matter;
 extern const fu_matter fu_rigid_matter, fu_modal_matter;
 
 /* Modes of a body; index 0 of S and X is the undeformed place (derive/bodies/modal.py). */
 typedef struct {
-    const fu_modal *kernel;
+    const fu_modal_kernels *kernel;
     const double *S, *X;               /* (n + 1) x dim; (n + 1) x (n + 1) x dim x dim */
     const double *mass, *stiffness, *damping; /* n x n */
     const double *zero;                /* as many as it has dofs */
@@ -72,8 +72,8 @@ typedef struct {
 } fu_shape;
 
 /* A body with a frame: rigid, or modal with so many modes. */
-struct fu_rigid {
-    const fu_body *kernel; /* of its frame */
+struct fu_body {
+    const fu_body_kernels *kernel; /* of its frame */
     const fu_matter *matter;
     int configuration; /* first entry in q: the frame's, then the modes' */
     int dof;           /* first dof: likewise */
@@ -86,7 +86,7 @@ struct fu_rigid {
 /* A point of a modal body: where it is undeformed, and the modes' displacements and turns there. */
 typedef struct {
     const double *x, *phi, *psi; /* dim; modes x dim; modes x turns */
-} fu_spot;
+} fu_modal_attachment;
 typedef struct {
     double p[3], axes[9], velocity[3], omega[3], bias[3], omega_bias[3];
 } fu_modal_point;
@@ -98,22 +98,22 @@ typedef struct {
     int cable, body, element, slide; /* -1 where it is not on one */
     double u[3];                     /* the point: of the ground; of the body in its axes */
     double N[FU_MAX_COORDINATES];    /* shape functions at the point of the element */
-    const fu_frame *frame;           /* of a cable; null where there are no axes */
+    const fu_frame_kernels *frame;           /* of a cable; null where there are no axes */
     int slopes[2];                   /* its vectors: 0 1 2 for r_x r_y r_z; FU_UP; FU_CARRIED for the slide's director */
     double S[2 * FU_MAX_COORDINATES]; /* derivatives of the shape functions for both, unless on a slide */
     double up[3];
     double axes[9]; /* in those of what carries it, by columns */
-    fu_spot spot;   /* the point of a modal body, instead of u */
-} fu_end;
+    fu_modal_attachment spot;   /* the point of a modal body, instead of u */
+} fu_attachment;
 
 /* Where an end stands and how it moves with its own n coordinates (numbers for fu_add in `at`): dp = P dq, and axes turn
  * by T dq about global axes; velocities, and accelerations where those of the coordinates are zero. */
 enum { FU_POINT = 1, FU_AXES = 2 };
 typedef struct {
-    int n, at[FU_END_COORDINATES];
-    double p[3], v[3], bias[3], P[3 * FU_END_COORDINATES];
-    double A[9], omega[3], alpha[3], T[3 * FU_END_COORDINATES];
-} fu_place;
+    int n, at[FU_ATTACHMENT_COORDINATES];
+    double p[3], v[3], bias[3], P[3 * FU_ATTACHMENT_COORDINATES];
+    double A[9], omega[3], alpha[3], T[3 * FU_ATTACHMENT_COORDINATES];
+} fu_attachment_state;
 
 /* What waits for a slide at an end of its cable, and what it does in its own way: restitution of a hard stop; length
  * before the end, stiffness and damping of a buffer. */
@@ -121,34 +121,34 @@ enum { FU_END_IS_ERROR, FU_END_IS_OPEN, FU_END_IS_HARD, FU_END_IS_BUFFERED };
 typedef struct {
     int kind;
     double restitution, length, stiffness, damping;
-} fu_terminal;
+} fu_end_stop;
 
-/* A slide. It slides, or s is held, at a signal or where it stands, or the rider has left the cable. */
-enum { FU_SLIDES, FU_HELD, FU_LEFT };
+/* A slide_state. It slides, or s is held, at a signal or where it stands, or the rider has left the cable. */
+enum { FU_SLIDES, FU_LOCKED, FU_LEFT };
 typedef struct {
-    const fu_slide *kernel;
+    const fu_slide_kernels *kernel;
     int cable;
-    fu_end rider;
-    int native;              /* the kernels take the rider's own configuration: it is a rigid body */
+    fu_attachment rider;
+    int rider_is_rigid;              /* the kernels take the rider's own configuration: it is a rigid body */
     int unknown, multiplier; /* places beyond the border's dofs: of s and the force, of the multipliers of eq 38 */
-    int room;                /* multipliers that it has: one more where it may be held */
+    int max_multipliers;                /* multipliers that it has: one more where it may be held */
     int drive;               /* signal that s follows, -1 */
     int carries_director;    /* the element has none of its own */
     double mass; /* scale of the constraint rows, kg */
-    const fu_brake *brake;   /* null where there are neither friction nor buffers */
+    const fu_resistance_kernels *resistance;   /* null where there are neither friction nor buffers */
     int sticks;              /* friction holds it at rest, else it rises with the speed */
-    double friction, holding, viscous, velocity; /* coefficients sliding and at rest; N s/m; m/s */
-    fu_terminal stops[2];        /* at the start and at the end */
-} fu_joint;
+    double friction, static_friction, viscous, velocity; /* coefficients sliding and at rest; N s/m; m/s */
+    fu_end_stop stops[2];        /* at the start and at the end */
+} fu_slide;
 
 /* A joint between two ends; c = base + its signal drives it. */
 typedef struct {
-    const fu_pair *kernel;
-    fu_end ends[2];
+    const fu_joint_kernels *kernel;
+    fu_attachment ends[2];
     int unknown, multiplier, signal;
-    int idle; /* bits of the rows that other joints' imply: their multipliers are nil */
+    int redundant_rows; /* bits of the rows that other joints' imply: their multipliers are nil */
     double base, scale[6]; /* scale of its rows, kg or kg m */
-} fu_link;
+} fu_joint;
 
 /* f(t) = a polynomial of t - breaks[i] in each interval (the first and the last go on beyond the breaks)
  *        + amplitude sin(angular_frequency t + phase) */
@@ -176,11 +176,11 @@ typedef struct {
     int kind, signal, on; /* `on`: the cable or the body */
     int element;
     double x, u[3], c[3]; /* c: components, N or N m */
-    fu_spot spot;
+    fu_modal_attachment spot;
 } fu_load;
 
 typedef struct {
-    fu_end ends[2];
+    fu_attachment ends[2];
     int dim, unknown;
     double stiffness, damping, length, mass; /* N/m, N s/m, m; kg: scale of its rows */
 } fu_spring;
@@ -237,18 +237,18 @@ typedef struct {
 } fu_system;
 
 typedef struct {
-    int dim, n_cables, n_rigids, n_joints, n_links, n_springs, n_motions, n_dead_loads, n_loads;
+    int dim, n_cables, n_bodies, n_slides, n_joints, n_springs, n_motions, n_dead_loads, n_loads;
     const fu_cable *cables;
-    const fu_rigid *rigids;
+    const fu_body *bodies;
+    const fu_slide *slides;
     const fu_joint *joints;
-    const fu_link *links;
     const fu_spring *springs;
     const fu_motion *motions;
     const fu_dead_load *dead_loads;
     const fu_load *loads;
     const fu_signal *signals;
     int n_q, n_dof, n_band, n_border_dof;
-    int n_brakes; /* slides that have one */
+    int n_resistances; /* slides that have one */
     int n_memory; /* zero without algorithmic dissipation */
     int n_extra, n_multipliers; /* unknowns of slides, joints and springs in a Newton system, of the former in eq 38 */
     const int *place;
@@ -269,16 +269,16 @@ typedef struct {
     double t;
     double *q, *v, *acceleration;
     double *a;       /* the integrator's auxiliary acceleration */
-    double *s;       /* per joint: arc-length */
-    double *f;       /* per joint: force on the rider, 3 */
+    double *s;       /* per slide: arc-length */
+    double *f;       /* per slide: force on the rider, 3 */
     double *spring;  /* per spring: force on its first end, 3 */
-    double *multipliers; /* per link: 6 */
-    double *hold;    /* per joint: s where it is held */
-    int *element;    /* per joint: element that holds s */
-    int *mode;       /* per joint: FU_SLIDES and so on */
-    int *way;        /* per joint: 1 or -1 where friction is against that direction whatever the speed */
-    int *contact;    /* per joint: 1 or -1 where it lies against what is at the end or at the start */
-    double *director; /* per joint: unit vector across the tangent, carried along with the slide */
+    double *multipliers; /* per joint: 6 */
+    double *locked_s;    /* per slide: s where it is held */
+    int *element;    /* per slide: element that holds s */
+    int *mode;       /* per slide: FU_SLIDES and so on */
+    int *slip_direction;        /* per slide: 1 or -1 where friction is against that direction whatever the speed */
+    int *contact;    /* per slide: 1 or -1 where it lies against what is at the end or at the start */
+    double *director; /* per slide: unit vector across the tangent, carried along with the slide */
     double *memory;  /* of algorithmic dissipation */
 } fu_state;
 
@@ -315,8 +315,8 @@ double fu_kinetic_energy(const fu_model *model, const double *q, const double *v
 double fu_elastic_energy(const fu_model *model, const double *q);
 double fu_potential_energy(const fu_model *model, const double *q);
 double fu_dissipation(const fu_model *model, const double *q, const double *v);
-double fu_length(const fu_model *model, int joint);
-double fu_element_start(const fu_model *model, int joint, int element);
+double fu_length(const fu_model *model, int slide);
+double fu_element_start(const fu_model *model, int slide, int element);
 
 /* Newton matrix = inertia M + stiffness (K + rate D); statics has no inertia */
 typedef struct {
@@ -324,7 +324,7 @@ typedef struct {
 } fu_weights;
 
 /* bodies.c: rigid and modal */
-int fu_body_dofs(const fu_rigid *body);
+int fu_body_dofs(const fu_body *body);
 void fu_bodies_mass_times(const fu_model *model, const double *q, const double *a, double *f);
 void fu_bodies_forces(const fu_model *model, const double *q, const double *v, double *f);
 void fu_bodies_matrix(const fu_model *model, const fu_state *at, const double *psi, fu_weights weights, fu_system *system);
@@ -335,9 +335,9 @@ double fu_bodies_potential_energy(const fu_model *model, const double *q);
 double fu_bodies_dissipation(const fu_model *model, const double *q, const double *v);
 
 /* modal.c: points */
-void fu_modal_anchor(const fu_rigid *body, const fu_spot *spot, const double *b, const double *w, fu_modal_point *out,
+void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *spot, const double *b, const double *w, fu_modal_point *out,
                      double *P, double *T);
-void fu_modal_anchor_force(const fu_rigid *body, const fu_spot *spot, const double *b, const double *f, const double *m,
+void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *spot, const double *b, const double *f, const double *m,
                            double *K);
 
 /* motions.c */
@@ -351,16 +351,16 @@ void fu_loads_matrix(const fu_model *model, double t, const double *q, const dou
                      fu_system *system);
 
 /* ends.c */
-int fu_end_coordinates(const fu_model *model, const fu_end *end, const fu_state *state, int *at);
-void fu_end_place(const fu_model *model, const fu_end *end, const fu_state *state, double s_rate, int what,
-                  fu_place *place);
-void fu_end_curvature(const fu_model *model, const fu_end *end, const fu_state *state, const double *f, const double *m,
+int fu_attachment_coordinates(const fu_model *model, const fu_attachment *end, const fu_state *state, int *at);
+void fu_attachment_at(const fu_model *model, const fu_attachment *end, const fu_state *state, double s_rate, int what,
+                  fu_attachment_state *place);
+void fu_geometric_stiffness(const fu_model *model, const fu_attachment *end, const fu_state *state, const double *f, const double *m,
                       int n, double *K);
 
 /* Constraints H q'' = W over the dofs `at`, with what is left of them C, and their rate at rest: `rows` of them now, from
  * the multiplier `first` on, which has `room` for some more; those of the bits `idle` are nil. */
 typedef struct {
-    int first, room, rows, idle, n, at[FU_ROW_COORDINATES];
+    int first, max_multipliers, rows, redundant_rows, n, at[FU_ROW_COORDINATES];
     int slide; /* that an end of a joint is on, -1; by_s: derivatives by its s */
     double by_s[6];
     double H[6 * FU_ROW_COORDINATES], W[6], C[6], rate[6], scale[6];
@@ -375,39 +375,39 @@ int fu_slide_coordinates(const fu_model *model, const fu_state *state, int j, in
 double fu_slide_held(const fu_model *model, const fu_state *state, int j, double *rate, double *second);
 void fu_slide_residual(const fu_model *model, const fu_state *state, int j, double *phi, double *g);
 void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, const double *f, double *J, double *K);
-void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows *rows, fu_slide_state *slide);
+void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows *rows, fu_slide_state *slide_state);
 double fu_slide_step(const fu_model *model, const fu_state *state, int j, double s, double A_t[9]);
 
 /* brakes.c: R of a slide, the force along its cable times r_x, and its derivatives */
 typedef struct {
     double R, by_t[3], by_u[3], by_f[3], by_s;
-} fu_braking;
-int fu_is_braked(const fu_model *model, const fu_state *state, int j);
-void fu_braking_of(const fu_model *model, const fu_state *state, int j, const double *t, const double *u, const double *f,
-              fu_braking *braking);
-double fu_brake_power(const fu_model *model, const fu_state *state, int j, const double *t, const double *u,
+} fu_resistance;
+int fu_has_resistance(const fu_model *model, const fu_state *state, int j);
+void fu_resistance_at(const fu_model *model, const fu_state *state, int j, const double *t, const double *u, const double *f,
+              fu_resistance *resistance);
+double fu_resistance_power(const fu_model *model, const fu_state *state, int j, const double *t, const double *u,
                       const double *f);
-double fu_brake_energy(const fu_model *model, const fu_state *state);
+double fu_buffer_energy(const fu_model *model, const fu_state *state);
 double fu_lost_in_buffers(const fu_model *model, const fu_state *from, const fu_state *to);
 void fu_touch_buffers(const fu_model *model, fu_state *state);
 double fu_compression(const fu_model *model, const fu_state *state, int j, int side);
 void fu_slide_motion(const fu_model *model, const fu_state *state, int j, const double *J, double *t, double *u);
-void fu_brake_rows(const fu_model *model, const fu_state *state, int j, const double *J, const fu_braking *braking,
+void fu_resistance_rows(const fu_model *model, const fu_state *state, int j, const double *J, const fu_resistance *resistance,
                    double *by_place, double *by_rate);
 
 /* links.c */
-int fu_link_is_idle(const fu_link *link, const fu_state *state);
-int fu_link_residual(const fu_model *model, const fu_link *link, const fu_state *state, double *phi, int *at, double *J);
-int fu_between_cables(const fu_link *link);
-int fu_ties_a_frame(const fu_model *model, int joint);
-int fu_link_tangent(const fu_model *model, const fu_link *link, const fu_state *state, int *at, double *J, double *K);
-void fu_link_terms(const fu_model *model, const fu_link *link, const fu_state *state, const fu_slide_state *slides,
+int fu_joint_is_inactive(const fu_joint *joint, const fu_state *state);
+int fu_joint_residual(const fu_model *model, const fu_joint *joint, const fu_state *state, double *phi, int *at, double *J);
+int fu_between_cables(const fu_joint *joint);
+int fu_ties_a_frame(const fu_model *model, int which);
+int fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, int *at, double *J, double *K);
+void fu_joint_terms(const fu_model *model, const fu_joint *joint, const fu_state *state, const fu_slide_state *slide_states,
                    const fu_rows *of_slides, fu_rows *rows);
 
 /* springs.c */
 void fu_spring_force(const fu_model *model, const fu_spring *spring, const double *q, const double *v, double force[3],
                      double by_gap[9], double by_rate[9]);
-void fu_forces_of_springs(const fu_model *model, const fu_state *state, double *forces);
+void fu_spring_forces_of(const fu_model *model, const fu_state *state, double *forces);
 void fu_spring_forces(const fu_model *model, const double *q, const double *v, double *f);
 void fu_spring_pull(const fu_model *model, const fu_spring *spring, const double *q, const double force[3], double *f);
 void fu_spring_matrix(const fu_model *model, const fu_spring *spring, const fu_state *state, const double *psi,
@@ -421,47 +421,47 @@ double fu_spring_dissipation(const fu_model *model, const double *q, const doubl
 
 /* rotation.c */
 void fu_move(const fu_model *model, double *q, const double *dofs);
-void fu_body_rate(const fu_body *kernel, const double *b, const double *w, double *rate);
-void fu_body_increment(const fu_body *kernel, const double *b, const double *change, double *increment);
+void fu_body_rate(const fu_body_kernels *kernel, const double *b, const double *w, double *rate);
+void fu_body_increment(const fu_body_kernels *kernel, const double *b, const double *change, double *increment);
 void fu_cayley_move(const fu_model *model, double *q, const double *psi);
-void fu_cayley_columns(const fu_body *kernel, double *rows, int n_rows, int n_columns, int first, const double *psi);
+void fu_cayley_columns(const fu_body_kernels *kernel, double *rows, int n_rows, int n_columns, int first, const double *psi);
 void fu_between(const fu_model *model, const double *q, const double *q_next, double *between);
-void fu_turn_columns(const fu_body *kernel, double *rows, int n_rows, int n_columns, int first, const double *psi);
+void fu_turn_columns(const fu_body_kernels *kernel, double *rows, int n_rows, int n_columns, int first, const double *psi);
 
 /* acceleration.c: eq 38 and what comes out of it */
 typedef struct {
     fu_system mass;   /* [M H'; H 0], its band factored once */
     double *corner;   /* m x m: D of M, before joints are added and it is factored */
     double *rhs;      /* unknowns, and FU_BAND_BEYOND */
-    fu_rows *rows;    /* of the slides, then of the links */
-    fu_slide_state *slides;
+    fu_rows *rows;    /* of the slides, then of the joints */
+    fu_slide_state *slide_states;
     double *force, *work, *prescribed; /* n_dof */
-    double *multipliers;  /* of slides and links, as eq 38 gives them */
-    double *braking;      /* per slide: R; then the power that brakes take; then of each slide's R the last step and its cause */
-    double *resistance;   /* per slide: R of one that is driven */
+    double *multipliers;  /* of slides and joints, as eq 38 gives them */
+    double *resistance;      /* per slide: R; then the power that brakes take; then of each slide's R the last step and its cause */
+    double *driven_resistance;   /* per slide: R of one that is driven */
     int jammed;           /* slide whose R was not found, -1 */
-    double *joints;       /* FU_JOINT_OUTPUTS a joint */
+    double *slides;       /* FU_SLIDE_OUTPUTS a joint */
     long evaluated;       /* how often it was */
 } fu_accelerator;
 /* traction: the force on the rider along the cable; of a slide that is driven what its drive gives, over s: times s_rate it is
  * the drive's power */
 typedef struct {
     double s_rate, s_acceleration, force[3], multiplier[2], traction, residual[3];
-} fu_joint_output;
+} fu_slide_output;
 typedef struct {
     double force[3], moment[3], residual; /* on the second end's carrier, at its point; the largest of phi */
-} fu_link_output;
+} fu_joint_output;
 int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work);
 int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerator *work, double *acceleration,
-                     fu_joint_output *joints, double *reaction);
-void fu_link_outputs(const fu_model *model, const fu_state *state, const fu_accelerator *work, fu_link_output *out);
+                     fu_slide_output *slides, double *reaction);
+void fu_joint_outputs(const fu_model *model, const fu_state *state, const fu_accelerator *work, fu_joint_output *out);
 int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S);
 int fu_project_positions(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change);
 int fu_project_velocities(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change);
-int fu_strike(const fu_model *model, const fu_state *state, fu_accelerator *work, int joint, double *change);
-void fu_slide_now(const fu_model *model, const fu_state *state, int joint, fu_slide_state *slide);
-double fu_slide_rate(const fu_model *model, const fu_state *state, int joint);
-int fu_find_arc_length(const fu_model *model, const fu_state *state, int joint, double *s);
+int fu_strike(const fu_model *model, const fu_state *state, fu_accelerator *work, int slide, double *change);
+void fu_slide_now(const fu_model *model, const fu_state *state, int slide, fu_slide_state *slide_state);
+double fu_slide_rate(const fu_model *model, const fu_state *state, int slide);
+int fu_find_arc_length(const fu_model *model, const fu_state *state, int slide, double *s);
 void fu_carry_directors(const fu_model *model, fu_state *state);
 
 typedef struct {
@@ -499,7 +499,7 @@ typedef struct {
 /* What the user watches: an entry of the state less a value, a slide's rate or traction less a value, or a function of
  * his; what stops.c watches on a slide: whether it stays as it is, and its buffer at the end that `value` is the side of.
  * A traction is of the accelerations, which eq 38 gives anew at each state that is looked at. */
-enum { FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_RATE, FU_WATCH_TRACTION, FU_WATCH_CALL, FU_WATCH_GRIP,
+enum { FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_RATE, FU_WATCH_TRACTION, FU_WATCH_CALL, FU_WATCH_STICK,
        FU_WATCH_BUFFER };
 typedef struct {
     int kind, index, direction; /* direction: 1 rising, -1 falling, 0 both */
@@ -524,7 +524,7 @@ enum { FU_RUNNING = 0, FU_DONE = 1, FU_END_OF_CABLE = 2, FU_NO_CONVERGENCE = 3, 
 /* Why a step failed, and where that shows most: a dof, and a joint or -1. */
 enum { FU_NO_FAILURE = 0, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE, FU_JAM };
 typedef struct {
-    int cause, dof, joint;
+    int cause, dof, slide;
 } fu_failure;
 
 /* The energy balance since the start, J: energies then, the most exchanged between them and in motion, the most that came
@@ -532,16 +532,16 @@ typedef struct {
 #define FU_ENERGIES 5
 typedef struct {
     double first[FU_ENERGIES], exchanged, in_motion, grown, lost, rounding;
-} fu_books;
+} fu_energy_balance;
 
-/* Rows of output, one an output time; joint: FU_JOINT_OUTPUTS numbers a joint in the order of fu_joint_output. */
-#define FU_JOINT_OUTPUTS 11
-#define FU_LINK_OUTPUTS 7
+/* Rows of output, one an output time; joint: FU_SLIDE_OUTPUTS numbers a joint in the order of fu_slide_output. */
+#define FU_SLIDE_OUTPUTS 11
+#define FU_JOINT_OUTPUTS 7
 typedef struct {
     int n;     /* rows recorded since the start */
     int first; /* the row that stands first in the arrays: those before it were taken away */
     int pause; /* at so many rows fu_advance returns, for the caller to call fu_pause */
-    double *time, *q, *v, *acceleration, *reaction, *s, *joint, *link;
+    double *time, *q, *v, *acceleration, *reaction, *s, *slide, *joint;
     double *kinetic, *elastic, *potential, *dissipated, *external, *spring;
 } fu_record;
 
@@ -582,8 +582,8 @@ struct fu_run {
     fu_tableau tableau;
     fu_collocation collocation;
     fu_complex_system complex_newton;
-    double caution;      /* of a step that failed: what the next ones stay below, 0 where failures are cheap */
-    double slack;        /* how much larger the estimate of the local error is than that error */
+    double retry_factor;      /* of a step that failed: what the next ones stay below, 0 where failures are cheap */
+    double error_overestimate;        /* how much larger the estimate of the local error is than that error */
     double *scratch;     /* of the integrator: checkpoints do not hold it */
     int n_watches;
     const fu_watch *watches;
@@ -602,7 +602,7 @@ struct fu_run {
     double *rhs;                              /* unknowns, and FU_BAND_BEYOND */
     double *psi, *force, *work, *before;      /* n_dof; force is what supports and motions give, once Newton is done */
     double *first;                            /* n_q: the configuration at the start */
-    double *s_slope;                          /* per joint: predicts ds/dt */
+    double *s_slope;                          /* per slide: predicts ds/dt */
     /* From here to the end numbers alone, which a checkpoint copies as they are. */
     double h, h_factored, contraction, last_error;
     double since; /* energy.c: how long before `now` the acceleration there belongs, s */
@@ -620,9 +620,9 @@ struct fu_run {
     double acted; /* s: when a slide has last stuck, broken loose, or come to an end of its cable */
     int factored, stopped_joint, turned, acts;
     int holds; /* slides keep their elements in a step, which ends where one of these does */
-    int struggle; /* steps rejected of late, less those taken */
+    int net_rejections; /* steps rejected of late, less those taken */
     fu_failure failure; /* of the last step that failed */
-    fu_books books;
+    fu_energy_balance balance;
     int predictor; /* the scratch holds a last step's stages */
     int rest_start; /* for order.py only: start the scheme from zero accelerations */
 };
@@ -645,13 +645,13 @@ void fu_joint_coordinates(const fu_model *model, const fu_state *state, int j, i
 /* algorithmic.c */
 void fu_algorithmic_start(fu_run *run, double h);
 void fu_algorithmic_forces(fu_run *run, const double *q, double *force);
-double fu_algorithmic_book(fu_run *run, const double *q);
+double fu_algorithmic_account(fu_run *run, const double *q);
 
 /* projection.c */
 int fu_find_slides(fu_run *run);
 int fu_close(fu_run *run);
 int fu_return_to_joints(fu_run *run, fu_state *state);
-int fu_wander(fu_run *run, const double *along, double *left);
+int fu_probe_mechanism(fu_run *run, const double *along, double *left);
 int fu_complete(fu_run *run, fu_state *state);
 int fu_is_short(const fu_run *run, double h);
 int fu_coast(fu_run *run, double h);
@@ -659,16 +659,16 @@ int fu_coast(fu_run *run, double h);
 /* books.c */
 double fu_dissipated_power(const fu_run *run, const fu_state *state);
 double fu_external_power(fu_run *run, const fu_state *state, const double *reaction);
-void fu_book_trapezoid(fu_run *run, double h);
+void fu_account_trapezoid(fu_run *run, double h);
 void fu_impact(fu_run *run, const double *change, double restitution);
 int fu_moves(const fu_run *run);
-int fu_check_books(fu_run *run, const double energies[FU_ENERGIES], int first);
+int fu_check_energy_balance(fu_run *run, const double energies[FU_ENERGIES], int first);
 
 /* costs.c */
-void fu_costs(const fu_run *run, double *seconds);
+void fu_part_timing(const fu_run *run, double *seconds);
 
 /* failure.c: why a step failed */
-int fu_fail(fu_run *run, int cause, const double *dofs, int joint);
+int fu_fail(fu_run *run, int cause, const double *dofs, int slide);
 int fu_fail_at(fu_run *run, int cause, int unknown);
 int fu_fail_eq38(fu_run *run);
 
@@ -683,14 +683,14 @@ void fu_keep_elements(fu_run *run);
 int fu_stands_on_boundary(const fu_run *run, fu_event event);
 double fu_locate(fu_run *run, fu_event event, double h);
 void fu_watch_now(fu_run *run, fu_event event);
-void fu_watch_anew(fu_run *run, int joint);
+void fu_watch_anew(fu_run *run, int slide);
 
 /* stops.c: slides that stick, break loose, and reach what is at the ends of their cables */
 int fu_has_stops(const fu_model *model);
-double fu_grip(const fu_run *run, const fu_state *state, int joint);
-double fu_press(const fu_run *run, const fu_state *state, int joint, int side);
+double fu_stick_margin(const fu_run *run, const fu_state *state, int slide);
+double fu_buffer_margin(const fu_run *run, const fu_state *state, int slide, int side);
 int fu_begin_stops(fu_run *run);
-int fu_reach_end(fu_run *run, int joint, int side, int *what);
+int fu_reach_end(fu_run *run, int slide, int side, int *what);
 int fu_act(fu_run *run, const fu_watch *watch, int side, int *what);
 
 /* run.c: the time loop */

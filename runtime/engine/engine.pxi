@@ -1,27 +1,27 @@
 # What kernels.h, blocks.h and engine.h declare, as far as engine.pyx uses it.
 
 cdef extern from "kernels.h" nogil:
-    ctypedef struct fu_element:
+    ctypedef struct fu_element_kernels:
         const char *name
         int vectors, dim, nodes
-    ctypedef struct fu_body:
+    ctypedef struct fu_body_kernels:
         const char *name
         int dim, configuration, velocity
-    ctypedef struct fu_modal:
+    ctypedef struct fu_modal_kernels:
         const char *name
-    ctypedef struct fu_slide:
+    ctypedef struct fu_slide_kernels:
         const char *name
         int coordinates, dim
-    ctypedef struct fu_law:
+    ctypedef struct fu_law_kernels:
         const char *name
         int rates
         void *algorithmic_force
-    ctypedef struct fu_frame:
+    ctypedef struct fu_frame_kernels:
         const char *name
-    ctypedef struct fu_pair:
+    ctypedef struct fu_joint_kernels:
         const char *name
         int rows
-    ctypedef struct fu_brake:
+    ctypedef struct fu_resistance_kernels:
         const char *name
     ctypedef struct fu_tables:
         pass
@@ -33,19 +33,19 @@ cdef extern from "blocks.h" nogil:
     const fu_law_blocks *fu_blocks_of(const char *law)
 
 cdef extern from "engine.h" nogil:
-    int FU_JOINT_OUTPUTS, FU_LINK_OUTPUTS, FU_MAX_COORDINATES, FU_MAX_RATES, FU_END_COORDINATES, FU_SLIDES, FU_HELD, FU_LEFT
+    int FU_SLIDE_OUTPUTS, FU_JOINT_OUTPUTS, FU_MAX_COORDINATES, FU_MAX_RATES, FU_ATTACHMENT_COORDINATES, FU_SLIDES, FU_LOCKED, FU_LEFT
     int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT, FU_UNSTABLE
     int FU_NO_FAILURE, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE, FU_JAM
     int FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_RATE, FU_WATCH_TRACTION, FU_WATCH_CALL
-    int FU_WATCH_GRIP, FU_WATCH_BUFFER
+    int FU_WATCH_STICK, FU_WATCH_BUFFER
     int FU_ACTED, FU_STUCK, FU_BROKE_LOOSE, FU_TURNED, FU_STRUCK, FU_FREED, FU_FLEW, FU_ENTERED, FU_CAME_OUT, FU_RESTS
     int FU_END_IS_ERROR, FU_END_IS_OPEN, FU_END_IS_HARD, FU_END_IS_BUFFERED
     int FU_SIGNAL_TERMS, FU_BAND_GROUP
     long FU_BAND_BEYOND(int width)
     long FU_BAND_LENGTH(int n, int width)
     ctypedef struct fu_cable:
-        const fu_element *kernel
-        const fu_law *law
+        const fu_element_kernels *kernel
+        const fu_law_kernels *law
         const fu_law_blocks *blocks
         int n_elements, first, coordinates, per_node, A_stride, memory
         double length, tau, mass_damping
@@ -55,7 +55,7 @@ cdef extern from "engine.h" nogil:
         pass
     const fu_matter fu_rigid_matter, fu_modal_matter
     ctypedef struct fu_shape:
-        const fu_modal *kernel
+        const fu_modal_kernels *kernel
         const double *S
         const double *X
         const double *mass
@@ -65,27 +65,27 @@ cdef extern from "engine.h" nogil:
         double *sums
         double *matrices
         double g[3]
-    ctypedef struct fu_rigid:
-        const fu_body *kernel
+    ctypedef struct fu_body:
+        const fu_body_kernels *kernel
         const fu_matter *matter
         int configuration, dof, modes
         double mass
         double J[9]
         const fu_shape *shape
-    ctypedef struct fu_spot:
+    ctypedef struct fu_modal_attachment:
         const double *x
         const double *phi
         const double *psi
-    ctypedef struct fu_end:
+    ctypedef struct fu_attachment:
         int cable, body, element, slide
         double u[3]
         double N[32]
-        const fu_frame *frame
+        const fu_frame_kernels *frame
         int slopes[2]
         double S[64]
         double up[3]
         double axes[9]
-        fu_spot spot
+        fu_modal_attachment spot
     ctypedef struct fu_modal_point:
         double p[3]
         double axes[9]
@@ -93,27 +93,27 @@ cdef extern from "engine.h" nogil:
         double omega[3]
         double bias[3]
         double omega_bias[3]
-    int fu_body_dofs(const fu_rigid *body)
-    void fu_modal_anchor(const fu_rigid *body, const fu_spot *spot, const double *b, const double *w,
+    int fu_body_dofs(const fu_body *body)
+    void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *spot, const double *b, const double *w,
                          fu_modal_point *out, double *P, double *T)
-    void fu_modal_anchor_force(const fu_rigid *body, const fu_spot *spot, const double *b, const double *f,
+    void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *spot, const double *b, const double *f,
                                const double *m, double *K)
-    ctypedef struct fu_terminal:
+    ctypedef struct fu_end_stop:
         int kind
         double restitution, length, stiffness, damping
-    ctypedef struct fu_joint:
-        const fu_slide *kernel
-        int cable, native, unknown, multiplier, room, drive, carries_director
-        fu_end rider
+    ctypedef struct fu_slide:
+        const fu_slide_kernels *kernel
+        int cable, rider_is_rigid, unknown, multiplier, max_multipliers, drive, carries_director
+        fu_attachment rider
         double mass
-        const fu_brake *brake
+        const fu_resistance_kernels *resistance
         int sticks
-        double friction, holding, viscous, velocity
-        fu_terminal stops[2]
-    ctypedef struct fu_link:
-        const fu_pair *kernel
-        fu_end ends[2]
-        int unknown, multiplier, signal, idle
+        double friction, static_friction, viscous, velocity
+        fu_end_stop stops[2]
+    ctypedef struct fu_joint:
+        const fu_joint_kernels *kernel
+        fu_attachment ends[2]
+        int unknown, multiplier, signal, redundant_rows
         double base
         double scale[6]
     ctypedef struct fu_signal:
@@ -131,9 +131,9 @@ cdef extern from "engine.h" nogil:
         double x
         double u[3]
         double c[3]
-        fu_spot spot
+        fu_modal_attachment spot
     ctypedef struct fu_spring:
-        fu_end ends[2]
+        fu_attachment ends[2]
         int dim, unknown
         double stiffness, damping, length, mass
     ctypedef struct fu_lapack:
@@ -168,17 +168,17 @@ cdef extern from "engine.h" nogil:
         int *pivot_band
         int *pivot_border
     ctypedef struct fu_model:
-        int dim, n_cables, n_rigids, n_joints, n_links, n_springs, n_motions, n_dead_loads, n_loads
+        int dim, n_cables, n_bodies, n_slides, n_joints, n_springs, n_motions, n_dead_loads, n_loads
         const fu_cable *cables
-        const fu_rigid *rigids
+        const fu_body *bodies
+        const fu_slide *slides
         const fu_joint *joints
-        const fu_link *links
         const fu_spring *springs
         const fu_motion *motions
         const fu_dead_load *dead_loads
         const fu_load *loads
         const fu_signal *signals
-        int n_q, n_dof, n_band, n_border_dof, n_brakes, n_memory, n_extra, n_multipliers
+        int n_q, n_dof, n_band, n_border_dof, n_resistances, n_memory, n_extra, n_multipliers
         const int *place
         const int *combination_start
         const int *combination_place
@@ -201,10 +201,10 @@ cdef extern from "engine.h" nogil:
         double *f
         double *spring
         double *multipliers
-        double *hold
+        double *locked_s
         int *element
         int *mode
-        int *way
+        int *slip_direction
         int *contact
         double *director
         double *memory
@@ -217,17 +217,17 @@ cdef extern from "engine.h" nogil:
         double *corner
         double *rhs
         fu_rows *rows
-        fu_slide_state *slides
+        fu_slide_state *slide_states
         double *force
         double *work
         double *prescribed
         double *multipliers
-        double *braking
         double *resistance
+        double *driven_resistance
         int jammed
-        double *joints
+        double *slides
         long evaluated
-    ctypedef struct fu_link_output:
+    ctypedef struct fu_joint_output:
         double residual
     ctypedef struct fu_genalpha:
         double alpha_m, alpha_f, beta, gamma
@@ -266,8 +266,8 @@ cdef extern from "engine.h" nogil:
     ctypedef struct fu_event:
         int kind, which, side
     ctypedef struct fu_failure:
-        int cause, dof, joint
-    ctypedef struct fu_books:
+        int cause, dof, slide
+    ctypedef struct fu_energy_balance:
         double exchanged, in_motion, grown, lost, rounding
     ctypedef struct fu_statistics:
         long steps, rejected, newton_iterations, factorisations, crossings, newton_failures, evaluations
@@ -280,8 +280,8 @@ cdef extern from "engine.h" nogil:
         double *acceleration
         double *reaction
         double *s
+        double *slide
         double *joint
-        double *link
         double *kinetic
         double *elastic
         double *potential
@@ -302,7 +302,7 @@ cdef extern from "engine.h" nogil:
         fu_tableau tableau
         fu_collocation collocation
         fu_complex_system complex_newton
-        double caution, slack
+        double retry_factor, error_overestimate
         double *scratch
         int n_watches
         const fu_watch *watches
@@ -328,7 +328,7 @@ cdef extern from "engine.h" nogil:
         double h, h_factored, contraction, motion, extent, closed
         int factored, stopped_joint, rest_start
         fu_failure failure
-        fu_books books
+        fu_energy_balance balance
     int fu_has_threads()
     void fu_linearise(fu_run *run, double h, const double *change)
     int fu_system_factor_band(fu_system *system, const fu_lapack *lapack)
@@ -342,19 +342,19 @@ cdef extern from "engine.h" nogil:
     void fu_carry_directors(const fu_model *model, fu_state *state)
     double fu_elastic_energy(const fu_model *model, const double *q)
     void fu_touch_buffers(const fu_model *model, fu_state *state)
-    double fu_brake_energy(const fu_model *model, const fu_state *state)
+    double fu_buffer_energy(const fu_model *model, const fu_state *state)
     int fu_moves(const fu_run *run)
     int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S)
     int fu_prepare(fu_run *run)
-    int fu_wander(fu_run *run, const double *along, double *left)
-    void fu_link_outputs(const fu_model *model, const fu_state *state, const fu_accelerator *work, fu_link_output *out)
-    int fu_between_cables(const fu_link *link)
-    int fu_link_tangent(const fu_model *model, const fu_link *link, const fu_state *state, int *at, double *J, double *K)
-    int fu_end_coordinates(const fu_model *model, const fu_end *end, const fu_state *state, int *at)
+    int fu_probe_mechanism(fu_run *run, const double *along, double *left)
+    void fu_joint_outputs(const fu_model *model, const fu_state *state, const fu_accelerator *work, fu_joint_output *out)
+    int fu_between_cables(const fu_joint *joint)
+    int fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, int *at, double *J, double *K)
+    int fu_attachment_coordinates(const fu_model *model, const fu_attachment *end, const fu_state *state, int *at)
     int fu_start(fu_run *run)
     int fu_advance(fu_run *run, double seconds)
     void fu_pause(fu_run *run)
     long fu_save(const fu_run *run, char *bytes)
     int fu_restore(fu_run *run, const char *bytes, int rows)
     int fu_stop(fu_run *run)
-    void fu_costs(const fu_run *run, double *seconds)
+    void fu_part_timing(const fu_run *run, double *seconds)

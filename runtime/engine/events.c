@@ -12,13 +12,13 @@
 
 static double boundary_tolerance(const fu_run *run, int j)
 {
-    return 1e-11 * run->model->cables[run->model->joints[j].cable].length;
+    return 1e-11 * run->model->cables[run->model->slides[j].cable].length;
 }
 
 /* how far s lies outside its element, negative inside */
 static double outside(const fu_run *run, const fu_state *state, int j, int *side)
 {
-    const double length = run->model->cables[run->model->joints[j].cable].length;
+    const double length = run->model->cables[run->model->slides[j].cable].length;
     const double x = state->s[j] - fu_element_start(run->model, j, state->element[j]);
     *side = x > 0.5 * length ? 1 : -1;
     return *side > 0 ? x - length : -x;
@@ -29,8 +29,8 @@ static double outside(const fu_run *run, const fu_state *state, int j, int *side
 void fu_seat_slides(fu_run *run)
 {
     if (run->holds) return;
-    for (int j = 0; j < run->model->n_joints; ++j) {
-        const fu_cable *cable = &run->model->cables[run->model->joints[j].cable];
+    for (int j = 0; j < run->model->n_slides; ++j) {
+        const fu_cable *cable = &run->model->cables[run->model->slides[j].cable];
         int side, *element = &run->next.element[j];
         if (!(outside(run, &run->next, j, &side) > boundary_tolerance(run, j))) continue;
         const double place = fmin(fmax(run->next.s[j] / cable->length, 0.0), cable->n_elements - 1.0);
@@ -43,25 +43,25 @@ void fu_seat_slides(fu_run *run)
 int fu_count_changes(const fu_run *run)
 {
     int count = 0;
-    for (int j = 0; j < run->model->n_joints; ++j) count += abs(run->next.element[j] - run->now.element[j]);
+    for (int j = 0; j < run->model->n_slides; ++j) count += abs(run->next.element[j] - run->now.element[j]);
     return count;
 }
 
 /* Slides of `next` on the elements of `now`, which they have left. */
 void fu_keep_elements(fu_run *run)
 {
-    memcpy(run->next.element, run->now.element, sizeof(int) * (size_t)run->model->n_joints);
+    memcpy(run->next.element, run->now.element, sizeof(int) * (size_t)run->model->n_slides);
 }
 
 /* s until the first of the slides reaches a boundary of its element at the speed that it has */
 double fu_time_to_boundary(fu_run *run)
 {
     double least = INFINITY;
-    for (int j = 0; j < run->model->n_joints; ++j) {
+    for (int j = 0; j < run->model->n_slides; ++j) {
         const double rate = fu_slide_rate(run->model, &run->now, j);
         const double end = fu_element_start(run->model, j, run->now.element[j] + (rate > 0.0));
-        const double way = fabs(end - run->now.s[j]);
-        if (way > boundary_tolerance(run, j)) least = fmin(least, way / fabs(rate));
+        const double slip_direction = fabs(end - run->now.s[j]);
+        if (slip_direction > boundary_tolerance(run, j)) least = fmin(least, slip_direction / fabs(rate));
     }
     return least;
 }
@@ -70,25 +70,25 @@ double fu_time_to_boundary(fu_run *run)
  * boundary, or beyond one that it stood on and has left inwards; 0 where none does. */
 double fu_time_of_turn(fu_run *run, double h)
 {
-    for (int j = 0; j < run->model->n_joints; ++j) {
-        const double rise = h * fu_slide_rate(run->model, &run->now, j), way = fabs(rise);
+    for (int j = 0; j < run->model->n_slides; ++j) {
+        const double rise = h * fu_slide_rate(run->model, &run->now, j), slip_direction = fabs(rise);
         const double at = 0.5 * rise / (rise - (run->next.s[j] - run->now.s[j])), close = boundary_tolerance(run, j);
         const int up = rise > 0.0, element = run->now.element[j];
         const double ahead = fabs(fu_element_start(run->model, j, element + up) - run->now.s[j]);
         const double behind = fabs(fu_element_start(run->model, j, element + !up) - run->now.s[j]);
         const double gone = (up ? 1.0 : -1.0) * (run->next.s[j] - run->now.s[j]);
-        if (at > 0.0 && at < 1.0 && ((0.5 * way * at > ahead + close && gone < ahead) ||
+        if (at > 0.0 && at < 1.0 && ((0.5 * slip_direction * at > ahead + close && gone < ahead) ||
                                      (behind <= close && gone < -behind - close))) return at * h;
     }
     return 0.0;
 }
 
 /* The force on a rider along the cable, as results have it; not a number where eq 38 has no solution. */
-static double traction(const fu_run *run, const fu_state *state, int joint)
+static double traction(const fu_run *run, const fu_state *state, int slide)
 {
     fu_accelerator *work = (fu_accelerator *)&run->accelerator; /* scratch: a run is never a constant */
-    fu_joint_output *outputs = (fu_joint_output *)work->joints;
-    return fu_accelerations(run->model, state, work, run->watch_work, outputs, 0) ? NAN : outputs[joint].traction;
+    fu_slide_output *outputs = (fu_slide_output *)work->slides;
+    return fu_accelerations(run->model, state, work, run->watch_work, outputs, 0) ? NAN : outputs[slide].traction;
 }
 
 /* what an event of the user's, or of a slide's, watches, positive where it has happened when `side` is 1 */
@@ -101,8 +101,8 @@ static double watched(const fu_run *run, const fu_state *state, int k)
     case FU_WATCH_S: return state->s[watch->index] - watch->value;
     case FU_WATCH_RATE: return fu_slide_rate(run->model, state, watch->index) - watch->value;
     case FU_WATCH_TRACTION: return traction(run, state, watch->index) - watch->value;
-    case FU_WATCH_GRIP: return fu_grip(run, state, watch->index);
-    case FU_WATCH_BUFFER: return fu_press(run, state, watch->index, (int)watch->value);
+    case FU_WATCH_STICK: return fu_stick_margin(run, state, watch->index);
+    case FU_WATCH_BUFFER: return fu_buffer_margin(run, state, watch->index, (int)watch->value);
     default: return run->call(run->context, k, state);
     }
 }
@@ -130,7 +130,7 @@ fu_event fu_find_event(const fu_run *run, fu_event known)
 {
     fu_event found = {FU_NO_EVENT, 0, 0};
     double worst = 0.0;
-    for (int j = 0; j < run->model->n_joints; ++j) {
+    for (int j = 0; j < run->model->n_slides; ++j) {
         int side;
         if (run->next.mode[j] == FU_LEFT) continue; /* its s stays where it was */
         const double d = outside(run, &run->next, j, &side) - boundary_tolerance(run, j);
@@ -165,7 +165,7 @@ static double root_of_parabola(double g_low, double g_high, double rate)
 static double landing(const fu_run *run, fu_event event, double range)
 {
     if (event.kind == FU_WATCHED) return PRECISE * range;
-    const fu_cable *cable = &run->model->cables[run->model->joints[event.which].cable];
+    const fu_cable *cable = &run->model->cables[run->model->slides[event.which].cable];
     const int next = run->now.element[event.which] + event.side;
     if (run->fixed_step > 0.0 || next < 0 || next >= cable->n_elements) return PRECISE * cable->length;
     return fmax(PRECISE, fmin(LARGEST_MISS, LITTLE * run->allowed / range)) * cable->length;
@@ -173,7 +173,7 @@ static double landing(const fu_run *run, fu_event event, double range)
 
 static int is_of_a_slide(const fu_watch *watch)
 {
-    return watch->kind == FU_WATCH_GRIP || watch->kind == FU_WATCH_BUFFER;
+    return watch->kind == FU_WATCH_STICK || watch->kind == FU_WATCH_BUFFER;
 }
 
 /* Shorten the step until it ends where the event happens (Illinois); returns the step, 0 on failure. `next` is there
@@ -251,12 +251,12 @@ void fu_watch_now(fu_run *run, fu_event event)
 }
 
 /* The side on which a slide's watches stand now that a slide has another state, and has just had their value zero. */
-void fu_watch_anew(fu_run *run, int joint)
+void fu_watch_anew(fu_run *run, int slide)
 {
     for (int k = 0; k < run->n_watches; ++k) {
         const fu_watch *watch = &run->watches[k];
         if (!is_of_a_slide(watch)) continue;
-        if (watch->index == joint) run->late[k] = 0;
+        if (watch->index == slide) run->late[k] = 0;
         if (run->late[k]) continue;
         const int side = watch->kind == FU_WATCH_BUFFER && run->now.contact[watch->index] == (int)watch->value ? 1 : -1;
         run->watched[k] = side * fmax(side * watched(run, &run->now, k), SMALLEST);

@@ -18,10 +18,10 @@ static double *stage(fu_run *run, int k)
 /* rates of the configuration and of the velocities of a state whose accelerations are known */
 static void rates(const fu_model *model, const fu_state *state, double *rate)
 {
-    const int n_flexible = model->n_rigids ? model->rigids[0].dof : model->n_dof;
+    const int n_flexible = model->n_bodies ? model->bodies[0].dof : model->n_dof;
     memcpy(rate, state->v, sizeof(double) * (size_t)n_flexible);
-    for (int b = 0; b < model->n_rigids; ++b) {
-        const fu_rigid *body = &model->rigids[b];
+    for (int b = 0; b < model->n_bodies; ++b) {
+        const fu_body *body = &model->bodies[b];
         fu_body_rate(body->kernel, state->q + body->configuration, state->v + body->dof, rate + body->configuration);
         memcpy(rate + body->configuration + body->kernel->configuration, state->v + body->dof + body->kernel->velocity,
                sizeof(double) * (size_t)body->modes);
@@ -105,13 +105,13 @@ static int step(fu_run *run, double h)
 static double estimate(fu_run *run, const double *row, double h)
 {
     const fu_model *model = run->model;
-    const int n_flexible = model->n_rigids ? model->rigids[0].dof : model->n_dof;
+    const int n_flexible = model->n_bodies ? model->bodies[0].dof : model->n_dof;
     double *q = stage(run, run->tableau.stages + 1), *v = q + model->n_q;
     memset(q, 0, sizeof(double) * (size_t)(model->n_q + model->n_dof));
     combine(run, row, run->tableau.stages + 1, h, q, v);
     for (int i = 0; i < n_flexible; ++i) run->work[i] = q[i];
-    for (int b = 0; b < model->n_rigids; ++b) {
-        const fu_rigid *body = &model->rigids[b];
+    for (int b = 0; b < model->n_bodies; ++b) {
+        const fu_body *body = &model->bodies[b];
         fu_body_increment(body->kernel, run->next.q + body->configuration, q + body->configuration,
                           run->work + body->dof);
         memcpy(run->work + body->dof + body->kernel->velocity, q + body->configuration + body->kernel->configuration,

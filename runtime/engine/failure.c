@@ -2,11 +2,11 @@
 #include "engine.h"
 
 /* Remember the cause, the dof that moves farthest (or is no number), and the joint; returns 1. */
-int fu_fail(fu_run *run, int cause, const double *dofs, int joint)
+int fu_fail(fu_run *run, int cause, const double *dofs, int slide)
 {
     const fu_model *model = run->model;
     double largest = -1.0;
-    run->failure = (fu_failure){cause, 0, joint};
+    run->failure = (fu_failure){cause, 0, slide};
     for (int i = 0; i < model->n_dof; ++i) {
         const double size = fabs(dofs[i]) * model->weight[i];
         if (size <= largest) continue;
@@ -25,9 +25,9 @@ int fu_fail_at(fu_run *run, int cause, int unknown)
     run->failure = (fu_failure){cause, 0, -1};
     for (int i = 0; i < model->n_dof; ++i)
         if (model->place[i] == unknown) run->failure.dof = i;
-    for (int j = 0; j < model->n_joints && extra >= 0; ++j)
-        if (model->joints[j].unknown <= extra && extra <= model->joints[j].unknown + model->joints[j].kernel->dim)
-            run->failure.joint = j;
+    for (int j = 0; j < model->n_slides && extra >= 0; ++j)
+        if (model->slides[j].unknown <= extra && extra <= model->slides[j].unknown + model->slides[j].kernel->dim)
+            run->failure.slide = j;
     return 1;
 }
 

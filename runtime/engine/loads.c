@@ -11,12 +11,12 @@ static double scale_at(const fu_model *model, int signal, double t)
 /* The same as below on a point of a modal body; what follows turns with the section there. */
 static int on_modes(const fu_model *model, const fu_load *load, const double *q, double *g, double *K)
 {
-    const fu_rigid *body = &model->rigids[load->on];
+    const fu_body *body = &model->bodies[load->on];
     const int dim = model->dim, turns = dim == 3 ? 3 : 1, n = fu_body_dofs(body), in_plane = dim == 2;
     const double *b = q + body->configuration, *c = load->c;
-    double P[3 * FU_END_COORDINATES], T[3 * FU_END_COORDINATES], f[3] = {0.0}, m[3] = {0.0};
+    double P[3 * FU_ATTACHMENT_COORDINATES], T[3 * FU_ATTACHMENT_COORDINATES], f[3] = {0.0}, m[3] = {0.0};
     fu_modal_point at;
-    fu_modal_anchor(body, &load->spot, b, model->zero, &at, P, T);
+    fu_modal_attachment_state(body, &load->spot, b, model->zero, &at, P, T);
     if (load->kind == FU_BODY_MOMENT) memcpy(m, c + (in_plane ? 2 : 0), sizeof(double) * (size_t)turns);
     else if (load->kind == FU_BODY_FORCE) memcpy(f, c, sizeof(double) * (size_t)dim);
     else
@@ -27,7 +27,7 @@ static int on_modes(const fu_model *model, const fu_load *load, const double *q,
         for (int d = 0; d < dim; ++d) g[i] += P[d * n + i] * f[d];
         for (int d = 0; d < turns; ++d) g[i] += T[d * n + i] * m[d];
     }
-    fu_modal_anchor_force(body, &load->spot, b, f, m, K);
+    fu_modal_attachment_force(body, &load->spot, b, f, m, K);
     if (load->kind != FU_BODY_FOLLOWER) return n;
     for (int j = 0; j < n; ++j) {
         double turned[3]; /* T dq x f */
@@ -56,7 +56,7 @@ static int generalised(const fu_model *model, const fu_load *load, const double 
             cable->length, load->x, q + *first, load->c, g, K);
         return cable->coordinates;
     }
-    const fu_rigid *body = &model->rigids[load->on];
+    const fu_body *body = &model->bodies[load->on];
     const int dim = body->kernel->dim, n = body->kernel->velocity;
     const double *b = q + body->configuration, *c = load->c, *u = load->u;
     double p[3], p_q[18], unused[36];
@@ -104,7 +104,7 @@ static int generalised(const fu_model *model, const fu_load *load, const double 
 /* f -= loads other than gravity */
 void fu_loads(const fu_model *model, double t, const double *q, double *f)
 {
-    double g[FU_END_COORDINATES], K[FU_END_COORDINATES * FU_END_COORDINATES];
+    double g[FU_ATTACHMENT_COORDINATES], K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
     for (int k = 0; k < model->n_dead_loads; ++k) {
         const fu_dead_load *load = &model->dead_loads[k];
         const double scale = scale_at(model, load->signal, t);
@@ -130,14 +130,14 @@ void fu_external_forces(const fu_model *model, double t, const double *q, double
 void fu_loads_matrix(const fu_model *model, double t, const double *q, const double *psi, double stiffness,
                      fu_system *system)
 {
-    double g[FU_END_COORDINATES], K[FU_END_COORDINATES * FU_END_COORDINATES];
+    double g[FU_ATTACHMENT_COORDINATES], K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
     for (int k = 0; k < model->n_loads; ++k) {
         const fu_load *load = &model->loads[k];
         const double scale = stiffness * scale_at(model, load->signal, t);
         int first;
         const int n = generalised(model, load, q, g, K, &first);
         if (psi && load->kind >= FU_BODY_FORCE)
-            fu_turn_columns(model->rigids[load->on].kernel, K, n, n, 0, psi + first);
+            fu_turn_columns(model->bodies[load->on].kernel, K, n, n, 0, psi + first);
         for (int i = 0; i < n; ++i)
             for (int j = 0; j < n; ++j)
                 if (K[i * n + j] != 0.0) fu_add(model, system, first + i, first + j, -scale * K[i * n + j]);

@@ -11,7 +11,7 @@ typedef struct {
 } moments;
 
 /* Sums over the coefficients c = (1, eta), c' = (0, eta'), c'' = (0, eta''); null: zero. */
-static moments sum_of(const fu_rigid *body, const double *eta, const double *rate, const double *acceleration)
+static moments sum_of(const fu_body *body, const double *eta, const double *rate, const double *acceleration)
 {
     const fu_shape *shape = body->shape;
     const int n = body->modes + 1, dim = body->kernel->dim, square = dim * dim;
@@ -36,18 +36,18 @@ static moments sum_of(const fu_rigid *body, const double *eta, const double *rat
     return m;
 }
 
-static const double *eta_of(const fu_rigid *body, const double *b)
+static const double *eta_of(const fu_body *body, const double *b)
 {
     return b + body->kernel->configuration;
 }
 
-static const double *rate_of(const fu_rigid *body, const double *w)
+static const double *rate_of(const fu_body *body, const double *w)
 {
     return w + body->kernel->velocity;
 }
 
 /* f += stiffness eta + damping eta', on the modes */
-static void add_elasticity(const fu_rigid *body, const double *eta, const double *rate, double *f)
+static void add_elasticity(const fu_body *body, const double *eta, const double *rate, double *f)
 {
     const int n = body->modes;
     for (int k = 0; k < n; ++k)
@@ -56,9 +56,9 @@ static void add_elasticity(const fu_rigid *body, const double *eta, const double
 }
 
 /* f += inertia without accelerations, less weight */
-static void add_inertia(const fu_rigid *body, const double *b, const double *w, double *f)
+static void add_inertia(const fu_body *body, const double *b, const double *w, double *f)
 {
-    const fu_modal *kernel = body->shape->kernel;
+    const fu_modal_kernels *kernel = body->shape->kernel;
     const int dim = body->kernel->dim, frame = body->kernel->velocity;
     const moments m = sum_of(body, eta_of(body, b), rate_of(body, w), 0);
     const double *a = body->shape->zero, *g = body->shape->g;
@@ -73,7 +73,7 @@ static void add_inertia(const fu_rigid *body, const double *b, const double *w, 
 }
 
 /* M of eq 12 */
-static void mass(const fu_rigid *body, const double *b, double *M)
+static void mass(const fu_body *body, const double *b, double *M)
 {
     const fu_shape *shape = body->shape;
     const int dim = body->kernel->dim, frame = body->kernel->velocity, modes = body->modes, n = frame + modes;
@@ -89,7 +89,7 @@ static void mass(const fu_rigid *body, const double *b, double *M)
     }
 }
 
-static void mass_times(const fu_rigid *body, const double *b, const double *a, double *f)
+static void mass_times(const fu_body *body, const double *b, const double *a, double *f)
 {
     const int n = fu_body_dofs(body);
     double *M = body->shape->matrices;
@@ -100,16 +100,16 @@ static void mass_times(const fu_rigid *body, const double *b, const double *a, d
     }
 }
 
-static void forces(const fu_rigid *body, const double *b, const double *w, double *f)
+static void forces(const fu_body *body, const double *b, const double *w, double *f)
 {
     add_inertia(body, b, w, f);
     add_elasticity(body, eta_of(body, b), rate_of(body, w), f + body->kernel->velocity);
 }
 
-static void tangent(const fu_rigid *body, const fu_instant *at, double *D, double *K)
+static void tangent(const fu_body *body, const fu_instant *at, double *D, double *K)
 {
     const fu_shape *shape = body->shape;
-    const fu_modal *kernel = shape->kernel;
+    const fu_modal_kernels *kernel = shape->kernel;
     const int dim = body->kernel->dim, square = dim * dim, frame = body->kernel->velocity;
     const int modes = body->modes, n = frame + modes;
     const moments m = sum_of(body, eta_of(body, at->b), rate_of(body, at->w), rate_of(body, at->a));
@@ -141,7 +141,7 @@ static void tangent(const fu_rigid *body, const fu_instant *at, double *D, doubl
     }
 }
 
-static double kinetic_energy(const fu_rigid *body, const double *b, const double *w)
+static double kinetic_energy(const fu_body *body, const double *b, const double *w)
 {
     const int square = body->kernel->dim * body->kernel->dim;
     const double *rate = rate_of(body, w);
@@ -153,7 +153,7 @@ static double kinetic_energy(const fu_rigid *body, const double *b, const double
     return energy;
 }
 
-static double elastic_energy(const fu_rigid *body, const double *b)
+static double elastic_energy(const fu_body *body, const double *b)
 {
     const double *eta = eta_of(body, b), *K = body->shape->stiffness;
     double total = 0.0;
@@ -162,7 +162,7 @@ static double elastic_energy(const fu_rigid *body, const double *b)
     return total;
 }
 
-static double potential_energy(const fu_rigid *body, const double *b)
+static double potential_energy(const fu_body *body, const double *b)
 {
     const int dim = body->kernel->dim;
     const double *eta = eta_of(body, b);
@@ -173,7 +173,7 @@ static double potential_energy(const fu_rigid *body, const double *b)
     return energy;
 }
 
-static double dissipation(const fu_rigid *body, const double *b, const double *w)
+static double dissipation(const fu_body *body, const double *b, const double *w)
 {
     const double *rate = rate_of(body, w), *C = body->shape->damping;
     double total = 0.0;
@@ -187,7 +187,7 @@ const fu_matter fu_modal_matter = {0,       mass_times,     forces,         mass
                                    kinetic_energy, elastic_energy, potential_energy, dissipation};
 
 /* Place, turn and their rates of a point, from its modes. */
-static void point_of(const fu_rigid *body, const fu_spot *spot, const double *c, int is_rate, double u[3], double theta[3])
+static void point_of(const fu_body *body, const fu_modal_attachment *spot, const double *c, int is_rate, double u[3], double theta[3])
 {
     const int dim = body->kernel->dim, turns = body->kernel->velocity - dim;
     for (int d = 0; d < dim; ++d) u[d] = is_rate ? 0.0 : spot->x[d];
@@ -199,10 +199,10 @@ static void point_of(const fu_rigid *body, const fu_spot *spot, const double *c,
 }
 
 /* A point of a modal body with its axes: P (dim x n) and T (turns x n) over all its dofs. */
-void fu_modal_anchor(const fu_rigid *body, const fu_spot *spot, const double *b, const double *w, fu_modal_point *out,
+void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *spot, const double *b, const double *w, fu_modal_point *out,
                      double *P, double *T)
 {
-    const fu_modal *kernel = body->shape->kernel;
+    const fu_modal_kernels *kernel = body->shape->kernel;
     const int dim = body->kernel->dim, frame = body->kernel->velocity, turns = frame - dim, n = fu_body_dofs(body);
     double u[3], u1[3], theta[3], theta1[3], frame_P[18], frame_T[18], column[3], turn[3];
     point_of(body, spot, eta_of(body, b), 0, u, theta);
@@ -221,10 +221,10 @@ void fu_modal_anchor(const fu_rigid *body, const fu_spot *spot, const double *b,
 }
 
 /* K (n x n): derivative by its dofs of P' f + T' m at fixed f, m */
-void fu_modal_anchor_force(const fu_rigid *body, const fu_spot *spot, const double *b, const double *f, const double *m,
+void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *spot, const double *b, const double *f, const double *m,
                            double *K)
 {
-    const fu_modal *kernel = body->shape->kernel;
+    const fu_modal_kernels *kernel = body->shape->kernel;
     const int dim = body->kernel->dim, frame = body->kernel->velocity, turns = frame - dim, n = fu_body_dofs(body);
     double u[3], theta[3], of_frame[36], row[6], column[6];
     point_of(body, spot, eta_of(body, b), 0, u, theta);

@@ -55,16 +55,16 @@ void fu_apply_extra(fu_run *run, double inertia, double scale)
 {
     const fu_model *model = run->model;
     const double *extra = run->rhs + model->n_band + model->n_border_dof;
-    for (int j = 0; j < model->n_joints; ++j) {
-        const fu_joint *joint = &model->joints[j];
-        run->next.s[j] += extra[joint->unknown];
-        for (int d = 0; d < joint->kernel->dim; ++d)
-            run->next.f[3 * j + d] += extra[joint->unknown + 1 + d] * fu_row_unit(inertia, joint->mass) / scale;
+    for (int j = 0; j < model->n_slides; ++j) {
+        const fu_slide *slide = &model->slides[j];
+        run->next.s[j] += extra[slide->unknown];
+        for (int d = 0; d < slide->kernel->dim; ++d)
+            run->next.f[3 * j + d] += extra[slide->unknown + 1 + d] * fu_row_unit(inertia, slide->mass) / scale;
     }
-    for (int k = 0; k < model->n_links; ++k) {
-        const fu_link *link = &model->links[k];
-        for (int r = 0; r < link->kernel->rows; ++r)
-            run->next.multipliers[6 * k + r] += extra[link->unknown + r] * fu_row_unit(inertia, link->scale[r]) / scale;
+    for (int k = 0; k < model->n_joints; ++k) {
+        const fu_joint *joint = &model->joints[k];
+        for (int r = 0; r < joint->kernel->rows; ++r)
+            run->next.multipliers[6 * k + r] += extra[joint->unknown + r] * fu_row_unit(inertia, joint->scale[r]) / scale;
     }
     for (int k = 0; k < model->n_springs; ++k) {
         const fu_spring *spring = &model->springs[k];
@@ -79,16 +79,16 @@ void fu_predict_extra(fu_run *run, double h)
     const fu_model *model = run->model;
     const size_t real = sizeof(double);
     run->next.t = run->now.t + h;
-    memcpy(run->next.f, run->now.f, 3 * real * (size_t)model->n_joints);
-    memcpy(run->next.multipliers, run->now.multipliers, 6 * real * (size_t)model->n_links);
+    memcpy(run->next.f, run->now.f, 3 * real * (size_t)model->n_slides);
+    memcpy(run->next.multipliers, run->now.multipliers, 6 * real * (size_t)model->n_joints);
     memcpy(run->next.spring, run->now.spring, 3 * real * (size_t)model->n_springs);
-    memcpy(run->next.director, run->now.director, 3 * real * (size_t)model->n_joints);
-    for (int j = 0; j < model->n_joints; ++j) {
+    memcpy(run->next.director, run->now.director, 3 * real * (size_t)model->n_slides);
+    for (int j = 0; j < model->n_slides; ++j) {
         run->next.s[j] = run->now.s[j] + h * run->s_slope[j];
         run->next.element[j] = run->now.element[j];
         run->next.mode[j] = run->now.mode[j];
-        run->next.hold[j] = run->now.hold[j];
-        run->next.way[j] = run->now.way[j];
+        run->next.locked_s[j] = run->now.locked_s[j];
+        run->next.slip_direction[j] = run->now.slip_direction[j];
         run->next.contact[j] = run->now.contact[j];
     }
 }
@@ -99,15 +99,15 @@ static int blame(fu_run *run)
     const fu_model *model = run->model;
     const double *extra = run->rhs + model->n_band + model->n_border_dof;
     double largest = fu_size(model, run->work);
-    int joint = -1;
-    for (int j = 0; j < model->n_joints; ++j)
-        for (int d = 0; d <= model->joints[j].kernel->dim; ++d) {
-            const double size = fabs(extra[model->joints[j].unknown + d]);
+    int slide = -1;
+    for (int j = 0; j < model->n_slides; ++j)
+        for (int d = 0; d <= model->slides[j].kernel->dim; ++d) {
+            const double size = fabs(extra[model->slides[j].unknown + d]);
             if (!(size > largest)) continue;
             largest = size;
-            joint = j;
+            slide = j;
         }
-    return fu_fail(run, FU_ITERATION, run->work, joint);
+    return fu_fail(run, FU_ITERATION, run->work, slide);
 }
 
 /* Newton from the prediction with the matrix at hand; 0 when it converged */

@@ -11,7 +11,7 @@
 int fu_find_slides(fu_run *run)
 {
     fu_state *next = &run->next;
-    for (int j = 0; j < run->model->n_joints; ++j) {
+    for (int j = 0; j < run->model->n_slides; ++j) {
         if (next->mode[j] == FU_LEFT) continue;
         next->s[j] = run->now.s[j] + (next->t - run->now.t) * run->s_slope[j];
         if (fu_find_arc_length(run->model, next, j, &next->s[j])) return fu_fail(run, FU_LOST_RIDER, next->v, j);
@@ -21,9 +21,9 @@ int fu_find_slides(fu_run *run)
 
 static void normalise(const fu_model *model, double *q)
 {
-    for (int b = 0; b < model->n_rigids; ++b) {
-        const fu_body *kernel = model->rigids[b].kernel;
-        double *p = q + model->rigids[b].configuration + kernel->dim, square = 0.0;
+    for (int b = 0; b < model->n_bodies; ++b) {
+        const fu_body_kernels *kernel = model->bodies[b].kernel;
+        double *p = q + model->bodies[b].configuration + kernel->dim, square = 0.0;
         const int n = kernel->configuration - kernel->dim;
         for (int i = 0; i < n; ++i) square += p[i] * p[i];
         for (int i = 0; i < n; ++i) p[i] /= sqrt(square);
@@ -40,7 +40,7 @@ static int close_gaps(fu_run *run, fu_state *state, double enough)
         const double size = fu_size(model, run->work);
         if (!(size < 1e30) || i == MOST_PROJECTIONS) return fu_fail(run, FU_ITERATION, run->work, -1);
         fu_move(model, state->q, run->work);
-        for (int j = 0; j < model->n_joints; ++j)
+        for (int j = 0; j < model->n_slides; ++j)
             if (state->mode[j] != FU_LEFT && fu_find_arc_length(model, state, j, &state->s[j]))
                 return fu_fail(run, FU_LOST_RIDER, state->v, j);
         if (size <= enough) return 0;
@@ -70,12 +70,12 @@ int fu_return_to_joints(fu_run *run, fu_state *state)
 
 /* Go from `now` along these dofs, made ones that joints allow and no longer than given, and back onto the joints: what is
  * `left` of all rows of links then (6 a link), idle ones too. Not zero where there is no way back. */
-int fu_wander(fu_run *run, const double *along, double *left)
+int fu_probe_mechanism(fu_run *run, const double *along, double *left)
 {
     const fu_model *model = run->model;
     fu_state *next = &run->next;
     int at[2 * FU_SLIDE_COORDINATES];
-    double J[6 * 2 * FU_END_COORDINATES];
+    double J[6 * 2 * FU_ATTACHMENT_COORDINATES];
     fu_predict_extra(run, 0.0);
     memcpy(next->q, run->now.q, sizeof(double) * (size_t)model->n_q);
     memcpy(next->v, along, sizeof(double) * (size_t)model->n_dof);
@@ -84,10 +84,10 @@ int fu_wander(fu_run *run, const double *along, double *left)
     const double size = fu_size(model, run->work), most = fu_size(model, along);
     for (int i = 0; i < model->n_dof && size > most; ++i) run->work[i] *= most / size;
     fu_move(model, next->q, run->work);
-    for (int j = 0; j < model->n_joints; ++j)
+    for (int j = 0; j < model->n_slides; ++j)
         if (fu_find_arc_length(model, next, j, &next->s[j])) return 1;
     if (close_gaps(run, next, 1e-12 * run->extent)) return 1;
-    for (int k = 0; k < model->n_links; ++k) fu_link_residual(model, &model->links[k], next, left + 6 * k, at, J);
+    for (int k = 0; k < model->n_joints; ++k) fu_joint_residual(model, &model->joints[k], next, left + 6 * k, at, J);
     return 0;
 }
 
@@ -96,15 +96,15 @@ int fu_wander(fu_run *run, const double *along, double *left)
 int fu_complete(fu_run *run, fu_state *state)
 {
     const fu_model *model = run->model;
-    fu_joint_output *joints = (fu_joint_output *)run->accelerator.joints;
-    const int info = fu_accelerations(model, state, &run->accelerator, state->acceleration, joints,
+    fu_slide_output *slides = (fu_slide_output *)run->accelerator.slides;
+    const int info = fu_accelerations(model, state, &run->accelerator, state->acceleration, slides,
                                       model->n_motions ? run->force : 0);
     if (info) return info;
-    for (int j = 0; j < model->n_joints; ++j) memcpy(state->f + 3 * j, joints[j].force, sizeof joints[j].force);
-    for (int k = 0; k < model->n_links; ++k)
-        memcpy(state->multipliers + 6 * k, run->accelerator.multipliers + model->links[k].multiplier,
-               sizeof(double) * (size_t)model->links[k].kernel->rows);
-    fu_forces_of_springs(model, state, state->spring);
+    for (int j = 0; j < model->n_slides; ++j) memcpy(state->f + 3 * j, slides[j].force, sizeof slides[j].force);
+    for (int k = 0; k < model->n_joints; ++k)
+        memcpy(state->multipliers + 6 * k, run->accelerator.multipliers + model->joints[k].multiplier,
+               sizeof(double) * (size_t)model->joints[k].kernel->rows);
+    fu_spring_forces_of(model, state, state->spring);
     return 0;
 }
 

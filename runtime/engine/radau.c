@@ -77,7 +77,7 @@ static int is_damped(const fu_model *model)
     int damped = 0;
     for (int c = 0; c < model->n_cables; ++c) damped |= model->cables[c].tau > 0.0 || model->cables[c].mass_damping > 0.0;
     for (int k = 0; k < model->n_springs; ++k) damped |= model->springs[k].damping > 0.0;
-    return damped || model->n_brakes || model->n_rigids; /* forces of inertia go with the velocity of a body */
+    return damped || model->n_resistances || model->n_bodies; /* forces of inertia go with the velocity of a body */
 }
 
 /* column k of X, and the rows of it that count; not if B has none */
@@ -196,10 +196,10 @@ static void right_side(fu_run *run, const double *r, double *unknowns)
     fu_mass_times(model, run->next.q, run->work, run->psi);
     fu_gather(model, run->psi, run->rhs);
     for (int i = 0; i < model->n_extra; ++i) run->rhs[beyond + i] = 0.0;
-    for (int j = 0; j < model->n_joints; ++j)
-        keep_row(run, model->joints[j].unknown + 1, model->joints[j].kernel->dim, unknowns);
-    for (int k = 0; k < model->n_links; ++k)
-        keep_row(run, model->links[k].unknown, model->links[k].kernel->rows, unknowns);
+    for (int j = 0; j < model->n_slides; ++j)
+        keep_row(run, model->slides[j].unknown + 1, model->slides[j].kernel->dim, unknowns);
+    for (int k = 0; k < model->n_joints; ++k)
+        keep_row(run, model->joints[k].unknown, model->joints[k].kernel->rows, unknowns);
 }
 
 /* Entries of the stages' q that have n dofs for rates, moved by the quadrature of velocities. */
@@ -223,16 +223,16 @@ static void configure(fu_run *run, workspace w, double h)
     const fu_model *model = run->model;
     const fu_collocation *method = &run->collocation;
     const fu_state *now = &run->now;
-    const int n = model->n_dof, n_flexible = model->n_rigids ? model->rigids[0].dof : n;
+    const int n = model->n_dof, n_flexible = model->n_bodies ? model->bodies[0].dof : n;
     integrate(run, w, h, 0, 0, n_flexible);
-    for (int b = 0; b < model->n_rigids; ++b) {
-        const fu_rigid *body = &model->rigids[b];
+    for (int b = 0; b < model->n_bodies; ++b) {
+        const fu_body *body = &model->bodies[b];
         integrate(run, w, h, body->configuration + body->kernel->configuration, body->dof + body->kernel->velocity,
                   body->modes);
     }
     for (int sweep = 0; sweep < SWEEPS; ++sweep)
-        for (int b = 0; b < model->n_rigids; ++b) {
-            const fu_rigid *body = &model->rigids[b];
+        for (int b = 0; b < model->n_bodies; ++b) {
+            const fu_body *body = &model->bodies[b];
             const int at = body->configuration, size = body->kernel->configuration;
             double rates[STAGES][7], velocity[6];
             for (int k = 0; k < STAGES; ++k) {
@@ -265,11 +265,11 @@ static int place_stage(fu_run *run, workspace w, int k, double h)
 static void keep_normals(fu_run *run, workspace w, int k)
 {
     const fu_model *model = run->model;
-    double *normal = w.normal + 2L * k * model->n_joints;
-    if (!model->n_brakes) return;
-    for (int j = 0; j < model->n_joints; ++j)
+    double *normal = w.normal + 2L * k * model->n_slides;
+    if (!model->n_resistances) return;
+    for (int j = 0; j < model->n_slides; ++j)
         for (int c = 0; c < 2; ++c)
-            normal[2 * j + c] = c < model->dim - 1 ? run->accelerator.multipliers[model->joints[j].multiplier + c] : 0.0;
+            normal[2 * j + c] = c < model->dim - 1 ? run->accelerator.multipliers[model->slides[j].multiplier + c] : 0.0;
 }
 
 /* accelerations of all stages; 0 when they were found */
@@ -451,20 +451,20 @@ static double kink(fu_run *run, workspace w, double h)
     const double *c = run->collocation.c, left = run->duration - run->now.t;
     const double weight[STAGES + 1] = {0.5 * c[0], 0.5 * c[1], 0.5 * (c[2] - c[0]), 0.5 * (c[2] - c[1])};
     double worst = 0.0;
-    if (!model->n_brakes) return 0.0;
+    if (!model->n_resistances) return 0.0;
     if (fu_accelerations(model, &run->now, &run->accelerator, run->work, 0, 0)) return INFINITY;
     keep_normals(run, w, 0);
     ++run->statistics.evaluations;
-    for (int j = 0; j < model->n_joints; ++j) {
-        const fu_joint *joint = &model->joints[j];
+    for (int j = 0; j < model->n_slides; ++j) {
+        const fu_slide *slide = &model->slides[j];
         double mean[2] = {0.0, 0.0}, all = 0.0;
-        if (!joint->brake || run->next.mode[j] != FU_SLIDES) continue;
+        if (!slide->resistance || run->next.mode[j] != FU_SLIDES) continue;
         for (int k = 0; k <= STAGES; ++k) {
-            const double *N = w.normal + 2L * (k * model->n_joints + j);
+            const double *N = w.normal + 2L * (k * model->n_slides + j);
             for (int d = 0; d < 2; ++d) mean[d] += weight[k] * N[d];
             all += weight[k] * hypot(N[0], N[1]);
         }
-        worst = fmax(worst, h * left * joint->friction * (all - hypot(mean[0], mean[1])) / joint->mass);
+        worst = fmax(worst, h * left * slide->friction * (all - hypot(mean[0], mean[1])) / slide->mass);
     }
     return worst * run->allowed / (KINK * run->tol * fmax(run->motion, run->least_motion));
 }

@@ -34,7 +34,7 @@ static void times(const double *p, double w, double x, double y, double z, doubl
 }
 
 /* Coordinates that a body has beyond its frame's: increments add to them. */
-static void move_modes(const fu_rigid *body, double *q, const double *dofs)
+static void move_modes(const fu_body *body, double *q, const double *dofs)
 {
     double *eta = q + body->configuration + body->kernel->configuration;
     const double *increment = dofs + body->dof + body->kernel->velocity;
@@ -42,7 +42,7 @@ static void move_modes(const fu_rigid *body, double *q, const double *dofs)
 }
 
 /* b = (R, quaternion) moves by (translation, rotation vector in body axes); in the plane (R, unit complex number). */
-static void move_body(const fu_body *kernel, double *b, const double *increment)
+static void move_body(const fu_body_kernels *kernel, double *b, const double *increment)
 {
     const int dim = kernel->dim;
     for (int i = 0; i < dim; ++i) b[i] += increment[i];
@@ -68,10 +68,10 @@ static void move_body(const fu_body *kernel, double *b, const double *increment)
 /* Configuration moved by increments of the dofs. */
 void fu_move(const fu_model *model, double *q, const double *dofs)
 {
-    const int n_flexible = model->n_rigids ? model->rigids[0].dof : model->n_dof;
+    const int n_flexible = model->n_bodies ? model->bodies[0].dof : model->n_dof;
     for (int i = 0; i < n_flexible; ++i) q[i] += dofs[i];
-    for (int b = 0; b < model->n_rigids; ++b) {
-        const fu_rigid *body = &model->rigids[b];
+    for (int b = 0; b < model->n_bodies; ++b) {
+        const fu_body *body = &model->bodies[b];
         move_body(body->kernel, q + body->configuration, dofs + body->dof);
         move_modes(body, q, dofs);
     }
@@ -81,10 +81,10 @@ void fu_move(const fu_model *model, double *q, const double *dofs)
  * twice the tangent of half the angle. */
 void fu_cayley_move(const fu_model *model, double *q, const double *psi)
 {
-    const int n_flexible = model->n_rigids ? model->rigids[0].dof : model->n_dof;
+    const int n_flexible = model->n_bodies ? model->bodies[0].dof : model->n_dof;
     for (int i = 0; i < n_flexible; ++i) q[i] += psi[i];
-    for (int b = 0; b < model->n_rigids; ++b) {
-        const fu_rigid *body = &model->rigids[b];
+    for (int b = 0; b < model->n_bodies; ++b) {
+        const fu_body *body = &model->bodies[b];
         const int dim = body->kernel->dim;
         double *at = q + body->configuration, *p = at + dim, moved[4];
         const double *step = psi + body->dof, *turn = step + dim;
@@ -103,15 +103,15 @@ void fu_cayley_move(const fu_model *model, double *q, const double *psi)
 void fu_between(const fu_model *model, const double *q, const double *q_next, double *between)
 {
     for (int i = 0; i < model->n_q; ++i) between[i] = 0.5 * (q[i] + q_next[i]);
-    for (int b = 0; b < model->n_rigids; ++b) {
-        const fu_rigid *body = &model->rigids[b];
+    for (int b = 0; b < model->n_bodies; ++b) {
+        const fu_body *body = &model->bodies[b];
         double *p = between + body->configuration + body->kernel->dim;
         normalised(p, body->kernel->dim == 2 ? 2 : 4, p);
     }
 }
 
 /* Rates of the entries of b by the velocity w: translation, and rotation about body axes. */
-void fu_body_rate(const fu_body *kernel, const double *b, const double *w, double *rate)
+void fu_body_rate(const fu_body_kernels *kernel, const double *b, const double *w, double *rate)
 {
     const int dim = kernel->dim;
     for (int i = 0; i < dim; ++i) rate[i] = w[i];
@@ -122,7 +122,7 @@ void fu_body_rate(const fu_body *kernel, const double *b, const double *w, doubl
 }
 
 /* A small change of the entries of b as an increment of its dofs: undoes `fu_body_rate`. */
-void fu_body_increment(const fu_body *kernel, const double *b, const double *change, double *increment)
+void fu_body_increment(const fu_body_kernels *kernel, const double *b, const double *change, double *increment)
 {
     const int dim = kernel->dim;
     for (int i = 0; i < dim; ++i) increment[i] = change[i];
@@ -154,7 +154,7 @@ static void exponential_tangent(const double *psi, double T[9])
 }
 
 /* Derivatives by a body's dofs, the first of them in column `first`, made derivatives by psi: in the plane they are. */
-void fu_turn_columns(const fu_body *kernel, double *rows, int n_rows, int n_columns, int first, const double *psi)
+void fu_turn_columns(const fu_body_kernels *kernel, double *rows, int n_rows, int n_columns, int first, const double *psi)
 {
     if (kernel->dim == 2) return;
     double T[9];
@@ -167,7 +167,7 @@ void fu_turn_columns(const fu_body *kernel, double *rows, int n_rows, int n_colu
 }
 
 /* The same for psi of `fu_cayley_move`: a change of Theta turns the body by (1 - Theta~/2)/(1 + Theta^2/4) of it. */
-void fu_cayley_columns(const fu_body *kernel, double *rows, int n_rows, int n_columns, int first, const double *psi)
+void fu_cayley_columns(const fu_body_kernels *kernel, double *rows, int n_rows, int n_columns, int first, const double *psi)
 {
     const int dim = kernel->dim;
     const double x = 0.5 * psi[dim], y = dim == 3 ? 0.5 * psi[4] : 0.0, z = dim == 3 ? 0.5 * psi[5] : 0.0;

@@ -27,10 +27,10 @@ static double motion(const fu_model *model, const double *from, const double *to
             if (square > largest) largest = square;
         }
     }
-    for (int b = 0; b < model->n_rigids; ++b) {
-        const int at = model->rigids[b].configuration;
+    for (int b = 0; b < model->n_bodies; ++b) {
+        const int at = model->bodies[b].configuration;
         double square = 0.0;
-        for (int d = 0; d < model->rigids[b].kernel->dim; ++d)
+        for (int d = 0; d < model->bodies[b].kernel->dim; ++d)
             square += (to[at + d] - from[at + d]) * (to[at + d] - from[at + d]);
         if (square > largest) largest = square;
     }
@@ -46,9 +46,9 @@ static double extent(const fu_model *model, const double *origin, const double *
         for (int i = cable->kernel->dim; i < cable->per_node; ++i)
             largest = fmax(largest, model->weight[cable->first + i]);
     }
-    for (int b = 0; b < model->n_rigids; ++b)
-        for (int i = model->rigids[b].kernel->dim; i < model->rigids[b].kernel->velocity; ++i)
-            largest = fmax(largest, model->weight[model->rigids[b].dof + i]);
+    for (int b = 0; b < model->n_bodies; ++b)
+        for (int i = model->bodies[b].kernel->dim; i < model->bodies[b].kernel->velocity; ++i)
+            largest = fmax(largest, model->weight[model->bodies[b].dof + i]);
     return largest;
 }
 
@@ -63,10 +63,10 @@ static double size(const fu_model *model, const double *origin, const double *q)
                 low[d] = fmin(low[d], q[at + d]);
                 high[d] = fmax(high[d], q[at + d]);
             }
-    for (int b = 0; b < model->n_rigids; ++b)
+    for (int b = 0; b < model->n_bodies; ++b)
         for (int d = 0; d < model->dim; ++d) {
-            low[d] = fmin(low[d], q[model->rigids[b].configuration + d]);
-            high[d] = fmax(high[d], q[model->rigids[b].configuration + d]);
+            low[d] = fmin(low[d], q[model->bodies[b].configuration + d]);
+            high[d] = fmax(high[d], q[model->bodies[b].configuration + d]);
         }
     for (int d = 0; d < model->dim; ++d) largest = fmax(largest, high[d] - low[d]);
     return largest;
@@ -81,13 +81,13 @@ int fu_all_finite(const double *numbers, long n)
 
 static int is_finite_row(const fu_model *model, const fu_record *r, long row)
 {
-    const long q = model->n_q, v = model->n_dof, joints = model->n_joints, links = model->n_links;
+    const long q = model->n_q, v = model->n_dof, slides = model->n_slides, joints = model->n_joints;
     const double energies[] = {r->kinetic[row], r->elastic[row], r->potential[row], r->dissipated[row], r->external[row]};
     return fu_all_finite(energies, sizeof energies / sizeof *energies) && fu_all_finite(r->q + row * q, q) &&
            fu_all_finite(r->v + row * v, v) && fu_all_finite(r->acceleration + row * v, v) &&
-           fu_all_finite(r->reaction + row * v, v) && fu_all_finite(r->s + row * joints, joints) &&
+           fu_all_finite(r->reaction + row * v, v) && fu_all_finite(r->s + row * slides, slides) &&
+           fu_all_finite(r->slide + row * slides * FU_SLIDE_OUTPUTS, slides * FU_SLIDE_OUTPUTS) &&
            fu_all_finite(r->joint + row * joints * FU_JOINT_OUTPUTS, joints * FU_JOINT_OUTPUTS) &&
-           fu_all_finite(r->link + row * links * FU_LINK_OUTPUTS, links * FU_LINK_OUTPUTS) &&
            fu_all_finite(r->spring + 3 * row * model->n_springs, 3L * model->n_springs);
 }
 
@@ -99,21 +99,21 @@ static int record_row(fu_run *run)
     const fu_state *now = &run->now;
     fu_record *r = &run->record;
     const long row = r->n - r->first;
-    fu_joint_output *joints = (fu_joint_output *)(r->joint + row * model->n_joints * FU_JOINT_OUTPUTS);
+    fu_slide_output *slides = (fu_slide_output *)(r->slide + row * model->n_slides * FU_SLIDE_OUTPUTS);
     r->time[row] = now->t;
     memcpy(r->q + row * model->n_q, now->q, sizeof(double) * (size_t)model->n_q);
     memcpy(r->v + row * model->n_dof, now->v, sizeof(double) * (size_t)model->n_dof);
-    memcpy(r->s + row * model->n_joints, now->s, sizeof(double) * (size_t)model->n_joints);
-    const int info = fu_accelerations(model, now, &run->accelerator, r->acceleration + row * model->n_dof, joints,
+    memcpy(r->s + row * model->n_slides, now->s, sizeof(double) * (size_t)model->n_slides);
+    const int info = fu_accelerations(model, now, &run->accelerator, r->acceleration + row * model->n_dof, slides,
                                       r->reaction + row * model->n_dof);
     r->kinetic[row] = fu_kinetic_energy(model, now->q, now->v);
     r->elastic[row] = fu_elastic_energy(model, now->q);
-    if (model->n_brakes) r->elastic[row] += fu_brake_energy(model, now);
+    if (model->n_resistances) r->elastic[row] += fu_buffer_energy(model, now);
     r->potential[row] = fu_potential_energy(model, now->q);
     r->dissipated[row] = run->dissipated;
     r->external[row] = run->external;
-    fu_forces_of_springs(model, now, r->spring + 3 * row * model->n_springs);
-    fu_link_outputs(model, now, &run->accelerator, (fu_link_output *)(r->link + row * model->n_links * FU_LINK_OUTPUTS));
+    fu_spring_forces_of(model, now, r->spring + 3 * row * model->n_springs);
+    fu_joint_outputs(model, now, &run->accelerator, (fu_joint_output *)(r->joint + row * model->n_joints * FU_JOINT_OUTPUTS));
     const double energies[FU_ENERGIES] = {r->kinetic[row], r->elastic[row], r->potential[row], run->dissipated,
                                           -run->external};
     run->statistics.time_output += fu_clock() - begin;
@@ -124,7 +124,7 @@ static int record_row(fu_run *run)
     }
     ++r->n;
     run->recorded = now->t;
-    return info ? FU_SINGULAR : fu_check_books(run, energies, row == 0) ? FU_UNSTABLE : FU_RUNNING;
+    return info ? FU_SINGULAR : fu_check_energy_balance(run, energies, row == 0) ? FU_UNSTABLE : FU_RUNNING;
 }
 
 /* Start of the scheme, consistent: velocities projected on the joints where that is asked for, accelerations and forces
@@ -134,7 +134,7 @@ static int start_scheme(fu_run *run, int project)
 {
     const fu_model *model = run->model;
     fu_state *now = &run->now;
-    fu_joint_output *joints = (fu_joint_output *)run->accelerator.joints;
+    fu_slide_output *slides = (fu_slide_output *)run->accelerator.slides;
     if (project) {
         if (fu_project_velocities(model, now, &run->accelerator, run->before)) return FU_SINGULAR;
         for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->before[i];
@@ -143,15 +143,15 @@ static int start_scheme(fu_run *run, int project)
     run->dissipated_power = fu_dissipated_power(run, now);
     run->external_power = fu_external_power(run, now, run->force);
     run->drive_step = -1.0;
-    for (int j = 0; j < model->n_joints; ++j) run->s_slope[j] = joints[j].s_rate;
+    for (int j = 0; j < model->n_slides; ++j) run->s_slope[j] = slides[j].s_rate;
     return run->integrator->start(run);
 }
 
 /* whether a start can be off its joints by a small gap: bodies are put on their cables when they are drawn */
 static int closes(const fu_run *run)
 {
-    int held = run->model->n_links;
-    for (int j = 0; j < run->model->n_joints; ++j) held |= run->now.mode[j] == FU_HELD || !run->model->joints[j].native;
+    int held = run->model->n_joints;
+    for (int j = 0; j < run->model->n_slides; ++j) held |= run->now.mode[j] == FU_LOCKED || !run->model->slides[j].rider_is_rigid;
     return held;
 }
 
@@ -162,7 +162,7 @@ int fu_prepare(fu_run *run)
     fu_state *now = &run->now;
     fu_prescribe(model, now);
     fu_carry_directors(model, now);
-    for (int j = 0; j < model->n_joints; ++j)
+    for (int j = 0; j < model->n_slides; ++j)
         if (fu_find_arc_length(model, now, j, &now->s[j])) return FU_SINGULAR;
     if (fu_accelerator_prepare(model, &run->accelerator)) return FU_SINGULAR;
     memset(run->first, 0, sizeof(double) * (size_t)model->n_q);
@@ -207,9 +207,9 @@ int fu_start(fu_run *run)
 static void accept(fu_run *run, double h, fu_event event)
 {
     const fu_model *model = run->model;
-    for (int j = 0; j < model->n_joints; ++j) run->s_slope[j] = (run->next.s[j] - run->now.s[j]) / h;
+    for (int j = 0; j < model->n_slides; ++j) run->s_slope[j] = (run->next.s[j] - run->now.s[j]) / h;
     run->integrator->book(run, h);
-    if (model->n_brakes) run->dissipated += fu_lost_in_buffers(model, &run->now, &run->next);
+    if (model->n_resistances) run->dissipated += fu_lost_in_buffers(model, &run->now, &run->next);
     run->statistics.crossings += fu_count_changes(run);
     const fu_state state = run->now;
     run->now = run->next;
@@ -218,7 +218,7 @@ static void accept(fu_run *run, double h, fu_event event)
     const double moved = motion(model, run->first, run->now.q);
     if (moved > run->motion) run->motion = moved;
     fu_watch_now(run, event);
-    run->struggle -= run->struggle > 0 ? run->fixed_step > 0.0 ? DIVISIONS : 1 : 0;
+    run->net_rejections -= run->net_rejections > 0 ? run->fixed_step > 0.0 ? DIVISIONS : 1 : 0;
     fu_statistics *s = &run->statistics;
     ++s->steps;
     if (s->steps == 1 || h < s->h_min) s->h_min = h;
@@ -249,7 +249,7 @@ static int enter(fu_run *run, int j, int side)
     const fu_model *model = run->model;
     fu_state *now = &run->now;
     const int element = now->element[j] + side;
-    if (element < 0 || element >= model->cables[model->joints[j].cable].n_elements) {
+    if (element < 0 || element >= model->cables[model->slides[j].cable].n_elements) {
         int what;
         const int status = fu_reach_end(run, j, side, &what);
         return status ? status : acted(run, j, what);
@@ -272,7 +272,7 @@ static int happened(fu_run *run, fu_event event)
 {
     if (event.kind == FU_CROSSING) return enter(run, event.which, event.side);
     const fu_watch *watch = &run->watches[event.which];
-    if (watch->kind == FU_WATCH_GRIP || watch->kind == FU_WATCH_BUFFER) {
+    if (watch->kind == FU_WATCH_STICK || watch->kind == FU_WATCH_BUFFER) {
         int what;
         const int status = fu_act(run, watch, event.side, &what);
         return status || what == FU_NOTHING ? status : acted(run, watch->index, what);
@@ -306,7 +306,7 @@ static double allow(fu_run *run, double h)
      * to tol times the logarithm of the times at most. With h/duration the first instants, in which hardly anything has
      * moved yet, would take most of the steps. */
     const double share = SAFETY * h / fmax(run->now.t + h, FIRST_PART * run->duration);
-    const double allowed = fmax(run->tol * scale * fmin(1.0, run->slack * share), run->round_off);
+    const double allowed = fmax(run->tol * scale * fmin(1.0, run->error_overestimate * share), run->round_off);
     /* what Newton leaves has the same sign step after step and acts like a force: it counts (T/h)^2 times in
      * positions, the local error T/h times; a fixed step is solved as well as it can be, whatever its error */
     const double extent = fmax(run->extent, scale);
@@ -334,7 +334,7 @@ static double smaller(fu_run *run, double h, double ratio)
     if (!(want > 0.0)) want = 0.2 * h;
     fu_fail(run, FU_ERROR, run->work, -1);
     ++run->statistics.rejected;
-    ++run->struggle;
+    ++run->net_rejections;
     return run->h = want;
 }
 
@@ -352,7 +352,7 @@ static int step_towards(fu_run *run, double target)
     for (;;) {
         const double remaining = target - run->now.t;
         double h = fitted(remaining, want);
-        if ((h < smallest && remaining > smallest) || run->struggle > MOST_STRUGGLE) return FU_NO_CONVERGENCE;
+        if ((h < smallest && remaining > smallest) || run->net_rejections > MOST_STRUGGLE) return FU_NO_CONVERGENCE;
         if (run->holds) h = fmin(h, fu_time_to_boundary(run) + BEYOND * h);
         const double allowed = allow(run, h);
         run->failure.cause = FU_NO_FAILURE;
@@ -360,12 +360,12 @@ static int step_towards(fu_run *run, double target)
         if (run->integrator->step(run, h)) {
             if (!run->failure.cause) fu_fail(run, FU_ITERATION, run->next.v, -1);
             want = 0.5 * h;
-            if (adaptive && run->caution > 0.0) {
+            if (adaptive && run->retry_factor > 0.0) {
                 run->h = want;
-                run->ceiling = run->caution * h;
+                run->ceiling = run->retry_factor * h;
             }
             ++run->statistics.rejected;
-            ++run->struggle;
+            ++run->net_rejections;
             continue;
         }
         const double error = run->integrator->error(run, h), ratio = error / allowed;
@@ -390,7 +390,7 @@ static int step_towards(fu_run *run, double target)
             return happened(run, event);
         }
         if (event.kind) {
-            for (int i = 0; i <= model->n_joints + run->n_watches; ++i) { /* the first of several */
+            for (int i = 0; i <= model->n_slides + run->n_watches; ++i) { /* the first of several */
                 const fu_event earlier = i ? fu_find_event(run, event) : event;
                 if (!earlier.kind) break;
                 event = earlier;

@@ -11,38 +11,38 @@
 typedef struct {
     double length, x;
     const double *e, *v, *b, *u, *w;
-    fu_place place; /* of the rider where it is a point */
+    fu_attachment_state place; /* of the rider where it is a point */
 } slide_view;
 
 static const double no_arm[3];
 
 static void look(const fu_model *model, const fu_state *state, int j, slide_view *view)
 {
-    const fu_joint *joint = &model->joints[j];
-    const fu_cable *cable = &model->cables[joint->cable];
+    const fu_slide *slide = &model->slides[j];
+    const fu_cable *cable = &model->cables[slide->cable];
     const int at = cable->first + state->element[j] * cable->per_node;
     view->length = cable->length;
     view->x = state->s[j] - fu_element_start(model, j, state->element[j]);
     view->e = state->q + at;
     view->v = state->v + at;
-    if (joint->native) {
-        const fu_rigid *body = &model->rigids[joint->rider.body];
+    if (slide->rider_is_rigid) {
+        const fu_body *body = &model->bodies[slide->rider.body];
         view->b = state->q + body->configuration;
         view->w = state->v + body->dof;
-        view->u = joint->rider.u;
+        view->u = slide->rider.u;
         return;
     }
-    fu_end_place(model, &joint->rider, state, 0.0, FU_POINT, &view->place);
+    fu_attachment_at(model, &slide->rider, state, 0.0, FU_POINT, &view->place);
     view->b = view->place.p;
     view->w = view->place.v;
     view->u = no_arm;
 }
 
 /* Rows over (element, point, `more`) made rows over (element, rider, `more`), in place where there is room for them. */
-static void expand(const fu_joint *joint, const slide_view *view, int n_rows, int n_element, int more, const double *given,
+static void expand(const fu_slide *slide, const slide_view *view, int n_rows, int n_element, int more, const double *given,
                    double *rows)
 {
-    const int dim = joint->kernel->dim, n = view->place.n;
+    const int dim = slide->kernel->dim, n = view->place.n;
     const int from = n_element + dim + more, to = n_element + n + more;
     for (int r = 0; r < n_rows; ++r) {
         const double *row = given + r * from;
@@ -60,42 +60,42 @@ static void expand(const fu_joint *joint, const slide_view *view, int n_rows, in
 /* Numbers for fu_add of a slide's coordinates, and after them of s; the force follows s. Returns how many stand before. */
 int fu_slide_coordinates(const fu_model *model, const fu_state *state, int j, int *at)
 {
-    const fu_joint *joint = &model->joints[j];
-    const fu_cable *cable = &model->cables[joint->cable];
+    const fu_slide *slide = &model->slides[j];
+    const fu_cable *cable = &model->cables[slide->cable];
     const int n = cable->coordinates;
     for (int i = 0; i < n; ++i) at[i] = cable->first + state->element[j] * cable->per_node + i;
-    const int all = n + fu_end_coordinates(model, &joint->rider, state, at + n);
-    at[all] = fu_extra(model, joint->unknown);
+    const int all = n + fu_attachment_coordinates(model, &slide->rider, state, at + n);
+    at[all] = fu_extra(model, slide->unknown);
     return all;
 }
 
 /* phi and the gradient of f . phi over the slide's coordinates and s */
 void fu_slide_residual(const fu_model *model, const fu_state *state, int j, double *phi, double *g)
 {
-    const fu_joint *joint = &model->joints[j];
+    const fu_slide *slide = &model->slides[j];
     double of_point[FU_MAX_COORDINATES];
     slide_view v;
     look(model, state, j, &v);
-    joint->kernel->residual(v.length, v.x, v.e, v.b, v.u, state->f + 3 * j, phi, joint->native ? g : of_point);
-    if (!joint->native) expand(joint, &v, 1, model->cables[joint->cable].coordinates, 1, of_point, g);
+    slide->kernel->residual(v.length, v.x, v.e, v.b, v.u, state->f + 3 * j, phi, slide->rider_is_rigid ? g : of_point);
+    if (!slide->rider_is_rigid) expand(slide, &v, 1, model->cables[slide->cable].coordinates, 1, of_point, g);
 }
 
 /* derivatives of both over the same, at a force f */
 void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, const double *f, double *J, double *K)
 {
-    const fu_joint *joint = &model->joints[j];
-    const int n_element = model->cables[joint->cable].coordinates, dim = joint->kernel->dim, from = n_element + dim + 1;
+    const fu_slide *slide = &model->slides[j];
+    const int n_element = model->cables[slide->cable].coordinates, dim = slide->kernel->dim, from = n_element + dim + 1;
     double of_point[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
     slide_view v;
     look(model, state, j, &v);
-    if (joint->native) {
-        joint->kernel->tangent(v.length, v.x, v.e, v.b, v.u, f, J, K);
+    if (slide->rider_is_rigid) {
+        slide->kernel->tangent(v.length, v.x, v.e, v.b, v.u, f, J, K);
         return;
     }
-    double J_point[3 * FU_MAX_COORDINATES], pull[3], part[FU_END_COORDINATES * FU_END_COORDINATES];
+    double J_point[3 * FU_MAX_COORDINATES], pull[3], part[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
     const int n_rider = v.place.n, n = n_element + n_rider + 1;
-    joint->kernel->tangent(v.length, v.x, v.e, v.b, v.u, f, J_point, of_point);
-    expand(joint, &v, dim, n_element, 1, J_point, J);
+    slide->kernel->tangent(v.length, v.x, v.e, v.b, v.u, f, J_point, of_point);
+    expand(slide, &v, dim, n_element, 1, J_point, J);
     /* the rider's point stands in phi = r - p alone: of second derivatives there are those of the point itself */
     memset(K, 0, sizeof(double) * (size_t)(n * n));
     for (int i = 0; i <= n_element; ++i)
@@ -105,73 +105,73 @@ void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, const
         }
     memset(part, 0, sizeof(double) * (size_t)(n_rider * n_rider));
     for (int d = 0; d < dim; ++d) pull[d] = -f[d];
-    fu_end_curvature(model, &joint->rider, state, pull, 0, n_rider, part);
+    fu_geometric_stiffness(model, &slide->rider, state, pull, 0, n_rider, part);
     for (int i = 0; i < n_rider; ++i)
         for (int k = 0; k < n_rider; ++k) K[(n_element + i) * n + n_element + k] = part[i * n_rider + k];
 }
 
 /* Eq 20-37 over the slide's coordinates: H and W of the constraints that stay, and how s follows. */
-void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows *rows, fu_slide_state *slide)
+void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows *rows, fu_slide_state *slide_state)
 {
-    const fu_joint *joint = &model->joints[j];
-    const int n_element = model->cables[joint->cable].coordinates, dim = joint->kernel->dim;
+    const fu_slide *slide = &model->slides[j];
+    const int n_element = model->cables[slide->cable].coordinates, dim = slide->kernel->dim;
     double C_q[3 * FU_SLIDE_COORDINATES], C_s[3], Q_d[3], H[2 * FU_SLIDE_COORDINATES], G[FU_SLIDE_COORDINATES];
     slide_view v;
     if (state->mode[j] == FU_LEFT) { /* far from the cable, nothing of it means anything */
-        memset(slide, 0, sizeof *slide);
+        memset(slide_state, 0, sizeof *slide_state);
         rows->n = rows->rows = 0;
         return;
     }
     look(model, state, j, &v);
     const int n = fu_slide_coordinates(model, state, j, rows->at), held = dim - 1;
-    joint->kernel->terms(v.length, v.x, v.e, v.b, v.u, v.v, v.w, state->director + 3 * j, slide->C, C_q, C_s, G,
-                         &slide->s_rate, Q_d, H, rows->W, &slide->s_bias);
-    const int stride = joint->native ? n : n_element + dim;
+    slide->kernel->terms(v.length, v.x, v.e, v.b, v.u, v.v, v.w, state->director + 3 * j, slide_state->C, C_q, C_s, G,
+                         &slide_state->s_rate, Q_d, H, rows->W, &slide_state->s_bias);
+    const int stride = slide->rider_is_rigid ? n : n_element + dim;
     for (int d = 0; d < dim; ++d) {
-        for (int c = 0; c < held; ++c) slide->by_point[c * dim + d] = H[c * stride + n_element + d];
-        slide->by_point[held * dim + d] = G[n_element + d];
+        for (int c = 0; c < held; ++c) slide_state->by_point[c * dim + d] = H[c * stride + n_element + d];
+        slide_state->by_point[held * dim + d] = G[n_element + d];
     }
-    if (joint->native) {
+    if (slide->rider_is_rigid) {
         memcpy(rows->H, H, sizeof(double) * (size_t)(held * n));
-        memcpy(slide->G, G, sizeof(double) * (size_t)n);
+        memcpy(slide_state->G, G, sizeof(double) * (size_t)n);
     } else {
-        expand(joint, &v, held, n_element, 0, H, rows->H);
-        expand(joint, &v, 1, n_element, 0, G, slide->G);
+        expand(slide, &v, held, n_element, 0, H, rows->H);
+        expand(slide, &v, 1, n_element, 0, G, slide_state->G);
         for (int d = 0; d < dim; ++d) {
-            for (int c = 0; c < held; ++c) rows->W[c] -= slide->by_point[c * dim + d] * v.place.bias[d];
-            slide->s_bias += slide->by_point[held * dim + d] * v.place.bias[d];
+            for (int c = 0; c < held; ++c) rows->W[c] -= slide_state->by_point[c * dim + d] * v.place.bias[d];
+            slide_state->s_bias += slide_state->by_point[held * dim + d] * v.place.bias[d];
         }
     }
     rows->n = n;
-    rows->rows = state->mode[j] == FU_HELD ? dim : held;
+    rows->rows = state->mode[j] == FU_LOCKED ? dim : held;
     for (int c = 0; c < held; ++c) {
-        rows->C[c] = slide->C[1 + c];
+        rows->C[c] = slide_state->C[1 + c];
         rows->rate[c] = 0.0;
     }
-    if (state->mode[j] != FU_HELD) return;
+    if (state->mode[j] != FU_LOCKED) return;
     double rate, second;
-    memcpy(rows->H + held * n, slide->G, sizeof(double) * (size_t)n);
+    memcpy(rows->H + held * n, slide_state->G, sizeof(double) * (size_t)n);
     rows->C[held] = state->s[j] - fu_slide_held(model, state, j, &rate, &second);
     rows->rate[held] = -rate;
-    rows->W[held] = second - slide->s_bias;
+    rows->W[held] = second - slide_state->s_bias;
 }
 
 /* where s is held, its rate and its second rate */
 double fu_slide_held(const fu_model *model, const fu_state *state, int j, double *rate, double *second)
 {
     *rate = *second = 0.0;
-    if (model->joints[j].drive < 0) return state->hold[j];
-    return fu_signal_at(&model->signals[model->joints[j].drive], state->t, rate, second);
+    if (model->slides[j].drive < 0) return state->locked_s[j];
+    return fu_signal_at(&model->signals[model->slides[j].drive], state->t, rate, second);
 }
 
 /* C, C_s, the Newton step for s, and the tangent frame, with this s */
 double fu_slide_step(const fu_model *model, const fu_state *state, int j, double s, double A_t[9])
 {
-    const fu_joint *joint = &model->joints[j];
+    const fu_slide *slide = &model->slides[j];
     double C[3], C_s[3], step;
     slide_view v;
     look(model, state, j, &v);
-    joint->kernel->constraint(v.length, s - fu_element_start(model, j, state->element[j]), v.e, v.b, v.u,
+    slide->kernel->constraint(v.length, s - fu_element_start(model, j, state->element[j]), v.e, v.b, v.u,
                               state->director + 3 * j, C, C_s, &step, A_t);
     return step;
 }

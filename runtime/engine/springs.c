@@ -5,10 +5,10 @@
 #include <string.h>
 
 /* Position and velocity of an end, and how it moves; returns its first dof. */
-static int end_point(const fu_model *model, const fu_end *end, const double *q, const double *v, fu_place *place)
+static int end_point(const fu_model *model, const fu_attachment *end, const double *q, const double *v, fu_attachment_state *place)
 {
     const fu_state state = {.q = (double *)q, .v = (double *)v};
-    fu_end_place(model, end, &state, 0.0, FU_POINT, place);
+    fu_attachment_at(model, end, &state, 0.0, FU_POINT, place);
     return place->n ? place->at[0] : 0;
 }
 
@@ -48,7 +48,7 @@ static void law(const fu_spring *spring, const double *gap, const double *rate, 
 static void gap_of(const fu_model *model, const fu_spring *spring, const double *q, const double *v, double gap[3],
                    double rate[3])
 {
-    fu_place place[2];
+    fu_attachment_state place[2];
     for (int e = 0; e < 2; ++e) end_point(model, &spring->ends[e], q, v, &place[e]);
     for (int d = 0; d < 3; ++d) {
         gap[d] = place[1].p[d] - place[0].p[d];
@@ -68,7 +68,7 @@ void fu_spring_force(const fu_model *model, const fu_spring *spring, const doubl
 void fu_spring_pull(const fu_model *model, const fu_spring *spring, const double *q, const double force[3], double *f)
 {
     for (int e = 0; e < 2; ++e) {
-        fu_place place;
+        fu_attachment_state place;
         const int first = end_point(model, &spring->ends[e], q, model->zero, &place), n = place.n;
         for (int d = 0; d < spring->dim; ++d)
             for (int i = 0; i < n; ++i) f[first + i] += (e ? 1.0 : -1.0) * place.P[d * n + i] * force[d];
@@ -94,26 +94,26 @@ void fu_spring_matrix(const fu_model *model, const fu_spring *spring, const fu_s
     fu_spring_force(model, spring, state->q, state->v, force, by_gap, by_rate);
     for (int d = 0; d < dim; ++d) fu_add(model, system, row + d, row + d, unit);
     for (int e = 0; e < 2; ++e) {
-        const fu_end *end = &spring->ends[e];
-        fu_place place;
-        double turned[3 * FU_END_COORDINATES], by_place[3 * FU_END_COORDINATES];
+        const fu_attachment *end = &spring->ends[e];
+        fu_attachment_state place;
+        double turned[3 * FU_ATTACHMENT_COORDINATES], by_place[3 * FU_ATTACHMENT_COORDINATES];
         const int first = end_point(model, end, state->q, state->v, &place), n = place.n;
         const double sign = e ? 1.0 : -1.0, *P = place.P;
         memcpy(turned, P, sizeof turned);
         for (int i = 0; i < dim * n; ++i) by_place[i] = 0.0; /* of the end's velocity, at fixed rates of its dofs */
         if (end->body >= 0) {
-            const fu_rigid *body = &model->rigids[end->body];
+            const fu_body *body = &model->bodies[end->body];
             const double *turn = psi ? psi + body->dof : 0;
-            double K[FU_END_COORDINATES * FU_END_COORDINATES];
+            double K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
             for (int d = 0; d < dim; ++d) {
                 const double axis[3] = {d == 0, d == 1, d == 2};
                 memset(K, 0, sizeof(double) * (size_t)(n * n));
-                fu_end_curvature(model, end, state, axis, 0, n, K);
+                fu_geometric_stiffness(model, end, state, axis, 0, n, K);
                 for (int i = 0; i < n; ++i)
                     for (int j = 0; j < n; ++j) by_place[d * n + j] += state->v[first + i] * K[i * n + j];
             }
             memset(K, 0, sizeof(double) * (size_t)(n * n));
-            fu_end_curvature(model, end, state, state->spring + 3 * (spring - model->springs), 0, n, K);
+            fu_geometric_stiffness(model, end, state, state->spring + 3 * (spring - model->springs), 0, n, K);
             if (turn) {
                 fu_turn_columns(body->kernel, turned, dim, n, 0, turn);
                 fu_turn_columns(body->kernel, by_place, dim, n, 0, turn);
@@ -135,7 +135,7 @@ void fu_spring_matrix(const fu_model *model, const fu_spring *spring, const fu_s
 }
 
 /* the force of each spring on its first end, 3 each */
-void fu_forces_of_springs(const fu_model *model, const fu_state *state, double *forces)
+void fu_spring_forces_of(const fu_model *model, const fu_state *state, double *forces)
 {
     double by_gap[9], by_rate[9];
     for (int k = 0; k < model->n_springs; ++k)
@@ -176,11 +176,11 @@ void fu_discrete_pull(const fu_model *model, const fu_spring *spring, const doub
                       const double force[3], double *f)
 {
     for (int e = 0; e < 2; ++e) {
-        const fu_end *end = &spring->ends[e];
-        fu_place place;
+        const fu_attachment *end = &spring->ends[e];
+        fu_attachment_state place;
         const int first = end_point(model, end, q, model->zero, &place), n = place.n;
         if (end->body >= 0) {
-            const fu_rigid *body = &model->rigids[end->body];
+            const fu_body *body = &model->bodies[end->body];
             body->kernel->discrete_point(q + body->configuration, end->u, q_next + body->configuration, place.P);
         }
         for (int d = 0; d < spring->dim; ++d)

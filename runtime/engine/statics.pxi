@@ -75,16 +75,16 @@ cdef class Statics(Translation):
         fu_prescribe(&self.model, state)
         for i in range(self.model.n_dof):
             state.v[i] = state.acceleration[i] = 0.0
-        for i in range(self.model.n_joints):
+        for i in range(self.model.n_slides):
             state.s[i] = self.run.now.s[i] if s is None else s[i]
-            n, length = self.cables[self.joints[i].cable].n_elements, self.cables[self.joints[i].cable].length
+            n, length = self.cables[self.slides[i].cable].n_elements, self.cables[self.slides[i].cable].length
             if not length * state.element[i] <= state.s[i] <= length * (state.element[i] + 1):
                 state.element[i] = min(max(int(state.s[i] // length), 0), n - 1)
             for k in range(3):
                 state.f[3 * i + k] = 0.0 if force is None else force[i][k]
-        if self.model.n_brakes:
+        if self.model.n_resistances:
             fu_touch_buffers(&self.model, state)
-        for i in range(self.model.n_links):
+        for i in range(self.model.n_joints):
             for k in range(6):
                 state.multipliers[6 * i + k] = 0.0 if multipliers is None else multipliers[i][k]
         for i in range(self.model.n_springs):
@@ -94,11 +94,11 @@ cdef class Statics(Translation):
     def placed(self):
         """The static state as the arguments of `place` (but t)."""
         cdef fu_state *state = &self.run.next
-        cdef int i, joints = self.model.n_joints, links = self.model.n_links, springs = self.model.n_springs
+        cdef int i, slides = self.model.n_slides, joints = self.model.n_joints, springs = self.model.n_springs
         return {"q": np.array([state.q[i] for i in range(self.model.n_q)]),
-                "s": np.array([state.s[i] for i in range(joints)]),
-                "force": np.array([state.f[i] for i in range(3 * joints)]).reshape(joints, 3),
-                "multipliers": np.array([state.multipliers[i] for i in range(6 * links)]).reshape(links, 6),
+                "s": np.array([state.s[i] for i in range(slides)]),
+                "force": np.array([state.f[i] for i in range(3 * slides)]).reshape(slides, 3),
+                "multipliers": np.array([state.multipliers[i] for i in range(6 * joints)]).reshape(joints, 6),
                 "spring": np.array([state.spring[i] for i in range(3 * springs)]).reshape(springs, 3)}
 
     def load(self, double fraction, gravity=True):
@@ -111,7 +111,7 @@ cdef class Statics(Translation):
         cdef int i, k
         if self.full is None:
             self.full = {"gravity": [m.gravity[i] for i in range(m.n_dof)],
-                         "of shapes": [[self.shapes[i].g[k] for k in range(3)] for i in range(m.n_rigids)],
+                         "of shapes": [[self.shapes[i].g[k] for k in range(3)] for i in range(m.n_bodies)],
                          "fixed": [m.dead_value[i] for i in range(self._fixed_values())],
                          "turning": [[self.loads[i].c[k] for k in range(3)] for i in range(m.n_loads)]}
         cdef double *own_weight = <double *>m.gravity
@@ -121,7 +121,7 @@ cdef class Statics(Translation):
         for i, value in enumerate(self.full["fixed"]):
             fixed[i] = fraction * value
         for k in range(3):
-            for i in range(m.n_rigids):
+            for i in range(m.n_bodies):
                 self.shapes[i].g[k] = weight * self.full["of shapes"][i][k]
             for i in range(m.n_loads):
                 self.loads[i].c[k] = fraction * self.full["turning"][i][k]
@@ -161,22 +161,22 @@ cdef class Statics(Translation):
         cdef fu_weights weights
         weights.inertia, weights.rate, weights.stiffness = inertia, rate, stiffness
         fu_matrix(&self.run, weights)
-        return self._matrix() + stiffness * self._between_cables() if stiffness and self.model.n_links else self._matrix()
+        return self._matrix() + stiffness * self._between_cables() if stiffness and self.model.n_joints else self._matrix()
 
     def _between_cables(self):
         """(n, n) sparse: what joints between two cables add to the stiffness and Newton in time does without."""
         from scipy.sparse import coo_array, csr_array
 
-        cdef int[::1] at = np.zeros(2 * FU_END_COORDINATES, dtype=np.intc)
-        cdef double[::1] J = np.zeros(6 * 2 * FU_END_COORDINATES), K = np.zeros(4 * FU_END_COORDINATES ** 2)
+        cdef int[::1] at = np.zeros(2 * FU_ATTACHMENT_COORDINATES, dtype=np.intc)
+        cdef double[::1] J = np.zeros(6 * 2 * FU_ATTACHMENT_COORDINATES), K = np.zeros(4 * FU_ATTACHMENT_COORDINATES ** 2)
         cdef int k, i, n, first, n_dof = self.model.n_dof, total = self.run.newton.n + self.run.newton.m
         whole = n_dof + self.model.n_extra
         stiffness = csr_array((whole, whole))
-        for k in range(self.model.n_links):
-            if not fu_between_cables(&self.links[k]):
+        for k in range(self.model.n_joints):
+            if not fu_between_cables(&self.joints[k]):
                 continue
-            first = fu_end_coordinates(&self.model, &self.links[k].ends[0], &self.run.next, &at[0])
-            n = fu_link_tangent(&self.model, &self.links[k], &self.run.next, &at[0], &J[0], &K[0])
+            first = fu_attachment_coordinates(&self.model, &self.joints[k].ends[0], &self.run.next, &at[0])
+            n = fu_joint_tangent(&self.model, &self.joints[k], &self.run.next, &at[0], &J[0], &K[0])
             block = np.array(K[:n * n]).reshape(n, n)
             block[:first, :first] = block[first:, first:] = 0
             places = np.array([at[i] for i in range(n)])
@@ -195,12 +195,12 @@ cdef class Statics(Translation):
         return self.spreads.T @ stiffness @ self.spreads
 
     def _is_held(self, int extra):
-        return any([self.joints[j].unknown == extra and self.run.next.mode[j] != FU_SLIDES
-                    for j in range(self.model.n_joints)])
+        return any([self.slides[j].unknown == extra and self.run.next.mode[j] != FU_SLIDES
+                    for j in range(self.model.n_slides)])
 
     def elastic_energy(self):
         """J, of the static state."""
-        cdef double buffers = fu_brake_energy(&self.model, &self.run.next) if self.model.n_brakes else 0.0
+        cdef double buffers = fu_buffer_energy(&self.model, &self.run.next) if self.model.n_resistances else 0.0
         return fu_elastic_energy(&self.model, self.run.next.q) + buffers
 
     def spread(self, unknowns):

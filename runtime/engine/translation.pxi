@@ -4,10 +4,10 @@ cdef class Translation(Arrays):
     """Bodies, cables, slides, joints, springs, loads and motions of a model, and the work space of a run of it."""
 
     cdef fu_cable *cables
-    cdef fu_rigid *rigids
+    cdef fu_body *bodies
     cdef fu_shape *shapes
+    cdef fu_slide *slides
     cdef fu_joint *joints
-    cdef fu_link *links
     cdef fu_spring *springs
     cdef fu_motion *motions
     cdef fu_dead_load *dead_loads
@@ -19,22 +19,22 @@ cdef class Translation(Arrays):
 
     def __cinit__(self, model, blocks=True):
         self.cables = <fu_cable *>PyMem_Calloc(len(model.cables) + 1, sizeof(fu_cable))
-        self.rigids = <fu_rigid *>PyMem_Calloc(len(model.rigids) + 1, sizeof(fu_rigid))
-        self.shapes = <fu_shape *>PyMem_Calloc(len(model.rigids) + 1, sizeof(fu_shape))
+        self.bodies = <fu_body *>PyMem_Calloc(len(model.bodies) + 1, sizeof(fu_body))
+        self.shapes = <fu_shape *>PyMem_Calloc(len(model.bodies) + 1, sizeof(fu_shape))
+        self.slides = <fu_slide *>PyMem_Calloc(len(model.slides) + 1, sizeof(fu_slide))
         self.joints = <fu_joint *>PyMem_Calloc(len(model.joints) + 1, sizeof(fu_joint))
-        self.links = <fu_link *>PyMem_Calloc(len(model.links) + 1, sizeof(fu_link))
         self.springs = <fu_spring *>PyMem_Calloc(len(model.springs) + 1, sizeof(fu_spring))
         self.motions = <fu_motion *>PyMem_Calloc(len(model.motions) + 1, sizeof(fu_motion))
         self.dead_loads = <fu_dead_load *>PyMem_Calloc(len(model.dead_loads) + 1, sizeof(fu_dead_load))
         self.loads = <fu_load *>PyMem_Calloc(len(model.loads) + 1, sizeof(fu_load))
         self.signals = <fu_signal *>PyMem_Calloc(len(model.signals) + 1, sizeof(fu_signal))
-        if not (self.cables and self.rigids and self.shapes and self.joints and self.links and self.springs
+        if not (self.cables and self.bodies and self.shapes and self.slides and self.joints and self.springs
                 and self.motions and self.dead_loads and self.loads and self.signals):
             raise MemoryError
 
     def __dealloc__(self):
-        for pointer in (<size_t>self.cables, <size_t>self.rigids, <size_t>self.shapes, <size_t>self.joints,
-                        <size_t>self.links, <size_t>self.springs, <size_t>self.motions, <size_t>self.dead_loads,
+        for pointer in (<size_t>self.cables, <size_t>self.bodies, <size_t>self.shapes, <size_t>self.slides,
+                        <size_t>self.joints, <size_t>self.springs, <size_t>self.motions, <size_t>self.dead_loads,
                         <size_t>self.loads, <size_t>self.signals, <size_t>self.watches):
             PyMem_Free(<void *><size_t>pointer)
 
@@ -59,8 +59,8 @@ cdef class Translation(Arrays):
         cdef int i, k, memory = 0
         for i, cable in enumerate(model.cables):
             c = &self.cables[i]
-            c.kernel = <const fu_element *>_found(tables, "element", cable.element)
-            c.law = <const fu_law *>_found(tables, "law", f"{cable.element}_{cable.law}")
+            c.kernel = <const fu_element_kernels *>_found(tables, "element", cable.element)
+            c.law = <const fu_law_kernels *>_found(tables, "law", f"{cable.element}_{cable.law}")
             c.blocks = fu_blocks_of(c.law.name) if blocks and cable.library is None else NULL
             c.n_elements, c.first, c.length = cable.n_elements, cable.first, cable.length
             c.tau, c.mass_damping = cable.tau, cable.mass_damping
@@ -73,23 +73,23 @@ cdef class Translation(Arrays):
             if c.law.rates > FU_MAX_RATES:
                 raise ValueError(f"{cable.element}: more rates of strain than the engine's {FU_MAX_RATES}")
             c.memory, memory = memory, memory + c.n_elements * (c.law.rates + 1)
-        for i, body in enumerate(model.rigids):
-            r = &self.rigids[i]
-            r.kernel = <const fu_body *>_found(tables, "body", body.kernel)
+        for i, body in enumerate(model.bodies):
+            r = &self.bodies[i]
+            r.kernel = <const fu_body_kernels *>_found(tables, "body", body.kernel)
             r.configuration, r.dof, r.mass = body.configuration, body.dof, body.mass
             r.matter, r.modes, r.shape = &fu_rigid_matter, 0, NULL
             for k in range(9):
                 r.J[k] = body.inertia.flat[k]
             if body.shape is not None:
                 self._shape(r, &self.shapes[i], body, tables)
-        self.model.n_cables, self.model.n_rigids = len(model.cables), len(model.rigids)
-        self.model.cables, self.model.rigids = self.cables, self.rigids
+        self.model.n_cables, self.model.n_bodies = len(model.cables), len(model.bodies)
+        self.model.cables, self.model.bodies = self.cables, self.bodies
 
-    cdef int _shape(self, fu_rigid *r, fu_shape *h, body, list tables) except -1:
+    cdef int _shape(self, fu_body *r, fu_shape *h, body, list tables) except -1:
         shape, n = body.shape, body.modes
         cdef int k
         r.matter, r.modes, r.shape = &fu_modal_matter, n, h
-        h.kernel = <const fu_modal *>_found(tables, "modal", body.modal_kernel)
+        h.kernel = <const fu_modal_kernels *>_found(tables, "modal", body.modal_kernel)
         h.S, h.X = self._doubles(shape.S), self._doubles(shape.X)
         h.mass = self._doubles(np.einsum("klii->kl", shape.X)[1:, 1:])
         h.stiffness, h.damping = self._doubles(shape.stiffness), self._doubles(shape.damping)
@@ -106,26 +106,26 @@ cdef class Translation(Arrays):
         x (dim,), phi (modes, dim), psi (modes, turns); b, w: the body's entries of q and v. Returns what `fu_modal_point`
         holds, P, T, and K for a force f and a moment m on the point.
         """
-        cdef fu_rigid *r = &self.rigids[index]
-        cdef fu_spot spot
+        cdef fu_body *r = &self.bodies[index]
+        cdef fu_modal_attachment spot
         cdef fu_modal_point out
         cdef int n = fu_body_dofs(r), dim = r.kernel.dim, turns = r.kernel.velocity - r.kernel.dim
         spot.x, spot.phi, spot.psi = self._doubles(x), self._doubles(phi), self._doubles(psi)
         P, T, K = np.zeros((dim, n)), np.zeros((turns, n)), np.zeros((n, n))
         cdef double[:, ::1] P_view = P, T_view = T, K_view = K
-        fu_modal_anchor(r, &spot, self._doubles(b), self._doubles(w), &out, &P_view[0, 0], &T_view[0, 0])
-        fu_modal_anchor_force(r, &spot, self._doubles(b), self._doubles(f), self._doubles(m), &K_view[0, 0])
+        fu_modal_attachment_state(r, &spot, self._doubles(b), self._doubles(w), &out, &P_view[0, 0], &T_view[0, 0])
+        fu_modal_attachment_force(r, &spot, self._doubles(b), self._doubles(f), self._doubles(m), &K_view[0, 0])
         return {"p": np.array(out.p)[:dim], "axes": np.array(out.axes)[:dim * dim].reshape(dim, dim), "P": P, "T": T, "K": K,
                 "velocity": np.array(out.velocity)[:dim], "omega": np.array(out.omega)[:turns],
                 "bias": np.array(out.bias)[:dim], "omega_bias": np.array(out.omega_bias)[:turns]}
 
-    cdef int _spot(self, fu_spot *to, int body, spot) except -1:
+    cdef int _spot(self, fu_modal_attachment *to, int body, spot) except -1:
         to.x, to.phi, to.psi = self._doubles(spot[0]), self._doubles(spot[1]), self._doubles(spot[2])
-        if fu_body_dofs(&self.rigids[body]) > FU_END_COORDINATES:
-            raise ValueError(f"more modes than the engine's {FU_END_COORDINATES - 6}")
+        if fu_body_dofs(&self.bodies[body]) > FU_ATTACHMENT_COORDINATES:
+            raise ValueError(f"more modes than the engine's {FU_ATTACHMENT_COORDINATES - 6}")
         return 0
 
-    cdef int _end(self, fu_end *to, end, list tables) except -1:
+    cdef int _end(self, fu_attachment *to, end, list tables) except -1:
         cdef int k
         to.cable, to.body, to.element, to.slide = end.cable, end.body, end.element, end.slide
         to.frame = NULL
@@ -138,7 +138,7 @@ cdef class Translation(Arrays):
         if end.axes is None:
             return 0
         if end.frame:
-            to.frame = <const fu_frame *>_found(tables, "frame", end.frame)
+            to.frame = <const fu_frame_kernels *>_found(tables, "frame", end.frame)
         for k in range(2):
             to.slopes[k] = end.slopes[k]
         for k in range(3):
@@ -150,37 +150,37 @@ cdef class Translation(Arrays):
         return 0
 
     def _joints_and_springs(self, model, list tables):
-        cdef int i, k, brakes = 0
-        for i, joint in enumerate(model.joints):
-            j = &self.joints[i]
-            j.kernel = <const fu_slide *>_found(tables, "slide", joint.kernel)
+        cdef int i, k, resistances = 0
+        for i, slide in enumerate(model.slides):
+            j = &self.slides[i]
+            j.kernel = <const fu_slide_kernels *>_found(tables, "slide", slide.kernel)
             if j.kernel.coordinates + 1 > FU_MAX_COORDINATES:
-                raise ValueError(f"{joint.kernel}: more coordinates than the engine's {FU_MAX_COORDINATES}")
-            j.cable, j.native, j.room, j.drive = joint.cable, joint.native, joint.room, joint.drive
-            j.unknown, j.multiplier, j.carries_director = joint.unknown, joint.multiplier, joint.carries_director
-            j.mass = joint.mass
-            self._end(&j.rider, joint.rider, tables)
-            j.brake = <const fu_brake *>_found(tables, "brake", joint.brake) if joint.brake else NULL
-            brakes += bool(joint.brake)
+                raise ValueError(f"{slide.kernel}: more coordinates than the engine's {FU_MAX_COORDINATES}")
+            j.cable, j.rider_is_rigid, j.max_multipliers, j.drive = slide.cable, slide.rider_is_rigid, slide.max_multipliers, slide.drive
+            j.unknown, j.multiplier, j.carries_director = slide.unknown, slide.multiplier, slide.carries_director
+            j.mass = slide.mass
+            self._end(&j.rider, slide.rider, tables)
+            j.resistance = <const fu_resistance_kernels *>_found(tables, "resistance", slide.resistance) if slide.resistance else NULL
+            resistances += bool(slide.resistance)
             j.velocity = 1.0  # of no friction
-            if joint.friction is not None:
-                j.sticks, j.viscous, j.velocity = joint.friction.sticks, joint.friction.viscous, joint.friction.velocity
-                j.friction, j.holding = joint.friction.sliding, joint.friction.holding
-            for k, end in enumerate(joint.ends):
+            if slide.friction is not None:
+                j.sticks, j.viscous, j.velocity = slide.friction.sticks, slide.friction.viscous, slide.friction.velocity
+                j.friction, j.static_friction = slide.friction.sliding, slide.friction.static_friction
+            for k, end in enumerate(slide.ends):
                 e = &j.stops[k]
                 e.kind = ENDS[end if isinstance(end, str) else end.stop]
                 if e.kind == FU_END_IS_HARD:
                     e.restitution = end.restitution
                 if e.kind == FU_END_IS_BUFFERED:
                     e.length, e.stiffness, e.damping = end.length, end.stiffness, end.damping
-        for i, link in enumerate(model.links):
-            l = &self.links[i]
-            l.kernel = <const fu_pair *>_found(tables, "pair", link.kernel)
-            l.unknown, l.multiplier, l.signal, l.base = link.unknown, link.multiplier, link.signal, link.base
-            for k in range(link.rows):
-                l.scale[k] = link.scale[k]
+        for i, joint in enumerate(model.joints):
+            l = &self.joints[i]
+            l.kernel = <const fu_joint_kernels *>_found(tables, "joint", joint.kernel)
+            l.unknown, l.multiplier, l.signal, l.base = joint.unknown, joint.multiplier, joint.signal, joint.base
+            for k in range(joint.rows):
+                l.scale[k] = joint.scale[k]
             for k in range(2):
-                self._end(&l.ends[k], link.ends[k], tables)
+                self._end(&l.ends[k], joint.ends[k], tables)
         for i, spring in enumerate(model.springs):
             p = &self.springs[i]
             p.dim, p.unknown, p.mass = spring.dim, spring.unknown, spring.mass
@@ -188,9 +188,9 @@ cdef class Translation(Arrays):
             for k in range(2):
                 self._end(&p.ends[k], spring.ends[k], tables)
         m = &self.model
-        m.n_joints, m.n_links, m.n_springs = len(model.joints), len(model.links), len(model.springs)
-        m.n_brakes = brakes
-        m.joints, m.links, m.springs = self.joints, self.links, self.springs
+        m.n_slides, m.n_joints, m.n_springs = len(model.slides), len(model.joints), len(model.springs)
+        m.n_resistances = resistances
+        m.slides, m.joints, m.springs = self.slides, self.joints, self.springs
 
     def _loads_and_motions(self, model):
         cdef int i, k, at = 0
@@ -244,19 +244,19 @@ cdef class Translation(Arrays):
     cdef void _state(self, fu_state *state, model):
         state.q, state.v = self._doubles(model.q), self._doubles(model.v)
         state.acceleration, state.a = self._doubles(np.zeros(model.n_dof)), self._doubles(np.zeros(model.n_dof))
-        joints = len(model.joints)
-        state.s, state.f = self._doubles([j.s for j in model.joints]), self._doubles(np.zeros(3 * joints))
+        slides = len(model.slides)
+        state.s, state.f = self._doubles([j.s for j in model.slides]), self._doubles(np.zeros(3 * slides))
         state.spring, state.t = self._doubles(np.zeros(3 * len(model.springs))), 0.0
-        state.multipliers = self._doubles(np.zeros(6 * len(model.links)))
-        state.hold = self._doubles(np.zeros(joints))
-        state.element = self._ints([j.element for j in model.joints])
-        state.mode = self._ints([FU_HELD if j.drive >= 0 else FU_SLIDES for j in model.joints])
-        state.way, state.contact = self._ints(np.zeros(joints)), self._ints(np.zeros(joints))
-        state.director = self._doubles([j.director for j in model.joints])
+        state.multipliers = self._doubles(np.zeros(6 * len(model.joints)))
+        state.locked_s = self._doubles(np.zeros(slides))
+        state.element = self._ints([j.element for j in model.slides])
+        state.mode = self._ints([FU_LOCKED if j.drive >= 0 else FU_SLIDES for j in model.slides])
+        state.slip_direction, state.contact = self._ints(np.zeros(slides)), self._ints(np.zeros(slides))
+        state.director = self._doubles([j.director for j in model.slides])
         state.memory = self._zeros(0)
 
     def _work_space(self, model):
-        n_joints, n_dof = len(model.joints), model.n_dof
+        n_slides, n_dof = len(model.slides), model.n_dof
         unknowns = model.n_band + model.n_border_dof
         run = &self.run
         run.model = &self.model
@@ -270,16 +270,16 @@ cdef class Translation(Arrays):
         run.newton.K = a.mass.K = self._zeros((3.0 * width + 1) * model.n_band)
         a.corner = self._zeros(<double>a.mass.m * a.mass.m)
         a.rhs = self._zeros(unknowns + model.n_multipliers + FU_BAND_BEYOND(width))
-        rows = n_joints + len(model.links)
+        rows = n_slides + len(model.joints)
         a.rows = <fu_rows *>self._zeros(rows * sizeof(fu_rows) // sizeof(double) + 1)
-        a.slides = <fu_slide_state *>self._zeros(n_joints * sizeof(fu_slide_state) // sizeof(double) + 1)
+        a.slide_states = <fu_slide_state *>self._zeros(n_slides * sizeof(fu_slide_state) // sizeof(double) + 1)
         a.multipliers = self._zeros(model.n_multipliers)
-        a.braking, a.resistance, a.jammed = self._zeros(3 * n_joints + 1), self._zeros(n_joints), -1
-        a.joints = self._doubles(np.zeros(n_joints * FU_JOINT_OUTPUTS))
+        a.resistance, a.driven_resistance, a.jammed = self._zeros(3 * n_slides + 1), self._zeros(n_slides), -1
+        a.slides = self._doubles(np.zeros(n_slides * FU_SLIDE_OUTPUTS))
         a.force, a.work = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         a.prescribed = self._doubles(np.zeros(n_dof))
         run.rhs = self._zeros(unknowns + model.n_extra + FU_BAND_BEYOND(width))
         run.psi, run.force = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         run.work, run.before = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
-        run.first, run.s_slope = self._doubles(np.zeros(model.n_q)), self._doubles(np.zeros(n_joints))
+        run.first, run.s_slope = self._doubles(np.zeros(model.n_q)), self._doubles(np.zeros(n_slides))
         self._watch([])

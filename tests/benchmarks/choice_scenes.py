@@ -75,7 +75,7 @@ def taut(load: float = 0.0, speed: float = 0.0) -> fu.Scene:
     """A steel rope of 12 mm over 50 m under 28 kN, drawn straight; a weight at a third of it, or a rider."""
     scene = fu.Scene()
     scene.cable("rope", start=(0, 0, 0), end=(50, 0, 0), rest_length=49.8, elements=12, element="cable12",
-                section=fu.General(area=7.2e-5, second_moment_yy=1e-10),
+                section=fu.GeneralSection(area=7.2e-5, second_moment_about_z=1e-10),
                 material=fu.Material(youngs_modulus=1e11, poisson_ratio=0.3, density=8600))
     scene.pin("rope", s=0.0)
     scene.pin("rope", s=49.8)
@@ -169,10 +169,10 @@ def spin_up() -> fu.Scene:
     """A beam turned about its end up to 6 rad/s within 3 s (CASES D3, five times as fast)."""
     scene = fu.Scene(gravity=(0, 0, 0))
     scene.cable("beam", start=(0, 0, 0), end=(10, 0, 0), elements=4, element="cable8p",
-                section=fu.General(area=1e-3, second_moment_yy=5e-7),
+                section=fu.GeneralSection(area=1e-3, second_moment_about_z=5e-7),
                 material=fu.Material(youngs_modulus=2.8e10, poisson_ratio=0.0, density=1200))
     time = np.linspace(0, 3, 31)
-    angle = fu.Table(time=tuple(time), value=tuple(time**2 * (3 - time / 3) / 3))
+    angle = fu.TableSignal(time=tuple(time), value=tuple(time**2 * (3 - time / 3) / 3))
     scene.motion("beam", s=0.0, rotation=((0, 0, 1), angle))
     return scene
 
@@ -188,7 +188,7 @@ def drawn_along() -> fu.Scene:
     scene.rigid_body("carriage", mass=1.0, inertia=(1e-2,) * 3, position=(0.5, 0, 0))
     scene.rigid_body("load", mass=3.0, inertia=(0.1, 0.02, 0.1), position=(0.5, -0.5, 0))
     scene.slide("carriage", along="wire", s=0.5 * 2.98 / 3, frame="tangent",
-                velocity=fu.Table(time=(0, 0.3, 2), value=(0, 2, 2), interpolation="linear"), name="drive")
+                velocity=fu.TableSignal(time=(0, 0.3, 2), value=(0, 2, 2), interpolation="linear"), name="drive")
     scene.joint("revolute", "carriage", ("load", (0, 0.5, 0)), axis=(0, 0, 1), name="hinge")
     return scene
 

@@ -67,7 +67,7 @@ def joined(elements: int) -> Scene:
         cable(made, name, start, (LENGTH, 0, 0), elements // 3)
         made.pin(name, s=0.0)
     for name in "bc":
-        made.join("a", s=LENGTH, to=name, at=made.cables[name].length, rotation="free")
+        made.tie("a", s=LENGTH, to=name, at=made.cables[name].length, rotation="free")
     ride(made, "a", 1)
     return made
 
@@ -79,7 +79,7 @@ def ring(elements: int) -> Scene:
     for k, name in enumerate("abc"):
         cable(made, name, corners[k], corners[(k + 1) % 3], elements // 3)
     for name, to in ("ab", "bc", "ca"):
-        made.join(name, s=made.cables[name].length, to=to, at=0.0, rotation="free")
+        made.tie(name, s=made.cables[name].length, to=to, at=0.0, rotation="free")
     made.spring(("a", 0.0), (0, 0.1, 0), stiffness=50.0)
     return made
 
@@ -91,7 +91,7 @@ def ladder(elements: int, rungs: int = 4) -> Scene:
         cable(made, name, (0, 0, 0), (LENGTH, 0, 0), each)
         made.pin(name, s=0.0)
     for node in sorted({(k + 1) * each // rungs for k in range(rungs)} - {0}):
-        made.join("a", s=LENGTH * node / each, to="b", at=LENGTH * node / each, rotation="free")
+        made.tie("a", s=LENGTH * node / each, to="b", at=LENGTH * node / each, rotation="free")
     return made
 
 

@@ -31,7 +31,7 @@ from math import asinh, hypot
 from time import process_time
 
 import numpy as np
-from funicular import General, Material, Scene
+from funicular import GeneralSection, Material, Scene
 from funicular.elements import manifest
 from funicular.generated import kernels
 from funicular.scene_file import loads
@@ -94,7 +94,7 @@ def rope(elements: int, membrane: str, element: str = "cable8p") -> Scene:
     area = 7.2e-5
     scene = Scene(gravity=(0, -GRAVITY, 0))
     scene.cable("rope", start=(0, 0, 0), end=(SPAN, -DROP, 0), rest_length=LENGTH, elements=elements, element=element,
-                strain="engineering", membrane=membrane, section=General(area=area, second_moment_yy=1e-13),
+                strain="engineering", membrane=membrane, section=GeneralSection(area=area, second_moment_about_z=1e-13),
                 material=Material(youngs_modulus=EA / area, poisson_ratio=0, density=WEIGHT / GRAVITY / area))
     scene.pin("rope", s=0)
     scene.pin("rope", s=LENGTH)

@@ -79,7 +79,7 @@ def test_a_closed_frame_is_resolved():
         scene.cable(f"c{k}", start=corners[k], end=corners[(k + 1) % 3],
                     **STRIP | {"elements": 2, "element": "beam24", "law": "structural"}, up=(0, 0, 1))
     for k in range(3):
-        scene.join(f"c{k}", s=scene.cables[f"c{k}"].length, to=f"c{(k + 1) % 3}", at=0)
+        scene.tie(f"c{k}", s=scene.cables[f"c{k}"].length, to=f"c{(k + 1) % 3}", at=0)
     scene.pin("c0", s=0)
     scene.pin("c0", s=1.0)
     run = scene.run(0.02, progress=False)

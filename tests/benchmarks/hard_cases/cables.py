@@ -25,7 +25,7 @@ def steel_and_rubber() -> Scene:
                        up=(1, 0, 0), **KIND)
     scene.pin(wire, s=0.0)
     scene.pin(wire, s=wire.length)
-    scene.join(cord, s=0.0, to=wire, at=wire.length / 2, rotation="free", name="hook")
+    scene.tie(cord, s=0.0, to=wire, at=wire.length / 2, rotation="free", name="hook")
     scene.rigid_body("A", mass=1.0, inertia=(1e-3,) * 3, position=wire.point(12.0), velocity=10 * wire.axes[0])
     scene.slide("A", along=wire, s=12.0)
     return scene

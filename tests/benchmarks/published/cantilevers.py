@@ -65,7 +65,7 @@ def elastica(kind: Kind, elements: int) -> list[float]:
     section, E = Rectangle(height=SLENDER, width=SLENDER), 1e9
     found = []
     for load in ELASTICA:
-        r, slope = tip(cantilever(kind, elements, 1, section, E), force=(0, load * E * section.second_moment_yy, 0))
+        r, slope = tip(cantilever(kind, elements, 1, section, E), force=(0, load * E * section.second_moment_about_z, 0))
         found += [r[1], 1 - r[0], np.arctan2(slope[1], slope[0])]
     return found
 
@@ -88,7 +88,7 @@ def stretched(kind: Kind, elements: int) -> tuple[float, float]:
     height, length, E = 0.1, 2.0, 2.07e11
     factors = {"shear_factors": (RIGID_IN_SHEAR,) * 2} if kind.law == "structural" else {}
     section = Rectangle(height=height, width=height, **factors)
-    force = 3 * E * section.second_moment_yy / length**2
+    force = 3 * E * section.second_moment_about_z / length**2
     r, _ = tip(cantilever(kind, elements, length, section, E), force=(0, force, 0))
     return length - r[0], r[1]
 
@@ -134,7 +134,7 @@ def rolled_quantities(turns: int):
     def quantities(kind: Kind, elements: int) -> list[Quantity]:
         x = y = 0.0
         if kind.is_green:
-            stretch = sqrt(1 + 2 * (2 * pi * turns) ** 2 * ROLLED.second_moment_yy / ROLLED.area)
+            stretch = sqrt(1 + 2 * (2 * pi * turns) ** 2 * ROLLED.second_moment_about_z / ROLLED.area)
             turn = 2 * pi * turns * stretch**2
             x, y = stretch * sin(turn) / turn, stretch * (1 - cos(turn)) / turn
         return [Quantity("x of the end", "m", x, 1.0), Quantity("y of the end", "m", y, 1.0)]
@@ -145,7 +145,7 @@ def rolled(turns: int):
     """Position of the end."""
     def values(kind: Kind, elements: int) -> tuple[float, float]:
         E = 1e9
-        moment = 2 * pi * turns * E * ROLLED.second_moment_yy
+        moment = 2 * pi * turns * E * ROLLED.second_moment_about_z
         r, _ = tip(cantilever(kind, elements, 1, ROLLED, E), moment=(0, 0, moment))
         return r[0], r[1]
     return values

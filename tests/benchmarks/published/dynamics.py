@@ -6,7 +6,7 @@ from functools import cache
 from math import pi, sqrt
 
 import numpy as np
-from funicular import Circle, General, Material, Rectangle, Scene, Table
+from funicular import Circle, GeneralSection, Material, Rectangle, Scene, TableSignal
 from sliding import sliding_mass
 
 from .case import CABLES, KINDS, MEMBRANES, STRUCTURAL, Case, Kind, Quantity
@@ -112,10 +112,10 @@ def angle(time: np.ndarray) -> np.ndarray:
     return np.where(time < RISE, rising, SPEED * time - SPEED * RISE / 2)
 
 
-def turning(time_step=0.05, end=31.0) -> Table:
+def turning(time_step=0.05, end=31.0) -> TableSignal:
     """The angle as a cubic spline, to 2e-8; past the end of a run, since a table stands still after its last value."""
     time = np.arange(0, end + time_step / 2, time_step)
-    return Table(time=time, value=angle(time))
+    return TableSignal(time=time, value=angle(time))
 
 
 def spin_up(kind: Kind, elements: int, duration: float, step: float,
@@ -127,7 +127,7 @@ def spin_up(kind: Kind, elements: int, duration: float, step: float,
     if kind.law == "structural":
         section = Rectangle(height=height, width=area / height, shear_factors=(1, 1))
     elif kind.is_cable:
-        section = General(area=area, second_moment_yy=area * gyration**2)
+        section = GeneralSection(area=area, second_moment_about_z=area * gyration**2)
     scene = Scene(gravity=(0, 0, 0))
     scene.cable("blade", start=(0, 0, 0), end=(length, 0, 0), elements=elements, element=kind.element, law=kind.law,
                 section=section, material=Material(youngs_modulus=2.8e7 / area, shear_modulus=1e7 / area,

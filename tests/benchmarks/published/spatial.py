@@ -91,7 +91,7 @@ def frame(kind: Kind, elements: int, force: float) -> Scene:
     scene.cable("clamped", start=(0, 0, 0), end=(leg, 0, 0), **same)
     scene.cable("free", start=(leg, 0, 0), end=(leg, -leg, 0), up=(1, 0, 0), **same)
     scene.clamp("clamped", s=0)
-    scene.join("clamped", s=leg, to="free", at=0)
+    scene.tie("clamped", s=leg, to="free", at=0)
     scene.force("free", s=leg, value=(force, 0, 0))
     return scene
 

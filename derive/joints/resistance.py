@@ -8,9 +8,9 @@ function v/sqrt(v^2 + v0^2) of the speed (``way`` 0).
 from __future__ import annotations
 
 import sympy as sp
-from funicular.derive.stages import Derivation, Program
+from funicular.derive.stages import DirectionalDerivative, Program
 
-BRAKES = {3: "brake", 2: "planar_brake"}
+RESISTANCES = {3: "resistance", 2: "planar_resistance"}
 FRICTION = ("coefficient", "viscous", "v0", "way", "least")
 BUFFER = ("stiffness", "damping", "x", "side")
 
@@ -22,7 +22,7 @@ def build(dim: int) -> list[Program]:
 
 def force(dim: int) -> Program:
     """R and its derivatives."""
-    p = Program(f"{BRAKES[dim]}_force", "force along the cable on a slide, and its derivatives", "eq 30")
+    p = Program(f"{RESISTANCES[dim]}_force", "force along the cable on a slide, and its derivatives", "eq 30")
     t = p.input("t", dim, "1", "r_x at s")
     u = p.input("u", dim, "m/s", "velocity of the rider's point less that of the cable's particle")
     f = p.input("f", dim, "N", "force of the joint on the rider")
@@ -43,7 +43,7 @@ def force(dim: int) -> Program:
     tau = p.define("tau", way + (1 - way * way) * smooth)
     R = p.define("R_all", -length * (mu * N * tau + viscous * v) - side * stiffness * x - damping * inverse * v)
     p.stage("derivatives")
-    by = {name: [Derivation(p, f"d{name}{k}", {symbol: 1}) for k, symbol in enumerate(symbols)]
+    by = {name: [DirectionalDerivative(p, f"d{name}{k}", {symbol: 1}) for k, symbol in enumerate(symbols)]
           for name, symbols in (("t", t), ("u", u), ("f", f), ("x", [x]))}
     p.output("R", [R], "N", "generalised force of s")
     p.output("R_t", [d(R) for d in by["t"]], "N", "derivatives by t")
