@@ -11,7 +11,8 @@ from functools import cached_property
 from pathlib import Path
 
 import sympy as sp
-from funicular.derive.stages import Program
+
+from .codegen.program import Program
 
 x, y, z, l = sp.symbols("x y z l", positive=True)
 COORDINATES = {"x": x, "y": y, "z": z}

@@ -2,8 +2,7 @@
 
 from typing import Any
 
-from funicular.ends import Buffer, HardStop
-from funicular.errors import (
+from .errors import (
     ConvergenceError,
     EndOfCableError,
     EquilibriumError,
@@ -13,13 +12,14 @@ from funicular.errors import (
     SceneError,
     UnknownResultError,
 )
-from funicular.friction import Friction
-from funicular.materials import Material
-from funicular.results import Run, load_run
-from funicular.scene import Scene
-from funicular.scene_file import bundled_scenes, load_scene
-from funicular.sections import Circle, GeneralSection, Rectangle, Tube
-from funicular.signals import Harmonic, Pulse, Ramp, TableSignal
+from .parts.end_stops import Buffer, HardStop
+from .parts.friction import Friction
+from .parts.material import Material
+from .parts.section import Circle, GeneralSection, Rectangle, Tube
+from .parts.signal import Harmonic, Pulse, Ramp, TableSignal
+from .results.run import Run, load_run
+from .scene import Scene
+from .scene_file import bundled_scenes, load_scene
 
 __all__ = [
     "Buffer",

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from funicular.results import Run
+    from .results.run import Run
 
 app = typer.Typer(
     help="Very flexible cables and whatever slides along them.",
@@ -31,7 +31,7 @@ Names = Annotated[list[str] | None, typer.Argument(metavar="[NAME]...", help="on
 @contextmanager
 def _told_without_traceback() -> Iterator[None]:
     """Errors and warnings of funicular become a line on stderr each; an error ends the command with 1."""
-    from funicular.errors import FunicularError, FunicularWarning
+    from .errors import FunicularError, FunicularWarning
 
     def tell(message, category, *place) -> None:
         if not issubclass(category, FunicularWarning):
@@ -78,9 +78,9 @@ def run(
     What was computed is in the file also when the run stops early, and --resume goes on from there. Exit code: 1 for an
     error, 130 after Ctrl-C.
     """
-    from funicular.errors import ConvergenceError, EndOfCableError
-    from funicular.results import check_writable
-    from funicular.scene_file import load_scene
+    from .errors import ConvergenceError, EndOfCableError
+    from .results.run import check_writable
+    from .scene_file import load_scene
 
     with _told_without_traceback():
         described = load_scene(scene, library or ())
@@ -116,7 +116,7 @@ def _report(run: Run, path: Path, pictures: Path | None, forces: bool) -> None:
     if len(run.time):
         rows.append(("results", str(path)))
     if pictures is not None and len(run.time):
-        from funicular.plot import save_plots
+        from .view.plot import save_plots
 
         written = save_plots(run, pictures, f"{path.stem}-", forces)
         rows.append(("pictures", "\n".join(map(str, written))))
@@ -147,11 +147,12 @@ def bench(
 
     The reference is computed, too, and how far it is converged is told. Combinations that fail are told, as well.
     """
-    from funicular.bench import bench, grid
-    from funicular.bench_report import print_table, save
-    from funicular.results import check_writable
-    from funicular.scene_file import load_scene
     from rich.console import Console
+
+    from .bench.bench import bench, grid
+    from .bench.report import print_table, save
+    from .results.run import check_writable
+    from .scene_file import load_scene
 
     with _told_without_traceback():
         described, name = load_scene(scene, library or ()), f"{Path(scene).stem}-bench"
@@ -180,7 +181,7 @@ def _numbers(text: str) -> list[float]:
 @app.command()
 def scenes() -> None:
     """List the bundled scenes."""
-    from funicular.scene_file import bundled_scenes
+    from .scene_file import bundled_scenes
 
     for name, path in bundled_scenes().items():
         print(f"{name}\t{path}")
@@ -197,10 +198,10 @@ def derive(
     if (spec is None) != (out is None) or (spec is not None and (names or check)):
         raise typer.BadParameter("--spec FILE and --out DIR go together, and with nothing else")
     if spec is None:
-        from funicular.derive.drift import main
+        from funicular.derive.codegen.drift import main
 
         raise typer.Exit(main(names or [], check))
-    from funicular.derive.own.command import main as make_library
+    from funicular.derive.user_elements.command import main as make_library
 
     with _told_without_traceback():
         make_library(spec, out)
@@ -209,7 +210,7 @@ def derive(
 @app.command()
 def verify(names: Names = None) -> None:
     """Check the derivatives and invariances of the generated kernels."""
-    from funicular.derive.verify import main
+    from funicular.derive.verify.command import main
 
     raise typer.Exit(main(names or []))
 

@@ -71,7 +71,7 @@ include "engine/statics.pxi"
 
 
 cdef class Engine(Statics):
-    """One run of a model (see model.py for the fields that it reads).
+    """One run of a model (see model/build.py for the fields that it reads).
 
     blocks: take kernels of several elements at once where there are.
     """
@@ -175,7 +175,7 @@ cdef class Engine(Statics):
                 np.array([state.s[i] for i in range(m.n_slides)]))
 
     def start(self, *, duration, output_step, tol, step, method, first_step, capacity=None, rest_start=False):
-        """Allocate output rows, `capacity` of them or all, and compute the consistent start; method: see integrators.py.
+        """Allocate output rows, `capacity` of them or all, and compute the consistent start; method: see solve/integrators.py.
 
         Returns a status where that failed, else None, and the change of velocities that the joints asked for.
         """

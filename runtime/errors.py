@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from funicular.results import Run
-    from funicular.static import Equilibrium
+    from .results.run import Run
+    from .solve.static import Equilibrium
 
 _MOST_SHOWN = 150
 """Characters of a path's start and end in a message."""

@@ -8,11 +8,10 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
 from typing import TYPE_CHECKING
 
-from funicular.ends import Stop
-from funicular.errors import ConvergenceError, EndOfCableError, FunicularWarning, ResultFileError, SceneError
-from funicular.friction import Friction
-from funicular.materials import Material
-from funicular.parts import (
+from .checks.placement import check_support, check_tie, placed_load, placed_spring
+from .checks.planarity import check_plane
+from .errors import ConvergenceError, EndOfCableError, FunicularWarning, ResultFileError, SceneError
+from .parts import (
     EXACT,
     Cable,
     Clamp,
@@ -29,19 +28,20 @@ from funicular.parts import (
     Spring,
     Tie,
 )
-from funicular.placing import check_support, check_tie, placed_load, placed_spring
-from funicular.plane import check_plane
-from funicular.progress import progress_bar
-from funicular.results import Run
-from funicular.sections import Section
-from funicular.settings import EquilibriumSettings, ModeSettings, RunSettings
-from funicular.supports import Support
-from funicular.threads import one_blas_thread
-from funicular.validation import Part, show, shown, vector
+from .parts.end_stops import Stop
+from .parts.friction import Friction
+from .parts.material import Material
+from .parts.section import Section
+from .parts.settings import EquilibriumSettings, ModeSettings, RunSettings
+from .parts.support import Support
+from .parts.validation import Part, show, shown, vector
+from .results.run import Run
+from .solve.progress import progress_bar
+from .solve.threads import one_blas_thread
 
 if TYPE_CHECKING:
-    from funicular.modal import Modes
-    from funicular.static import Equilibrium
+    from .solve.modes import Modes
+    from .solve.static import Equilibrium
 
 RESERVED = ("energy", "time")
 
@@ -303,15 +303,15 @@ class Scene:
                 check_tie(self, part)
                 self.ties[part.name] = part
             case Joint():
-                from funicular.placing_joints import placed_joint
+                from .checks.joint_placement import placed_joint
 
                 self.joints[part.name] = part = placed_joint(self, part)
             case Slide():
-                from funicular.placing_slides import placed_slide
+                from .checks.slide_placement import placed_slide
 
                 self.slides[part.name] = part = placed_slide(self, part)
             case Event():
-                from funicular.watching import check_event
+                from .solve.event_watcher import check_event
 
                 check_event(self, part)
                 self.events[part.name] = part
@@ -344,8 +344,8 @@ class Scene:
 
     def check(self) -> None:
         """Check the scene as a whole, as `run` does first. Raises SceneError."""
-        from funicular.placing_joints import check_joint
-        from funicular.placing_slides import check_on_cable
+        from .checks.joint_placement import check_joint
+        from .checks.slide_placement import check_on_cable
 
         if not self.cables and not self.bodies:
             raise SceneError("scene", "is empty: there is nothing to simulate", "add a cable or a rigid body")
@@ -404,7 +404,7 @@ class Scene:
         self.check()
         if settings.initial == "drawn":
             self._check_motions_start_at_zero()
-            from funicular.placing_joints import check_drive
+            from .checks.joint_placement import check_drive
 
             for joint in self.joints.values():
                 check_drive(self, joint)
@@ -412,13 +412,13 @@ class Scene:
             raise SceneError("run", f"resume must be true or false, got {shown(resume)}")
         if resume and settings.save is None:
             raise ResultFileError("run: there is nothing to resume without a file of results; name it with save")
-        from funicular.streaming import Stream
+        from .results.streaming import Stream
 
         saving = nullcontext() if settings.save is None else Stream(settings.save, self, settings, resume)
         with saving as stream, one_blas_thread, _in_memory():
             if settings.initial == "equilibrium" and state is None:
                 state = self.equilibrium()
-            from funicular.model import simulate
+            from .model.build import simulate
 
             with progress_bar(settings.duration, progress) as on_progress:
                 recording = simulate(self, settings, on_progress, initial=state, stream=stream)
@@ -458,7 +458,7 @@ class Scene:
         settings = EquilibriumSettings(**self.equilibrium_settings | {k: v for k, v in given.items() if v is not None})
         self.check()
 
-        from funicular.static import equilibrium
+        from .solve.static import equilibrium
 
         with one_blas_thread, _in_memory():
             return equilibrium(self, settings, begin)
@@ -473,14 +473,14 @@ class Scene:
         state = None if about is None else _equilibrium_state(self, about)
         self.check()
 
-        from funicular.modal import modes
+        from .solve.modes import modes
 
         with one_blas_thread, _in_memory():
             return modes(self, settings.n, state)
 
     def to_toml(self) -> str:
         """The scene as the text of a scene file."""
-        from funicular.scene_file import dumps
+        from .scene_file import dumps
 
         return dumps(self)
 
@@ -551,7 +551,7 @@ def _named(name: str | None) -> dict:
 
 
 def _equilibrium_state(scene: Scene, state: Equilibrium) -> Equilibrium:
-    from funicular.static import Equilibrium
+    from .solve.static import Equilibrium
 
     if not isinstance(state, Equilibrium):
         raise SceneError("scene", "the state to start from must be one that equilibrium() returned, got "

@@ -13,16 +13,16 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from funicular.anchors import Attachment
-from funicular.ends import Stop
-from funicular.errors import SceneError, near, shown_path
-from funicular.parts import PARTS
-from funicular.scene import Scene
-from funicular.sections import Section
-from funicular.settings import EquilibriumSettings, RunSettings
-from funicular.signals import Constant, Signal
-from funicular.supports import FREE, Motion, Rotation
-from funicular.validation import Part
+from .errors import SceneError, near, shown_path
+from .parts import PARTS
+from .parts.attachment import Attachment
+from .parts.end_stops import Stop
+from .parts.section import Section
+from .parts.settings import EquilibriumSettings, RunSettings
+from .parts.signal import Constant, Signal
+from .parts.support import FREE, Motion, Rotation
+from .parts.validation import Part
+from .scene import Scene
 
 SCENES = Path(__file__).parent / "scenes"
 
@@ -106,7 +106,7 @@ def _check_libraries(tables: dict, directory: str | os.PathLike, allowed: list[s
     for kind, part in PARTS.items():
         for index, table in enumerate(_array(tables, kind), start=1):
             if isinstance(library := table.get("library"), str):
-                from funicular.libraries import check_allowed, resolved
+                from .kernels.libraries import check_allowed, resolved
 
                 place = part.place(table) if isinstance(table.get("name"), str) else f"[[{kind}]] {index}"
                 try:

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from funicular import Circle, Material, Scene
 from funicular.engine import Engine
-from funicular.integrators import EnergyMomentum
-from funicular.model import build
+from funicular.model.build import build
+from funicular.solve.integrators import EnergyMomentum
 from test_energy_integrator import CABLES, PLANAR, balance, changes, crossing, free, momenta
 
 RADII = (0.0, 0.5, 0.8, 1.0)

@@ -6,7 +6,7 @@ import re
 import numpy as np
 import pytest
 from funicular import Material, Rectangle, Scene, SceneError
-from funicular.bench import Mesh, bench, grid
+from funicular.bench.bench import Mesh, bench, grid
 from funicular.cli import app
 from typer.testing import CliRunner
 

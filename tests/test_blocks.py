@@ -6,10 +6,10 @@ import platform
 import numpy as np
 import pytest
 from funicular import Material, Rectangle, Scene
-from funicular.derive import drift
+from funicular.derive.codegen import drift
 from funicular.engine import Engine
-from funicular.integrators import GeneralisedAlpha
-from funicular.model import build
+from funicular.model.build import build
+from funicular.solve.integrators import GeneralisedAlpha
 
 ELEMENTS = 7  # a block and a rest
 SAME_BITS = platform.machine() in ("x86_64", "AMD64")  # no contraction to fused operations there

@@ -37,7 +37,7 @@ WITHIN = {
                  "poisson_split": 4e-4, "continuum": 4e-4},
     "S1, 3 elements": {"cable12": 3e-5, "cable8p": 3e-5},  # tol 1e-6 of the motion
     "S1, 12 elements": {"cable12": 1e-5, "cable8p": 1e-5, "cable18": 3e-4},  # cable18: the mesh of the reference
-    "D0": {"cable12": 2e-5, "cable8p": 2e-5},  # quadrature of the curvature (laws/cable.py)
+    "D0": {"cable12": 2e-5, "cable8p": 2e-5},  # quadrature of the curvature (laws/cable/cable.py)
     "D0 mesh": {"cable12": 1.2e-4, "cable8p": 1.2e-4, "cable18": 8e-4, "structural": 3e-4},
     "D1": {"cable12": 2e-3, "cable18": 2e-3, "cable8p": 2e-3, "structural": 2e-3},  # 3 digits printed
     # three digits printed, and "about"

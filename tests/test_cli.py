@@ -9,7 +9,7 @@ import pytest
 from fake_recording import fake_recording
 from funicular import ConvergenceError, EndOfCableError, FunicularWarning, load_run, load_scene
 from funicular.cli import app
-from funicular.model import build
+from funicular.model.build import build
 from typer.testing import CliRunner
 
 END = 'slide "trolley": reached the end of cable "wire" at t = 0.4 s'
@@ -18,7 +18,7 @@ END = 'slide "trolley": reached the end of cable "wire" at t = 0.4 s'
 @pytest.fixture
 def engine(monkeypatch, tmp_path):
     """A stand-in for funicular.model; runs take place in an empty directory."""
-    module = ModuleType("funicular.model")
+    module = ModuleType("funicular.model.build")
     module.outcome = {}
     module.calls = []
 
@@ -28,7 +28,7 @@ def engine(monkeypatch, tmp_path):
         return fake_recording(scene, **module.outcome)
 
     module.simulate, module.build = simulate, build
-    monkeypatch.setitem(sys.modules, "funicular.model", module)
+    monkeypatch.setitem(sys.modules, "funicular.model.build", module)
     monkeypatch.chdir(tmp_path)
     return module
 

@@ -6,11 +6,11 @@ from itertools import pairwise
 import funicular as fu
 import numpy as np
 import pytest
-from funicular.constants import element_constants, section_points
 from funicular.derive.elements import ELEMENTS
-from funicular.derive.verify_states import element_state, reference, rotation
+from funicular.derive.verify.states import element_state, reference, rotation
 from funicular.generated import kernels
-from funicular.stiffness import section_stiffness
+from funicular.model.constants import element_constants, section_points
+from funicular.parts.section_stiffness import section_stiffness
 from numpy.testing import assert_allclose
 
 RADIUS, E = 2.0, 1e9

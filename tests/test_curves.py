@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 from funicular import Circle, Material, Rectangle, Scene, SceneError
-from funicular.curves import points, sample, shape_through, transported
+from funicular.parts.curves import points, sample, shape_through, transported
 from numpy.testing import assert_allclose
 
 RADIUS, PITCH = 2.0, 0.5

@@ -11,10 +11,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray
-from funicular import FunicularError, FunicularWarning, ResultFileError, load_run, netcdf
-from funicular.checkpoints import Checkpoint
-from funicular.checksums import row_checksums
-from funicular.netcdf import File
+from funicular import FunicularError, FunicularWarning, ResultFileError, load_run
+from funicular.results import netcdf
+from funicular.results.checkpoints import Checkpoint
+from funicular.results.checksums import row_checksums
+from funicular.results.netcdf import File
 from test_streaming import SETTINGS, content, resumed, short, signed, stopped  # noqa: F401
 
 

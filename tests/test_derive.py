@@ -10,11 +10,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import pytest
-from funicular.derive import drift, emit, sources
-from funicular.derive.families import families
+from funicular.derive.catalogue import families
+from funicular.derive.codegen import drift
+from funicular.derive.codegen import provenance as sources
+from funicular.derive.codegen import rendering as emit
+from funicular.derive.codegen.program import Program
 from funicular.derive.spec import Family, FamilyError
-from funicular.derive.stages import Program
-from funicular.derive.verify_compile import compiler
+from funicular.derive.verify.compiled import compiler
 from operation_ceilings import CEILINGS
 
 
@@ -238,7 +240,7 @@ def test_the_manifest_holds_the_hashes_of_the_files(derived):
 def test_the_spec_hash_covers_all_that_decides_a_family():
     beam = set(sources.deciding(families()["beam24"].modules))
     assert beam >= {"elements/beam24.py", "element_kernels.py", "moments.py", "spec.py", "stages.py", "printer.py",
-                    "emit.py", "templates/family.c.jinja"}
+                    "codegen/rendering.py", "codegen/templates/family.c.jinja"}
     law = set(sources.deciding(families()["cable12_green_exact"].modules))
     assert law >= {"elements/cable12.py", "law_kernels.py", "laws/cable.py", "gram.py", "gram_tangent.py", "moments.py"}
     assert not any(name.startswith(("gram", "laws")) for name in beam)

@@ -14,8 +14,8 @@ from funicular import (
     Rectangle,
     Scene,
 )
-from funicular.diagnosis import unexplained
-from funicular.settings import RunSettings
+from funicular.parts.settings import RunSettings
+from funicular.solve.diagnosis import unexplained
 from scenery import add_cable
 
 

@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 import sympy as sp
-from funicular.constants import element_constants
+from funicular.derive.algebra.gram import Gram
+from funicular.derive.catalogue import families
 from funicular.derive.elements import ELEMENTS
-from funicular.derive.families import families
-from funicular.derive.gram import Gram
-from funicular.derive.laws.continuum import Form
+from funicular.derive.laws.continuum.continuum import Form
 from funicular.derive.spec import ASSUMED_LAWS, CABLE_LAWS, Element, l, x, y, z
-from funicular.derive.verify_states import element_state, loads, reference, rotation, section
-from funicular.elements import manifest
+from funicular.derive.verify.states import element_state, loads, reference, rotation, section
 from funicular.generated import kernels
+from funicular.kernels.elements import manifest
+from funicular.model.constants import element_constants
 
 LAWS = [(name, law) for name, element in ELEMENTS.items() for law in element.laws]
 CABLES = [(name, law) for name, law in LAWS if law in CABLE_LAWS + ASSUMED_LAWS]

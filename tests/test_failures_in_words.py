@@ -5,10 +5,10 @@ from types import SimpleNamespace
 import funicular as fu
 import numpy as np
 import pytest
-from funicular.diagnosis import stopped
-from funicular.model import build
-from funicular.redundancy import redundant, settle
-from funicular.settings import RunSettings
+from funicular.model.build import build
+from funicular.model.redundant_constraints import redundant, settle
+from funicular.parts.settings import RunSettings
+from funicular.solve.diagnosis import stopped
 
 
 def two_hinges() -> fu.Scene:

@@ -43,7 +43,7 @@ def test_results_that_are_no_numbers_end_the_run(tmp_path, mass, speed, rows, sa
 
     Such masses and speeds are refused; without that bound they stand for whatever else overflows.
     """
-    monkeypatch.setattr("funicular.validation.OTHER_LIMITS", (0.0, 1e308))
+    monkeypatch.setattr("funicular.parts.validation.OTHER_LIMITS", (0.0, 1e308))
     scene = Scene()
     scene.rigid_body("A", mass=mass, inertia=(1, 1, 1), position=(0, 1e8, 0), velocity=(speed, 0, 0))
     with pytest.raises(ConvergenceError, match='body "A" runs away') as error:

@@ -7,7 +7,7 @@ tests/benchmarks/first_scene.py prints the same errors beside the time that they
 import numpy as np
 import pytest
 from funicular import load_scene
-from funicular.model import build
+from funicular.model.build import build
 from paper51 import REFERENCE, deviation, error, integrate, motion_error, simulate
 
 

@@ -3,8 +3,8 @@
 import funicular as fu
 import numpy as np
 import pytest
-from funicular.integrators import Radau
-from funicular.settings import RunSettings
+from funicular.parts.settings import RunSettings
+from funicular.solve.integrators import Radau
 
 
 def soft(elements: int = 4, youngs_modulus: float = 2e6, damping_time: float = 0.0) -> fu.Scene:
@@ -157,7 +157,7 @@ def test_damping_counts_in_the_choice():
 @pytest.mark.parametrize("integrator", ["genalpha", "explicit", "radau"])
 def test_threads_change_no_bit(integrator, monkeypatch):
     """Groups of elements as with one, each with a place of its own: 37 elements end in an incomplete one."""
-    monkeypatch.setattr("funicular.threads.available", lambda: 3)
+    monkeypatch.setattr("funicular.solve.threads.available", lambda: 3)
     runs = [soft(37, 2e4, damping_time=1e-4).run(1e-3, integrator=integrator, output_step=5e-4, threads=threads)
             for threads in (1, 2, 3)]
     assert runs[0].report["messages"] == []

@@ -6,10 +6,10 @@ import warnings
 import numpy as np
 import pytest
 from funicular import Circle, FunicularWarning, Harmonic, Material, Ramp, Scene, SceneError, TableSignal, load_run
-from funicular.anchors import Attachment
-from funicular.frames import cable_frame, end_frame, joint_axes
-from funicular.joints import KINDS, Joint
-from funicular.placing_joints import check_drive
+from funicular.checks.frames import cable_frame, end_frame, joint_axes
+from funicular.checks.joint_placement import check_drive
+from funicular.parts.attachment import Attachment
+from funicular.parts.joint import KINDS, Joint
 from funicular.scene_file import loads
 from numpy.testing import assert_allclose
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from funicular import Circle, FunicularWarning, GeneralSection, Material, Rectangle, Scene
 from funicular.engine import Engine
-from funicular.model import build
-from funicular.redundancy import settle
+from funicular.model.build import build
+from funicular.model.redundant_constraints import settle
 from numpy.testing import assert_allclose
 
 SOFT = Material(youngs_modulus=1e7, poisson_ratio=0.3, density=1000)

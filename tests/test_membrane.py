@@ -1,14 +1,14 @@
-"""How elements of cables represent their axial strain: full, assumed, reduced (derive/laws/cable_assumed.py)."""
+"""How elements of cables represent their axial strain: full, assumed, reduced (derive/laws/cable/assumed.py)."""
 
 import numpy as np
 import pytest
 import taut_rope
 from funicular import Circle, FunicularWarning, Material, Ramp, Scene, SceneError
-from funicular.derive.verify_states import reference, rotation
-from funicular.elements import built_in
+from funicular.derive.verify.states import reference, rotation
 from funicular.generated import kernels
+from funicular.kernels.elements import built_in
+from funicular.parts.section_stiffness import STABILISATION, section_stiffness
 from funicular.scene_file import loads
-from funicular.stiffness import STABILISATION, section_stiffness
 from test_elements import ELEMENTS
 
 ELASTIC = Material(youngs_modulus=1e8, poisson_ratio=0.3, density=1000)

@@ -29,7 +29,8 @@ def test_a_taut_string(element, of_each):
 
 
 def test_sparse_and_dense_solvers_agree(monkeypatch):
-    from funicular import modal, spectrum
+    from funicular.solve import modes as modal
+    from funicular.solve import spectrum
 
     dense = string(12).modes(6).angular_frequency
     monkeypatch.setattr(modal, "DENSE", 0)

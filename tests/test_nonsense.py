@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from funicular.cli import app
 from funicular.errors import FunicularError
+from funicular.parts.settings import EquilibriumSettings, ModeSettings, RunSettings
+from funicular.parts.validation import LIMITS, OTHER_LIMITS
 from funicular.scene_file import loads
-from funicular.settings import EquilibriumSettings, ModeSettings, RunSettings
-from funicular.validation import LIMITS, OTHER_LIMITS
 from random_scenes import DATA, NUMBERS, OBJECTS, WORDS
 from typer.testing import CliRunner
 

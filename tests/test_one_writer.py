@@ -18,6 +18,8 @@ from funicular import (
     SceneError,
     load_run,
     load_scene,
+)
+from funicular.results import (
     streaming,
 )
 from test_cli import engine, funicular  # noqa: F401

@@ -13,18 +13,18 @@ import funicular
 import numpy as np
 import pytest
 from funicular.cli import app
+from funicular.derive.catalogue import families
 from funicular.derive.elements.cable18 import CABLE18
-from funicular.derive.families import families
-from funicular.derive.own import command, load
-from funicular.derive.own.load import SpecError
-from funicular.elements import built_in, gauge, manifest
+from funicular.derive.user_elements import command, load
+from funicular.derive.user_elements.load import SpecError
 from funicular.errors import SceneError
 from funicular.generated import kernels
-from funicular.libraries import LibraryError, manifest_digest
-from funicular.libraries import load as load_library
-from funicular.plot import save_plots
-from funicular.results import load_run
+from funicular.kernels.elements import built_in, gauge, manifest
+from funicular.kernels.libraries import LibraryError, manifest_digest
+from funicular.kernels.libraries import load as load_library
+from funicular.results.run import load_run
 from funicular.scene_file import load_scene, loads
+from funicular.view.plot import save_plots
 from scenery import SQUARE, TABLE_1
 from test_readme import README
 from typer.testing import CliRunner

@@ -5,8 +5,8 @@ import re
 import numpy as np
 import pytest
 from funicular import Circle, GeneralSection, Material, Ramp, Rectangle, Scene, SceneError
-from funicular.anchors import Attachment
-from funicular.signals import Constant
+from funicular.parts.attachment import Attachment
+from funicular.parts.signal import Constant
 from numpy.testing import assert_allclose
 
 SOFT = Material(youngs_modulus=1e6, density=1000, poisson_ratio=0.3)

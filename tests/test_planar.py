@@ -4,9 +4,9 @@ import inspect
 
 import numpy as np
 import pytest
+from funicular.derive.catalogue import families
 from funicular.derive.elements import ELEMENTS
-from funicular.derive.families import families
-from funicular.derive.verify_states import SEEDS, element_state, loads, states
+from funicular.derive.verify.states import SEEDS, element_state, loads, states
 from funicular.generated import kernels
 
 PAIRS = [("cable8p", "cable12"), ("beam12p", "beam24")]

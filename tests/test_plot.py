@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from fake_recording import fake_recording
 from funicular import Circle, Material, ResultFileError, Scene, load_scene
-from funicular.plot import centreline, draw_energy, draw_shape, draw_slide, rider_path, save_plots, view_of
-from funicular.results import Run
-from funicular.settings import RunSettings
+from funicular.parts.settings import RunSettings
+from funicular.results.run import Run
+from funicular.view.plot import centreline, draw_energy, draw_shape, draw_slide, rider_path, save_plots, view_of
 from matplotlib.image import imread
 
 SETTINGS = RunSettings(duration=1.0)

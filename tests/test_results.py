@@ -8,9 +8,9 @@ import pytest
 import xarray
 from fake_recording import fake_recording
 from funicular import ResultFileError, UnknownResultError, load_run, load_scene
-from funicular.netcdf import File
-from funicular.results import Run
-from funicular.settings import RunSettings
+from funicular.parts.settings import RunSettings
+from funicular.results.netcdf import File
+from funicular.results.run import Run
 from numpy.testing import assert_array_equal
 
 SHAPES = {

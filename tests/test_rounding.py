@@ -9,13 +9,14 @@ import mpmath
 import numpy as np
 import pytest
 import sympy as sp
-from funicular.derive import drift, verify
-from funicular.derive.families import families
-from funicular.derive.stages import Program
-from funicular.derive.verify_inputs import KINDS, Input, inputs
-from funicular.derive.verify_numbers import Numbers, exact, real
-from funicular.derive.verify_rounding import ENTRY, NORM, measure
-from funicular.derive.verify_states import states
+from funicular.derive.catalogue import families
+from funicular.derive.codegen import drift
+from funicular.derive.codegen.program import Program
+from funicular.derive.verify import command as verify
+from funicular.derive.verify.inputs import KINDS, Input, inputs
+from funicular.derive.verify.numbers import Numbers, exact, real
+from funicular.derive.verify.rounding import ENTRY, NORM, measure
+from funicular.derive.verify.states import states
 from funicular.generated import kernels
 
 

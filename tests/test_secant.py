@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 import sympy as sp
-from funicular.derive.secant import DiscreteGradient
-from funicular.derive.stages import Program
+from funicular.derive.algebra.discrete_gradient import DiscreteGradient
+from funicular.derive.codegen.program import Program
 
 
 def staged():

@@ -14,12 +14,14 @@ from funicular import (
     Scene,
     load_run,
     load_scene,
-    recording,
 )
 from funicular.generated import kernels
-from funicular.nodal_forces import element_forces
-from funicular.section_balance import Cuts, balanced
-from funicular.section_forces import CableActions, _instants, jumps, rest_instants
+from funicular.results import (
+    recording,
+)
+from funicular.results.nodal_forces import element_forces
+from funicular.results.section_balance import Cuts, balanced
+from funicular.results.section_forces import CableActions, _instants, jumps, rest_instants
 from numpy.testing import assert_allclose
 
 SOFT = {"youngs_modulus": 1e8, "poisson_ratio": 0.3, "density": 2000}
@@ -329,7 +331,7 @@ def test_reading_back_says_nothing_anew(tmp_path):
 def test_many_times_go_in_pieces(monkeypatch):
     run = loads("cable12").run(duration=0.2, output_step=0.02)
     whole = run.section_forces("rope"), run.section_forces("rope", "trolley")
-    monkeypatch.setattr("funicular.section_forces.AT_ONCE", 200)
+    monkeypatch.setattr("funicular.results.section_forces.AT_ONCE", 200)
     for before, after in zip(whole, (run.section_forces("rope"), run.section_forces("rope", "trolley")), strict=True):
         assert_allclose(after["tension"], before["tension"], rtol=1e-9)
 

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from funicular.constants import element_constants
 from funicular.derive.elements import ELEMENTS
-from funicular.derive.verify_states import reference, rotation, section
+from funicular.derive.verify.states import reference, rotation, section
 from funicular.generated import kernels
+from funicular.model.constants import element_constants
 from test_elements import CABLES, LAWS, arc, at_rest, cable_stiffness
 
 E, SIDE = 1e6, 0.1

@@ -8,14 +8,14 @@ import pytest
 from fake_recording import fake_recording
 from funicular import Circle, FunicularError, Material, Scene, UnknownResultError, load_scene
 from funicular.generated import kernels
-from funicular.model import build
-from funicular.plot import draw_section_forces, save_plots
-from funicular.results import Run
-from funicular.section_balance import Cuts
-from funicular.section_components import BEAM, CABLE, components
-from funicular.section_forces import constitutive
-from funicular.settings import RunSettings
-from funicular.stiffness import section_stiffness
+from funicular.model.build import build
+from funicular.parts.section_stiffness import section_stiffness
+from funicular.parts.settings import RunSettings
+from funicular.results.run import Run
+from funicular.results.section_balance import Cuts
+from funicular.results.section_components import BEAM, CABLE, components
+from funicular.results.section_forces import constitutive
+from funicular.view.plot import draw_section_forces, save_plots
 from numpy.testing import assert_allclose
 
 SOFT = Material(youngs_modulus=1e6, density=1000, poisson_ratio=0.3)

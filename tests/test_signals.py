@@ -6,7 +6,7 @@ import re
 import numpy as np
 import pytest
 from funicular import Harmonic, Pulse, Ramp, SceneError, TableSignal
-from funicular.signals import Constant, Integral, signal
+from funicular.parts.signal import Constant, Integral, signal
 from numpy.testing import assert_allclose
 
 TIMES = np.linspace(-0.5, 3.5, 801)

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from funicular import EndOfCableError, FunicularWarning, Material, Rectangle, Scene
-from funicular.model import build
+from funicular.model.build import build
 from funicular.rotations import rotate
 from scenery import TABLE_1, add_cable, add_rider, largest, one_rider, to_the_end
 from scipy.integrate import solve_ivp

@@ -16,8 +16,8 @@ from funicular import (
     Scene,
     SceneError,
 )
-from funicular.anchors import Attachment
-from funicular.frames import cable_frame, end_frame, slide_axes
+from funicular.checks.frames import cable_frame, end_frame, slide_axes
+from funicular.parts.attachment import Attachment
 from funicular.scene_file import loads
 from numpy.testing import assert_allclose
 

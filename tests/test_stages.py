@@ -7,10 +7,10 @@ import mpmath
 import numpy as np
 import pytest
 import sympy as sp
-from funicular.derive import moments
-from funicular.derive.printer import c_expression
-from funicular.derive.stages import DirectionalDerivative, Program, jacobian
-from funicular.derive.verify_exact import ExactProgram, source
+from funicular.derive.algebra import section_integrals as moments
+from funicular.derive.codegen.c_printer import c_expression
+from funicular.derive.codegen.program import DirectionalDerivative, Program, jacobian
+from funicular.derive.verify.exact import ExactProgram, source
 
 a, b, c = sp.symbols("a b c")
 

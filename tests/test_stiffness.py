@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from funicular import GeneralSection, Material, Rectangle
 from funicular.generated import kernels
-from funicular.stiffness import section_stiffness
+from funicular.parts.section_stiffness import section_stiffness
 
 TORSION = 0.1406e-4  # m^4
 STEEL = Material(youngs_modulus=210e9, poisson_ratio=0.3, density=7850)

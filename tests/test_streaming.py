@@ -23,10 +23,12 @@ from funicular import (
     Scene,
     SceneError,
     load_run,
+)
+from funicular.parts.settings import INTEGRATORS
+from funicular.results import (
     streaming,
 )
-from funicular.netcdf import File
-from funicular.settings import INTEGRATORS
+from funicular.results.netcdf import File
 from numpy.testing import assert_array_equal
 
 

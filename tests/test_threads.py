@@ -6,7 +6,7 @@ import threading
 
 import funicular as fu
 import pytest
-from funicular import threads
+from funicular.solve import threads
 from threadpoolctl import ThreadpoolController, threadpool_limits
 
 
@@ -25,7 +25,7 @@ def scene(body: float = 0.5) -> fu.Scene:
 @pytest.mark.parametrize("asked", [10**4, 10**5, 10**6])
 def test_no_more_threads_than_processors(asked, monkeypatch):
     """10^4 OpenMP threads hung, 10^5 ended the process."""
-    monkeypatch.setattr("funicular.threads.available", lambda: 2)
+    monkeypatch.setattr("funicular.solve.threads.available", lambda: 2)
     run = scene().run(1e-3, step=5e-4, output_step=5e-4, threads=asked)
     assert run.status == "completed"
     assert run.report["messages"][0] in (
@@ -95,7 +95,7 @@ def test_blas_threads_come_back_after_an_error(two_blas_threads):
 
 @pytest.mark.parametrize("compute", [lambda: scene().equilibrium(), lambda: scene().modes(2)], ids=["rest", "modes"])
 def test_one_blas_thread_at_rest_and_for_modes(compute, two_blas_threads, monkeypatch):
-    from funicular.redundancy import settle
+    from funicular.model.redundant_constraints import settle
 
     seen = set()
     for module in ("static_problem", "modal"):  # what both call at first

@@ -7,12 +7,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from funicular.derive import drift, emit, verify
-from funicular.derive.families import families
-from funicular.derive.laws.cable import Cable
-from funicular.derive.stages import Argument
-from funicular.derive.verify_compile import CompilerError, compiler
-from funicular.derive.verify_methods import CEILINGS, METHODS, Relation, examine
+from funicular.derive.catalogue import families
+from funicular.derive.codegen import drift
+from funicular.derive.codegen import rendering as emit
+from funicular.derive.codegen.program import Argument
+from funicular.derive.laws.cable.cable import Cable
+from funicular.derive.verify import command as verify
+from funicular.derive.verify.compiled import CompilerError, compiler
+from funicular.derive.verify.methods import CEILINGS, METHODS, Relation, examine
 
 
 @pytest.fixture

@@ -21,9 +21,10 @@ from dataclasses import dataclass
 from types import ModuleType
 
 import numpy as np
-from funicular.derive.bodies import planar_rigid, rigid
-from funicular.derive.frames import cross
-from funicular.derive.stages import DirectionalDerivative, Program
+
+from ..algebra.tangent_frame import cross
+from ..codegen.program import DirectionalDerivative, Program
+from . import planar_rigid, rigid
 
 FRAMES = {"modal": rigid, "planar_modal": planar_rigid}
 SOURCE = "paper eq 12; Shabana, Dynamics of Multibody Systems, 2013, ch. 5"

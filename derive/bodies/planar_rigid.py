@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 import sympy as sp
-from funicular.derive.stages import DirectionalDerivative, Program
+
+from ..codegen.program import DirectionalDerivative, Program
 
 NAME, DIM, N_CONFIGURATION, N_VELOCITY = "planar_rigid", 2, 4, 3
 DOC, SOURCE = "planar rigid body", "paper eq 12 (q_r) in the plane"

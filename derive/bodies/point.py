@@ -10,7 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import sympy as sp
-from funicular.derive.stages import AXES, DirectionalDerivative, Program
+
+from ..codegen.program import AXES, DirectionalDerivative, Program
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 import sympy as sp
-from funicular.derive.frames import cross
-from funicular.derive.stages import DirectionalDerivative, Program
+
+from ..algebra.tangent_frame import cross
+from ..codegen.program import DirectionalDerivative, Program
 
 NAME, DIM, N_CONFIGURATION, N_VELOCITY = "rigid", 3, 7, 6
 DOC, SOURCE = "rigid body", "paper eq 12 (q_r); Haug 1989, ch. 9"

@@ -1,6 +1,6 @@
 """Planar beam with 12 coordinates: position and two slopes at two nodes, the planar counterpart of beam24."""
 
-from funicular.derive.spec import Element, x, y
+from ..spec import Element, x, y
 
 BEAM12P = Element(
     name="beam12p",

@@ -1,6 +1,6 @@
 """Spatial beam with 24 coordinates: position and three slopes at two nodes (eq 1-2)."""
 
-from funicular.derive.spec import Element, x, y, z
+from ..spec import Element, x, y, z
 
 BEAM24 = Element(
     name="beam24",

@@ -1,6 +1,6 @@
 """Spatial cable with 12 coordinates: position and slope at two nodes, cubic Hermite, no torsion."""
 
-from funicular.derive.spec import ASSUMED_LAWS, CABLE_LAWS, Element, x
+from ..spec import ASSUMED_LAWS, CABLE_LAWS, Element, x
 
 CABLE12 = Element(
     name="cable12",

@@ -1,6 +1,6 @@
 """Spatial cable with 18 coordinates: position, slope and curvature at two nodes, quintic, C2 along the cable."""
 
-from funicular.derive.spec import Element, x
+from ..spec import Element, x
 
 CABLE18 = Element(
     name="cable18",

@@ -1,6 +1,6 @@
 """Planar cable with 8 coordinates: position and slope at two nodes, cubic Hermite."""
 
-from funicular.derive.spec import ASSUMED_LAWS, CABLE_LAWS, Element, x
+from ..spec import ASSUMED_LAWS, CABLE_LAWS, Element, x
 
 CABLE8P = Element(
     name="cable8p",

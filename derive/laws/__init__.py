@@ -3,12 +3,12 @@
 from collections.abc import Callable
 from functools import partial
 
-from funicular.derive.laws.cable import Cable
-from funicular.derive.laws.cable_assumed import AssumedCable
-from funicular.derive.laws.cable_curved import CurvedCable
-from funicular.derive.laws.continuum import Continuum
-from funicular.derive.laws.continuum_curved import CurvedContinuum
-from funicular.derive.spec import ASSUMED_LAWS, CABLE_LAWS
+from ..spec import ASSUMED_LAWS, CABLE_LAWS
+from .cable.assumed import AssumedCable
+from .cable.cable import Cable
+from .cable.curved import CurvedCable
+from .continuum.continuum import Continuum
+from .continuum.curved import CurvedContinuum
 
 
 def _measures(law: str) -> dict[str, str]:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from funicular.derive.spec import Element
-from funicular.derive.stages import Program
+
+from ..codegen.program import Program
+from ..spec import Element
 
 
 def shape(program: Program, element: Element) -> np.ndarray:

@@ -14,7 +14,7 @@
  * more than r_1 of the step before has left, it is shortened to that. S is of the order of h^2 in slow motion, and none in
  * rigid motion. The aim is that of Armero & Romero (Comput. Methods Appl. Mech. Eng. 190 (2001) 6783-6824); the form is
  * linear: an oscillator of stiffness D has p^2 (1 + lag p) + (h omega)^2 (1 + p/a)^3 = 0 for its eigenvalues
- * (1 + p/2)/(1 - p/2), with the three numbers of integrators.py, and all three reach the spectral radius as h omega grows.
+ * (1 + p/2)/(1 - p/2), with the three numbers of solve/integrators.py, and all three reach the spectral radius as h omega grows.
  *
  * B of a spatial cable sees a turn about the tangent where it is bent (cable_damping.py), which would cost momentum. A turn
  * of the cable as a whole is taken off, v - omega x r, the one that leaves its forces without a moment.

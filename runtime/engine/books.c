@@ -6,7 +6,7 @@
 #define LEAST_MOTION 1e-10 /* of the largest coordinate: less is what step control and rounding leave of rest */
 #define ROUNDING 1e-14     /* of the energies */
 
-/* R of a slide by the force that a Newton method solves for, 0 where nothing brakes it; t and u as brakes.c has them */
+/* R of a slide by the force that a Newton method solves for, 0 where nothing brakes it; t and u as resistances.c has them */
 static double driven_resistance(const fu_model *model, const fu_state *state, int j, double t[3], double u[3])
 {
     double J[3 * (FU_SLIDE_COORDINATES + 1)], K[(FU_SLIDE_COORDINATES + 1) * (FU_SLIDE_COORDINATES + 1)];

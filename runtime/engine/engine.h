@@ -5,7 +5,7 @@
  * of freedom (dof): the cables' as in q, then the bodies' (translation; rotation about body axes; modes).
  *
  * Unknowns of a linear system: the free coordinates of the cables ("band"), then the border: those of nodes where cables
- * meet, if that is cheaper (reduction.py), those of the bodies, then what each joint and spring adds. Supports make dofs
+ * meet, if that is cheaper (model/unknowns.py), those of the bodies, then what each joint and spring adds. Supports make dofs
  * linear in the unknowns, dofs = T unknowns + what motions prescribe; place[dof] is the place of the unknown that the dof
  * is, -1 where it is held or prescribed, -2 - k where it is the k-th combination of unknowns (reduce.c).
  *
@@ -17,8 +17,8 @@
 #include "blocks.h"
 #include "kernels.h"
 
-#define FU_MAX_COORDINATES 32 /* of one element, or of the kernels of a slide on it; model.py checks */
-#define FU_ATTACHMENT_COORDINATES 40 /* of what an end is on, s among them; model.py checks */
+#define FU_MAX_COORDINATES 32 /* of one element, or of the kernels of a slide on it; model/build.py checks */
+#define FU_ATTACHMENT_COORDINATES 40 /* of what an end is on, s among them; model/build.py checks */
 #define FU_SLIDE_COORDINATES (FU_MAX_COORDINATES + FU_ATTACHMENT_COORDINATES)
 #define FU_ROW_COORDINATES (2 * (FU_ATTACHMENT_COORDINATES + FU_SLIDE_COORDINATES))
 #define FU_MAX_RATES 128 /* of strain, of one element; engine.pyx checks */
@@ -378,7 +378,7 @@ void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, const
 void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows *rows, fu_slide_state *slide_state);
 double fu_slide_step(const fu_model *model, const fu_state *state, int j, double s, double A_t[9]);
 
-/* brakes.c: R of a slide, the force along its cable times r_x, and its derivatives */
+/* resistances.c: R of a slide, the force along its cable times r_x, and its derivatives */
 typedef struct {
     double R, by_t[3], by_u[3], by_f[3], by_s;
 } fu_resistance;

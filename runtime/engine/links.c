@@ -1,4 +1,4 @@
-/* Joints between two ends: equations phi of the gap between their points and of their axes (derive/joints/pair.py), made
+/* Joints between two ends: equations phi of the gap between their points and of their axes (derive/couplings/joint.py), made
  * equations over the coordinates of what carries the ends. Of an end on a slide s is one of them.
  */
 #include "engine.h"

@@ -18,9 +18,10 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-from funicular.derive import drift, emit, timing
-from funicular.derive.families import families
-from funicular.derive.verify_compile import compiler
+from funicular.derive.catalogue import families
+from funicular.derive.codegen import drift, timing
+from funicular.derive.codegen import rendering as emit
+from funicular.derive.verify.compiled import compiler
 from funicular.generated import kernels as compiled
 from table import arguments, show
 

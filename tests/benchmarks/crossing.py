@@ -41,7 +41,7 @@ def jumps(run: Run) -> np.ndarray:
 
 def draw(runs: dict[str, Run], path: Path) -> None:
     """The rider's acceleration over its place, nodes marked."""
-    from funicular.plot import STYLE
+    from funicular.view.plot import STYLE
     from matplotlib import pyplot, rc_context
 
     with rc_context(STYLE):

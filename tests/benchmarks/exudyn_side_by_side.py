@@ -31,8 +31,8 @@ from statistics import median
 import exudyn_models as peer
 import numpy as np
 from funicular import FunicularError, FunicularWarning, Scene
-from funicular.bench_outputs import distance, largest_change
-from funicular.settings import INTEGRATORS
+from funicular.bench.outputs import distance, largest_change
+from funicular.parts.settings import INTEGRATORS
 from pendulum import pendulum
 from sliding import sliding_mass
 from table import parser, show
@@ -234,7 +234,7 @@ def _bracketed(seconds: float, reached: bool) -> str:
 
 def draw(curves: dict[tuple[str, int], dict[str, list[Point]]], path: Path) -> None:
     """A panel a case: error over CPU seconds."""
-    from funicular.plot import STYLE
+    from funicular.view.plot import STYLE
     from matplotlib import pyplot, rc_context
 
     columns = 3

@@ -19,9 +19,9 @@ from statistics import median
 
 import blocks
 import making
-from funicular.derive import drift, timing
-from funicular.derive.families import families
-from funicular.derive.verify_compile import compile_units, compiler
+from funicular.derive.catalogue import families
+from funicular.derive.codegen import drift, timing
+from funicular.derive.verify.compiled import compile_units, compiler
 from funicular.generated import kernels as compiled
 from table import arguments, show
 

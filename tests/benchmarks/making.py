@@ -9,8 +9,8 @@ import tempfile
 import time
 from pathlib import Path
 
-from funicular.derive import emit
-from funicular.derive.families import families
+from funicular.derive.catalogue import families
+from funicular.derive.codegen import rendering as emit
 
 ROOT = Path(__file__).parents[2]
 

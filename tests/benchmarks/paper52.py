@@ -84,7 +84,7 @@ def apart(one: Run, other: Run, until: float) -> float:
 
 def draw(folder: Path, flat: Motion, links: dict[str, Motion], stiff: dict[str, Motion], path: Motion) -> None:
     """The three figures."""
-    from funicular.plot import STYLE
+    from funicular.view.plot import STYLE
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 

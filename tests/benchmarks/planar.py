@@ -45,7 +45,7 @@ def differences(planar: Run, spatial: Run) -> dict[str, float]:
 
 def draw(runs: dict[tuple[str, str, float], Run], path: Path) -> None:
     """The rider's height by the four elements, and how far planar and spatial ones are apart."""
-    from funicular.plot import STYLE
+    from funicular.view.plot import STYLE
     from matplotlib import pyplot, rc_context
 
     with rc_context(STYLE):

@@ -32,10 +32,10 @@ from time import process_time
 
 import numpy as np
 from funicular import GeneralSection, Material, Scene
-from funicular.elements import manifest
 from funicular.generated import kernels
+from funicular.kernels.elements import manifest
+from funicular.results.section_forces import of_run
 from funicular.scene_file import loads
-from funicular.section_forces import of_run
 from scipy.optimize import fsolve
 from table import arguments, show
 

@@ -14,8 +14,8 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 from pathlib import Path
 
 from funicular import load_scene
-from funicular.bench import Bench, bench, grid
-from funicular.bench_report import draw_on, print_table, record
+from funicular.bench.bench import Bench, bench, grid
+from funicular.bench.report import draw_on, print_table, record
 from rich.console import Console
 from sliding import sliding_mass
 from table import parser, show
@@ -29,7 +29,7 @@ SCENES = {
 
 def draw(results: dict[str, Bench], path: Path) -> None:
     """A panel a scene."""
-    from funicular.plot import STYLE
+    from funicular.view.plot import STYLE
     from matplotlib import pyplot, rc_context
 
     with rc_context(STYLE):

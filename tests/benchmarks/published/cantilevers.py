@@ -7,7 +7,7 @@ from math import cos, pi, sin, sqrt
 
 import numpy as np
 from funicular import FunicularWarning, Material, Rectangle, Scene
-from funicular.sections import Section
+from funicular.parts.section import Section
 
 from .case import CABLES, KINDS, MEMBRANES, STRUCTURAL, Case, Kind, Quantity
 

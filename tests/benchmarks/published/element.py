@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from funicular import Material, Rectangle, Scene
 from funicular.generated import kernels
-from funicular.stiffness import section_stiffness
+from funicular.parts.section_stiffness import section_stiffness
 
 from .case import CABLES, KINDS, MEMBRANES, Case, Kind, Quantity
 

@@ -1,0 +1,1 @@
+"""The algebra that specs share: Gram products, section integrals, frames, discrete gradients."""

@@ -1,0 +1,61 @@
+"""The tangent frame of a cable's centreline (eq 13-18)."""
+
+from __future__ import annotations
+
+import numpy as np
+import sympy as sp
+
+from ..codegen.program import Program
+
+
+def unit(program: Program, name: str, vector: np.ndarray) -> np.ndarray:
+    """vector / |vector|."""
+    inverse = program.define(f"inv_{name}", 1 / program.define(f"len_{name}", sp.sqrt(vector.dot(vector))))
+    return program.vector(name, inverse * vector)
+
+
+def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Vector product; for b in the plane, a is the component along z: (a,) times b turned by +90 degrees."""
+    if len(b) == 2:
+        return a[0] * np.array([-b[1], b[0]])
+    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+
+
+def spatial(vector: np.ndarray) -> np.ndarray:
+    """In three dimensions."""
+    return np.concatenate([vector, np.full(3 - len(vector), sp.S.Zero)])
+
+
+def tangent_frame(program: Program, tangent: np.ndarray, director: np.ndarray | None) -> np.ndarray:
+    """A_t = [i j k] (eq 18): i along the tangent, k normal to tangent and director.
+
+    In the plane [i j], whatever the director; in space without one, [i] is all that the tangent fixes. Eq 16 prints
+    k = i x r_y/|r_y|, of unit length only where r_y is perpendicular to i: here the product is normalised. Singular
+    where the director is along the tangent.
+    """
+    i = unit(program, "i", tangent)
+    if len(tangent) == 2:
+        return np.stack([i, cross(np.array([1]), i)], axis=1)
+    if director is None:
+        return i[:, None]
+    k = unit(program, "k", program.vector("m", cross(i, director)))
+    j = program.vector("j", cross(k, i))
+    return np.stack([i, j, k], axis=1)
+
+
+def turning(p: Program, A_t: np.ndarray, tangent: np.ndarray, director: np.ndarray | None = None) -> list[np.ndarray]:
+    """Rotation rate of the frame for each entry of tangent and director.
+
+    Not from derivatives of i: these are what is left of 1 - i_x^2, without digits where i is along an axis.
+    """
+    i, dim = A_t[:, 0], len(tangent)
+    inverse = p.define("inv_t", 1 / p.define("t_i", tangent.dot(i)))
+    units = np.eye(dim, dtype=int)
+    across = [[i[0] * axis[1] - i[1] * axis[0]] if dim == 2 else cross(i, axis) for axis in units]
+    omega = [inverse * np.array(w) for w in across]
+    if director is not None:  # k stays normal to the director: about i, too
+        k = A_t[:, 2]
+        about = p.vector("about", k * p.define("inv_n", 1 / p.define("n_j", director.dot(A_t[:, 1]))))
+        lean = p.define("lean", director.dot(i) * inverse)
+        omega = [w - lean * part * i for w, part in zip(omega, about, strict=True)] + [part * i for part in about]
+    return [p.vector(f"omega{m}", w) for m, w in enumerate(omega)]

@@ -1,0 +1,161 @@
+"""The kernels of a body with a frame, planar or spatial: its points, the forces on them, its inertia.
+
+A body (bodies/) gives its configuration and the derivations along its velocities; u, p, f have its dim.
+"""
+
+from __future__ import annotations
+
+from types import ModuleType
+
+import numpy as np
+
+from ..algebra.tangent_frame import cross
+from ..codegen.program import DirectionalDerivative, Program
+
+
+def build(body: ModuleType) -> list[Program]:
+    """Every kernel of a body."""
+    return [point(body), point_force(body), frame(body), inertia_force(body), inertia_tangent(body),
+            kinetic_energy(body), discrete_point(body)]
+
+
+def _position(p: Program, body: ModuleType, b: np.ndarray, u: np.ndarray):
+    """Stage: p, with the axes and the derivations by translation and rotation."""
+    p.stage("position")
+    A = body.axes(p, b)
+    at = p.vector("p", body.origin(b) + body.arm(p, A, u))
+    p.stage("derivatives")
+    return A, at, body.tangents(p, b, A)
+
+
+def _jacobian(p: Program, at: np.ndarray, by: list[DirectionalDerivative]) -> np.ndarray:
+    p_q = np.stack([d.array(at) for d in by], axis=1)
+    p.output("p", at, "m", "position R + A u")
+    p.output("p_q", p_q, "1, m", "derivatives by translation and rotation about body axes")
+    return p_q
+
+
+def point(body: ModuleType) -> Program:
+    """R + A u, along the motion."""
+    p = Program(f"{body.NAME}_point", "position, Jacobian, velocity and acceleration bias of a point", body.SOURCE)
+    b, u, w = body.configuration(p), body.attachment(p), body.velocity(p)
+    A, at, by = _position(p, body, b, u)
+    _jacobian(p, at, by)
+    along = DirectionalDerivative(p, "dt", body.rate(b, A, w))
+    speed = along.array(at)
+    p.output("v", speed, "m/s", "velocity")
+    p.output("bias", along.array(speed), "m/s^2", "acceleration at zero accelerations of the coordinates")
+    return p
+
+
+def point_force(body: ModuleType) -> Program:
+    """p_q' f and its derivative."""
+    p = Program(f"{body.NAME}_point_force", "position and Jacobian of a point, derivative of the force p_q' f",
+                body.SOURCE)
+    b, u = body.configuration(p), body.attachment(p)
+    f = p.input("f", body.DIM, "N", "force on the point, held fixed")
+    _, at, by = _position(p, body, b, u)
+    p_q = _jacobian(p, at, by)
+    p.stage("derivative of the generalised force")
+    force = np.array([p.define(f"g{k}", f.dot(column)) for k, column in enumerate(p_q.T)])
+    p.output("K", np.stack([d.array(force) for d in by], axis=1), "N/m, N, N m",
+             "derivatives of p_q' f by translation and rotation")
+    return p
+
+
+def frame(body: ModuleType) -> Program:
+    """The body's axes, and what a moment on them does."""
+    p = Program(f"{body.NAME}_frame", "axes, their turn, and the derivative of a moment on them", body.SOURCE)
+    b = body.configuration(p)
+    turns = body.N_VELOCITY - body.DIM
+    m = p.input("m", turns, "N m", "moment in global axes, held fixed")
+    p.stage("axes")
+    A = body.axes(p, b)
+    T = np.zeros((turns, body.N_VELOCITY), dtype=object)
+    T[:, body.DIM :] = A if turns == body.DIM else 1
+    p.stage("moment about the axes of rotation")
+    g = np.array([p.define(f"g{k}", m.dot(column)) for k, column in enumerate(T.T)])
+    p.output("A", A, "1", "axes of the body by columns")
+    p.output("T", T, "rad", "dA = (T dq)~ A: turn about global axes by translation and rotation")
+    p.output("K", np.stack([d.array(g) for d in body.tangents(p, b, A)], axis=1), "N m", "derivatives of T' m")
+    return p
+
+
+class Step:
+    """Input b_next and stages: the turn theta of a body over a step, and axes half-way."""
+
+    def __init__(self, p: Program, body: ModuleType, b: np.ndarray):
+        self.b_next = p.input("b_next", body.N_CONFIGURATION, "m, 1", "b at the end of the step")
+        p.stage("attitudes at both ends of the step")
+        self.ends = [body.axes(p, b), body.axes(p, self.b_next)]
+        p.stage("turn, and axes half-way")
+        self.theta, self.axes = body.step_turn(p, b, self.ends[0], self.b_next)
+
+    def jacobian(self, arm: np.ndarray) -> np.ndarray:
+        """By translation and Cayley vector, of a point on this arm."""
+        turns = np.array([cross(axis, arm) for axis in self.axes.T], dtype=object).reshape(-1, len(arm)).T
+        return np.concatenate([np.eye(len(arm), dtype=int), turns], axis=1)
+
+
+def discrete_point(body: ModuleType) -> Program:
+    """P."""
+    p = Program(f"{body.NAME}_discrete_point", "Jacobian of a point over a step psi: p_next - p = P psi",
+                f"{body.SOURCE}; Simo & Wong, Int. J. Numer. Meth. Eng. 31 (1991) 19-52")
+    b, u = body.configuration(p), body.attachment(p)
+    step = Step(p, body, b)
+    p.stage("mean arm")
+    arm = p.vector("mean_arm", sum(body.arm(p, A, u) for A in step.ends) / 2)
+    p.output("P", step.jacobian(arm), "1, m",
+             "by translation and Cayley vector; P' f is the force f on the point along axes half-way")
+    return p
+
+
+def _inertia(p: Program, body: ModuleType):
+    mass = p.input("mass", (), "kg", "mass")
+    J = p.input("J", (3, 3), "kg m^2", "inertia about the mass centre in body axes, symmetric")
+    return mass, body.turning_inertia(J)
+
+
+def _mass_matrix(body: ModuleType, mass, J: np.ndarray) -> np.ndarray:
+    M = np.zeros((body.N_VELOCITY, body.N_VELOCITY), dtype=object)
+    M[: body.DIM, : body.DIM], M[body.DIM :, body.DIM :] = mass * np.eye(body.DIM, dtype=int), J
+    return M
+
+
+def _gyroscopic(p: Program, body: ModuleType, J: np.ndarray, w: np.ndarray) -> np.ndarray:
+    """Stage: the inertia force at zero accelerations."""
+    p.stage("gyroscopic moment")
+    return np.concatenate([np.zeros(body.DIM, dtype=int), body.gyroscopic_moment(p, J, w[body.DIM :])])
+
+
+def inertia_force(body: ModuleType) -> Program:
+    """M w' and the gyroscopic moment."""
+    p = Program(f"{body.NAME}_inertia_force", "m R'' and J omega' + omega x J omega", "M q'' of eq 12")
+    mass, J = _inertia(p, body)
+    w, a = body.velocity(p), p.input("a", body.N_VELOCITY, "m/s^2, rad/s^2", "accelerations R'', omega'")
+    force = _mass_matrix(body, mass, J).dot(a) + _gyroscopic(p, body, J, w)
+    p.output("f", force, "N, N m", "inertia force")
+    return p
+
+
+def inertia_tangent(body: ModuleType) -> Program:
+    """M, and what the gyroscopic moment adds."""
+    p = Program(f"{body.NAME}_inertia_tangent", "mass matrix and derivative of the inertia force by velocity",
+                "derivative of M q''")
+    mass, J = _inertia(p, body)
+    w = body.velocity(p)
+    force = _gyroscopic(p, body, J, w)
+    p.output("M", _mass_matrix(body, mass, J), "kg, kg m^2", "mass matrix")
+    p.output("D", np.stack([DirectionalDerivative(p, f"d_w{k}", {symbol: 1}).array(force) for k, symbol in enumerate(w)], axis=1),
+             "kg m/s", "derivative of the inertia force by w")
+    return p
+
+
+def kinetic_energy(body: ModuleType) -> Program:
+    """Of translation and rotation."""
+    p = Program(f"{body.NAME}_kinetic_energy", "kinetic energy", "eq 3 for a rigid body")
+    mass, J = _inertia(p, body)
+    w = body.velocity(p)
+    v, omega = w[: body.DIM], w[body.DIM :]
+    p.output("T", [(mass * v.dot(v) + omega.dot(J.dot(omega))) / 2], "J", "kinetic energy")
+    return p

@@ -1,0 +1,1 @@
+"""From expressions to checked-in C: programs, printing, rendering, provenance, drift check, build."""

@@ -1,0 +1,245 @@
+"""Programs to files: the last stage. Enters: families of programs. Leaves: text by file name.
+
+Everything a template prints is decided here or earlier; the templates only lay it out.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
+from importlib import metadata
+
+import jinja2
+
+from ..spec import Family, FamilyError
+from .c_printer import c_expression
+from .program import Argument, Program
+from .provenance import deciding, spec_hash
+
+TOOLS = ("sympy", "mpmath", "jinja2")
+HEADER, REGISTRY = "kernels.h", "registry.c"
+COMMON = (HEADER, REGISTRY, "blocks.h", "blocks.c", "kernels.pyx", "__init__.py")
+"""Files of all families; a library has the first two."""
+BLOCKS = ("elastic_force", "elastic_tangent", "damping_force")
+"""Kernels of a law that are compiled for several elements at once as well (blocks.c), unless ..."""
+MOST_OPERATIONS = 3000
+"""... they have more operations: the tangents of beam24 would take longer to compile than all the others; or ..."""
+LEAST_PER_OUTPUT = 6
+"""... fewer operations a number: sorting the numbers by element then costs what it gains."""
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """What the manifest knows of a kernel: all that the files common to every family need of a Program."""
+
+    name: str
+    doc: str
+    source: str
+    inputs: list[Argument]
+    outputs: list[Argument]
+    count: dict[str, int]
+
+    def operations(self) -> dict[str, int]:
+        """Arithmetic operations of one call."""
+        return self.count
+
+
+@dataclass(frozen=True)
+class Derived:
+    """A family with its programs, and the files that it came from with their hash."""
+
+    family: Family
+    programs: list[Program] | list[Recorded]
+    sources: list[str]
+    spec_hash: str
+
+
+def derive(family: Family) -> Derived:
+    """Run the derivation of one family."""
+    return derived(family, family.build())
+
+
+def derived(family: Family, programs: list[Program]) -> Derived:
+    """A family with its programs, pruned, and where they came from."""
+    return Derived(family, [p.prune() for p in programs], *came_from(family))
+
+
+def came_from(family: Family) -> tuple[list[str], str]:
+    """The files that decide a family, and their hash."""
+    files = list(deciding(family.modules))
+    own = [family.spec.name] if family.spec else []
+    return own + files, spec_hash(files, family.spec)
+
+
+def recorded(family: Family, manifest: dict) -> Derived | None:
+    """A family as the manifest has it, without a derivation; None where it has not."""
+    if family.name not in manifest.get("families", {}):
+        return None
+    entry = manifest["families"][family.name]
+    kernels = [Recorded(name, k["doc"], k["source"], _arguments(k["inputs"]), _arguments(k["outputs"]), k["operations"])
+               for name, k in manifest["kernels"].items() if k["family"] == family.name]
+    return Derived(replace(family, doc=entry["doc"]), kernels, entry["sources"], entry["spec_hash"])
+
+
+def _arguments(entries: list[dict]) -> list[Argument]:
+    return [Argument(e["name"], tuple(e["shape"]), e["unit"], e["doc"]) for e in entries]
+
+
+@dataclass(frozen=True)
+class Table:
+    """What the engine needs of the families of a role: names of their facts, kernels by suffix with C parameters."""
+
+    members: list[Derived]
+    facts: list[str]
+    kernels: dict[str, str]
+
+
+def tables(every: list[Derived], layout: dict | None = None) -> dict[str, Table]:
+    """The engine's tables by role: laid out as these families allow, or as a manifest's "tables" has them.
+
+    Raises FamilyError for a family without a kernel that the layout asks for.
+    """
+    roles: dict[str, list[Derived]] = {} if layout is None else {role: [] for role in layout}
+    for derived in every:
+        if derived.family.role:
+            roles.setdefault(derived.family.role, []).append(derived)
+    if layout is None:
+        return {role: Table(of, list(of[0].family.facts), _shared(of)) for role, of in roles.items()}
+    for role, members in roles.items():
+        for derived in members:
+            has = _signatures(derived)
+            for kernel, parameters in layout[role]["kernels"].items():
+                if kernel not in derived.family.elsewhere and has.get(kernel) != parameters:
+                    raise FamilyError(f"kernel {derived.family.name}_{kernel} must take ({parameters}), but "
+                                      + (f"takes ({has[kernel]})" if kernel in has else "there is none"))
+    return {role: Table(of, **layout[role]) for role, of in roles.items()}
+
+
+def layout(of: dict[str, Table]) -> dict[str, dict]:
+    """What a manifest keeps of tables, so that a library of the user's is laid out alike."""
+    return {role: {"facts": table.facts, "kernels": table.kernels} for role, table in of.items()}
+
+
+def interface(of: dict[str, dict]) -> str:
+    """Hash of a layout: engine and library fit each other where it is the same."""
+    return hashlib.sha256(json.dumps(of).encode()).hexdigest()[:16]
+
+
+def render(every: list[Derived], wanted: Iterable[str], done: Callable[[str], None],
+           like: dict | None = None) -> dict[str, str]:
+    """Text of the wanted families' files and of the files common to all, by name; calls done(name) for each.
+
+    like: the "tables" of the manifest whose layout a library of the user's must have; the Python face is left out.
+    """
+    environment = jinja2.Environment(loader=jinja2.PackageLoader("funicular.derive.codegen"), trim_blocks=True,
+                                     lstrip_blocks=True, keep_trailing_newline=True,
+                                     undefined=jinja2.StrictUndefined)
+    environment.filters["c"], environment.filters["number"] = c_expression, _number
+    files = {}
+    for derived in every:
+        if derived.family.name in wanted:
+            text = environment.get_template("family.c.jinja").render(
+                derived=derived, signature=signature, operations=_operations_text, blocks=block_kernels(derived))
+            files[f"{derived.family.name}.c"] = text
+            done(derived.family.name)
+    blocks = {name for derived in every for name in block_kernels(derived)}
+    common = {"every": every, "tables": tables(every, like), "signature": signature, "call": _call, "blocks": blocks,
+              "laws": [derived for derived in every if block_kernels(derived)], "kernels": BLOCKS}
+    for name in COMMON if like is None else (HEADER, REGISTRY):
+        files[name] = environment.get_template(f"{name}.jinja").render(**common)
+    return files
+
+
+def digest(text: str) -> str:
+    """Hash of a file's text as the manifest keeps it."""
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def tools() -> dict[str, str]:
+    """Versions of what decides the generated text."""
+    return {name: metadata.version(name) for name in TOOLS}
+
+
+def manifest(every: list[Derived], files: dict[str, str], like: dict | None = None, more: dict | None = None) -> str:
+    """What was generated, from what, with which tools; `like` as in `render`, `more` is added."""
+    def arguments(of: list[Argument]) -> list[dict]:
+        return [{"name": a.name, "shape": list(a.shape), "unit": a.unit, "doc": a.doc} for a in of]
+
+    kernels = {p.name: {"doc": p.doc, "source": p.source, "family": d.family.name, "inputs": arguments(p.inputs),
+                        "outputs": arguments(p.outputs), "operations": p.operations()}
+               for d in every for p in d.programs}
+    laid_out = layout(tables(every, like))
+    content = {"tools": tools(),
+               "interface": interface(laid_out),
+               "tables": laid_out,
+               "elements": {d.family.name: _element(d.family, every) for d in every if d.family.role == "element"},
+               "families": {d.family.name: {"doc": d.family.doc, "spec_hash": d.spec_hash,
+                                            "sources": d.sources} for d in every},
+               "files": {name: digest(text) for name, text in sorted(files.items())},
+               "kernels": kernels} | (more or {})
+    return json.dumps(content, indent=1) + "\n"
+
+
+def _element(family: Family, every: list[Derived]) -> dict:
+    """What a scene needs to know of an element; `laws`: each with the one whose section stiffness it takes."""
+    element = family.element
+    laws = {d.family.law: d.family.like for d in every if d.family.role == "law" and d.family.element is element}
+    return {"nodal_vectors": list(element.nodal_vectors), "dim": element.dim, "director": element.director,
+            "laws": laws}
+
+
+def signature(program: Program | Recorded) -> str:
+    """C parameters."""
+    inputs = [f"fu_real {a.name}" if a.shape == () else f"const fu_real *{a.name}" for a in program.inputs]
+    return ", ".join([*inputs, *(f"fu_real *{a.name}" for a in program.outputs)])
+
+
+def block_kernels(derived: Derived) -> list[str]:
+    """Names of a law's kernels that are compiled for several elements at once as well."""
+    if derived.family.role != "law":
+        return []
+    hot = {f"{derived.family.name}_{kernel}" for kernel in BLOCKS}
+    return [p.name for p in derived.programs if p.name in hot
+            and LEAST_PER_OUTPUT * p.outputs[0].size <= sum(p.operations().values()) <= MOST_OPERATIONS]
+
+
+def _number(expr) -> str:
+    """An expression where a fu_real is assigned: a constant is not one where that is several numbers."""
+    return f"FU_NUMBER({c_expression(expr)})" if expr.is_number else c_expression(expr)
+
+
+def _operations_text(program: Program) -> str:
+    return ", ".join(f"{n} {name}" for name, n in program.operations().items() if n)
+
+
+def _shared(members: list[Derived]) -> dict[str, str]:
+    """Kernels of a role by suffix, with their parameters, but for each family's own.
+
+    Raises FamilyError where two families do not agree on them.
+    """
+    first = min(members, key=lambda member: len(member.family.elsewhere))
+    kernels = _signatures(first)
+    for other in members:
+        theirs = _signatures(other)
+        for suffix in {**kernels, **theirs}.keys() - other.family.elsewhere:
+            here, there = kernels.get(suffix, "none"), theirs.get(suffix, "none")
+            if here != there:
+                raise FamilyError(f'role "{first.family.role}": the engine\'s table needs the kernel {suffix} of every '
+                                f"family with the same parameters; {first.family.name} has ({here}), "
+                                f"{other.family.name} has ({there}): derive all families where it is new, or list it "
+                                "in Family.own to keep it out of the table")
+    return kernels
+
+
+def _signatures(derived: Derived) -> dict[str, str]:
+    """C parameters by kernel, of those that belong in the table."""
+    every = {p.name.removeprefix(derived.family.name + "_"): signature(p) for p in derived.programs}
+    return {suffix: text for suffix, text in every.items() if suffix not in derived.family.own}
+
+
+def _call(program: Program | Recorded) -> str:
+    """The arguments of a C call, from arrays of pointers `a` and `out`."""
+    inputs = [f"*a[{i}]" if a.shape == () else f"a[{i}]" for i, a in enumerate(program.inputs)]
+    return ", ".join([*inputs, *(f"out[{i}]" for i in range(len(program.outputs)))])

@@ -1,0 +1,146 @@
+"""Joints between two frames, of whatever carries them: each a few scalar equations between their points and axes.
+
+A frame has a point p and axes A = [x y z] (in the plane [x y]); gap = p_2 - p_1. The axis of a joint is z of both, in
+the plane x. Derivatives are by the gap and by the turns of both frames about global axes: the chain rule from there to
+coordinates is that of what carries the frames. Haug, Computer Aided Kinematics and Dynamics (1989), ch. 3 and 9.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import sympy as sp
+
+from ..codegen.program import DirectionalDerivative, Program
+from .frame import TURNS, spun
+
+
+class Pair:
+    """Inputs of a kernel: the gap, the axes of both frames, and what drives the joint."""
+
+    def __init__(self, program: Program, dim: int):
+        self.program, self.dim, self.turns = program, dim, TURNS[dim]
+        self.gap = program.input("gap", dim, "m", "p_2 - p_1")
+        self.A1 = program.input("A1", (dim, dim), "1", "axes of the first frame, by columns")
+        self.A2 = program.input("A2", (dim, dim), "1", "axes of the second frame, by columns")
+        self.c = program.input("c", 3, "m or rad, 1, 1", "what drives the joint (else unused), its cosine and sine")
+
+    def along(self, tag: str, gap, turn_1, turn_2, more: dict | None = None) -> DirectionalDerivative:
+        """The derivation that moves the gap and turns both frames."""
+        on = dict(zip(self.gap, gap, strict=True)) | (more or {})
+        for A, turn in ((self.A1, turn_1), (self.A2, turn_2)):
+            on |= dict(zip(A.ravel(), spun(np.array(turn), A).ravel(), strict=True))
+        return DirectionalDerivative(self.program, tag, on)
+
+    def moves(self) -> list[DirectionalDerivative]:
+        """By the gap, by the turn of the first frame, by that of the second."""
+        n = self.dim + 2 * self.turns
+        return [self.along(f"d{k}", *np.split(unit, [self.dim, self.dim + self.turns]))
+                for k, unit in enumerate(np.eye(n, dtype=int))]
+
+
+def _meet(p: Pair) -> list[sp.Expr]:
+    return [*p.gap]
+
+
+def _offset(axes: str) -> Callable:
+    """The second point stays at zero along these axes of the first frame."""
+    return lambda p: [p.gap.dot(p.A1[:, "xyz".index(a)]) for a in axes]
+
+
+def _across(*pairs: str) -> Callable:
+    """An axis of the first frame stays normal to one of the second: "xz" for x of the first and z of the second."""
+    return lambda p: [p.A1[:, "xyz".index(a)].dot(p.A2[:, "xyz".index(b)]) for a, b in pairs]
+
+
+def _moved(axis: str) -> Callable:
+    """The second point is at c along this axis of the first frame."""
+    return lambda p: [p.gap.dot(p.A1[:, "xyz".index(axis)]) - p.c[0]]
+
+
+def _turned(p: Pair) -> list[sp.Expr]:
+    """Sine of the second frame's angle, from x of the first towards y, less c: one solution within half a turn."""
+    x = p.A2[:, 0]
+    return [p.A1[:, 1].dot(x) * p.c[1] - p.A1[:, 0].dot(x) * p.c[2]]
+
+
+def _distant(p: Pair) -> list[sp.Expr]:
+    return [p.program.define("distance", sp.sqrt(p.gap.dot(p.gap))) - p.c[0]]
+
+
+_AXIS, _LOCK = _across("xz", "yz"), _across("xz", "yz", "yx")
+JOINTS = {3: {"spherical": [_meet],
+              "revolute": [_meet, _AXIS],
+              "revolute_angle": [_meet, _AXIS, _turned],
+              "universal": [_meet, _across("zx")],
+              "cylindrical": [_offset("xy"), _AXIS],
+              "cylindrical_angle": [_offset("xy"), _AXIS, _turned],
+              "cylindrical_distance": [_offset("xy"), _AXIS, _moved("z")],
+              "prismatic": [_offset("xy"), _LOCK],
+              "prismatic_distance": [_offset("xy"), _LOCK, _moved("z")],
+              "weld": [_meet, _LOCK],
+              "distance": [_distant],
+              "aligned": [_AXIS],
+              "locked": [_LOCK]},
+          2: {"planar_spherical": [_meet],
+              "planar_revolute_angle": [_meet, _turned],
+              "planar_prismatic": [_offset("y"), _across("yx")],
+              "planar_prismatic_distance": [_offset("y"), _across("yx"), _moved("x")],
+              "planar_weld": [_meet, _across("yx")],
+              "planar_distance": [_distant],
+              "planar_locked": [_across("yx")]}}
+"""The equations of each joint, by dimension; aligned and locked hold axes alone, beside a slide."""
+
+
+def rows(dim: int, name: str) -> int:
+    """Number of equations."""
+    return len(_equations(Pair(Program(name, "", ""), dim), name))
+
+
+def _equations(pair: Pair, name: str) -> np.ndarray:
+    pair.program.stage("equations of the joint")
+    every = [e for equations in JOINTS[pair.dim][name] for e in equations(pair)]
+    return np.array([pair.program.define(f"phi_{k}", e) for k, e in enumerate(every)])
+
+
+def build(dim: int, name: str) -> list[Program]:
+    """The kernels of a joint."""
+    return [force(dim, name), motion(dim, name)]
+
+
+def force(dim: int, name: str) -> Program:
+    """phi, its Jacobian J, and the derivative of J' f."""
+    p = Program(f"joint_{name}_force", "equations, their derivatives, and those of the force J' f", "eq 19, 28")
+    pair = Pair(p, dim)
+    phi = _equations(pair, name)
+    f = p.input("f", len(phi), "N, N m", "multipliers, held fixed")
+    by = pair.moves()
+    p.stage("derivatives")
+    J = np.stack([d.array(phi) for d in by], axis=1)
+    p.stage("force")
+    g = np.array([p.define(f"g_{k}", f.dot(column)) for k, column in enumerate(J.T)])
+    p.stage("derivative of the force")
+    p.output("phi", phi, "m, 1", "what is zero")
+    p.output("J", J, "1, m", "derivatives by the gap and the turns of both frames about global axes")
+    p.output("K", np.stack([d.array(g) for d in by], axis=1), "N/m, N, N m", "derivatives of J' f by the same")
+    return p
+
+
+def motion(dim: int, name: str) -> Program:
+    """What stays of phi' and phi'' at rest and without accelerations."""
+    p = Program(f"joint_{name}_motion", "derivatives of the equations in time", "eq 33")
+    pair = Pair(p, dim)
+    phi = _equations(pair, name)
+    gap_rate = p.input("gap_rate", dim, "m/s", "rate of the gap")
+    turns = [p.input(f"omega{k}", pair.turns, "rad/s", f"angular velocity of frame {k}, global axes") for k in (1, 2)]
+    c_rate = p.input("c_rate", 2, "m/s or rad/s, and per s", "rate of c and its rate")
+    c, rest = pair.c, np.zeros(dim, dtype=int)
+    driving = dict(zip(c, c_rate[0] * np.array([1, -c[2], c[1]]), strict=True)) | {c_rate[0]: c_rate[1]}
+    p.stage("derivatives in time")
+    still = np.zeros(pair.turns, dtype=int)
+    driven = pair.along("dc", rest, still, still, driving)
+    moved = pair.along("dt", gap_rate, *turns, driving)
+    p.output("phi_t", driven.array(phi), "m/s, 1/s", "rate at rest: what drives the joint")
+    p.output("Q_d", moved.array(moved.array(phi)), "m/s^2, 1/s^2", "second rate at zero accelerations")
+    return p

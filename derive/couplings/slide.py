@@ -1,0 +1,226 @@
+"""The sliding joint (eq 19-37): a point of a rider stays on the centreline of a cable at arc-length s.
+
+Everything is differentiated from C = A_t' (r(s) - p). The derivations are by the cable's nodal vectors e, by the
+rider's coordinates, by s, and along the motion; Q_d is the second derivative along the motion with q'' = s'' = 0.
+Cable and rider are both planar, with C = (C_l, C_m), or both spatial.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+from types import ModuleType
+
+import numpy as np
+
+from ..algebra.axis import Axis
+from ..algebra.discrete_gradient import STATES, DiscreteGradient
+from ..algebra.tangent_frame import cross, tangent_frame
+from ..bodies import kernels as body_kernels
+from ..bodies.point import Point
+from ..codegen.program import DirectionalDerivative, Program, jacobian
+from ..spec import Element
+
+ENTRIES = {2: ("l", "m"), 3: ("l", "m1", "m2")}  # of C, by dim
+_C_DOC = "constraint in the tangent frame: C_l, then C_m across the cable"
+
+
+class Slide:
+    """Symbols that every kernel of the joint starts from: inputs, derivations and r_p = r - p (eq 19)."""
+
+    def __init__(self, program: Program, element: Element, rider: ModuleType | Point):
+        self.program, self.element, self.rider = program, element, rider
+        self.entries = ENTRIES[element.dim]
+        self.axis = Axis(program, element)
+        self.e = self.axis.coordinates()
+        self.b, self.u = rider.configuration(program), rider.attachment(program)
+        self.by_s = DirectionalDerivative(program, "ds", {self.axis.x: 1})
+        self.by_e = [DirectionalDerivative(program, f"de{k}", {symbol: 1}) for k, symbol in enumerate(self.e.ravel())]
+        program.stage("centreline at s and rider's point (eq 19)")
+        self.axes = rider.axes(program, self.b)
+        self.by_rider = rider.tangents(program, self.b, self.axes)
+        # from the first node and from the rider's origin: no digits are lost far from the global origin
+        self.r = self.axis.vector("r", self.axis.shape(), self.e)
+        arm = rider.arm(program, self.axes, self.u)
+        gap = program.vector("gap", self.e[0] - rider.origin(self.b))
+        self.r_p = program.vector("r_p", gap + (self.r - arm))
+
+    def _director(self) -> tuple[np.ndarray, list]:
+        """What gives a spatial frame its normal, and its entries that move with e.
+
+        A slope of the element, or a direction from outside, held fixed: only the direction of the two normals hangs
+        on it, not the plane that they span. A planar frame needs neither; the input stays, so that all slides are
+        called alike.
+        """
+        outside = self.program.input("director", self.element.dim, "1",
+                                     "a direction off the tangent; used in space, where an element has none")
+        if self.element.dim == 2 or not self.element.director:
+            return outside, []
+        slope = self.axis.shape(self.element.director.partition("_")[2])
+        director = self.axis.vector("n", slope, self.e)
+        return director, [*director]
+
+    def constraint(self) -> np.ndarray:
+        """C = A_t' r_p (eq 20), with the cut (r_p, r_x, director) through which it is differentiated."""
+        self.program.stage("tangent and director")
+        self.t = self.by_s.array(self.r)
+        director, moving = self._director()
+        self.program.stage("tangent frame (eq 13-18)")
+        self.A_t = tangent_frame(self.program, self.t, director)
+        self.program.stage("C (eq 20)")
+        self.C = self.named("C_", self.A_t.T.dot(self.r_p))
+        self.cut = [*self.r_p, *self.t, *moving]
+        self.program.stage("derivatives of C by r_p, r_x, director")
+        self.C_cut = jacobian(self.program, self.C, self.cut)
+        return self.C
+
+    def named(self, name: str, values: np.ndarray, suffix: str = "") -> np.ndarray:
+        """Define the entries of something like C."""
+        return np.array([self.program.define(f"{name}{entry}{suffix}", value)
+                         for entry, value in zip(self.entries, values, strict=True)])
+
+    def by_arc_length(self) -> np.ndarray:
+        """C_s (eq 22). dr_p/ds = r_x is along i: along j and k it is zero, and would be nothing but rounding."""
+        dim = len(self.r_p)
+        C_s = self.C_cut[:, dim:].dot(self.by_s.array(np.array(self.cut[dim:], dtype=object)))
+        C_s[0] += self.A_t[:, 0].dot(self.t)
+        return C_s
+
+    def through_cut(self, derivation: DirectionalDerivative) -> np.ndarray:
+        """Derivative of C along a derivation, by the chain rule through the cut."""
+        return self.C_cut.dot(derivation.array(np.array(self.cut, dtype=object)))
+
+
+def build(element: Element, rider: ModuleType | Point) -> list[Program]:
+    """The kernels of the slide of a rider on a cable of this element."""
+    name = f"slide_{element.name}_{rider.NAME}"
+    return [kernel(name, element, rider) for kernel in (_constraint, _terms, _residual, _tangent, _discrete_gradient)]
+
+
+def _constraint(name: str, element: Element, rider: ModuleType | Point) -> Program:
+    p = Program(f"{name}_constraint", "C, C_s and the Newton step for s", "eq 19-22")
+    slide = Slide(p, element, rider)
+    C = slide.constraint()
+    p.stage("C_s (eq 22)")
+    C_s = slide.by_arc_length()
+    p.output("C", C, "m", _C_DOC)
+    p.output("C_s", C_s, "1", "derivative of C by s")
+    p.output("s_step", [-C[0] / p.define("C_ls", C_s[0])], "m", "Newton step of C_l(s) = 0")
+    p.output("A_t", slide.A_t, "1", "tangent frame, columns i j (k) (eq 18)")
+    return p
+
+
+def _terms(name: str, element: Element, rider: ModuleType | Point) -> Program:
+    p = Program(f"{name}_terms", "terms of the equations of motion with the slide", "eq 20-37")
+    slide = Slide(p, element, rider)
+    v = p.input("v", slide.e.shape, "m/s, 1/s", "rates of the nodal vectors")
+    w = slide.rider.velocity(p)
+    C = slide.constraint()
+    p.stage("C_s and C_q (eq 22-23)")
+    C_s = slide.named("C_s", slide.by_arc_length())
+    by_q = slide.by_e + slide.by_rider
+    C_q = np.stack([slide.named("C_q", slide.through_cut(d), f"_{k}") for k, d in enumerate(by_q)], axis=1)
+    p.stage("G (eq 24) and the rate of s (eq 25)")
+    inverse = p.define("inv_C_sl", 1 / C_s[0])
+    G = np.array([p.define(f"G_{k}", -inverse * c) for k, c in enumerate(C_q[0])])
+    velocities = np.concatenate([v.ravel(), w])
+    s_rate = p.define("sdot", G.dot(velocities))
+    p.stage("Q_d: second derivative along the motion (eq 33)")
+    motion = dict(zip(slide.e.ravel(), v.ravel(), strict=True)) | {slide.axis.x: s_rate}
+    motion |= slide.rider.rate(slide.b, slide.axes, w)
+    # velocities are held: the derivation knows s_rate as a constant, not as the function of q that it is
+    along = DirectionalDerivative(p, "dt", motion | {s_rate: 0})
+    Q_d = slide.named("Q_d", along.array(along.array(C)))
+    p.stage("H (eq 31) and W (eq 37)")
+    H = C_q[1:] + np.outer(C_s[1:], G)
+    W = -Q_d[1:] + C_s[1:] * inverse * Q_d[0]
+    p.output("C", C, "m", _C_DOC)
+    p.output("C_q", C_q, "1, m", "derivatives of C by the nodal vectors, then the rider")
+    p.output("C_s", C_s, "1", "derivative of C by s")
+    p.output("G", G, "1, m", "ds = G dq (eq 24)")
+    p.output("s_rate", [s_rate], "m/s", "rate of s (eq 25)")
+    p.output("Q_d", Q_d, "m/s^2", "second derivative of C at zero accelerations (eq 33)")
+    p.output("H", H, "1, m", "Jacobian of the constraints that stay (eq 31)")
+    p.output("W", W, "m/s^2", "H q'' = W (eq 36-37)")
+    # eq 34 prints the last term with the wrong sign: s'' = -Q_dl/C_sl + G q''
+    p.output("s_bias", [-inverse * Q_d[0]], "m/s^2", "s'' - G q'' (eq 34, sign mended)")
+    return p
+
+
+def _lagrangian(p: Program, element: Element, rider: ModuleType | Point):
+    """phi = r_p, its Jacobian by (e, rider, s), and the gradient of f . phi.
+
+    The integrator carries s and the whole force f on the joint as unknowns instead of C_M and its multipliers:
+    f . r_x = 0, the s-entry of the gradient, is eq 30's statement that the force along the tangent is nil. Same
+    solutions and no frame in the Newton matrix, which is symmetric but for the rider's rotations (their bracket).
+    """
+    slide = Slide(p, element, rider)
+    f = p.input("f", element.dim, "N", "force of the joint on the rider")
+    p.stage("Jacobian of phi")
+    J = np.stack([d.array(slide.r_p) for d in (*slide.by_e, *slide.by_rider, slide.by_s)], axis=1)
+    p.stage("gradient of f . phi")
+    g = np.array([p.define(f"g_{k}", f.dot(column)) for k, column in enumerate(J.T)])
+    return slide, J, g
+
+
+def _residual(name: str, element: Element, rider: ModuleType | Point) -> Program:
+    p = Program(f"{name}_residual", "phi and the gradient of f . phi by (e, rider, s)", "eq 19, 28-30")
+    slide, _, g = _lagrangian(p, element, rider)
+    p.output("phi", slide.r_p, "m", "r(s) - p")
+    p.output("g", g, "N, N m", "gradient of f . phi")
+    return p
+
+
+def _tangent(name: str, element: Element, rider: ModuleType | Point) -> Program:
+    p = Program(f"{name}_tangent", "derivatives of phi and of the gradient of f . phi", "eq 19, 28-30")
+    slide, J, g = _lagrangian(p, element, rider)
+    p.stage("derivative of the gradient")
+    K = np.stack([d.array(g) for d in (*slide.by_e, *slide.by_rider, slide.by_s)], axis=1)
+    p.output("J", J, "1, m", "derivatives of phi by (e, rider, s)")
+    p.output("K", K, "N/m, N, N m", "derivatives of g by (e, rider, s)")
+    return p
+
+
+def _discrete_gradient(name: str, element: Element, rider: ModuleType | Point) -> Program:
+    """G (de, psi, ds) = phi_next - phi - theta x (phi_next + phi)/2, theta the rider's turn: zero on the joint.
+
+    With N~ = (N(s) + N(s_next))/2 and the divided difference D = N[s, s_next] of the shape functions
+
+        r_next - r = N~ de + D e~ ds,   (r_next + r)/2 = N~ e~ + D de ds/4.
+
+    A force f acts on cable and rider at one place, N~ e~, so that it makes no moment; the part of r along which it does
+    no work for that is D (e~ - theta x de/4) in place of r_x. After Gonzalez, Comput. Methods Appl. Mech. Eng. 174
+    (1999) 165-174, for a constraint that turns with the scene.
+    """
+    p = Program(f"{name}_discrete_gradient", "discrete Jacobian of phi over a step", "eq 19")
+    law = Program("axis", "shape functions at one place", "")
+    axis = Axis(law, element)
+    N = axis.shape()
+    length = p.input("l", (), "m", "length of the element")
+    x = p.input("x", (), "m", "arc-length from the element's first node")
+    x_next = p.input("x_next", (), "m", "x at the end of the step")
+    e = p.input("e", (element.n_vectors, element.dim), "m, 1", "nodal vectors (eq 1)")
+    e_next = p.input("e_next", e.shape, "m, 1", "nodal vectors at the end of the step")
+    secant = DiscreteGradient(p, law, {axis.length: (length, length), axis.x: (x, x_next)})
+    p.stage("mean shape functions, and their divided differences")
+    mean = np.array([p.define(f"mean_N_{node}", secant.mean(n)) for node, n in zip(element.names, N, strict=True)])
+    slope = np.array([p.define(f"D_N_{node}", *secant.gradient(n, [axis.x]))
+                      for node, n in zip(element.names, N, strict=True)])
+    b = rider.configuration(p)
+    step = body_kernels.Step(p, rider, b)
+    p.stage("mean point and slope of the cable, from its first node")
+    first = np.array(element.is_position, dtype=int)
+    named = partial(_named_rows, p, element)
+    now, then = (named(state, vectors - np.outer(first, vectors[0])) for state, vectors in zip(STATES, (e, e_next),
+                                                                                               strict=True))
+    middle, change = named("mean", (now + then) / 2), named("change", then - now)
+    gaps = [p.vector(f"{state}_gap", vectors[0] - rider.origin(at))
+            for state, vectors, at in zip(STATES, (e, e_next), (b, step.b_next), strict=True)]
+    arm = p.vector("arm", sum(gaps) / 2 + mean.dot(middle))
+    along = p.vector("along", slope.dot(middle) - cross(step.theta, p.vector("swing", slope.dot(change) / 4)))
+    p.output("G", np.concatenate([np.kron(mean, np.eye(element.dim, dtype=int)), -step.jacobian(arm), along[:, None]],
+                                 axis=1), "1, m", "by (e, rider, s); the rider's turn by its Cayley vector")
+    return p
+
+
+def _named_rows(p: Program, element: Element, name: str, vectors: np.ndarray) -> np.ndarray:
+    return np.array([p.vector(f"{name}_{node}", v) for node, v in zip(element.names, vectors, strict=True)])

@@ -1,0 +1,107 @@
+"""The kernels of an element that no law enters (eq 2-4): position, mass, gravity, loads."""
+
+from __future__ import annotations
+
+import numpy as np
+import sympy as sp
+
+from ..algebra import section_integrals as moments
+from ..codegen.program import Program
+from ..spec import Element, l, x, y, z
+from . import load_kernels
+
+
+def _ring(expr: sp.Expr):
+    """A polynomial in x, y, z, 1/l of the spec, in the ring of `moments`."""
+    w = sp.Symbol("w", positive=True)
+    poly = sp.Poly(sp.expand(expr.subs(l, 1 / w)), x, y, z, w, 1 / w)
+    xi = moments.L * (1 + moments.X) / 2
+    return sum((moments.RING(c) * xi**a * moments.Y**b * moments.Z**d * moments.W**n * moments.L**m
+                for (a, b, d, n, m), c in poly.terms()), moments.RING(0))
+
+
+def _integral(p, length, section) -> sp.Expr:
+    """Integral of a ring polynomial over the element, in kernel symbols."""
+    return sum((sp.Rational(int(c.numerator), int(c.denominator)) * length**power * section[m]
+                for (m, power), c in sorted(moments.over_element(p).items())), sp.S.Zero)
+
+
+def build(element: Element) -> list[Program]:
+    """Every kernel of an element that no law enters."""
+    shape = [_ring(n) for n in element.shape_functions]
+    return [mass(element, shape), gravity(element, shape), inertia_force(element, shape), position(element),
+            *load_kernels.build(element)]
+
+
+def _program(element: Element, kernel: str, doc: str, source: str) -> Program:
+    return Program(f"{element.name}_{kernel}", doc, source)
+
+
+def _length(program: Program) -> sp.Symbol:
+    return program.input("l", (), "m", "length of the element")
+
+
+def _section(program: Program) -> np.ndarray:
+    return program.input("section", len(moments.SECTION), moments.SECTION_UNITS, moments.SECTION_DOC)
+
+
+def _coordinates(program: Program, element: Element, name="e", unit="m, 1", doc="nodal vectors (eq 1)"):
+    return program.input(name, (element.n_vectors, element.dim), unit, doc)
+
+
+def mass(element: Element, shape) -> Program:
+    """eq 4: M = m (x) I."""
+    p = _program(element, "mass", "mass matrix m of M = m (x) I", "eq 4")
+    length, density, section = _length(p), p.input("density", (), "kg/m^3", "density"), _section(p)
+    p.stage("integrals of N_j N_k")
+    n = element.n_vectors
+    m = np.zeros((n, n), dtype=object)
+    for j in range(n):
+        for k in range(j, n):
+            m[j, k] = m[k, j] = p.define(f"m_{element.names[j]}_{element.names[k]}",
+                                         density * _integral(shape[j] * shape[k], length, section))
+    p.output("m", m, "kg, kg m, kg m^2", "mass matrix over nodal vectors, symmetric")
+    return p
+
+
+def gravity(element: Element, shape) -> Program:
+    """Generalised force of a constant gravity field."""
+    p = _program(element, "gravity", "generalised force of constant gravity", "Q_e of eq 9")
+    length, density, section = _length(p), p.input("density", (), "kg/m^3", "density"), _section(p)
+    g = p.input("g", element.dim, "m/s^2", "gravity")
+    p.stage("integrals of N_k")
+    weight = [p.define(f"w_{name}", density * _integral(n, length, section))
+              for name, n in zip(element.names, shape, strict=True)]
+    p.output("Q", np.outer(weight, g), "N, N m", "generalised force on the nodal vectors")
+    return p
+
+
+def inertia_force(element: Element, shape) -> Program:
+    """M a with M = m (x) I, zeros of m left out."""
+    p = _program(element, "inertia_force", "M a", "M e'' of eq 9")
+    n = element.n_vectors
+    m = p.input("m", (n, n), "kg, kg m, kg m^2", f"mass matrix from {element.name}_mass")
+    a = _coordinates(p, element, "a", "m/s^2, 1/s^2", "accelerations of the nodal vectors")
+    filled = [[bool(moments.over_element(shape[j] * shape[k])) for k in range(n)] for j in range(n)]
+    p.output("f", [sum(m[j, k] * a[k] for k in range(n) if filled[j][k]) for j in range(n)], "N, N m", "M a")
+    return p
+
+
+def _horner(n: sp.Expr, power: int, xi: sp.Symbol) -> sp.Expr:
+    """A shape function as l^power times a polynomial in xi with whole coefficients: monomials in x cancel."""
+    return l**power * sp.horner(sp.expand(n.subs(x, xi * l) / l**power), xi)
+
+
+def position(element: Element) -> Program:
+    """eq 2."""
+    p = _program(element, "position", "shape functions and position of a point", "eq 2")
+    length = _length(p)
+    at = p.input("at", 3, "m", "local coordinates x, y, z")
+    e = _coordinates(p, element)
+    p.stage("shape functions")
+    xi = p.define("xi", at[0] / length)
+    N = [p.define(f"N_{name}", _horner(n, name.count("x"), xi).subs({y: at[1], z: at[2], l: length}))
+         for name, n in zip(element.names, element.shape_functions, strict=True)]
+    p.output("N", N, "1, m", "shape functions")
+    p.output("r", sum(N[k] * e[k] for k in range(len(N))), "m", "position")
+    return p

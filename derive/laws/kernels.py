@@ -1,0 +1,211 @@
+"""The kernels of a law on an element (eq 5-9): constants, energy, forces, tangents, Kelvin-Voigt damping.
+
+Signatures are the same for every law; A holds what the law calls its constants.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import sympy as sp
+
+from ..algebra.discrete_gradient import STATES
+from ..algebra.gram import DIRECTIONS, Gram
+from ..algebra.gram_point import axis, expansion
+from ..algebra.gram_tangent import nodal_tangent
+from ..algebra.tangent_frame import spatial, tangent_frame, unit
+from ..codegen.program import Program
+from ..spec import Element
+from . import LAWS, law_class, law_name, stress_free
+
+DAMPING = ("damping_force", "damping_tangent", "dissipation")
+DISCRETE = ("discrete_force", "step_stiffness")
+ALGORITHMIC = ("algorithmic_force",)
+RETARDATION = ("tau", (), "s", "retardation time of the Kelvin-Voigt law")
+
+
+def lacks(law: str | type) -> tuple[str, ...]:
+    """Kernels that a law does not give: a discrete gradient of its energy, a measure of strain for a step."""
+    return tuple(kernel for kernels, method in ((DISCRETE, "discrete_forces"), (ALGORITHMIC, "algorithmic_forces"))
+                 for kernel in kernels if not hasattr(_class(law), method))
+
+
+def facts(element: Element, law: str | type) -> dict[str, int]:
+    """What the engine needs to know of a law's rates of strain."""
+    return {"rates": 0, "spins": 0} if lacks(law) else _class(law).rates(element)
+
+
+def _class(law: str | type) -> type | None:
+    found = LAWS.get(law) if isinstance(law, str) else law
+    return getattr(found, "func", found)
+
+
+def build(element: Element, law: str | type, damping: bool = True) -> list[Program]:
+    """Every kernel of a law on an element; those of damping where it does not take another law's."""
+    missing = lacks(law)
+    discrete, damped = ([kernel for kernel in kernels if kernel not in missing]
+                        for kernels in (DISCRETE, (*DAMPING, *ALGORITHMIC) if damping else ()))
+    kernels = Kernels(element, law)
+    return [kernels.set_up(), kernels.energy(), kernels.elastic_force(), kernels.elastic_tangent(),
+            *(getattr(kernels, kernel)() for kernel in (*discrete, *damped)), kernels.section_forces()]
+
+
+class Kernels:
+    """An element's Gram products with a law over them."""
+
+    def __init__(self, element: Element, law: str | type):
+        self.element, self.gram = element, Gram(element)
+        self.law, self.name = law_class(law)(self.gram), f"{element.name}_{law_name(law)}"
+
+    def _program(self, kernel: str, doc: str, source: str) -> Program:
+        return Program(f"{self.name}_{kernel}", doc, f"{source}; {self.law.source}")
+
+    def _coordinates(self, program: Program, name="e", unit="m, 1", doc="nodal vectors (eq 1)") -> np.ndarray:
+        return program.input(name, (self.element.n_vectors, self.element.dim), unit, doc)
+
+    def _strain(self, program: Program) -> tuple:
+        """Inputs l, e, A and the stage of the strain vectors."""
+        length = program.input("l", (), "m", "length of the element")
+        e, A = self._coordinates(program), self.law.constants(program)
+        program.stage("strain vectors")
+        w = program.define("w", 1 / length)
+        return w, A, self.gram.differences(program, e, w)
+
+    def _ends(self, program: Program) -> tuple:
+        """Inputs l, e, e_next, A and the stage of the strain vectors at both ends of a step."""
+        length = program.input("l", (), "m", "length of the element")
+        e = self._coordinates(program)
+        e_next = self._coordinates(program, "e_next", doc="nodal vectors at the end of the step")
+        A = self.law.constants(program)
+        program.stage("strain vectors at both ends of the step")
+        w = program.define("w", 1 / length)
+        c = [self.gram.differences(program, vectors, w, f"{state}_")
+             for vectors, state in zip((e, e_next), STATES, strict=True)]
+        return w, A, *c
+
+    def _rates(self, program: Program, *factors: tuple[str, tuple, str, str]) -> tuple:
+        """Inputs l, e, v, A, factors and the stages up to the rates of the strain vectors."""
+        length = program.input("l", (), "m", "length of the element")
+        e = self._coordinates(program)
+        v = self._coordinates(program, "v", "m/s, 1/s", "rates of the nodal vectors")
+        A = self.law.constants(program)
+        given = [program.input(*factor) for factor in factors or [RETARDATION]]
+        program.stage("strain vectors and their rates")
+        w = program.define("w", 1 / length)
+        return w, A, *given, self.gram.differences(program, e, w), self.gram.differences(program, v, w, "d")
+
+    def set_up(self) -> Program:
+        """The law's constants."""
+        p = self._program(self.law.set_up_kernel, "constants of the law from the stiffness of the section", "eq 7")
+        self.law.set_up(p)
+        return p
+
+    def energy(self) -> Program:
+        """eq 7."""
+        p = self._program("energy", "elastic energy", "eq 7")
+        w, A, c = self._strain(p)
+        p.output("U", [self.law.energy(p, A, c, w)], "J", "elastic energy")
+        return p
+
+    def elastic_force(self) -> Program:
+        """eq 8, as dU/de = -Q_k."""
+        p = self._program("elastic_force", "dU/de, minus the elastic force Q_k", "eq 8")
+        w, A, c = self._strain(p)
+        p.output("f", self._nodal(p, self.law.forces(p, A, c, w), w), "N, N m", "dU/de")
+        return p
+
+    def discrete_force(self) -> Program:
+        """Between two configurations: conserves energy and momenta in a step from one to the other."""
+        p = self._program("discrete_force", "discrete gradient of the energy, f . (e_next - e) = U_next - U", "eq 8")
+        w, A, *c = self._ends(p)
+        f = self.law.discrete_forces(p, A, *c, w)
+        p.output("f", self._nodal(p, f, w), "N, N m", "dU/de where e_next is e")
+        return p
+
+    def step_stiffness(self) -> Program:
+        """For the Newton matrix of a step with discrete_force."""
+        p = self._program("step_stiffness", "k: elastic_tangent half-way + k (x) I has the mean stress", "eq 8")
+        w, A, *c = self._ends(p)
+        change = [p.vector(f"change_{name}", b - a) for name, a, b in zip(self.gram.names, *c, strict=True)]
+        block = self.law.stress_of_turning(p, A, np.array(change), w)
+        p.output("k", nodal_tangent(self.gram, p, block, w, symmetric=True), "N/m, N, N m", "over nodal vectors")
+        return p
+
+    def elastic_tangent(self) -> Program:
+        """Second derivative of the energy."""
+        p = self._program("elastic_tangent", "d2U/de2", "derivative of eq 8")
+        w, A, c = self._strain(p)
+        K = nodal_tangent(self.gram, p, self.law.tangent(p, A, c, w), w, symmetric=True)
+        p.output("K", K, "N/m, N, N m", "d2U/de2, symmetric")
+        return p
+
+    def damping_force(self) -> Program:
+        """Q_d of eq 9, its sign turned."""
+        p = self._program("damping_force", "minus the Kelvin-Voigt damping force Q_d", "Q_d of eq 9")
+        w, A, tau, c, dc = self._rates(p)
+        p.output("f", self._nodal(p, self.law.damping_forces(p, A, tau, c, dc, w), w), "N, N m", "-Q_d")
+        return p
+
+    def damping_tangent(self) -> Program:
+        """df/de + rate df/dv of the damping force f."""
+        p = self._program("damping_tangent", "df/de + rate df/dv of the damping force f = -Q_d",
+                          "derivative of Q_d of eq 9")
+        w, A, tau, c, dc = self._rates(p)
+        rate = p.input("rate", (), "1/s", "dv/de of the integrator")
+        block = self.law.damping_blocks(p, A, tau, c, dc, rate, w)
+        p.output("K", nodal_tangent(self.gram, p, block, w, symmetric=False), "N/m, N, N m", "df/de + rate df/dv")
+        return p
+
+    def dissipation(self) -> Program:
+        """Power that the damping force takes out."""
+        p = self._program("dissipation", "power dissipated by the damping force", "v . Q_d of eq 9")
+        w, A, tau, c, dc = self._rates(p)
+        p.output("P", [sp.sympify(self.law.dissipation(p, A, tau, c, dc, w))], "W", "dissipated power, never negative")
+        return p
+
+    def algorithmic_force(self) -> Program:
+        """Of a step with algorithmic dissipation: of stresses that its integrator makes of changes of strain."""
+        p = self._program("algorithmic_force", "force of the stress D (weight dE - known), dE the strain that v makes",
+                          "D of Q_d of eq 9")
+        w, A, weight, known, c, dc = self._rates(
+            p, ("weight", (), "1", "of the strains that v makes"),
+            ("known", (self.law.rates(self.element)["rates"],), "1, 1/m", "strains, taken off"))
+        f, dE = self.law.algorithmic_forces(p, A, weight, known, c, dc, w)
+        p.output("f", self._nodal(p, f, w), "N, N m", "force; its power with v is that of the stress with dE")
+        p.output("dE", dE, "1, 1/m", "strains: one a point and component, or over Gram pairs")
+        return p
+
+    def section_forces(self) -> Program:
+        """What passes through the section at x from the side of greater x."""
+        p = self._program("section_forces", "force and moment resultants of a section", "eq 6-8 at a section")
+        length, x = p.input("l", (), "m", "length of the element"), p.input("x", (), "m", "arc-length from its start")
+        e, S = self._coordinates(p), self.law.section_stiffness(p)
+        e0 = [stress_free.shape(p, self.element)] if self.law.curved else []
+        p.stage("strain vectors")
+        w = p.define("w", 1 / length)
+        X = p.define("X", 2 * w * x - 1)
+        c = self.gram.differences(p, e, w)
+        c0 = [self.gram.differences(p, vectors, w, "r0_") for vectors in e0]
+        force, moment, strain = self.law.section_forces(p, S, c, X, w, *c0)
+        p.stage("axes of the section")
+        axes = self._axes(p, c, X, w)
+        p.output("force", force, "N", "resultant of the stress, global axes")
+        p.output("moment", moment, "N m", "its moment about the axis, global axes")
+        p.output("axes", axes, "1", "rows: tangent t, y along the director's part across t, z = t x y; zero without")
+        p.output("strain", strain, "1, 1/m", "axial, shear along y and z, twist, curvature about y and z (cable: size)")
+        return p
+
+    def _axes(self, program: Program, c: np.ndarray, X: sp.Expr, w: sp.Expr) -> np.ndarray:
+        """Rows t, y, z in space; z is out of the plane of a planar element."""
+        tangent = program.vector("t", axis(self.gram, c, X, w, 1))
+        if self.element.dim == 2:
+            i = unit(program, "i", tangent)
+            return np.array([spatial(i), [-i[1], i[0], 0], [0, 0, 1]])
+        if self.element.director:
+            column = DIRECTIONS.index(self.element.director[-1])
+            normal = expansion([g[column] for g in self.gram.gradient], c, X, w)[0, 0]
+            return tangent_frame(program, tangent, program.vector("director", normal)).T
+        return np.array([unit(program, "i", tangent), [0, 0, 0], [0, 0, 0]])
+
+    def _nodal(self, program: Program, f: np.ndarray, w: sp.Expr) -> np.ndarray:
+        program.stage("forces on nodal vectors")
+        return self.gram.nodal_forces(program, f, w)

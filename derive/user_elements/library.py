@@ -1,0 +1,100 @@
+"""A library on disk: rendered and compiled in a folder of its own, then moved to where the user wants it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import subprocess
+from pathlib import Path
+
+from funicular.kernels.elements import manifest
+from funicular.kernels.libraries import LibraryError, manifest_digest, read_manifest
+
+from ..codegen import rendering as emit
+from ..codegen.drift import MANIFEST
+from ..codegen.rendering import Derived
+from ..spec import Family
+from ..verify.compiled import compiler
+from .load import SpecError
+
+LEVEL = "-O3"
+FLAGS = ("-std=c11", LEVEL, "-fPIC")
+
+
+def check_destination(out: Path) -> None:
+    """Raise SpecError where a library cannot be written: no such place, no right to, or something else is there."""
+    nearest = next(p for p in (out, *out.parents) if p.exists())
+    if not nearest.is_dir() or not os.access(nearest, os.W_OK):
+        raise SpecError(str(out), f"cannot be written: {nearest} is "
+                        + ("not writable" if nearest.is_dir() else "not a directory"), "give another --out DIR")
+    if out.is_dir() and any(out.iterdir()) and recorded(out) is None:
+        raise SpecError(str(out), "is not empty and holds no library, so that nothing is written there",
+                        "give a new or an empty directory to --out")
+
+
+def recorded(out: Path) -> dict | None:
+    """The manifest of the library in a directory, None where there is none."""
+    try:
+        return read_manifest(out)[1]
+    except LibraryError:
+        return None
+
+
+def is_current(out: Path, families: list[Family]) -> bool:
+    """Whether a directory's library is what these families make with the tools at hand."""
+    content = recorded(out)
+    if (content is None or content["library"].get("digest") != manifest_digest(content)
+            or content["tools"] != emit.tools() or content["interface"] != manifest()["interface"]):
+        return False
+    hashes = {family.name: emit.came_from(family)[1] for family in families}
+    file = out / content["library"]["file"]
+    return ({name: entry.get("spec_hash") for name, entry in content["families"].items()} == hashes
+            and all(emit.digest(_text(out / name)) == digest for name, digest in content["files"].items())
+            and file.is_file() and _digest(file) == content["library"]["sha256"])
+
+
+def render(every: list[Derived]) -> dict[str, str]:
+    """Text of a library's C files and header by name."""
+    return emit.render(every, [d.family.name for d in every], lambda _: None, like=manifest()["tables"])
+
+
+def link_shared(units: list[Path], folder: Path) -> Path:
+    """Link object files to a shared library in a folder.
+
+    The name holds a hash of the file, since a process that has one of that name open gets no other.
+    """
+    linked = folder / "kernels.so"
+    subprocess.run([*compiler(), "-shared", *units, "-lm", "-o", linked], check=True)
+    return linked.rename(folder / f"kernels-{_digest(linked)[:12]}.so")
+
+
+def write_manifest(every: list[Derived], files: dict[str, str], spec: Path, shared: Path) -> dict:
+    """Write the manifest next to the shared library; returns it."""
+    more = {"library": {"spec": str(spec), "file": shared.name, "sha256": _digest(shared),
+                        "compiler": " ".join([*compiler(), *FLAGS])}}
+    content = json.loads(emit.manifest(every, files, like=manifest()["tables"], more=more))
+    content["library"]["digest"] = manifest_digest(content)
+    (shared.parent / MANIFEST).write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8", newline="\n")
+    return content
+
+
+def move(folder: Path, out: Path) -> None:
+    """Put a finished library where it is wanted, its manifest last; files of an older one that are gone go."""
+    out.mkdir(parents=True, exist_ok=True)
+    old = recorded(out)
+    names = sorted((p.name for p in folder.iterdir()), key=lambda name: name == MANIFEST)
+    for name in names:
+        os.replace(folder / name, out / name)
+    if old is not None:
+        for name in {*old["files"], old["library"]["file"]} - set(names):
+            if Path(name).name == name:  # nothing elsewhere, whatever the old manifest says
+                (out / name).unlink(missing_ok=True)
+
+
+def _text(path: Path) -> str:
+    return path.read_text(encoding="utf-8") if path.is_file() else ""
+
+
+def _digest(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()

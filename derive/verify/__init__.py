@@ -1,0 +1,1 @@
+"""`funicular verify`: derivatives, rounding and invariances of the generated kernels."""

@@ -1,0 +1,61 @@
+"""Staged programs evaluated at 50 digits, by way of Python source of their own: no C printer, no compiler."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+import mpmath
+import numpy as np
+import sympy as sp
+
+from ..codegen.program import Program
+
+DIGITS = 50
+
+
+def source(expr: sp.Expr) -> str:
+    """Python text of plain arithmetic; every rational is a quotient q(p, q) of the number type."""
+    if expr.is_Symbol:
+        return expr.name
+    if expr.is_Integer:
+        return str(int(expr)) if expr >= 0 else f"({int(expr)})"
+    if expr.is_Rational:
+        return f"q({int(expr.p)}, {int(expr.q)})"
+    if expr.is_Float:
+        return f"number({float(expr)!r})"
+    if expr.is_Add:
+        return "(" + " + ".join(source(a) for a in expr.args) + ")"
+    if expr.is_Mul:
+        return "(" + "*".join(source(a) for a in expr.args) + ")"
+    if expr.is_Pow and (2 * expr.exp).is_Integer:
+        base = source(expr.base)
+        return f"sqrt({base})**{int(2 * expr.exp)}" if expr.exp.q == 2 else f"{base}**{int(expr.exp)}"
+    raise ValueError(f"{type(expr).__name__} is not plain arithmetic: {expr}")
+
+
+class ExactProgram:
+    """A program as a function of arrays of mpmath numbers; compiled at the first call."""
+
+    def __init__(self, program: Program):
+        self.program = program
+        self._function: Callable | None = None
+
+    def _compile(self) -> Callable:
+        lines = [f"def kernel({', '.join(a.name for a in self.program.inputs)}):"]
+        lines += [f"    {symbol.name} = {source(expr)}"
+                  for stage in self.program.stages for symbol, expr in stage.definitions]
+        results = (f"[{', '.join(source(e) for e in self.program.values[a.name].ravel())}]"
+                   for a in self.program.outputs)
+        lines.append(f"    return [{', '.join(results)}]")
+        space = {"sqrt": mpmath.mp.sqrt, "q": lambda p, q: mpmath.mpf(p) / q, "number": mpmath.mpf}
+        exec(compile("\n".join(lines), f"<{self.program.name} at {DIGITS} digits>", "exec"), space)
+        return space["kernel"]
+
+    def __call__(self, inputs: Iterable[np.ndarray]) -> dict[str, np.ndarray]:
+        """Outputs by name, as arrays of mpmath numbers."""
+        self._function = self._function or self._compile()
+        arguments = [v.item() if a.shape == () else list(v.ravel())
+                     for a, v in zip(self.program.inputs, map(np.asarray, inputs), strict=True)]
+        results = self._function(*arguments)
+        return {a.name: np.array([mpmath.mp.convert(v) for v in values], dtype=object).reshape(a.shape)
+                for a, values in zip(self.program.outputs, results, strict=True)}

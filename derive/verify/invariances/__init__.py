@@ -1,0 +1,1 @@
+"""What no motion of the frame may change."""

@@ -1,0 +1,63 @@
+"""One way to evaluate kernels in three kinds of number, so that a relation is written once.
+
+Relations get a `Numbers` and a state (values by the kernels' argument names, in that kind of number) and use plain
+array arithmetic, `dot`, and the functions here.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Callable, Mapping
+
+import mpmath
+import numpy as np
+
+from ..codegen.program import Program
+
+EPS = float(np.finfo(float).eps)
+State = Mapping[str, np.ndarray]
+
+
+class Numbers:
+    """Kernels of one family in one kind of number; kernels go by their name without the family's."""
+
+    def __init__(self, family: str, programs: list[Program], call: Callable, functions, convert: Callable,
+                 eps: float = EPS):
+        self.programs = {p.name.removeprefix(f"{family}_"): p for p in programs}
+        self._call, self._convert = call, convert
+        self.eps = eps
+        self.sqrt, self.sin, self.cos = functions.sqrt, functions.sin, functions.cos
+
+    def state(self, values: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """A state of floats in this kind of number."""
+        return {name: self.array(v) for name, v in values.items()}
+
+    def array(self, values) -> np.ndarray:
+        """An array of floats in this kind of number, exactly."""
+        return self._convert(np.asarray(values))
+
+    def __call__(self, kernel: str, state: State, **changes) -> dict[str, np.ndarray]:
+        """Outputs of a kernel at a state, some of its values changed."""
+        program = self.programs[kernel]
+        return self._call(program.name, [changes.get(a.name, state.get(a.name)) for a in program.inputs])
+
+
+def real(family: str, programs: list[Program], library) -> Numbers:
+    """Doubles, in compiled C."""
+    return Numbers(family, programs, library, math, lambda v: v.astype(float))
+
+
+def complex_(family: str, programs: list[Program], library) -> Numbers:
+    """Complex doubles, in compiled C."""
+    return Numbers(family, programs, library, cmath, lambda v: v.astype(complex))
+
+
+def exact(family: str, programs: list[Program]) -> Numbers:
+    """50 digits, from the SymPy expressions."""
+    from .exact import ExactProgram
+
+    kernels = {p.name: ExactProgram(p) for p in programs}
+    convert = np.vectorize(mpmath.mpf, otypes=[object])
+    return Numbers(family, programs, lambda name, inputs: kernels[name](inputs), mpmath.mp, convert,
+                   eps=float(mpmath.mp.eps))

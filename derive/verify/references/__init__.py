@@ -1,0 +1,1 @@
+"""Independent definitions, at 50 digits."""

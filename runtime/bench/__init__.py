@@ -1,0 +1,1 @@
+"""The benchmark of a scene: accuracy and time."""

@@ -1,0 +1,91 @@
+"""What `funicular bench` compares: outputs of a run by name, as trajectories that do not depend on the mesh."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..checks.placement import node_of
+from ..errors import SceneError, near
+from ..kernels.libraries import kernels_of
+from ..results.run import QUANTITIES
+
+if TYPE_CHECKING:
+    from ..results.run import Run
+    from ..scene import Scene
+
+ENERGIES = ("energy.kinetic", "energy.elastic", "energy.potential")
+PLACES = ("tip", "middle")
+
+
+def default_outputs(scene: Scene) -> list[str]:
+    """Where bodies and slides are, and of each cable the end, or its middle where the end is held."""
+    held = {node_of(scene, support) for support in scene.supports}
+    places = [f"{name}.{'middle' if (name, cable.elements) in held else 'tip'}"
+              for name, cable in scene.cables.items()]
+    return [f"{name}.position" for name in scene.bodies] + [f"{name}.s" for name in scene.slides] + places
+
+
+def check_output(scene: Scene, name: str) -> None:
+    """Raises SceneError where the scene gives no such output."""
+    known = known_outputs(scene)
+    if name not in known and _place(scene, name) is None:
+        raise SceneError("bench", f'there is no output "{name}"', near(name, known)
+                         + " or a place of a cable in m, such as " + f'"{next(iter(scene.cables), "wire")}@0.5"')
+
+
+def known_outputs(scene: Scene) -> list[str]:
+    """Names of outputs, but for places of cables given by their arc-length."""
+    parts = {"bodies": scene.bodies, "slides": scene.slides, "springs": scene.springs}
+    results = [f"{name}.{quantity}" for group, named in parts.items() for name in named
+               for quantity in QUANTITIES[group] if quantity not in ("orientation", "multiplier")]
+    return results + [f"{name}.{place}" for name in scene.cables for place in PLACES] + list(ENERGIES)
+
+
+def _place(scene: Scene, name: str) -> tuple[str, float] | None:
+    """Cable and arc-length of a place such as wire.tip or wire@0.5; None where it is none."""
+    cable, _, place = name.rpartition(".") if name.endswith(PLACES) else name.rpartition("@")
+    if cable not in scene.cables:
+        return None
+    length = scene.cables[cable].length
+    if place in PLACES:
+        return cable, length if place == "tip" else length / 2
+    try:
+        s = float(place)
+    except ValueError:
+        return None
+    return (cable, s) if 0 <= s <= length else None
+
+
+def unit(scene: Scene, name: str) -> str:
+    """The unit of an output."""
+    if name in ENERGIES:
+        return "J"
+    if _place(scene, name) is not None:
+        return "m"
+    quantity = name.rpartition(".")[2]
+    return next(group[quantity][1] for group in QUANTITIES.values() if quantity in group)
+
+
+def trajectory(scene: Scene, run: Run, name: str) -> np.ndarray:
+    """(time, components): an output of a run of ``scene``."""
+    if name in run:
+        return run[name].reshape(len(run.time), -1)
+    cable, s = _place(scene, name)
+    described = scene.cables[cable]
+    length = described.length / described.elements
+    element = min(int(s / length * (1 + 1e-12)), described.elements - 1)
+    N = getattr(kernels_of(described.library), f"{described.element}_on_axis")(length, s - element * length)[0]
+    vectors = run[f"{cable}.nodal_vectors"][:, element : element + 2]
+    return np.einsum("k,tkd->td", N, vectors.reshape(len(vectors), len(N), 3))
+
+
+def distance(found: np.ndarray, exact: np.ndarray) -> float:
+    """Largest distance of two trajectories (time, components), over the output times."""
+    return float(np.linalg.norm(found - exact, axis=1).max())
+
+
+def largest_change(exact: np.ndarray) -> float:
+    """What errors are relative to: the largest distance of a trajectory (time, components) from its start."""
+    return distance(exact, exact[:1])

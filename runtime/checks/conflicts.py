@@ -1,0 +1,86 @@
+"""Joints that hold or drive what another part holds or drives already."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import SceneError
+from ..parts.attachment import Attachment
+from ..parts.cable import EXACT
+from ..parts.joint import DRIVEN, LINES, POINTS, Joint
+from ..parts.support import Motion, Support
+from ..parts.validation import show
+from .placement import HELD, Node, holder, joined, point_of
+
+if TYPE_CHECKING:
+    from ..scene import Scene
+
+
+def check_supports(scene: Scene, joint: Joint) -> None:
+    """No support or join may hold a node to what the joint holds it to."""
+    for end, other in ((joint.a, joint.b), (joint.b, joint.a)):
+        if (node := _node(scene, end)) is None:
+            continue
+        support = holder(scene, node)
+        if other.on is None and support is not None and _holds_position(support):
+            raise SceneError(joint.where, f"holds {called(end)} to the ground, but it is {HELD[support.kind]} already",
+                             "leave one of them out")
+        if _node(scene, other) in joined(scene, node):
+            raise SceneError(joint.where, f"holds {called(end)} to {called(other)}, but their nodes are joined "
+                             "already", "leave one of them out")
+
+
+def _holds_position(support: Support) -> bool:
+    """Whether it leaves no direction free."""
+    return not isinstance(support, Motion) or (support.displacement is not None and None not in support.displacement)
+
+
+def _node(scene: Scene, end: Attachment) -> Node | None:
+    if end.on not in scene.cables or (node := scene.cables[end.on].node_at(end.s)) is None:
+        return None
+    return end.on, node
+
+
+def check_other_joints(scene: Scene, joint: Joint, near: float) -> None:
+    """Of joints between the same two bodies none is beside a weld, and no two hold or drive the same.
+
+    near: points nearer than this, in m, are the same.
+    """
+    for other in scene.joints.values():
+        for a, b in ((other.a, other.b), (other.b, other.a)):
+            if move_as_one(scene, joint.a, a) and move_as_one(scene, joint.b, b):
+                if what := _clash(scene, joint, other, (a, b), near):
+                    raise SceneError(joint.where, what, "leave one of them out")
+                break
+
+
+def _clash(scene: Scene, joint: Joint, other: Joint, ends: tuple[Attachment, Attachment], near: float) -> str | None:
+    """What is wrong with two joints between the same two bodies; ``ends`` are the other's, in the order of joint's."""
+    between = f"{called(joint.a)} and {called(joint.b)}"
+    if "weld" in (joint.pair, other.pair):
+        verbs = ["welds" if each.pair == "weld" else f"is a {each.pair} joint between" for each in (joint, other)]
+        return f'{verbs[0]} {between}, but joint "{other.name}" {verbs[1]} them, too'
+    pairs = {joint.pair, other.pair}
+    parallel = np.linalg.norm(np.cross(joint.axes[:, 2], other.axes[:, 2])) <= 1e-9
+    same_points = all(np.linalg.norm(point_of(scene, one) - point_of(scene, end)) <= near
+                      for one, end in zip((joint.a, joint.b), ends, strict=True))
+    if joint.is_driven and other.is_driven and DRIVEN[joint.pair] == DRIVEN[other.pair]:
+        if (same_points and pairs == {"distance"}) or (parallel and "distance" not in pairs):
+            return f'drives the {DRIVEN[joint.pair]} of {between}, as joint "{other.name}" does'
+    if same_points and (pairs <= set(POINTS) or pairs == {"distance"} or (pairs <= set(LINES) and parallel)):
+        return f'holds the same of {between} as joint "{other.name}"'
+    return None
+
+
+def move_as_one(scene: Scene, one: Attachment, other: Attachment) -> bool:
+    """Whether two ends are on one body, both on the ground, or at one place of a cable."""
+    return one.on == other.on and (one.s is None or abs(one.s - other.s) <= EXACT * scene.cables[one.on].length)
+
+
+def called(end: Attachment) -> str:
+    """What messages call that which an end is on."""
+    if end.on is None:
+        return "the ground"
+    return f'body "{end.on}"' if end.s is None else f'cable "{end.on}" at s = {show(end.s, "m")}'

@@ -1,0 +1,90 @@
+"""The frames that joints and slides hold, as they start: columns are unit vectors along the ground's axes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from ..parts.attachment import Attachment
+from ..parts.cable import Cable
+from ..parts.joint import Joint
+from ..parts.slide import Slide
+
+if TYPE_CHECKING:
+    from ..scene import Scene
+
+
+class JointAxes(NamedTuple):
+    """(3, 3) each: the axes of a joint as columns, in the frames of its two ends; equal in the ground's at the start.
+
+    Frame of an end: a body's axes, the ground's, or at a cable `section_frame`, else `cable_frame`.
+    The joint's z is its axis.
+    """
+
+    a: np.ndarray
+    b: np.ndarray
+
+
+def has_section(cable: Cable) -> bool:
+    """Whether its elements know the turn about the tangent, which in the plane there is not."""
+    return cable.dim == 2 or bool(cable.kind_of_element.director)
+
+
+def cable_frame(cable: Cable, s: float, up=None) -> np.ndarray:
+    """(3, 3): tangent, height and width at ``s`` as the elements draw them, as columns.
+
+    The tangent frame of eq 16 to 18: k square to the tangent and to r_y or, where ``up`` is given, to that (up must be
+    off the tangent); the cable's own axes where there is neither.
+    """
+    tangent, width = _unit(cable.slope(s)), np.array([0.0, 0.0, 1.0])
+    if cable.dim == 3:
+        width = _unit(np.cross(tangent, cable.height(s) if up is None else up))
+    return np.column_stack([tangent, np.cross(width, tangent), width])
+
+
+def draws_section(cable: Cable) -> bool:
+    """Whether its elements have sections of their own, which shear turns away from the tangent."""
+    return {2: {"r_y"}, 3: {"r_y", "r_z"}}[cable.dim] <= set(cable.kind_of_element.nodal_vectors)
+
+
+def section_frame(cable: Cable, s: float) -> np.ndarray:
+    """(3, 3): normal, height and width of the section at ``s`` as the elements draw it, as columns; height along r_y.
+
+    What a joint holds: a moment on r_x alone bends a beam that shears sharply there, the more the finer its elements.
+    """
+    height = _unit(cable.height(s))
+    normal = _unit(np.cross(height, cable.width(s)))
+    return np.column_stack([normal, height, np.cross(normal, height)])
+
+
+def _unit(vector: np.ndarray) -> np.ndarray:
+    return vector / np.linalg.norm(vector)
+
+
+def end_frame(scene: Scene, end: Attachment, up=None) -> np.ndarray:
+    """(3, 3): the frame of a complete end; ``up`` completes that of a cable without section axes."""
+    if end.on is None:
+        return np.eye(3)
+    if end.on in scene.bodies:
+        return scene.bodies[end.on].axes
+    cable = scene.cables[end.on]
+    return section_frame(cable, end.s) if draws_section(cable) else cable_frame(cable, end.s, up)
+
+
+def joint_axes(scene: Scene, joint: Joint) -> JointAxes:
+    """The axes of a joint of the scene in the frames of its ends."""
+    return JointAxes(*(end_frame(scene, end, joint.up).T @ joint.axes for end in (joint.a, joint.b)))
+
+
+def slide_axes(scene: Scene, slide: Slide) -> JointAxes:
+    """The axes that a slide of frame "tangent" or "section" keeps together: a in the cable's frame, b in the rider's.
+
+    z along the tangent, x along the height, y along the width. With roll "held" the cable's frame is that of
+    `cable_frame` with the slide's up, at every s; with roll "free" the turn about z is free.
+    """
+    along = scene.cables[slide.along]
+    frame = (section_frame(along, slide.s) if slide.frame == "section" and draws_section(along)
+             else cable_frame(along, slide.s, slide.up))
+    order = np.eye(3)[:, [1, 2, 0]]
+    return JointAxes(order, end_frame(scene, slide.rider).T @ frame @ order)

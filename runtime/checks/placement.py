@@ -1,0 +1,214 @@
+"""Checks of a part against the scene that it joins, and what it takes from there."""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import FunicularWarning, SceneError, near
+from ..kernels.elements import built_in
+from ..parts.attachment import Attachment
+from ..parts.cable import EXACT, Cable
+from ..parts.load import DistributedForce, Force, Moment
+from ..parts.modal_body import ModalBody
+from ..parts.spring import Spring
+from ..parts.support import Support, Tie
+from ..parts.validation import Part, show
+
+if TYPE_CHECKING:
+    from ..scene import Scene
+
+HELD = {"pin": "pinned", "clamp": "clamped", "motion": "moved as prescribed"}
+
+Node = tuple[str, int]
+"""A node of a cable: the cable's name and the node's number."""
+
+
+def cable_at(scene: Scene, name: str, place: str, s: float, keyword: str = "s") -> Cable:
+    """The cable ``name``, on which ``s`` must lie."""
+    if name not in scene.cables:
+        raise SceneError(place, f'there is no cable "{name}"', near(name, scene.cables))
+    cable = scene.cables[name]
+    if not -EXACT * cable.length <= s <= (1 + EXACT) * cable.length:
+        raise SceneError(place, f"{keyword} must lie on the cable, in [0, {cable.length:.9g}] m, got {s:.9g} m")
+    return cable
+
+
+def node_at(scene: Scene, name: str, place: str, s: float, keyword: str = "s") -> Node:
+    """The node of the cable ``name`` at ``s``; there must be one."""
+    cable = cable_at(scene, name, place, s, keyword)
+    node = cable.node_at(s)
+    if node is not None:
+        return name, node
+    nodes = cable.node_s
+    if len(nodes) > 12:  # a long list helps less than the two neighbours
+        right = int(np.searchsorted(nodes, s))
+        nodes = nodes[right - 1 : right + 1]
+    raise SceneError(
+        place,
+        f"{keyword} must be a node of the cable, got {show(s, 'm')}",
+        f"nodes {'near it ' if len(cable.node_s) > 12 else ''}are at " + ", ".join(f"{s:.9g}" for s in nodes) + " m")
+
+
+def node_of(scene: Scene, support: Support) -> Node:
+    """The node that a support of the scene holds."""
+    return support.cable, scene.cables[support.cable].node_at(support.s)
+
+
+def ends_of(scene: Scene, join: Tie) -> tuple[Node, Node]:
+    """The nodes that a join of the scene ties: that of its cable, and the other one."""
+    return ((join.cable, scene.cables[join.cable].node_at(join.s)), (join.to, scene.cables[join.to].node_at(join.at)))
+
+
+def joined(scene: Scene, node: Node, without: Tie | None = None) -> set[Node]:
+    """All nodes that joins, but for ``without``, tie to ``node``, itself included."""
+    found, new = {node}, [node]
+    while new:
+        at = new.pop()
+        for join in scene.ties.values():
+            if at[0] not in (join.cable, join.to):
+                continue
+            pair = set(ends_of(scene, join))
+            if join is not without and at in pair:
+                new += pair - found
+                found |= pair
+    return found
+
+
+def holder(scene: Scene, node: Node) -> Support | None:
+    """What holds ``node`` or one that is joined to it."""
+    nodes = joined(scene, node)
+    cables = {cable for cable, _ in nodes}
+    return next((s for s in scene.supports if s.cable in cables and node_of(scene, s) in nodes), None)
+
+
+def check_support(scene: Scene, support: Support) -> None:
+    """A support needs a node that nothing holds yet."""
+    node = node_at(scene, support.cable, support.where, support.s)
+    if (other := holder(scene, node)) is None:
+        return
+    if node_of(scene, other) == node:
+        raise SceneError(support.where, f"the node at s = {show(support.s, 'm')} is already {HELD[other.kind]}")
+    raise SceneError(support.where, f"the node at s = {show(support.s, 'm')} is joined to that at {other.label}, which "
+                     f"is already {HELD[other.kind]}")
+
+
+def check_tie(scene: Scene, join: Tie) -> None:
+    """A join needs two nodes at one place, not joined yet, of which at most one is held."""
+    one = node_at(scene, join.cable, join.where, join.s)
+    other = node_at(scene, join.to, join.where, join.at, "at")
+    if other in joined(scene, one):
+        raise SceneError(join.where, f"the nodes are {'one and the same' if one == other else 'already joined'}")
+    a, b = scene.cables[join.cable], scene.cables[join.to]
+    gap = float(np.linalg.norm(a.point(join.s) - b.point(join.at)))
+    if gap > EXACT * max(a.length, b.length):
+        raise SceneError(join.where, f"the nodes are {gap:.6g} m apart, at {show(a.point(join.s))} and "
+                         f"{show(b.point(join.at), 'm')}", "draw both cables through the same point")
+    holders = holder(scene, one), holder(scene, other)
+    if all(holders):
+        raise SceneError(join.where, f"both nodes are held already, by the {holders[0].where} and the "
+                         f"{holders[1].where}", "leave one of them out")
+    if join.rotation == "rigid" and _shears_the_end(a, join.s, b, join.at):
+        message = (f"{join.where}: the join shares the slopes of both cables, so that a moment on one shears the last "
+                   "element of the other: the corner is too soft, the more so the shorter the elements are; "
+                   'take scene.joint("weld", ...) instead, with up for an element without section axes')
+        scene.messages.append(message)
+        warnings.warn(message, FunicularWarning, stacklevel=4)
+
+
+def _shears_the_end(a: Cable, s: float, b: Cable, at: float) -> bool:
+    """Whether a rigid join in space ties the tangent of one cable to the section of the other.
+
+    In the plane, joins at an angle share the turn of the section alone (model/unknowns.py), which is not linear in space.
+    """
+    if 2 in (a.dim, b.dim):
+        return False
+    directors = [bool(cable.kind_of_element.director) for cable in (a, b)]
+    return any(directors) and (not all(directors) or
+                               float(np.linalg.norm(np.cross(a.axes_at(s)[0], b.axes_at(at)[0]))) > EXACT)
+
+
+def placed_load(scene: Scene, load: Force | DistributedForce | Moment) -> Part:
+    """The load with its place complete, and sure to be one that the element can carry."""
+    if isinstance(load, DistributedForce):
+        cable = cable_at(scene, load.cable, load.where, load.start or 0.0, "start")
+        start, stop = load.start or 0.0, cable.length if load.stop is None else load.stop
+        cable_at(scene, load.cable, load.where, stop, "stop")
+        start, stop = max(start, 0.0), min(stop, cable.length)
+        if not start < stop:
+            raise SceneError(load.where, f"stop must be beyond start {show(start, 'm')}, got {show(stop, 'm')}")
+        load = load.model_copy(update={"start": start, "stop": stop})
+    else:
+        at = getattr(load, "at", None)
+        end = placed_attachment(scene, Attachment(on=load.on, s=load.s, at=at), load.where)
+        update = {} if isinstance(scene.bodies.get(load.on), ModalBody) else {"s": end.s}  # a moment's s says all
+        update |= {"at": end.at, "s": end.s} if isinstance(load, Force) else {}
+        load = load.model_copy(update=update)
+        cable = scene.cables.get(load.on)
+    if cable is not None and cable.dim == 3 and not cable.kind_of_element.director:
+        _check_without_section(load, cable)
+    return load
+
+
+def _check_without_section(load: Part, cable: Cable) -> None:
+    """Without axes of the section there is nothing to turn about the tangent, and no direction across it."""
+    with_axes = "element=" + " or ".join(f'"{n}"' for n, kind in built_in().items() if kind.director and kind.dim == 3)
+    if isinstance(load, Moment):
+        value, tangent = np.array(load.value), cable.axes_at(load.s)[0]
+        twist = float(np.dot(value, tangent))
+        if abs(twist) > EXACT * np.linalg.norm(value):
+            raise SceneError(
+                load.where, f'twists cable "{cable.name}" by {twist:.6g} N m about its tangent {show(tangent)}, but '
+                f"{cable.element} has no torsion", f"give a moment across the tangent, or take {with_axes}")
+    elif load.follower and any(load.value[1:]):
+        raise SceneError(
+            load.where, f'follower force across cable "{cable.name}", but {cable.element} has no section axes that it '
+            f"could follow, got {show(load.value, 'N' if isinstance(load, Force) else 'N/m')}",
+            f"possible is one along the tangent, (F, 0, 0), or take {with_axes}")
+
+
+def placed_attachment(scene: Scene, end: Attachment, where: str, prefix: str = "") -> Attachment:
+    """Where on a cable or a body something acts, complete."""
+    if end.on is None:
+        return end
+    if end.on in scene.cables:
+        if end.s is None or end.at is not None:
+            raise SceneError(where, f'{prefix}acts on cable "{end.on}" and needs the arc-length s there'
+                             + (", not a point at" if end.at else ""))
+        cable = cable_at(scene, end.on, where, end.s, f"{prefix}s")
+        return end.model_copy(update={"s": min(max(end.s, 0.0), cable.length)})
+    if end.on in scene.bodies:
+        if isinstance(body := scene.bodies[end.on], ModalBody):
+            try:
+                at = body.located(end.at, end.s)
+                body.spot(at)
+            except ValueError as error:
+                cause, *remedy = error.args
+                raise SceneError(where, f'{prefix}modal_body "{end.on}": {cause}', *remedy) from None
+            return end.model_copy(update={"at": at, "s": None})
+        if end.s is not None:
+            raise SceneError(where, f'{prefix}acts on body "{end.on}" and takes no arc-length s',
+                             "give a point in body axes, or nothing for its origin")
+        return end.model_copy(update={"at": end.at or (0.0, 0.0, 0.0)})
+    known = [*scene.cables, *scene.bodies]
+    raise SceneError(where, f'{prefix}there is no cable or body "{end.on}"', near(end.on, known))
+
+
+def point_of(scene: Scene, end: Attachment) -> np.ndarray:
+    """(3,): where a complete end starts, in m."""
+    if end.on is None:
+        return np.array(end.at)
+    return scene.bodies[end.on].point(end.at) if end.on in scene.bodies else scene.cables[end.on].point(end.s)
+
+
+def placed_spring(scene: Scene, spring: Spring) -> Spring:
+    """The spring with its ends and its length complete."""
+    a, b = (placed_attachment(scene, getattr(spring, name), spring.where, f"{name}: ") for name in ("a", "b"))
+    points = point_of(scene, a), point_of(scene, b)
+    distance = float(np.linalg.norm(points[1] - points[0]))
+    if not distance > 1e-12 * (1 + np.abs(points).max()):
+        raise SceneError(spring.where, f"both ends are at {show(points[0], 'm')}: its direction is lost",
+                         "join the points, or hold them apart at the start")
+    return spring.model_copy(update={"a": a, "b": b, "length": distance if spring.length is None else spring.length})

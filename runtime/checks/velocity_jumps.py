@@ -1,0 +1,50 @@
+"""Velocities that jump as a run starts, in words: motions whose rate is not that of the cable they move."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..parts.signal import Signal
+from ..parts.support import Motion
+from ..parts.validation import show
+from ..scene import Scene
+
+SMALL = 1e-4
+"""Of the largest rate in the run: a jump that is smaller sends a shock that is nothing beside the motion."""
+SAMPLES = 200
+"""Instants of the run at which rates are looked at."""
+
+
+def velocity_jumps(scene: Scene, duration: float) -> list[str]:
+    """A message for each motion that starts at another velocity than its node; duration of the run in s."""
+    found = []
+    for motion in scene.motions:
+        for what, signal, own, unit in _rates(scene, motion):
+            rates = np.array([float(signal.value(t, 1)) for t in np.linspace(0, duration, SAMPLES)])
+            given = rates[0]
+            if abs(given - own) > SMALL * max(np.abs(rates).max(), abs(own)):
+                found.append(
+                    f"{motion.where} at s = {show(motion.s, 'm')}: {what} starts at {show(given, unit)}, but its node "
+                    f"at {show(own, unit)}; this jump sends a shock along the cable, which depends on the mesh. Let "
+                    "the signal start at the node's rate (a Ramp starts at 0), or give the cable that velocity")
+    return found
+
+
+def _rates(scene: Scene, motion: Motion) -> Iterator[tuple[str, Signal, float, str]]:
+    """Name, signal and the node's own rate at t = 0, with its unit, of all that a motion prescribes."""
+    cable = scene.cables[motion.cable]
+    node, names = cable.node_at(motion.s), cable.kind_of_element.nodal_vectors
+    own, drawn = cable.nodal_rates[node], cable.nodal_vectors[node]
+    for k, signal in enumerate(motion.displacement or ()):
+        if signal is not None:
+            yield f"displacement {'xyz'[k]}", signal, float(own[names.index("r"), k]), "m/s"
+    if motion.rotation is not None:
+        axis, angle = np.array(motion.rotation.axis), motion.rotation.angle
+        name = next((name for name in ("r_y", "r_z") if name in names and
+                     np.linalg.norm(np.cross(axis, drawn[names.index(name)])) > 0.5), "r_x")
+        across = np.cross(axis, drawn[names.index(name)])
+        square = float(across @ across)
+        if square:
+            yield "rotation", angle, float(across @ own[names.index(name)]) / square, "rad/s"

@@ -1,0 +1,232 @@
+"""Libraries of the user's own elements: what `funicular derive --spec FILE --out DIR` leaves in DIR, loaded.
+
+A library is machine code: to load it is to run it. Only the person who runs a scene may ask for that, by naming the
+directory in Python or on the command line; a file that names one is refused otherwise (`check_allowed`).
+"""
+
+from __future__ import annotations
+
+import ctypes
+import hashlib
+import json
+import math
+import os
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from ..errors import FunicularError, SceneError, shown_path
+from . import elements
+from .elements import MANIFEST, ElementKind
+
+COMMAND = "`funicular derive --spec {spec} --out {out}`"
+
+_loaded: dict[str, tuple[bytes, Library]] = {}
+
+
+class LibraryError(FunicularError, ValueError):
+    """A directory holds no library that this version can use."""
+
+    def __init__(self, cause: str, remedy: str):
+        """cause: what is wrong with the directory; remedy: what to do."""
+        super().__init__(cause, remedy)
+
+    def __str__(self) -> str:
+        return "library " + "; ".join(self.args)
+
+
+def resolved(directory: str | os.PathLike) -> str:
+    """A directory's absolute path without links. Raises ValueError for what no path can be."""
+    try:
+        return os.path.realpath(os.fspath(directory))
+    except (TypeError, ValueError):  # not a path; a NUL, or half of a surrogate pair
+        raise ValueError(f"must be a directory, got {directory!r}") from None
+
+
+def check_allowed(asked: str, allowed: Iterable[str | os.PathLike], place: str) -> None:
+    """Raise SceneError unless the library that a file asks for is among the directories that the caller allows.
+
+    asked: its resolved path; place: the part of the file that asks for it.
+    """
+    if asked not in set(map(resolved, allowed)):
+        raise SceneError(place, f'takes its element from the library "{asked}", which is machine code, and a file '
+                         "alone may not load that", "if you trust this directory, allow it: in Python with "
+                         f'libraries=["{asked}"], on the command line with --library {asked}')
+
+
+class _Described(BaseModel):
+    model_config = ConfigDict(strict=True, defer_build=True)
+
+
+class _Shared(_Described):
+    spec: str
+    file: str
+    sha256: str
+    digest: str = ""
+
+
+class _Argument(_Described):
+    name: str
+    shape: list[int]
+
+
+class _Kernel(_Described):
+    doc: str
+    source: str
+    inputs: list[_Argument]
+    outputs: list[_Argument]
+
+
+class _Element(_Described):
+    nodal_vectors: list[str]
+    dim: Literal[2, 3]
+    director: str
+    laws: dict[str, str]
+
+
+class _Manifest(_Described):
+    """What a library's manifest must have to be loaded."""
+
+    interface: str
+    library: _Shared
+    elements: dict[str, _Element]
+    kernels: dict[str, _Kernel]
+    tools: dict[str, str]
+    families: dict[str, dict]
+    files: dict[str, str]
+
+
+def manifest_digest(content: dict) -> str:
+    """sha256 of a library's manifest, but for the digest in it."""
+    bare = content | {"library": {name: value for name, value in content["library"].items() if name != "digest"}}
+    return hashlib.sha256(json.dumps(bare, sort_keys=True).encode()).hexdigest()
+
+
+def read_manifest(directory: Path) -> tuple[bytes, dict]:
+    """The manifest of the library in a directory, as it stands there and as data. Raises LibraryError."""
+    try:
+        text = (directory / MANIFEST).read_bytes()
+    except OSError as error:
+        raise LibraryError(f'"{shown_path(directory)}" is none: {MANIFEST} cannot be read ({error.strerror})',
+                           "make one with " + COMMAND.format(spec="FILE", out=shown_path(directory))) from None
+    try:
+        _Manifest.model_validate_json(text)
+        return text, json.loads(text)
+    except (ValidationError, ValueError, RecursionError):
+        raise LibraryError(f'"{directory}" is none: its {MANIFEST} is not that of a library',
+                           "make one with " + COMMAND.format(spec="FILE", out=directory)) from None
+
+
+class Kernel:
+    """A kernel of a library as a function of arrays, called like those of `funicular.generated.kernels`."""
+
+    def __init__(self, shared: ctypes.CDLL, name: str, entry: dict):
+        self.__name__, self.__doc__ = name, f"{entry['doc']} ({entry['source']})."
+        self._inputs = [(a["name"], tuple(a["shape"])) for a in entry["inputs"]]
+        self._outputs = [tuple(a["shape"]) for a in entry["outputs"]]
+        self._function = getattr(shared, name)
+        self._function.restype = None
+        self._function.argtypes = [*(ctypes.c_void_p if shape else ctypes.c_double for _, shape in self._inputs),
+                                   *(ctypes.c_void_p for _ in self._outputs)]
+
+    def __call__(self, *given, **named):
+        """The outputs for these inputs: one array, or a tuple of them."""
+        names = [name for name, _ in self._inputs]
+        named = dict(zip(names, given, strict=False)) | named
+        if len(given) > len(names) or set(named) != set(names):
+            raise TypeError(f"{self.__name__} takes ({', '.join(names)})")
+        values = [self._array(named[name], shape, name) if shape else float(named[name])
+                  for name, shape in self._inputs]
+        outputs = [np.empty(shape) for shape in self._outputs]
+        self._function(*(v.ctypes.data if isinstance(v, np.ndarray) else v for v in (*values, *outputs)))
+        return outputs[0] if len(outputs) == 1 else tuple(outputs)
+
+    def rows(self, n: int, *given):
+        """The outputs (n, ...) of n calls; each argument once, or (n, ...) for each its own."""
+        if len(given) != len(self._inputs):
+            raise TypeError(f"{self.__name__} takes ({', '.join(name for name, _ in self._inputs)})")
+        arrays = [np.asarray(value, dtype=float) for value in given]
+        for (name, shape), array in zip(self._inputs, arrays, strict=True):
+            if array.shape not in (shape, (n, *shape)):
+                raise ValueError(f"{self.__name__}: argument {name} must have shape {shape} or {(n, *shape)}, "
+                                 f"got {array.shape}")
+        alike = [array.shape == shape for (_, shape), array in zip(self._inputs, arrays, strict=True)]
+        found = [np.empty((n, *shape)) for shape in self._outputs]
+        for k in range(n):
+            once = self(*(array if same else array[k] for array, same in zip(arrays, alike, strict=True)))
+            for into, value in zip(found, once if len(found) > 1 else (once,), strict=True):
+                into[k] = value
+        return found[0] if len(found) == 1 else tuple(found)
+
+    def _array(self, value, shape: tuple[int, ...], name: str) -> np.ndarray:
+        array = np.ascontiguousarray(value, dtype=float)
+        if array.size != math.prod(shape):
+            raise ValueError(f"{self.__name__}: argument {name} must have shape {shape}, got {array.shape}")
+        return array
+
+
+@dataclass(frozen=True)
+class Library:
+    """A library in memory: its elements by name, its kernels as functions, and where its fu_all is (kernels.h).
+
+    digest: sha256 of its machine code.
+    """
+
+    directory: Path
+    elements: dict[str, ElementKind]
+    kernels: SimpleNamespace
+    tables: int
+    digest: str
+
+
+def load(directory: str | os.PathLike) -> Library:
+    """The library in a directory; once loaded it stays. Raises LibraryError."""
+    path = Path(resolved(directory))
+    text, content = read_manifest(path)
+    if _loaded.get(str(path), (b"",))[0] != text:
+        _loaded[str(path)] = text, _open(path, content)
+    return _loaded[str(path)][1]
+
+
+def kernels_of(library: str | None):
+    """Where the kernels of a library are, of this package for None, as attributes by name. Raises LibraryError."""
+    if library is not None:
+        return load(library).kernels
+    from funicular.generated import kernels
+
+    return kernels
+
+
+def tables_of(library: str | None) -> int:
+    """Address of a library's fu_all for the engine, 0 for this package's own. Raises LibraryError."""
+    return load(library).tables if library is not None else 0
+
+
+def _open(path: Path, content: dict) -> Library:
+    made, described = content["interface"], content["library"]
+    again = "make it anew with " + COMMAND.format(spec=described["spec"], out=path)
+    if made != elements.manifest()["interface"]:
+        raise LibraryError(f'"{path}" was made for another version of funicular: its tables of kernels '
+                           f"are laid out as {made}, here as {elements.manifest()['interface']}", again)
+    if manifest_digest(content) != described.get("digest"):
+        raise LibraryError(f'"{path}" is damaged: its {MANIFEST} is not the one that was made', again)
+    file = path / Path(described["file"]).name  # nothing from elsewhere, whatever the manifest says
+    try:
+        if file.is_symlink() or hashlib.sha256(file.read_bytes()).hexdigest() != described["sha256"]:
+            raise LibraryError(f'"{path}" is damaged: {file.name} is not the file that was made', again)
+        shared = ctypes.CDLL(str(file))
+        kernels = SimpleNamespace(**{name: Kernel(shared, name, entry) for name, entry in content["kernels"].items()})
+        tables = ctypes.addressof(ctypes.c_char.in_dll(shared, "fu_all"))
+    except OSError as error:
+        raise LibraryError(f'"{path}" cannot be loaded here: {error}', again) from None
+    except (AttributeError, ValueError) as error:  # a name that the shared object does not have
+        if isinstance(error, LibraryError):
+            raise
+        raise LibraryError(f'"{path}" is damaged: {file.name} lacks what its {MANIFEST} names: {error}',
+                           again) from None
+    return Library(path, elements.of_manifest(content), kernels, tables, described["sha256"])

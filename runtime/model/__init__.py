@@ -1,0 +1,1 @@
+"""From a scene to the arrays that the engine reads."""

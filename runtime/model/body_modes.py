@@ -1,0 +1,239 @@
+"""Modes of a body and its inertia integrals: from a mesh of elements, or from the user's arrays."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import FunicularWarning, near, shown_path
+
+if TYPE_CHECKING:
+    from ..parts.modal_body import ModalBody
+
+ARRAYS = ("nodes", "modes", "masses", "stiffness")
+NETCDF = {b"CDF\1": "scipy", b"CDF\2": "scipy", b"CDF\5": None, b"\x89HDF": None}
+"""How files of data begin, and what reads them: None leaves it to xarray."""
+SYMMETRIC, ORTHOGONAL, DEFINITE = 1e-9, 1e-6, 1e-10
+"""Parts of the largest entry, or cosines, up to which a matrix is what it should be."""
+
+
+@dataclass(eq=False)  # a body is the same by what describes it
+class Shape:
+    """n modes of a body in its own axes, on N nodes.
+
+    nodes (N, 3) in m; modes, rotations (n, N, 3): displacement in m and turn in rad of a node by a unit of a mode;
+    stiffness (n, n) in N/m; S (n + 1, 3) in kg m, X (n + 1, n + 1, 3, 3) in kg m²: int rho phi_k and
+    int rho phi_k phi_l^T, phi_0 the undeformed place (derive/bodies/modal.py); mass in kg.
+    """
+
+    nodes: np.ndarray
+    modes: np.ndarray
+    rotations: np.ndarray
+    stiffness: np.ndarray
+    mass: float
+    S: np.ndarray
+    X: np.ndarray
+
+    @property
+    def n(self) -> int:
+        """Number of modes."""
+        return len(self.modes)
+
+    @cached_property
+    def modal_mass(self) -> np.ndarray:
+        """(n, n) in kg: M_ff of eq 12."""
+        return np.einsum("klii->kl", self.X)[1:, 1:]
+
+    @cached_property
+    def vibrations(self) -> tuple[np.ndarray, np.ndarray]:
+        """Squares of angular frequencies with the frame held (n,), in rad²/s², and their shapes by columns (n, n)."""
+        from scipy.linalg import eigh
+
+        return eigh(self.stiffness, self.modal_mass)
+
+    def damping(self, ratio: float) -> np.ndarray:
+        """(n, n) in N s/m: this part of critical damping in each vibration with the frame held."""
+        squares, V = self.vibrations
+        MV = self.modal_mass @ V
+        return MV @ np.diag(2 * ratio * np.sqrt(np.maximum(squares, 0))) @ MV.T
+
+    def mass_matrix(self, dim: int) -> np.ndarray:
+        """(6 + n, 6 + n), in the plane (3 + n, 3 + n): M of eq 12 undeformed, in body axes."""
+        S, X = self.S[:, :dim], self.X[:, :, :dim, :dim]
+        pairs = [(0, 1)] if dim == 2 else [(1, 2), (2, 0), (0, 1)]
+        turns = np.array([_turn(i, j, dim) for i, j in pairs])  # each a matrix B: x moves by B x
+        moved = (turns @ S[0]).T
+        rigid = np.block([[self.mass * np.eye(dim), moved],
+                          [moved.T, np.einsum("tij,uik,jk->tu", turns, turns, X[0, 0])]])
+        coupling = np.concatenate([S[1:].T, np.einsum("tij,kij->tk", turns, X[1:, 0])])
+        return np.block([[rigid, coupling], [coupling.T, np.einsum("klii->kl", X)[1:, 1:]]])
+
+    def indefinite(self, dim: int) -> str:
+        """What has no mass of its own; empty where the mass matrix is positive definite."""
+        M = self.mass_matrix(dim)
+        names = [*"xyz"[:dim], *(f"the turn about {axis}" for axis in ("z" if dim == 2 else "xyz")),
+                 *(f"mode {k + 1}" for k in range(self.n))]
+        scale = np.diag(M)
+        for name, value in zip(names, scale, strict=True):
+            if not value > DEFINITE**2 * scale.max():
+                return f"{name} moves no mass"
+        values, vectors = np.linalg.eigh(M / np.sqrt(np.outer(scale, scale)))
+        if values[0] > DEFINITE:
+            return ""
+        mixed = [name for name, part in zip(names, np.abs(vectors[:, 0]), strict=True) if part > 1e-3]
+        return f"{', '.join(mixed)} together move no mass: one follows from the others"
+
+
+def _turn(i: int, j: int, dim: int) -> np.ndarray:
+    spin = np.zeros((dim, dim))
+    spin[j, i], spin[i, j] = 1.0, -1.0
+    return spin
+
+
+def of_points(nodes, modes, masses, stiffness, rotations=None, orthogonal: bool = True) -> Shape:
+    """From mass points: nodes (N, 3), modes (n, N, 3), masses (N,), stiffness (n, n), rotations (n, N, 3) or none.
+
+    Raises ValueError(cause, remedy).
+    """
+    nodes, modes, masses, stiffness = (np.asarray(a, dtype=float) for a in (nodes, modes, masses, stiffness))
+    _has_shape("nodes", nodes, (None, 3))
+    _has_shape("modes", modes, (None, len(nodes), 3), "are not from that mesh: ")
+    _has_shape("masses", masses, (len(nodes),))
+    _has_shape("stiffness", stiffness, (len(modes), len(modes)))
+    rotations = np.zeros_like(modes) if rotations is None else np.asarray(rotations, dtype=float)
+    _has_shape("rotations", rotations, modes.shape, "are not from that mesh: ")
+    for name, array in zip((*ARRAYS, "rotations"), (nodes, modes, masses, stiffness, rotations), strict=True):
+        if not np.isfinite(array).all():
+            raise ValueError(f"array {name} must be finite")
+    if not (len(masses) and masses.min() >= 0 and masses.sum() > 0):
+        raise ValueError("array masses must not be negative, and not all zero, got "
+                         f"{masses.min(initial=0):.6g} kg at least")
+    if np.abs(stiffness - stiffness.T).max(initial=0) > SYMMETRIC * np.abs(stiffness).max(initial=0):
+        i, j = np.unravel_index(np.argmax(np.abs(stiffness - stiffness.T)), stiffness.shape)
+        raise ValueError(f"array stiffness must be symmetric, got {stiffness[i, j]:.9g} and {stiffness[j, i]:.9g} N/m "
+                         f"for modes {i + 1} and {j + 1}")
+    lowest = np.linalg.eigvalsh(stiffness).min(initial=0)
+    if lowest < -SYMMETRIC * np.abs(stiffness).max(initial=0):
+        raise ValueError(f"array stiffness must not be negative, got the eigenvalue {lowest:.6g} N/m")
+    fields = np.concatenate([nodes[None], modes])
+    shape = Shape(nodes, modes, rotations, (stiffness + stiffness.T) / 2, float(masses.sum()),
+                  np.einsum("a,kai->ki", masses, fields), np.einsum("a,kai,laj->klij", masses, fields, fields))
+    if orthogonal:
+        _is_orthogonal(shape.modal_mass)
+    return shape
+
+
+def _has_shape(name: str, array: np.ndarray, expected: tuple, cause: str = "") -> None:
+    if array.ndim != len(expected) or any(e not in (None, n) for e, n in zip(expected, array.shape, strict=False)):
+        wanted = ", ".join("any" if e is None else str(e) for e in expected)
+        raise ValueError(f"array {name} {cause}must be of shape ({wanted}), got {array.shape}")
+
+
+def _is_orthogonal(M: np.ndarray) -> None:
+    scale = np.sqrt(np.maximum(np.diag(M), np.finfo(float).tiny))
+    cosine = np.abs(M / np.outer(scale, scale)) - np.eye(len(M))
+    if len(M) > 1 and cosine.max() > ORTHOGONAL:
+        i, j = np.unravel_index(np.argmax(cosine), cosine.shape)
+        raise ValueError(f"modes {i + 1} and {j + 1} are not orthogonal in the mass: the cosine between them is "
+                         f"{cosine[i, j]:.3g}", "mend them, or take orthogonal=False: their full mass matrix is used")
+
+
+def of_file(path: str, orthogonal: bool) -> Shape:
+    """From an .npz or a netCDF file, see `ModalBody`. Raises ValueError(cause, remedy)."""
+    file = Path(path)
+    if not os.path.isfile(file):  # False also of what no path can be
+        raise ValueError(f'there is no file "{shown_path(path)}"')
+    try:
+        if file.suffix == ".npz":
+            with np.load(file, allow_pickle=False) as found:  # a pickle would run code
+                arrays = {name: found[name] for name in found.files}
+        else:
+            import xarray
+
+            with open(file, "rb") as opened:
+                head = opened.read(4)
+            if head not in NETCDF:
+                raise ValueError("it begins like no netCDF file")
+            with xarray.open_dataset(file, engine=NETCDF[head]) as found:
+                arrays = {name: found[name].values for name in found.data_vars}
+    except Exception as error:
+        raise ValueError(f'"{path}" could not be read: {error}', "give an .npz or a netCDF file") from error
+    for name in ARRAYS:
+        if name not in arrays:
+            raise ValueError(f'"{path}" has no array {name}', near(name, arrays) if arrays else "")
+    return of_points(*(arrays[name] for name in ARRAYS), arrays.get("rotations"), orthogonal)
+
+
+def of_mesh(body: ModalBody) -> Shape:
+    """The lowest modes of a straight mesh in the body's axes; integrals exact, by the elements' mass matrices.
+
+    A unit of each mode moves the mass by 1 m in the mean square.
+    """
+    from ..scene import Scene
+    from ..solve.modes import KNOWN
+    from .build import build
+
+    scene = Scene(gravity=(0, 0, 0))
+    cable = scene.add(body.mesh)
+    if body.boundary == "attached":
+        scene.clamp(cable, s=0.0)
+        still = 0
+    else:
+        still = 3 if cable.dim == 2 else 6 if cable.kind_of_element.director else 5
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", FunicularWarning)  # that rounding may hide the rigid motions, which are known
+        found = scene.modes(body.modes + still)
+    elastic, error = found.angular_frequency[still:], found.uncertainty[still:]
+    if np.any(error > KNOWN * elastic):
+        worst = np.max(error / np.maximum(elastic, np.finfo(float).tiny))
+        warnings.warn(f"{body.where}: rounding of the stiffness may change the frequencies of its modes by up to "
+                      f"{100 * min(worst, 1.0):.2g} %; take fewer elements", FunicularWarning, stacklevel=2)
+    model = build(scene).cables[0]
+    mass = cable.material.density * cable.section.area * cable.length
+    vectors = found[f"{cable.name}.nodal_vectors"][still:]
+    vectors = vectors * np.sqrt(mass / np.einsum("kkii->k", _integrals(model, vectors)[1]))[:, None, None, None]
+    undeformed = cable.nodal_vectors - body.offset * np.array([v == "r" for v in model.vectors])[:, None] * [1.0, 0, 0]
+    fields = np.concatenate([undeformed[None], vectors])
+    S, X = _integrals(model, fields)
+    rotary = cable.material.density * cable.length * cable.section.mass_moments()[1:3]
+    for axis, value in zip("yz", rotary, strict=True):
+        if f"r_{axis}" not in model.vectors:  # inertia that the element leaves out: of the frame's turns alone
+            X[0, 0, "xyz".index(axis), "xyz".index(axis)] += value
+    stiffness = mass * np.diag(found.angular_frequency[still:] ** 2)
+    at = model.vectors.index("r")
+    return Shape(undeformed[:, at], vectors[:, :, at], _section_turns(model.vectors, vectors),
+                 stiffness, mass, S, X)
+
+
+def _integrals(model, fields: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """S and X of fields (k, node, vector, 3)."""
+    ones = np.array([v == "r" for v in model.vectors] * 2, dtype=float)
+    S, X = np.zeros((len(fields), 3)), np.zeros((len(fields), len(fields), 3, 3))
+    for element in range(model.n_elements):
+        d = fields[:, element : element + 2].reshape(len(fields), -1, 3)
+        md = np.einsum("ab,kbi->kai", model.m, d)
+        S += np.einsum("a,kai->ki", ones, md)
+        X += np.einsum("kai,laj->klij", d, md)
+    return S, X
+
+
+def _section_turns(names: tuple[str, ...], vectors: np.ndarray) -> np.ndarray:
+    """(n, N, 3): small turns of the sections; of cables those of the tangent, about which they say nothing."""
+    by = {name: vectors[:, :, k] for k, name in enumerate(names)}
+    turns = np.zeros((*vectors.shape[:2], 3))
+    if "r_y" in by:
+        turns[..., 2] = -by["r_y"][..., 0]
+    else:
+        turns[..., 2] = by["r_x"][..., 1]
+    if "r_z" in by:
+        turns[..., 1] = by["r_z"][..., 0]
+        turns[..., 0] = (by["r_y"][..., 2] - by["r_z"][..., 1]) / 2
+    elif "r_y" not in by:
+        turns[..., 1] = -by["r_x"][..., 2]
+    return turns

@@ -1,0 +1,64 @@
+"""Constants of an elastic law on the elements of a cable, A of the law's kernels."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..kernels.libraries import kernels_of
+from ..parts.cable import Cable
+from ..parts.section_stiffness import section_stiffness
+
+POINTS = 5
+"""Gauss points along an element: exact where the stress-free shape is straight, of the eighth degree."""
+
+
+def constants(cable: Cable, axial: float = 1.0) -> np.ndarray:
+    """(1, n), or (elements, n) where they differ because the stress-free shape is curved; axial: a factor of EA, of a
+    cable's law alone.
+    """
+    kernels, length = kernels_of(cable.library), cable.length / cable.elements
+    S = section_stiffness(cable.stiffness_law, cable.section, cable.material, cable.dim)
+    if axial != 1.0:
+        S = S * [axial, 1.0, axial][: len(S)]  # of EA, EI, and EA of the upper modes of an assumed strain
+    reference = cable.reference
+    shapes = [None] if reference is None else reference if cable.is_curved else reference[:1]
+    return np.array([element_constants(kernels, cable.element, cable.kernel_law, length, S, e0) for e0 in shapes])
+
+
+def element_constants(kernels, element: str, law: str, length: float, S: np.ndarray,
+                      e0: np.ndarray | None = None) -> np.ndarray:
+    """(n,): A of one element; e0 (nodal vectors, dim) is its stress-free shape, for laws that take it."""
+    if hasattr(kernels, f"{element}_{law}_stiffness_at"):
+        straight = getattr(kernels, f"{element}_{law.removesuffix('_curved')}_stiffness")
+        return np.concatenate([straight(length, S),
+                               *integral_over_volume(getattr(kernels, f"{element}_{law}_stiffness_at"), length, e0, S)])
+    return getattr(kernels, f"{element}_{law}_stiffness")(length, *([] if e0 is None else [e0]), S)
+
+
+def integral_over_volume(stiffness_at, length: float, e0: np.ndarray, S: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The kernel `stiffness_at` summed over an element: the form over its Gram products, and those of e0."""
+    places, weights = np.polynomial.legendre.leggauss(POINTS)
+    shares = []
+    for x, weight in zip(length / 2 * (1 + places), length / 2 * weights, strict=True):
+        shares += [stiffness_at(length, e0, np.array([x, y, z]), weight * D) for y, z, D in section_points(S)]
+    return sum(form for form, _ in shares), shares[0][1]
+
+
+def section_points(S: np.ndarray) -> Iterator[tuple[float, float, np.ndarray]]:
+    """Nine points of a section (three of a planar one) that have its table S, as in derive/laws/continuum/curved_section.py.
+
+    S: (9, 6) or, planar, (4, 6), see `section_stiffness`. Yields y, z in m and the elastic constants there, times the
+    part of the section that it stands for, in N.
+    """
+    full, by_y, by_z, _, by_both, _ = S.T
+    y2, z2 = S[0, 3] / S[0, 1], S[0, 5] / S[0, 2]
+    of_y, of_z, of_both = by_y / y2, by_z / z2, by_both / (y2 * z2)
+    if len(S) == 4:
+        of_z, of_both = 0 * of_z, 0 * of_both
+    shares = {(0, 0): full - of_y - of_z + of_both, (1, 0): (of_y - of_both) / 2, (0, 1): (of_z - of_both) / 2,
+              (1, 1): of_both / 4}
+    for (i, k), D in shares.items():
+        if len(S) == 9 or k == 0:
+            yield from ((y * np.sqrt(y2), z * np.sqrt(z2), D) for y in sorted({i, -i}) for z in sorted({k, -k}))

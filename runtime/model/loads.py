@@ -1,0 +1,149 @@
+"""Loads, springs and signals of a scene, as the engine takes them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..checks.placement import placed_attachment
+from ..parts import DistributedForce, Force, Moment
+from ..parts.attachment import Attachment
+from ..parts.signal import Constant, value_at
+from ..scene import Scene
+from .attachments import AttachmentBuilder, AttachmentModel
+
+CABLE_FOLLOWER, CABLE_MOMENT, BODY_FORCE, BODY_FOLLOWER, BODY_MOMENT = range(5)
+"""Kinds of loads, in the order of engine.h."""
+
+GAUSS = np.polynomial.legendre.leggauss(4)
+"""Points along an element of a distributed force: exact to degree 7."""
+
+
+@dataclass
+class SignalModel:
+    """f(t) = polynomial piece of t - break + amplitude sin(angular_frequency t + phase)."""
+
+    breaks: np.ndarray
+    coefficients: np.ndarray
+    amplitude: float
+    angular_frequency: float
+    phase: float
+
+    def value(self, time: np.ndarray, derivative: int = 0) -> np.ndarray:
+        """The signal, or a derivative of it, at the times ``time``, s."""
+        return value_at(self, self.breaks, self.coefficients, time, derivative)
+
+
+@dataclass
+class DeadLoad:
+    """A constant direction in the dofs, times a signal (number, -1: one)."""
+
+    signal: int
+    dofs: list[int]
+    values: list[float]
+
+
+@dataclass
+class LoadModel:
+    """A load that turns with what it acts on; spot: of a modal body, as of an `AttachmentModel`."""
+
+    kind: int
+    signal: int
+    on: int
+    element: int
+    x: float
+    u: tuple[float, float, float]
+    c: tuple[float, float, float]
+    spot: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
+
+
+@dataclass
+class SpringModel:
+    """Two ends and what is between them; unknown: the place of its force."""
+
+    name: str
+    ends: list[AttachmentModel]
+    dim: int
+    unknown: int
+    stiffness: float
+    damping: float
+    length: float
+    mass: float
+
+
+class Actions:
+    """Translates the loads and springs of a scene."""
+
+    def __init__(self, scene: Scene, holder: AttachmentBuilder):
+        self.scene, self.holder, self.cables = scene, holder, holder.cables
+        self.cable_index, self.body_index = holder.cable_index, holder.body_index
+        self.signals: list[SignalModel] = []
+        self.dead: list[DeadLoad] = []
+        self.turning: list[LoadModel] = []
+
+    def signal(self, signal) -> int:
+        """Number of a signal."""
+        breaks, coefficients = signal.pieces()
+        self.signals.append(SignalModel(np.asarray(breaks, dtype=float), np.asarray(coefficients, dtype=float),
+                                        signal.amplitude, signal.angular_frequency, signal.phase))
+        return len(self.signals) - 1
+
+    def _scale(self, signal) -> tuple[int, float]:
+        """Number and constant factor of a load's scale."""
+        return (-1, signal.value(0.0)) if isinstance(signal, Constant) else (self.signal(signal), 1.0)
+
+    def load(self, load: Force | DistributedForce | Moment) -> None:
+        """Add a load."""
+        number, factor = self._scale(load.scale)
+        value = factor * np.array(load.value)
+        if isinstance(load, DistributedForce):
+            self._distributed(load, number, value)
+        elif load.on in self.cable_index:
+            points = [(*self.holder.element(load.on, load.s), 1.0)]
+            if isinstance(load, Moment):
+                self._turning(CABLE_MOMENT, number, load.on, points, value)
+            else:
+                self._along_cable(load.on, number, points, value, load.follower)
+        else:
+            kind = BODY_MOMENT if isinstance(load, Moment) else BODY_FOLLOWER if load.follower else BODY_FORCE
+            anchor = Attachment(on=load.on, s=load.s, at=getattr(load, "at", None))
+            end = self.holder.end(placed_attachment(self.scene, anchor, load.where))
+            self.turning.append(LoadModel(kind, number, end.body, 0, 0.0, end.u, tuple(value), end.spot))
+
+    def _distributed(self, load: DistributedForce, number: int, value: np.ndarray) -> None:
+        model = self.cables[self.cable_index[load.cable]]
+        points = []
+        for element in range(model.n_elements):
+            start = max(load.start - element * model.length, 0.0)
+            stop = min(load.stop - element * model.length, model.length)
+            if stop > start:
+                points += [(element, (start + stop) / 2 + (stop - start) / 2 * x, (stop - start) / 2 * w)
+                           for x, w in zip(*GAUSS, strict=True)]
+        self._along_cable(load.cable, number, points, value, load.follower)
+
+    def _along_cable(self, cable: str, number: int, points, value: np.ndarray, follower: bool) -> None:
+        """Forces value times weight at points (element, x, weight)."""
+        if follower:
+            self._turning(CABLE_FOLLOWER, number, cable, points, value)
+            return
+        model = self.cables[self.cable_index[cable]]
+        dim = model.shape[2]
+        total = np.zeros(int(np.prod(model.shape)))
+        for element, x, weight in points:
+            at = element * model.shape[1] * dim
+            N = model.kernel("on_axis")(model.length, x)[0]
+            total[at : at + len(N) * dim] += weight * np.outer(N, value[:dim]).ravel()
+        used = np.flatnonzero(total)
+        self.dead.append(DeadLoad(number, list(model.first + used), list(total[used])))
+
+    def _turning(self, kind: int, number: int, cable: str, points, value: np.ndarray) -> None:
+        c = np.array([value[2], 0.0, 0.0]) if kind == CABLE_MOMENT and self.scene.dim == 2 else value
+        self.turning += [LoadModel(kind, number, self.cable_index[cable], element, x, (0.0, 0.0, 0.0),
+                                   tuple(weight * c)) for element, x, weight in points]
+
+    def spring(self, spring, unknown: int) -> SpringModel:
+        """The model of a spring whose force is unknown number `unknown` beyond the dofs."""
+        ends = [self.holder.end(spring.a), self.holder.end(spring.b)]
+        return SpringModel(spring.name, ends, self.scene.dim, unknown, spring.stiffness, spring.damping, spring.length,
+                           max(end.mass for end in ends))

@@ -1,0 +1,162 @@
+"""Joints that hold more than there is to hold: equations that follow from others, found by the compliance H M^-1 H'."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.linalg import solve_triangular
+
+from ..errors import SceneError
+
+if TYPE_CHECKING:
+    from .build import Model
+
+SAME, NEARLY = 1e-12, 1e-8
+"""Of the compliance of an equation: what is left of it where others hold the same; or nearly, if a run failed."""
+
+SHARE = 1e-6
+"""Of another equation in one that follows: less is none."""
+
+WAY, RETURN = 1e-3, 1e-8
+"""How far a mechanism is moved, as a part of its size, to see whether an equation follows there, too; and how well."""
+
+
+def settle(model: Model, engine) -> list[str]:
+    """Leave out equations of joints that follow from those of others, and tell of it; for an engine not yet started.
+
+    What follows is seen where the scene is drawn and, since a mechanism may pass a position where it is free to go two
+    ways, a small way from there. The joint that was added last does without; its force and moment are then those of
+    a scene without these equations. Raises SceneError where slides, or what drives joints, hold the same, and for a
+    start in a singular position.
+    """
+    riders = [(joint.rider.body, joint.rider.cable) for joint in model.slides]
+    if not model.joints and len(set(riders)) == len(riders):
+        return []  # slides of different bodies never do: each acts on its own body, whose mass is not zero
+    if not engine.prepare():
+        return []  # start tells why
+    S, owner = _compliance(engine), _owners(model)
+    if S is None:
+        return []  # here, too
+    if held := [name for name, own in zip(owner, np.diag(S), strict=True) if own == 0]:
+        raise SceneError("scene", f"is over-constrained: {_listed(held)} between places that supports hold already",
+                         "leave that out, or the supports")
+    follows = _following(S)
+    if not follows:
+        return []
+    idle = [_left_out(model, row, others, owner) for row, others in follows.items()]
+    for k, row in idle:
+        model.joints[k].redundant_rows.add(row)
+    engine.redundant_rows(idle)
+    _check_that_they_follow(model, engine, idle, _listed([owner[k] for row in follows for k in (*follows[row], row)]))
+    told = []
+    for k in dict.fromkeys(k for k, _ in idle):
+        link = model.joints[k]
+        own = range(link.multiplier, link.multiplier + link.rows)
+        names = _listed([owner[other] for row in own for other in follows.get(row, ()) if other not in own])
+        told.append(f"over-constrained: {len(link.redundant_rows)} of the {link.rows} equations of {owner[own[0]]} follow from "
+                    f"those of {names} and are left out, without force or moment of their own")
+    return told
+
+
+def _left_out(model: Model, row: int, others: list[int], owner: list[str]) -> tuple[int, int]:
+    """The joint and the row of it that others imply; raises SceneError where it has to stay."""
+    names = _listed([owner[k] for k in (*others, row)])
+    if _driven(model) & {row, *others}:
+        raise SceneError("scene", f"is over-constrained: {names} drive or hold the same", "leave one of them out")
+    for k, link in enumerate(model.joints):
+        if 0 <= row - link.multiplier < link.rows and link.slide is None:
+            return k, row - link.multiplier
+    raise SceneError("scene", f"is over-constrained: {names} hold the same",
+                     "leave one of them out, or hold the body at other points")
+
+
+def _check_that_they_follow(model: Model, engine, idle: list[tuple[int, int]], names: str) -> None:
+    """Raise SceneError unless the idle rows are kept, the others being so, at the start and a small way from there."""
+    size = engine.extent
+    unit = np.where(model.weight == 1, size, np.minimum(size / model.weight, 1.0))
+    way = WAY * unit * np.random.default_rng(0).uniform(-1, 1, model.n_dof)
+    at_start, beside = (engine.wander(along) for along in (np.zeros(model.n_dof), way))
+    gap, error = (np.inf if left is None else max(abs(left[at]) for at in idle) for left in (at_start, beside))
+    if gap > RETURN * min(size, 1.0):
+        raise SceneError("scene", f"is over-constrained: {names} hold the same, but do not fit together: {gap:.3g} (m "
+                         "or rad) are left between them", "leave one of them out, or draw them without gaps")
+    if error > RETURN * min(size, 1.0):
+        raise SceneError("scene", f"starts in a singular position: {names} hold the same there, but not beside it",
+                         "draw the scene a little away from it")
+
+
+def redundant(model: Model, engine, ratio: float = NEARLY) -> str:
+    """Names of slides and joints that hold nearly the same at the time reached; empty where there are none."""
+    if not model.joints and len(model.slides) < 2:
+        return ""
+    S = _compliance(engine)
+    if S is None or not np.any(np.diag(S) > 0):
+        return ""
+    used = np.flatnonzero(np.diag(S) > 0)
+    scale = 1 / np.sqrt(np.diag(S)[used])
+    values, vectors = np.linalg.eigh(scale[:, None] * S[np.ix_(used, used)] * scale)
+    idle = values < ratio * values[-1]
+    owner = _owners(model)
+    return _listed([owner[k] for k, part in zip(used, np.linalg.norm(vectors[:, idle], axis=1), strict=True)
+                    if part > 1e-3])
+
+
+def _compliance(engine) -> np.ndarray | None:
+    """H M^-1 H'; None where the state has none: it is not finite, or the mass matrix is singular there."""
+    try:
+        S = engine.compliance()
+    except ArithmeticError:
+        return None
+    return S if np.isfinite(S).all() else None
+
+
+def _following(S: np.ndarray) -> dict[int, list[int]]:
+    """Rows that are combinations of rows before them, and of which: by Cholesky's factors of S, row by row."""
+    used = np.flatnonzero(np.diag(S) > 0)
+    scale = 1 / np.sqrt(np.diag(S)[used])
+    S = scale[:, None] * S[np.ix_(used, used)] * scale
+    try:
+        if np.min(np.diag(np.linalg.cholesky(S)), initial=1.0) ** 2 > SAME:
+            return {}
+    except np.linalg.LinAlgError:
+        pass
+    L, kept, found = np.zeros_like(S), [], {}
+    for row in range(len(S)):
+        n = len(kept)
+        factor = solve_triangular(L[:n, :n], S[kept, row], lower=True) if n else np.zeros(0)
+        left = 1 - factor @ factor
+        if left > SAME:
+            L[n, :n], L[n, n] = factor, np.sqrt(left)
+            kept.append(row)
+        else:
+            share = np.abs(solve_triangular(L[:n, :n].T, factor))
+            found[int(used[row])] = [int(used[k]) for k, part in zip(kept, share, strict=True) if part > SHARE]
+    return found
+
+
+def _owners(model: Model) -> list[str]:
+    """What each multiplier is of, as messages call it."""
+    names = [""] * model.n_multipliers
+    for joint in model.slides:
+        names[joint.multiplier : joint.multiplier + joint.max_multipliers] = [f'slide "{joint.name}"'] * joint.max_multipliers
+    for link in model.joints:
+        kind = "joint" if link.slide is None else "slide"
+        names[link.multiplier : link.multiplier + link.rows] = [f'{kind} "{link.name}"'] * link.rows
+    return names
+
+
+def _driven(model: Model) -> set[int]:
+    """The multipliers of what signals drive: the last of each joint's."""
+    return ({joint.multiplier + joint.max_multipliers - 1 for joint in model.slides if joint.drive >= 0}
+            | {link.multiplier + link.rows - 1 for link in model.joints if link.signal >= 0})
+
+
+def _listed(names: list[str]) -> str:
+    """Slides first, each once: slides "a" and "b", or joint "c", or both."""
+    parts = []
+    for kind in ("slide", "joint"):
+        own = [name.split(" ", 1)[1] for name in dict.fromkeys(names) if name.startswith(kind)]
+        if own:
+            parts.append(f"{kind}{'s' * (len(own) > 1)} " + " and ".join(filter(None, [", ".join(own[:-1]), own[-1]])))
+    return " and ".join(parts)

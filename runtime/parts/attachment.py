@@ -1,0 +1,49 @@
+"""Anchors: what springs, joints and flexible riders hold on to."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import PlainValidator
+
+from .validation import Part, Vector, finite, number, shown, vector, xyz
+
+
+class Attachment(Part):
+    """A place: ``s`` (m) of the cable ``on``, or the point ``at`` (m) of the body ``on``, or of the ground (on None).
+
+    What it is on is found out when its part is added to a scene; until then a name alone has neither s nor at.
+    """
+
+    on: str | None = None
+    s: Annotated[float, finite("m")] | None = None
+    at: Annotated[Vector, xyz("m")] | None = None
+
+    def data(self) -> Any:
+        """As a scene file has it: [x, y, z], "A", ["A", [x, y, z]] or ["wire", s]."""
+        place = self.s if self.s is not None else self.at
+        return place if self.on is None else self.on if place is None else [self.on, place]
+
+
+def _anchor(value: Any) -> Attachment:
+    if isinstance(value, Attachment):
+        return value
+    value = value.tolist() if hasattr(value, "tolist") else value
+    on = getattr(value, "name", value)
+    if isinstance(on, str):
+        return Attachment(on=on)
+    remedy = 'give a point (x, y, z), a body, ("body", (x, y, z)) or ("cable", s)'
+    if not isinstance(value, list | tuple) or len(value) not in (2, 3):
+        raise ValueError(f"must be an end, got {shown(value)}", remedy)
+    if len(value) == 3:
+        return Attachment(at=vector(value, "m"))
+    on, place = getattr(value[0], "name", value[0]), value[1]
+    if not isinstance(on, str):
+        raise ValueError(f"must be an end, got {shown(value)}", remedy)
+    if isinstance(place, list | tuple) or (hasattr(place, "tolist") and getattr(place, "ndim", 0)):
+        return Attachment(on=on, at=vector(place, "m"))
+    return Attachment(on=on, s=number(place, "m"))
+
+
+AnyAttachment = Annotated[Attachment, PlainValidator(_anchor)]
+"""An anchor, or what `Attachment.data` gives, with a part of the scene for its name where that is at hand."""

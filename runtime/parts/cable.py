@@ -1,0 +1,460 @@
+"""Cables: how they are drawn, their stress-free shape, and which elements and elastic laws suit which sections."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from typing import Annotated, Any, ClassVar
+
+import numpy as np
+from pydantic import PlainValidator, ValidationInfo, model_validator
+
+from ..errors import near
+from ..kernels.elements import ElementKind, built_in, of_library
+from . import curves
+from .material import Material
+from .section import AnySection, Circle, GeneralSection, Tube
+from .section_stiffness import KERNEL_LAWS, kernel_law
+from .validation import Count, Name, Part, Vector, one_of, positive, show, shown, xyz
+
+EXACT = 1e-9
+"""Lengths that differ by this part of the cable's length are taken as equal."""
+
+MEMBRANES = ("full", "assumed", "reduced")
+"""How an element of a cable represents its axial strain, see `Cable`; the first is the default."""
+
+FOLLOWS = 0.5
+"""An element's slope along the curve that it stands for must be this part of the curve's everywhere."""
+
+
+def possible_laws(kind: ElementKind) -> list[str]:
+    """The laws that a cable of such elements can be given."""
+    laws = [law for law in kind.laws if not law.endswith("_curved")]
+    return laws + [law for law, kernels in KERNEL_LAWS.items() if kernels in laws]
+
+
+def _library(value: Any) -> str | None:
+    """The directory of a library, as an absolute path without links; what is there is loaded."""
+    if value is None:
+        return None
+    if not isinstance(value, str | os.PathLike):
+        raise ValueError(f"must be a directory, got {shown(value)}")
+    from ..kernels.libraries import resolved
+
+    directory = resolved(value)
+    of_library(directory)
+    return directory
+
+
+def _element(value: Any, info: ValidationInfo) -> str:
+    """An element's name in the library, or in this package."""
+    library = info.data.get("library")
+    known = of_library(library)
+    if not isinstance(value, str):
+        raise ValueError(f"must be a name, got {shown(value)}", "known: " + ", ".join(known))
+    if value not in known:
+        where = f' in library "{library}"' if library else ""
+        raise ValueError(f'"{value}" is not known{where}', near(value, known))
+    return value
+
+
+def _points(value: Any) -> tuple[tuple[float, ...], ...]:
+    return curves.points(value)
+
+
+class Cable(Part):
+    """A cable of equal elements, drawn straight, through points or along a curve.
+
+    Drawn, which is how a run starts: from ``start`` to ``end``; or smoothly through ``points`` (x, y, z); or along
+    ``curve``, a function of u from 0 to 1 that gives x, y, z (kept as points; in Python only). All in m. The tangent
+    must be continuous, the curvature need not: straight, arc, straight will do.
+    Undeformed: ``rest`` "drawn", the drawn shape, or "straight"; ``rest_length`` in m, the length as drawn if not
+    given: a shorter one makes the drawn cable taut, a longer one slack (or compressed, where it is straight).
+    All arc-lengths s are of the undeformed cable.
+
+    At the start it moves as a rigid body would: its first point with ``velocity`` (m/s), and turning about that with
+    ``angular_velocity`` (rad/s, along the ground's axes), but for what supports hold.
+
+    ``up`` is the direction of the section's height at the start; only its part across the axis counts, and from there
+    on the section turns with the curve, about its tangent nowhere. It may lie along the axis where the section is round
+    or the element has no axes across: then the height lies along the ground's axis most nearly across. Planar elements
+    lie in the plane z = 0, with the height in it. ``law``: for beams "continuum" (the default), "poisson_split" or
+    "structural"; for cables ``strain`` ("green" or "engineering") and ``curvature`` ("exact" or "linear"), the measures
+    that their axial and bending stiffness act on, by default green and exact; and ``membrane``, how an element
+    represents its axial strain: "full" (the default) at every point; "assumed" by its Legendre modes of degree 0 to 2;
+    "reduced" by those of degree 0 and 1, with 1 % of the axial stiffness on degree 2, which keeps the lengths of the
+    slopes stable ("cable18": 0 to 4, 0 to 2, and 3 and 4). Beside a point force on a taut rope the tension of full and
+    assumed strain swings, that of reduced strain hardly. Reduced strain is for small strain: stable up to a compression
+    of 1 %, with about four times as many elements for axial waves.
+
+    A cable that is stress-free where it is curved has the exact curvature, whose size alone it measures: it resists in
+    the plane of its curve, and across that plane by tension alone. Of the beams' laws, "structural" is the one for thin
+    arcs: the continuum locks there, unless its elements are about as short as two heights.
+    """
+
+    kind: ClassVar[str] = "cable"
+    name: Name
+    start: Annotated[Vector | None, xyz("m")] = None
+    end: Annotated[Vector | None, xyz("m")] = None
+    points: Annotated[tuple[tuple[float, ...], ...] | None, PlainValidator(_points)] = None
+    elements: Count
+    library: Annotated[str | None, PlainValidator(_library)] = None
+    element: Annotated[str, PlainValidator(_element)] = "beam24"
+    law: str = None
+    strain: Annotated[str | None, one_of(("green", "engineering"), optional=True)] = None
+    curvature: Annotated[str | None, one_of(("exact", "linear"), optional=True)] = None
+    membrane: Annotated[str | None, one_of(MEMBRANES, optional=True)] = None
+    section: AnySection
+    material: Material
+    up: Annotated[Vector, xyz()] = (0.0, 1.0, 0.0)
+    rest: Annotated[str, one_of(("drawn", "straight"))] = "drawn"
+    rest_length: Annotated[float, positive("m")] | None = None
+    velocity: Annotated[Vector, xyz("m/s")] = (0.0, 0.0, 0.0)
+    angular_velocity: Annotated[Vector, xyz("rad/s")] = (0.0, 0.0, 0.0)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _settled(cls, data: Any) -> Any:
+        """A curve as points, and the law by its name."""
+        if not isinstance(data, dict):
+            return data
+        optional = ("start", "end", "points", "curve", "law", "library", "strain", "curvature", "membrane",
+                    "rest_length")
+        data = {name: value for name, value in data.items() if value is not None or name not in optional}
+        if "curve" in data:
+            if "points" in data:
+                raise ValueError("has points and a curve", "give one of them")
+            curve, elements = data.pop("curve"), data.get("elements")
+            if not callable(curve):
+                raise ValueError(f"curve must be a function of u from 0 to 1, got {shown(curve)}", "or give points")
+            data["points"] = curves.sample(curve, min(elements, 1000) if isinstance(elements, int) else 1)
+        try:
+            known = of_library(_library(data.get("library")))
+        except ValueError:  # the check of the library says it
+            return data
+        element = data.get("element", "beam24")
+        kind = known.get(element) if isinstance(element, str) else None
+        if kind is not None:
+            data["law"] = _law(kind, data)
+        return data
+
+    @model_validator(mode="after")
+    def _is_drawn(self) -> Cable:
+        ends = self.start is not None, self.end is not None
+        if self.points is not None and any(ends):
+            raise ValueError("has points and start or end", "give the points alone, the first is the start")
+        if self.points is None and not all(ends):
+            missing = "end is" if ends[0] else "start is" if ends[1] else "start and end, or points, are"
+            raise ValueError(f"{missing} missing")
+        if self.points is None and self.start == self.end:
+            raise ValueError(
+                f"start and end must be different points, got {show(self.start)} and {show(self.end, 'm')}")
+        self._refuse_what_leaves_the_plane()
+        self._refuse_a_lost_up()
+        self._refuse_coarse_elements()
+        return self
+
+    def _refuse_what_leaves_the_plane(self) -> None:
+        if self.dim == 3:
+            return
+        for number, point in enumerate(self._way):
+            if point[2] != 0:
+                where = f"point {number + 1}" if self.points else ("start", "end")[number]
+                raise ValueError(f"{self.element} is planar, but {where} leaves the plane z = 0: {show(point, 'm')}",
+                                 "draw it with z = 0, or take " + _others(3))
+        if self.velocity[2] != 0 or any(self.angular_velocity[:2]):
+            raise ValueError(f"{self.element} is planar, but it starts with velocity {show(self.velocity, 'm/s')} and "
+                             f"angular_velocity {show(self.angular_velocity, 'rad/s')}",
+                             "let it move in the plane z = 0 and turn about z, or take " + _others(3))
+        if self.up[2] != 0:
+            raise ValueError(f"{self.element} is planar, but up leaves the plane z = 0: {show(self.up)}",
+                             "leave it out: the height lies in the plane")
+
+    def _refuse_a_lost_up(self) -> None:
+        if self.dim == 3 and not self._has_up and not (self._is_round and any(self.up)):
+            raise ValueError(
+                f"up must not be zero or parallel to the axis {show(self._shape.tangent(0.0))}, got {show(self.up)}",
+                "give the direction of the section's height")
+
+    @property
+    def _has_up(self) -> bool:
+        """Whether up tells a direction across the axis at the start."""
+        tilt = np.linalg.norm(np.cross(self._shape.tangent(0.0), self.up))
+        return bool(tilt > 1e-6 * np.linalg.norm(self.up))
+
+    @property
+    def _is_round(self) -> bool:
+        """Whether all directions across its axis are alike: a round section, or elements that have none."""
+        return isinstance(self.section, Circle | Tube) or not self.kind_of_element.director
+
+    @property
+    def height_direction(self) -> Vector:
+        """``up``; where that lies along the axis of a round section, the ground's axis most nearly across it."""
+        if self._has_up:
+            return self.up
+        least = int(np.argmin(np.abs(self._shape.tangent(0.0))))
+        return tuple(float(k == least) for k in range(3))
+
+    def _refuse_coarse_elements(self) -> None:
+        """An element whose slope loses the direction of the curve could not even be drawn."""
+        if self._shape.straight:
+            return
+        xi, length = np.linspace(0, 1, 17)[:, None, None], self.drawn_length / self.elements
+        nodes = length * np.arange(self.elements + 1)
+        r, t = self._shape.point(nodes), self._shape.tangent(nodes)
+        slope = (6 * xi * (1 - xi) * np.diff(r, axis=0) / length
+                 + (1 - 4 * xi + 3 * xi**2) * t[:-1] + (3 * xi**2 - 2 * xi) * t[1:])
+        onward = np.sum(slope * self._shape.tangent(nodes[:-1] + length * xi[..., 0]), axis=-1).min(axis=0)
+        worst = int(np.argmin(onward))
+        if onward[worst] < FOLLOWS:
+            raise ValueError(f"element {worst + 1} of {self.elements} cannot follow the curve from "
+                             f"{show(r[worst])} to {show(r[worst + 1], 'm')}: it bends too much there",
+                             "take more elements")
+
+    @model_validator(mode="after")
+    def _law_suits(self) -> Cable:
+        kind = self.kind_of_element
+        if self.is_curved and self.kernel_law not in kind.laws:
+            curved = {name: [law for law in possible_laws(other) if _kernel_law(law, True) in other.laws]
+                      for name, other in built_in().items()}
+            able = [f"{name} ({', '.join(laws)})" for name, laws in curved.items() if laws]
+            raise ValueError(f'{self.element} with law "{self.law}" is stress-free only where it is straight, but '
+                             "it is drawn curved", 'take rest="straight", or one of ' + ", ".join(able))
+        if self.dim == 3 and kernel_law(self.stiffness_law) == "continuum" and self.material.is_incompressible:
+            raise ValueError(f'law "{self.law}" needs a poisson_ratio below 0.5, at which Lamé\'s λ is infinite, got '
+                             f"{self.material.poisson():.9g}", 'take law="structural", which needs E and G alone')
+        section = self.section
+        given = {keyword for keyword in ("torsion_constant", "shear_factors")
+                 if getattr(section, f"given_{keyword}") is not None}
+        if kind.is_cable:
+            self._refuse_unequal_bending()
+            if given:
+                raise ValueError(f"section.{min(given)} is given, but {self.element} has neither shear nor torsion",
+                                 "leave it out, or take " + _others(kind.dim, cable=False))
+            if isinstance(section, GeneralSection) and section.has_rotary:
+                raise ValueError(f"section.rotary_moment is given, but {self.element} has no rotary inertia",
+                                 "leave it out, or take " + _others(kind.dim, cable=False))
+        elif self.law == "structural":
+            needed = {"shear_factors"} | ({"torsion_constant"} if kind.dim == 3 else set())
+            if isinstance(section, GeneralSection) and (missing := needed - given):
+                raise ValueError(f'law "structural" needs section.{min(missing)}, which a general section does not '
+                                 "tell", "give it to the section")
+        elif isinstance(section, GeneralSection):
+            raise ValueError(f'law "{self.law}" integrates over the shape of the section, which a general section does '
+                             "not tell", 'take law="structural", a rectangle, circle or tube, or '
+                             + _others(kind.dim, cable=True))
+        elif self.law == "continuum" and given:
+            raise ValueError(f'section.{min(given)} is given, but law "continuum" computes its own from the shape',
+                             'leave it out, or take law="poisson_split" or "structural"')
+        return self
+
+    def _refuse_unequal_bending(self) -> None:
+        across = self.section.second_moment_about_z, self.section.second_moment_about_y
+        if self.dim == 3 and abs(across[0] - across[1]) > EXACT * max(across):
+            raise ValueError(f"{self.element} has one bending stiffness: its section needs equal second moments, "
+                             f"got {show(across, 'm⁴')}", 'take a square, a circle or a tube, or element="beam24"')
+
+    @property
+    def kind_of_element(self) -> ElementKind:
+        """What its element is."""
+        return of_library(self.library)[self.element]
+
+    @property
+    def dim(self) -> int:
+        """3, or 2 for planar elements."""
+        return self.kind_of_element.dim
+
+    @property
+    def kernel_law(self) -> str:
+        """Name of the law among the element's kernels; those that end in ``_curved``, and structural, take e0."""
+        return _kernel_law(self.law, self.is_curved)
+
+    @property
+    def stiffness_law(self) -> str:
+        """Name of the law whose stiffness of the section it takes, see `stiffness.section_stiffness`."""
+        return self.kind_of_element.laws.get(self.law, self.law)
+
+    @property
+    def _way(self) -> tuple[tuple[float, ...], ...]:
+        return self.points if self.points is not None else (self.start, self.end)
+
+    @property
+    def _shape(self) -> curves.Line | curves.Spline:
+        return curves.shape_through(self._way)
+
+    @property
+    def drawn_length(self) -> float:
+        """Length in m of the cable as it is drawn."""
+        return self._shape.length
+
+    @property
+    def length(self) -> float:
+        """Undeformed length in m."""
+        return self.drawn_length if self.rest_length is None else self.rest_length
+
+    @property
+    def stretch(self) -> float:
+        """Length as drawn over undeformed length."""
+        return 1.0 if self.rest_length is None else self.drawn_length / self.rest_length
+
+    @property
+    def is_curved(self) -> bool:
+        """Whether the undeformed shape is."""
+        return self.rest == "drawn" and not self._shape.straight
+
+    @property
+    def node_s(self) -> np.ndarray:
+        """(nodes,): arc-length of the nodes in m."""
+        return self.length * np.arange(self.elements + 1) / self.elements
+
+    def point(self, s: float) -> np.ndarray:
+        """(3,): the point of the centreline at arc-length ``s``, in m, as the elements draw it.
+
+        Between nodes that is not quite the curve that they are drawn along; a rider has to start on the elements.
+        """
+        if self._shape.straight:
+            return self._shape.point(s * self.stretch)
+        return self._off_axis(s, 0.0)
+
+    def slope(self, s: float) -> np.ndarray:
+        """(3,): r_x at arc-length ``s``, as the elements draw it."""
+        if self._shape.straight:
+            return self.stretch * self._shape.tangent(0.0)
+        length, x, e = self._element_at(s)
+        _, N_x = self._kernel("on_axis")(length, x)
+        return np.pad(N_x @ e, (0, 3 - self.dim))
+
+    def height(self, s: float) -> np.ndarray:
+        """(3,): along the section's height at ``s``: r_y as the elements draw it, the axis there if they have none."""
+        if self._shape.straight or not self.kind_of_element.director:
+            return self.axes_at(s)[1]
+        return self._off_axis(s, y=1.0) - self._off_axis(s)
+
+    def width(self, s: float) -> np.ndarray:
+        """(3,): along the section's width at ``s``: r_z as the elements draw it, the axis there if they have none."""
+        if self._shape.straight or "r_z" not in self.kind_of_element.nodal_vectors:
+            return self.axes_at(s)[2]
+        return self._off_axis(s, z=1.0) - self._off_axis(s)
+
+    def _off_axis(self, s: float, y: float = 0.0, z: float = 0.0) -> np.ndarray:
+        """(3,): the point at height ``y`` and width ``z`` of the section at ``s``, in m."""
+        length, x, e = self._element_at(s)
+        _, r = self._kernel("position")(length, np.array([x, y, z]), e)
+        return np.pad(r, (0, 3 - self.dim))
+
+    def _element_at(self, s: float) -> tuple[float, float, np.ndarray]:
+        """Length of the element that holds ``s``, x in it, and its nodal vectors (2 vectors, dim)."""
+        length = self.length / self.elements
+        element = int(np.clip(np.floor(s / length), 0, self.elements - 1))
+        return length, s - element * length, np.concatenate(self.nodal_vectors[element : element + 2])[:, : self.dim]
+
+    def _kernel(self, name: str) -> Callable:
+        from ..kernels.libraries import kernels_of
+
+        return getattr(kernels_of(self.library), f"{self.element}_{name}")
+
+    def axes_at(self, s) -> np.ndarray:
+        """(..., 3, 3): unit vectors along axis, height and width, as rows, at arc-lengths ``s`` as drawn."""
+        s = np.asarray(s, dtype=float)
+        places, which = np.unique(np.append(s.ravel() * self.stretch, [0.0, self.drawn_length]), return_inverse=True)
+        if self.dim == 2:
+            i, k = self._shape.tangent(places), np.array([0.0, 0.0, 1.0])
+            axes = np.stack([i, np.cross(k, i), np.broadcast_to(k, i.shape)], axis=1)
+        else:
+            axes = curves.transported(self._way, self.height_direction, tuple(places.tolist()))
+        return axes[which[: s.size]].reshape(*s.shape, 3, 3)
+
+    @property
+    def axes(self) -> np.ndarray:
+        """(3, 3): the axes at the start, see `axes_at`."""
+        return self.axes_at(0.0)
+
+    @property
+    def nodal_vectors(self) -> np.ndarray:
+        """(nodes, vectors, 3): as drawn; r in m, its gradients by the undeformed cable, r_xx in 1/m."""
+        drawn, stretch = self.node_s * self.stretch, self.stretch
+        return self._vectors(self._shape.point(drawn), self.axes_at(self.node_s), stretch,
+                             stretch**2 * self._shape.curvature(drawn))
+
+    @property
+    def nodal_rates(self) -> np.ndarray:
+        """(nodes, vectors, 3): rates of `nodal_vectors` at the start, of a rigid motion."""
+        vectors, place = self.nodal_vectors, self.kind_of_element.nodal_vectors.index("r")
+        vectors[:, place] -= vectors[0, place]
+        rates = np.cross(self.angular_velocity, vectors)
+        rates[:, place] += self.velocity
+        return rates
+
+    @property
+    def reference(self) -> np.ndarray | None:
+        """(elements, 2 vectors, dim): stress-free nodal vectors of each element; None where the law takes none."""
+        if not self.is_curved and self.stiffness_law != "structural":
+            return None
+        rest = self.rest_nodal_vectors[..., : self.dim]
+        return np.concatenate([rest[:-1], rest[1:]], axis=1)
+
+    @property
+    def rest_nodal_vectors(self) -> np.ndarray:
+        """(nodes, vectors, 3): those of the stress-free cable, with the drawn one's start and direction there."""
+        start = self._shape.point(0.0)
+        if self.rest == "straight":
+            axes = np.broadcast_to(self.axes, (self.elements + 1, 3, 3))
+            return self._vectors(start + self.node_s[:, None] * axes[:, 0], axes, 1.0, np.zeros((self.elements + 1, 3)))
+        drawn = self.node_s * self.stretch
+        return self._vectors(start + (self._shape.point(drawn) - start) / self.stretch, self.axes_at(self.node_s), 1.0,
+                             self.stretch * self._shape.curvature(drawn))
+
+    def _vectors(self, r: np.ndarray, axes: np.ndarray, stretch: float, r_xx: np.ndarray) -> np.ndarray:
+        known = {"r": r, "r_x": stretch * axes[:, 0], "r_y": axes[:, 1], "r_z": axes[:, 2], "r_xx": r_xx}
+        return np.stack([known[name] for name in self.kind_of_element.nodal_vectors], axis=1)
+
+    def nearest_s(self, point: np.ndarray) -> float:
+        """Arc-length of the point of the drawn cable nearest to ``point``, in m."""
+        return self._shape.nearest(point) / self.stretch
+
+    def node_at(self, s: float) -> int | None:
+        """The node at arc-length ``s``, None if there is none."""
+        node = round(s / self.length * self.elements)
+        on_node = 0 <= node <= self.elements and abs(self.node_s[node] - s) <= EXACT * self.length
+        return node if on_node else None
+
+
+def _law(kind: ElementKind, data: dict) -> str:
+    """The law of a cable from what it is given; ValueError if the element has no such law."""
+    element = data.get("element", "beam24")
+    law, strain, curvature, membrane = (data.get(name) for name in ("law", "strain", "curvature", "membrane"))
+    possible = possible_laws(kind)
+    if law is None and not (strain or curvature or membrane):
+        return possible[0]
+    if not isinstance(law, str | None):
+        raise ValueError(f"law must be a name, got {shown(law)}", "possible: " + ", ".join(possible))
+    if not all(isinstance(measure, str | None) for measure in (strain, curvature, membrane)):
+        return possible[0]  # the checks of strain, curvature and membrane refuse it
+    if strain or curvature or membrane:
+        if not kind.is_cable:
+            raise ValueError(f"strain, curvature and membrane are for cable elements, {element} is a beam",
+                             "leave them out, or take " + _others(kind.dim, cable=True))
+        by_measures = f"{strain or 'green'}_{curvature or 'exact'}"
+        if (membrane or MEMBRANES[0]) != "full":
+            by_measures += f"_{membrane or MEMBRANES[0]}"
+        if law not in (None, by_measures):
+            raise ValueError(f'law "{law}" disagrees with strain, curvature and membrane', "give the one or the others")
+        law = by_measures
+    if law not in possible:
+        known = ({strain or "green", curvature or "exact"} <= {"green", "engineering", "exact", "linear"}
+                 and (membrane or "full") in MEMBRANES)
+        if not known:  # the checks of strain and curvature say it better
+            return law
+        raise ValueError(f'law "{law}" is not possible for {element}', "possible: " + ", ".join(possible))
+    return law
+
+
+def _kernel_law(law: str, curved: bool) -> str:
+    law = kernel_law(law)
+    return f"{law}_curved" if curved and law != "structural" else law
+
+
+def _others(dim: int, *, cable: bool | None = None) -> str:
+    """Elements to take instead, for a remedy."""
+    names = [f'"{name}"' for name, kind in built_in().items() if kind.dim == dim and cable in (None, kind.is_cable)]
+    return "element=" + " or ".join(names)

@@ -1,0 +1,342 @@
+"""Shapes that cables are drawn with: a line, or a smooth curve through points, over their arc-length in m.
+
+A shape has ``length`` and, at arc-lengths (...,), ``point``, ``tangent`` (unit) and ``curvature`` (dt/ds, 1/m), each
+(..., 3). Errors are ``ValueError(cause, remedy)``, to which the part adds its place.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterable
+from functools import lru_cache
+from math import acos, degrees
+from typing import Any
+
+import numpy as np
+
+from .validation import show, shown, vector
+
+FINE = 33
+"""Places at which an interval between two points is looked at for folds."""
+
+LOOSE, LITTLE = 1.2, 1e-3
+"""A curve swings that turns off a chord by more than this part of the chords' angle, and so much more in rad. Along a
+circle it is a half with even points, and never more than one."""
+
+GAUSS, WEIGHTS = np.polynomial.legendre.leggauss(8)
+
+PARTS = 8
+"""Intervals of the quadrature between two points: with eight Gauss points in each, exact but for rounding."""
+
+MOST_SAMPLES = 4096
+CLOSE = 1e-9
+"""A function is sampled until its spline keeps this near to it, in parts of its extent."""
+
+SHARP, SHARPEST = 1e-5, 1e-9
+"""In parts of its extent: where it is sampled more closely than this, it is looked at for a kink; and the closest."""
+
+ONWARD = 0.9
+"""Cosine of the angle from one chord to the next, beyond which there is more to see between."""
+
+KINK = 0.7
+"""An angle of which more than this part is left within a third of the way is a kink, and no bend."""
+
+FRAMES = 32
+"""Steps of the transport of the section's axes between places asked for; its error falls with their 4th power."""
+
+
+class Line:
+    """The straight line between two points."""
+
+    straight = True
+
+    def __init__(self, start: Iterable[float], end: Iterable[float]):
+        """start, end: (3,) in m, different points."""
+        self.start, self.end = np.array(start, dtype=float), np.array(end, dtype=float)
+        self.length = float(np.linalg.norm(self.end - self.start))
+
+    def point(self, s) -> np.ndarray:
+        """Points at arc-lengths s."""
+        ratio = np.asarray(s)[..., None] / self.length  # weighting both ends makes both of them exact
+        return (1 - ratio) * self.start + ratio * self.end
+
+    def tangent(self, s) -> np.ndarray:
+        """Unit tangents at arc-lengths s."""
+        return np.broadcast_to((self.end - self.start) / self.length, (*np.shape(s), 3))
+
+    def curvature(self, s) -> np.ndarray:
+        """Curvature vectors at arc-lengths s: zero."""
+        return np.zeros((*np.shape(s), 3))
+
+    def nearest(self, point: Iterable[float]) -> float:
+        """Arc-length of the nearest point."""
+        return float(np.clip(np.dot(np.asarray(point) - self.start, self.tangent(0.0)), 0, self.length))
+
+
+class Spline:
+    """The cubic spline through points, twice continuously differentiable; three points give a parabola.
+
+    Beside long straight pieces that one swings out, though: where it turns away from a chord by more than the chords
+    turn there, it is Akima's, with a continuous tangent, whose pieces follow from the nearest points (modified weights,
+    see scipy's `Akima1DInterpolator`). The parameter is the sum of the chords, which keeps uneven points from making
+    loops; arc-length is the integral of the speed, by Gauss quadrature between the points. The ends are not-a-knot.
+    """
+
+    straight = False
+
+    def __init__(self, points: np.ndarray):
+        """points: (n, 3) in m, n of 3 or more, neighbours different."""
+        from scipy.interpolate import Akima1DInterpolator, CubicSpline
+
+        self.points = np.array(points, dtype=float)
+        self.t = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(self.points, axis=0), axis=1))])
+        self._take(CubicSpline(self.t, self.points))
+        if self._swings():
+            self._take(Akima1DInterpolator(self.t, self.points, method="makima"))
+        self._refuse_folds()
+        parts = np.diff(self.t)[:, None] * np.arange(PARTS) / PARTS
+        self.t = np.append((self.t[:-1, None] + parts).ravel(), self.t[-1])  # the quadrature's intervals from here on
+        self.s = np.concatenate([[0.0], np.cumsum(self._arc(self.t[:-1], self.t[1:]))])
+        self.length = float(self.s[-1])
+
+    def _take(self, r) -> None:
+        self._r, self._r_t, self._r_tt = r, r.derivative(), r.derivative(2)
+
+    def _off_the_chords(self) -> tuple[np.ndarray, np.ndarray]:
+        """Parameters (intervals, FINE), and there the cosine of the angle between the curve and its chord."""
+        inside = self.t[:-1, None] + np.diff(self.t)[:, None] * np.linspace(0, 1, FINE)
+        slope = self._r_t(inside)
+        chord = np.diff(self.points, axis=0) / np.diff(self.t)[:, None]
+        onward = np.einsum("kfi,ki->kf", slope, chord)
+        speed = np.linalg.norm(slope, axis=-1)
+        return inside, onward / np.maximum(speed, 1e-300)
+
+    def _swings(self) -> bool:
+        """Whether the curve turns away from a chord by more than the chords turn at its ends."""
+        off = np.arccos(np.clip(self._off_the_chords()[1].min(axis=1), -1, 1))
+        chord = np.diff(self.points, axis=0) / np.diff(self.t)[:, None]
+        turns = np.arccos(np.clip(np.sum(chord[1:] * chord[:-1], axis=1), -1, 1))
+        return bool(np.any(off > LOOSE * np.maximum(np.append(turns, 0), np.append(0, turns)) + LITTLE))
+
+    def _refuse_folds(self) -> None:
+        """Between two points the curve must go on in the direction of the next one."""
+        inside, turn = self._off_the_chords()
+        interval, where = np.unravel_index(np.argmin(turn), turn.shape)
+        if turn[interval, where] > 0:
+            return
+        angle = degrees(acos(np.clip(turn[interval, where], -1, 1)))
+        raise ValueError(
+            f"the curve folds on itself between point {interval + 1} at {show(self.points[interval])} and point "
+            f"{interval + 2} at {show(self.points[interval + 1], 'm')}: near "
+            f"{show(self._r(inside[interval, where]), 'm')} it turns {angle:.0f} degrees off the line between them",
+            "give more points there, or look at their order")
+
+    def _arc(self, start: np.ndarray, end: np.ndarray) -> np.ndarray:
+        """Lengths (n,) from parameters (n,) to parameters in the same intervals."""
+        half = 0.5 * (end - start)
+        at = 0.5 * (start + end)[:, None] + half[:, None] * GAUSS
+        return half * (np.linalg.norm(self._r_t(at), axis=-1) @ WEIGHTS)
+
+    def _parameter(self, s) -> np.ndarray:
+        """Parameters of arc-lengths, by Newton, whose derivative is the speed."""
+        s = np.clip(np.asarray(s, dtype=float), 0, self.length)
+        flat = s.ravel()
+        k = np.clip(np.searchsorted(self.s, flat, side="right") - 1, 0, len(self.t) - 2)
+        low, high = self.t[k], self.t[k + 1]
+        t = low + (high - low) * (flat - self.s[k]) / (self.s[k + 1] - self.s[k])
+        for _ in range(50):
+            step = (flat - self.s[k] - self._arc(low, t)) / np.linalg.norm(self._r_t(t), axis=-1)
+            t = np.clip(t + step, low, high)
+            if np.max(np.abs(step), initial=0.0) <= 1e-14 * self.t[-1]:
+                break
+        return t.reshape(s.shape)
+
+    def point(self, s) -> np.ndarray:
+        """Points at arc-lengths s."""
+        return self._r(self._parameter(s))
+
+    def tangent(self, s) -> np.ndarray:
+        """Unit tangents at arc-lengths s."""
+        slope = self._r_t(self._parameter(s))
+        return slope / np.linalg.norm(slope, axis=-1, keepdims=True)
+
+    def curvature(self, s) -> np.ndarray:
+        """Curvature vectors at arc-lengths s, across the tangent."""
+        t = self._parameter(s)
+        slope, second = self._r_t(t), self._r_tt(t)
+        square = np.sum(slope * slope, axis=-1, keepdims=True)
+        return (second - slope * np.sum(slope * second, axis=-1, keepdims=True) / square) / square
+
+    def nearest(self, point: Iterable[float]) -> float:
+        """Arc-length of the nearest point, to a ten-thousandth of the length."""
+        s = np.linspace(0, self.length, 10001)
+        return float(s[np.argmin(np.linalg.norm(self.point(s) - np.asarray(point), axis=-1))])
+
+
+def points(value: Any) -> tuple[tuple[float, ...], ...]:
+    """Two points or more, (x, y, z) in m each, neighbours different; else ValueError."""
+    rows = value.tolist() if isinstance(value, np.ndarray) else value
+    if not isinstance(rows, list | tuple) or len(rows) < 2:
+        raise ValueError(f"must be a list of 2 points or more, got {shown(rows)}")
+    result = []
+    for number, row in enumerate(rows, start=1):
+        try:
+            result.append(vector(row, "m"))
+        except ValueError as error:
+            raise ValueError(f"{number} {error.args[0]}") from None
+    size = np.ptp(np.array(result), axis=0).max()
+    for number, (one, other) in enumerate(itertools.pairwise(result), start=1):
+        if not np.linalg.norm(np.subtract(other, one)) > 1e-12 * size:
+            raise ValueError(f"{number} and {number + 1} are the same point, {show(one, 'm')}", "leave one of them out")
+    return tuple(result)
+
+
+def sample(curve: Callable[[float], Iterable[float]], least: int) -> np.ndarray:
+    """Points (n, 3) of a function of u from 0 to 1, so many that their spline is the curve to 1e-9 of its extent.
+
+    Evenly spaced where it is smooth; else closer where its curvature or its speed jumps. ValueError where it has no
+    tangent.
+    """
+    from scipy.interpolate import CubicSpline
+
+    def at(u: float) -> tuple[float, ...]:
+        try:
+            return vector(tuple(curve(float(u))), "m")
+        except (ValueError, TypeError) as error:
+            raise ValueError(f"curve({u:.6g}) {error.args[0]}", "it takes a number from 0 to 1 and gives x, y, z in m"
+                             ) from None
+
+    count = max(16, 4 * least)
+    u = np.linspace(0, 1, count + 1)
+    known = np.array([at(v) for v in u])
+    while True:
+        between = 0.5 * (u[1:] + u[:-1])
+        new = np.array([at(v) for v in between])
+        gap = np.linalg.norm(CubicSpline(u, known)(between) - new, axis=1)
+        worst, extent = int(np.argmax(gap)), np.ptp(known, axis=0).max()
+        u = np.insert(u, np.arange(1, len(u)), between)
+        known = np.insert(known, np.arange(1, len(known)), new, axis=0)
+        if gap[worst] <= CLOSE * extent:
+            return known
+        if len(u) > MOST_SAMPLES:
+            return _closer(at, np.linspace(0, 1, count + 1))
+
+
+def _closer(at: Callable[[float], tuple[float, ...]], u: np.ndarray) -> np.ndarray:
+    """Points of a function, closer to each other where their spline over the chords is not yet near to it."""
+    from scipy.interpolate import CubicSpline
+
+    known = np.array([at(v) for v in u])
+    extent = np.ptp(known, axis=0).max()
+    while True:
+        chords = np.linalg.norm(np.diff(known, axis=0), axis=1)
+        moves = np.append(True, chords > 1e-12 * extent)  # it may stand still for a while
+        u, known, chords = u[moves], known[moves], chords[moves[1:]]
+        t = np.append(0.0, np.cumsum(chords))
+        between = 0.5 * (u[1:] + u[:-1])
+        new = np.array([at(v) for v in between])
+        gap = _distances(CubicSpline(t, known), t[:-1], t[1:], new)
+        along = np.diff(known, axis=0) / chords[:, None]
+        turns = np.append(np.append(False, np.sum(along[1:] * along[:-1], axis=1) < ONWARD), False)
+        far = (gap > CLOSE * extent) | turns[1:] | turns[:-1]
+        if not far.any():
+            return known
+        for k in np.flatnonzero(far & (chords < SHARP * extent)):
+            _refuse_a_jump(at, u[max(k - 1, 0)], u[min(k + 2, len(u) - 1)], SHARP * extent)
+            _refuse_a_kink(at, u[k], u[k + 1], new[k], gap[k], chords[k] / extent)
+        if len(u) > 4 * MOST_SAMPLES:
+            worst = int(np.argmax(gap))
+            raise ValueError(f"curve winds too much to be followed near u = {between[worst]:.6g}, at "
+                             f"{show(new[worst], 'm')}: {len(u)} points are still {gap[worst]:.3g} m away from it",
+                             "draw it as several cables")
+        places = np.flatnonzero(far) + 1
+        u, known = np.insert(u, places, between[far]), np.insert(known, places, new[far], axis=0)
+
+
+def _distances(spline, low: np.ndarray, high: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """(n,): of each point to the spline, whose nearest place is sought between two parameters."""
+    t = 0.5 * (low + high)
+    for _ in range(6):
+        slope = spline(t, 1)
+        step = np.sum((points - spline(t)) * slope, axis=1) / np.sum(slope * slope, axis=1)
+        t = np.clip(t + step, low, high)
+    return np.linalg.norm(spline(t) - points, axis=1)
+
+
+def _refuse_a_jump(at: Callable, low: float, high: float, far: float) -> None:
+    """What lies between the ends of an interval becomes small with it, but for a jump."""
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        start, point, end = (np.array(at(v)) for v in (low, middle, high))
+        low, high = (low, middle) if np.linalg.norm(point - start) > np.linalg.norm(end - point) else (middle, high)
+    if (gap := np.linalg.norm(np.subtract(at(high), at(low)))) > far:
+        raise ValueError(f"curve jumps by {gap:.3g} m at u = {low:.6g}, from {show(np.array(at(low)), 'm')}",
+                         "draw two cables where it has to be broken")
+
+
+def _refuse_a_kink(at: Callable, low: float, high: float, point: np.ndarray, gap: float, chord: float) -> None:
+    """A bend is the less of an angle, the shorter the piece that is looked at; a kink is all of it at one point."""
+
+    def angle(way: float) -> float:
+        ends = [np.array(at(v)) for v in (max(low - way, 0.0), low, high, min(high + way, 1.0))]
+        before, after = ends[1] - ends[0], ends[3] - ends[2]
+        size = np.linalg.norm(before) * np.linalg.norm(after)
+        return acos(np.clip(before @ after / size, -1, 1)) if size > 0 else 0.0
+
+    place = f"near u = {0.5 * (low + high):.6g}, at {show(point, 'm')}"
+    wide, narrow = angle(4 * (high - low)), angle(high - low)
+    if narrow > KINK * wide:
+        raise ValueError(f"curve has a kink {place}: it turns by {degrees(narrow):.3g} degrees there",
+                         "round it off, or join two cables there")
+    if chord < SHARPEST:
+        raise ValueError(f"curve bends too sharply {place}: the spline through its neighbours is {gap:.3g} m away",
+                         "draw it as two cables that are joined there")
+
+
+@lru_cache(maxsize=4096)
+def shape_through(points: tuple[tuple[float, ...], ...]) -> Line | Spline:
+    """The shape through checked points: a line if all of them lie on one, in order."""
+    way = np.array(points)
+    whole = way[-1] - way[0]
+    length = np.linalg.norm(whole)
+    if length > 0:
+        along = (way - way[0]) @ whole / length
+        off = np.linalg.norm(way - way[0] - along[:, None] * whole / length, axis=1)
+        if off.max() <= 1e-12 * length and np.diff(along).min() > 0:
+            return Line(way[0], way[-1])
+    return Spline(way)
+
+
+@lru_cache(maxsize=128)
+def transported(points: tuple[tuple[float, ...], ...], up: tuple[float, ...], places: tuple[float, ...]) -> np.ndarray:
+    """The axes of the section along a shape, turned about its tangent nowhere.
+
+    places: increasing arc-lengths in m, the first of them 0. Returns (places, 3, 3): rows are the unit tangent, and
+    the height and width axes, which start from the part of ``up`` across the tangent. By double reflection (Wang,
+    Jüttler, Zheng & Liu, ACM Trans. Graphics 27 (2008) 2), of order 4 in the step.
+    """
+    shape = shape_through(points)
+    fine = np.interp(np.arange((len(places) - 1) * FRAMES + 1) / FRAMES, np.arange(len(places)), places)
+    tangent = shape.tangent(fine)
+    height = np.array(up) - np.dot(up, tangent[0]) * tangent[0]
+    heights = [height]
+    if not shape.straight:
+        point = shape.point(fine)
+        for k in range(len(fine) - 1):
+            height = _reflected(height, tangent[k], point[k + 1] - point[k], tangent[k + 1])
+            heights.append(height)
+    j = np.broadcast_to(heights, tangent.shape)[::FRAMES]
+    i = tangent[::FRAMES]
+    j = j - np.sum(i * j, axis=1, keepdims=True) * i
+    j = j / np.linalg.norm(j, axis=1, keepdims=True)
+    return np.stack([i, j, np.cross(i, j)], axis=1)
+
+
+def _reflected(height: np.ndarray, tangent: np.ndarray, step: np.ndarray, onward: np.ndarray) -> np.ndarray:
+    """The height axis after a step: mirrored in the plane between the points, then in that between the tangents."""
+    if not step.any():
+        return height
+    mirror = 2 / np.dot(step, step) * step
+    image, turned = height - np.dot(step, height) * mirror, tangent - np.dot(step, tangent) * mirror
+    between = onward - turned
+    return image - 2 * np.dot(between, image) / np.dot(between, between) * between

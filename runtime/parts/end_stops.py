@@ -1,0 +1,72 @@
+"""What waits for a slide at an end of its cable."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar
+
+from pydantic import PlainValidator, model_validator
+
+from ..errors import near
+from .validation import Part, not_negative, positive, shown, within
+
+WORDS = ("error", "leave")
+"""The run ends with an `EndOfCableError`; the rider leaves the cable and flies on."""
+
+
+class Stop(Part):
+    """Base of what stops a rider at an end of its cable."""
+
+    stop: ClassVar[str]
+
+
+class HardStop(Stop):
+    """A stop at the end itself: a rider comes back with ``restitution`` (0 to 1) of the speed that it came with."""
+
+    stop: ClassVar[str] = "hard"
+    restitution: Annotated[float, within(0, 1, ends=True)]
+
+
+class Buffer(Stop):
+    """A spring with a damper along the last ``length`` (m) before the end: it pushes back and never pulls.
+
+    stiffness in N/m, damping in N s/m. A rider that crosses it whole reaches the end, with an `EndOfCableError`.
+    """
+
+    stop: ClassVar[str] = "buffer"
+    length: Annotated[float, positive("m")]
+    stiffness: Annotated[float, not_negative("N/m")]
+    damping: Annotated[float, not_negative("N s/m")] = 0.0
+
+    @model_validator(mode="after")
+    def _acts(self) -> Buffer:
+        if self.stiffness == 0 and self.damping == 0:
+            raise ValueError("has neither stiffness nor damping", "give one of them, or both")
+        return self
+
+
+STOPS = {stop.stop: stop for stop in (HardStop, Buffer)}
+
+
+def _end(value: Any) -> str | Stop:
+    """One of the words, a stop, or a table such as {stop="hard", restitution=0.5}; else ValueError."""
+    if isinstance(value, Stop):
+        return value
+    if isinstance(value, str):
+        if value not in WORDS:
+            raise ValueError(f'"{value}" is not known', near(value, WORDS))
+        return value
+    if not isinstance(value, dict):
+        raise ValueError(f"must be a word or a stop such as HardStop(restitution=0.5), got {shown(value)}",
+                         "words: " + ", ".join(WORDS))
+    data = dict(value)
+    stop = data.pop("stop", None)
+    if stop is None:
+        raise ValueError("has no stop", "known: " + ", ".join(STOPS))
+    if not isinstance(stop, str):
+        raise ValueError(f"has the stop {shown(stop)}, not a name", "known: " + ", ".join(STOPS))
+    if stop not in STOPS:
+        raise ValueError(f'has the unknown stop "{stop}"', near(stop, STOPS))
+    return STOPS[stop].model_validate(data)
+
+
+CableEnd = Annotated[Any, PlainValidator(_end)]

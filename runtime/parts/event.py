@@ -1,0 +1,50 @@
+"""Events: the instant at which a quantity passes a value, or a function of the user's changes sign."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Annotated, Any, ClassVar
+
+from pydantic import PlainValidator, model_validator
+
+from .validation import Name, Part, finite, one_of, shown
+
+
+def _function(value: Any) -> Callable | None:
+    if value is not None and not callable(value):
+        raise ValueError(f"must be a function of (time, state), got {shown(value)}")
+    return value
+
+
+def _text(value: Any) -> str | None:
+    if value is not None and not isinstance(value, str):
+        raise ValueError(f'must be text such as "A.position.y", got {shown(value)}')
+    return value
+
+
+class Event(Part):
+    """An instant that is found and stepped to: what is watched passes a value.
+
+    quantity: "A.position.y" or "A.velocity.x" of a body, "wire.position.z" or "wire.velocity.z" of the node of a cable
+    at ``s`` (m), "trolley.s", "trolley.s_rate" or "trolley.traction" of a slide; value: in m, m/s or N; or function, in
+    Python only: f(time, state) that passes zero, state["A.position"] and the like as in `State`. direction: "rising",
+    "falling" or "both"; action: "record", or "stop", which ends the run there.
+    """
+
+    kind: ClassVar[str] = "event"
+    name: Name | None = None
+    quantity: Annotated[str | None, PlainValidator(_text)] = None
+    s: Annotated[float, finite("m")] | None = None
+    value: Annotated[float, finite()] = 0.0
+    function: Annotated[Any, PlainValidator(_function)] = None
+    direction: Annotated[str, one_of(("rising", "falling", "both"))] = "both"
+    action: Annotated[str, one_of(("record", "stop"))] = "record"
+
+    @model_validator(mode="after")
+    def _watches_one_thing(self) -> Event:
+        if (self.quantity is None) == (self.function is None):
+            raise ValueError("must watch either a quantity or a function", 'give quantity="A.position.y" or function=f')
+        if self.function is not None and (self.value or self.s is not None):
+            raise ValueError("watches a function, which passes zero: value and s are not for it",
+                             "subtract the value in the function")
+        return self

@@ -1,0 +1,133 @@
+"""Joints between bodies, places of cables and the ground."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from .attachment import AnyAttachment
+from .signal import AnySignal, Integral, Signal
+from .validation import Name, Part, Vector, direction, one_of, positive
+
+POINTS, LINES = ("spherical", "revolute", "universal", "weld"), ("prismatic", "cylindrical")
+"""The kinds that hold two points together, and those that keep a point on a line."""
+
+KINDS = (*POINTS, *LINES, "distance")
+
+DRIVEN = {"revolute": "angle", "cylindrical": "angle", "prismatic": "distance", "distance": "distance"}
+"""The quantity that a joint can be driven by, itself or its rate."""
+
+UNITS = {"angle": "rad", "distance": "m"}
+
+
+class Joint(Part):
+    """A joint of ``kind`` between two ends.
+
+    a, b: its ends: ("A", (x, y, z)), a point in body axes; "A", the body's centre; ("wire", s), the place of a cable
+    with its section, or its tangent where the elements have no sections; or a point (x, y, z) of the ground, in m.
+    Directions are the ground's, at the start.
+
+    | kind | holds | leaves |
+    |---|---|---|
+    | spherical | the two points together | every turn |
+    | revolute | and the axis of both | the turn about ``axis`` |
+    | universal | and ``axis`` of a square to ``second_axis`` of b | the turns about both |
+    | prismatic | b's point on the line through a's along ``axis``, and the orientation | the way along it |
+    | cylindrical | b's point on that line, and the axis | the way along it and the turn about it |
+    | weld | points and orientation | nothing |
+    | distance | ``length`` (m) between the points, that at the start if not given | all else |
+
+    Driven, by a signal: ``angle`` (rad, of b about the axis as seen from a, from the start on) of revolute and
+    cylindrical ones; ``distance`` (m), of prismatic ones the way of b along the axis from the start on, of distance
+    ones the distance itself; or ``velocity``, the rate of that.
+
+    Equations that follow from those of joints before are left out, and the report tells which (a door on two hinges).
+
+    up: where an element has no section axes (its tangent is all that a cable knows), a direction fixed in the ground
+    that completes its frame, and against which it holds the turn about the tangent.
+    """
+
+    kind: ClassVar[str] = "joint"
+    pair: Annotated[str, one_of(KINDS)] = Field(alias="kind")
+    name: Name | None = None
+    a: AnyAttachment
+    b: AnyAttachment
+    axis: Annotated[Vector | None, direction()] = None
+    second_axis: Annotated[Vector | None, direction()] = None
+    up: Annotated[Vector | None, direction()] = None
+    angle: AnySignal | None = None
+    distance: AnySignal | None = None
+    velocity: AnySignal | None = None
+    length: Annotated[float, positive("m")] | None = None
+
+    @model_validator(mode="after")
+    def _has_what_it_needs(self) -> Joint:
+        if self.a.on is None and self.b.on is None:
+            raise ValueError("has both ends on the ground", "let one of them hold a cable or a body")
+        with_axis = {"axis": (*LINES, "revolute", "universal"), "second_axis": ("universal",)}
+        for name, pairs in with_axis.items():
+            if getattr(self, name) is not None and self.pair not in pairs:
+                raise ValueError(f"{name} is given, but a {self.pair} joint has none", "leave it out")
+            if getattr(self, name) is None and self.pair in pairs and self.pair != "revolute":  # in the plane it is z
+                raise ValueError(f"{name} is missing: a {self.pair} joint needs it")
+        if self.length is not None and self.pair != "distance":
+            raise ValueError(f"length is given, but a {self.pair} joint has none", "leave it out")
+        return self
+
+    @model_validator(mode="after")
+    def _has_axes_square_to_each_other(self) -> Joint:
+        if self.pair == "universal":
+            cosine = np.dot(self.axis, self.second_axis) / np.linalg.norm(self.axis) / np.linalg.norm(self.second_axis)
+            if abs(cosine) > 1e-6:
+                raise ValueError("axis and second_axis must be perpendicular, got "
+                                 f"{np.degrees(np.arccos(np.clip(cosine, -1, 1))):.6g} degrees between them")
+        return self
+
+    @model_validator(mode="after")
+    def _is_driven_once(self) -> Joint:
+        given = [name for name in ("angle", "distance", "velocity") if getattr(self, name) is not None]
+        if len(given) > 1:
+            raise ValueError(f"{' and '.join(given)} are given", "give one of them")
+        possible = [DRIVEN[self.pair], "velocity"] if self.pair in DRIVEN else []
+        if given and given[0] not in possible:
+            raise ValueError(f"{given[0]} is given, but a {self.pair} joint is driven by "
+                             + (" or ".join(possible) or "nothing"), "leave it out")
+        if self.distance is not None and self.length is not None:
+            raise ValueError("distance and length are given", "give one of the two")
+        return self
+
+    @property
+    def is_driven(self) -> bool:
+        """Whether a signal moves it."""
+        return any(signal is not None for signal in (self.angle, self.distance, self.velocity))
+
+    @property
+    def prescribed(self) -> Signal | None:
+        """Its angle (rad) or distance (m) over time, see `DRIVEN`, where it is driven."""
+        if self.velocity is not None:
+            return Integral(rate=self.velocity, start=self.length or 0.0)
+        return self.distance if self.angle is None else self.angle
+
+    @property
+    def axes(self) -> np.ndarray:
+        """(3, 3): its axes at the start, as columns, along the ground's: z is ``axis``.
+
+        x is ``second_axis`` where there is one; else y is the ground's axis farthest from z, made square to it: of
+        equals the last, so that in a plane z = 0 a line's y is the plane's normal. Without axis: the ground's own.
+        """
+        if self.axis is None:
+            return np.eye(3)
+        z = np.array(self.axis) / np.linalg.norm(self.axis)
+        if self.second_axis is None:
+            y = _across(np.eye(3)[max(range(3), key=lambda k: (-abs(z[k]), k))], z)
+            return np.column_stack([np.cross(y, z), y, z])
+        x = _across(np.array(self.second_axis), z)
+        return np.column_stack([x, np.cross(z, x), z])
+
+
+def _across(vector: np.ndarray, axis: np.ndarray) -> np.ndarray:
+    """The unit vector along the part of ``vector`` across the unit vector ``axis``."""
+    across = vector - np.dot(vector, axis) * axis
+    return across / np.linalg.norm(across)

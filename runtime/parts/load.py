@@ -1,0 +1,69 @@
+"""Loads: forces, distributed forces and moments, each a value times a signal of time."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar
+
+from pydantic import model_validator
+
+from .signal import AnySignal, Constant
+from .validation import Flag, Name, Part, Reference, Vector, finite, show, xyz
+
+Place = Annotated[float, finite("m")]
+ONE = Constant(constant=1.0)
+
+
+class Load(Part):
+    """Base of the loads: ``value`` (3,) times the signal ``scale``."""
+
+    name: Name | None = None
+    scale: AnySignal = ONE
+
+
+class Force(Load):
+    """A force of ``value`` (N) at a point of a cable or of a body.
+
+    on: the cable or the body; s: of a cable or a modal beam the arc-length in m; at: of a body the point in body axes,
+    in m, its origin (a modal body's first node) if not given. follower: the components are along the local axes, of a
+    cable (tangent, height, width), of a body its own, of a modal one those of the section there; else along the
+    ground's.
+    """
+
+    kind: ClassVar[str] = "force"
+    on: Reference
+    s: Place | None = None
+    at: Annotated[Vector, xyz("m")] | None = None
+    value: Annotated[Vector, xyz("N")]
+    follower: Flag = False
+
+
+class DistributedForce(Load):
+    """A force of ``value`` (N/m) along a cable, by its undeformed length.
+
+    From arc-length ``start`` to ``stop`` (m), the whole cable if not given. follower: as of a `Force`.
+    """
+
+    kind: ClassVar[str] = "distributed_force"
+    cable: Reference
+    value: Annotated[Vector, xyz("N/m")]
+    start: Place | None = None
+    stop: Place | None = None
+    follower: Flag = False
+
+    @model_validator(mode="after")
+    def _has_a_length(self) -> DistributedForce:
+        if self.start is not None and self.stop is not None and not self.start < self.stop:
+            raise ValueError(f"stop must be beyond start {show(self.start, 'm')}, got {show(self.stop, 'm')}")
+        return self
+
+
+class Moment(Load):
+    """A moment of ``value`` (N m), along the ground's axes, on a section of a cable or on a body.
+
+    on: the cable or the body; s: of a cable or a modal beam the arc-length in m, its start if not given.
+    """
+
+    kind: ClassVar[str] = "moment"
+    on: Reference
+    s: Place | None = None
+    value: Annotated[Vector, xyz("N m")]

@@ -1,0 +1,78 @@
+"""Materials."""
+
+from __future__ import annotations
+
+from math import inf, isclose
+from typing import Annotated
+
+import numpy as np
+from pydantic import model_validator
+
+from .validation import Part, above, not_negative, positive
+
+INCOMPRESSIBLE = 0.5
+"""The largest Poisson ratio: no change of volume."""
+
+ROUNDED = 1e-5
+"""Moduli that are E / 3 but for so much of it are those of a Poisson ratio of 0.5, written with a few digits."""
+
+
+class Material(Part):
+    """An isotropic St. Venant-Kirchhoff material with Kelvin-Voigt and mass-proportional damping.
+
+    youngs_modulus in Pa; density in kg/m³; one of poisson_ratio (1) and shear_modulus (Pa), or both if they
+    agree; a Poisson ratio of 0.5 suits the laws that need E and G alone, of cables, "structural" and planar ones;
+    damping_time: the retardation time τ in s, stress = elasticity (strain + τ strain rate); mass_damping: the
+    α in 1/s of the force -α density velocity on each volume, as of a surrounding fluid.
+    """
+
+    youngs_modulus: Annotated[float, positive("Pa")]
+    density: Annotated[float, positive("kg/m³")]
+    poisson_ratio: Annotated[float, above(-1.0, INCOMPRESSIBLE)] | None = None
+    shear_modulus: Annotated[float, positive("Pa")] | None = None
+    damping_time: Annotated[float, not_negative("s")] = 0.0
+    mass_damping: Annotated[float, not_negative("1/s")] = 0.0
+
+    @model_validator(mode="after")
+    def _shear_is_settled(self) -> Material:
+        E, nu, G = self.youngs_modulus, self.poisson_ratio, self.shear_modulus
+        if nu is None and G is None:
+            raise ValueError("poisson_ratio or shear_modulus is missing", "give one of the two")
+        if nu is None and G < E / 3 * (1 - ROUNDED):
+            raise ValueError(
+                f"shear_modulus must be at least youngs_modulus / 3 = {E / 3:.9g} Pa, got {G:.9g} Pa",
+                f"the Poisson ratio would be {E / (2 * G) - 1:.9g}, which must be above -1 and at most 0.5",
+            )
+        if nu is not None and G is not None and not isclose(G, E / (2 * (1 + nu)), rel_tol=1e-6):
+            raise ValueError(
+                f"shear_modulus {G:.9g} Pa and poisson_ratio {nu:.9g} disagree: "
+                f"E / (2 (1 + ν)) = {E / (2 * (1 + nu)):.9g} Pa",
+                "give one of the two",
+            )
+        return self
+
+    def poisson(self) -> float:
+        """The Poisson ratio ν, whichever constant was given."""
+        if self.poisson_ratio is not None:
+            return self.poisson_ratio
+        return self.youngs_modulus / (2 * self.shear_modulus) - 1
+
+    @property
+    def is_incompressible(self) -> bool:
+        """Whether its Poisson ratio is 0.5, as far as E and G tell."""
+        return self.poisson() >= INCOMPRESSIBLE - (ROUNDED if self.poisson_ratio is None else 0.0)
+
+    def lame(self) -> tuple[float, float]:
+        """Lamé's constants (λ, μ) in Pa; λ is infinite where the volume cannot change."""
+        E, nu = self.youngs_modulus, self.poisson()
+        if self.is_incompressible:
+            return inf, E / (2 * (1 + nu))
+        return E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
+
+    def elasticity(self) -> np.ndarray:
+        """The orthotropic constants of the stiffness.
+
+        Returns (9,): [D11, D22, D33, D12, D13, D23, G12, G13, G23] in Pa.
+        """
+        lam, mu = self.lame()
+        return np.array([lam + 2 * mu] * 3 + [lam] * 3 + [mu] * 3)

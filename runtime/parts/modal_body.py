@@ -1,0 +1,190 @@
+"""Modal bodies: a floating frame and a few modes of small deformation."""
+
+from __future__ import annotations
+
+import os
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+
+import numpy as np
+from pydantic import PlainValidator, model_validator
+
+from ..rotations import rotate
+from .cable import EXACT, Cable
+from .material import Material
+from .rigid_body import Quaternion, unit_quaternion
+from .section import AnySection
+from .validation import Count, Flag, Name, Part, Vector, not_negative, one_of, show, shown, xyz
+
+if TYPE_CHECKING:
+    from ..model.body_modes import Shape
+
+
+def _path(value: Any) -> str | None:
+    if value is not None and not isinstance(value, str | os.PathLike):
+        raise ValueError(f"must be a file, got {shown(value)}")
+    return None if value is None else os.fspath(value)
+
+
+class ModalBody(Part):
+    """A body that deforms little, in a few modes, while its frame moves at any speed (floating frame of reference).
+
+    A straight beam: from ``start`` to ``end`` (m), ``section`` and ``material`` as of a cable, ``up`` the direction of
+    the section's height; its ``modes`` lowest modes on a mesh of ``elements`` of kind ``element`` (and ``law``). Body
+    axes are along the beam, the height and the width. ``boundary`` "free": free-free modes, the frame at the mass
+    centre (the coupling M_rf vanishes undeformed), for a body that flies, or is held at points that its modes move.
+    "attached": the frame fixed to the section at ``start``, modes of the cantilever, for a body that is held there.
+    What modes left out cost a frequency falls with about the third power of their number where joints hold points; with
+    the first where they hold sections that the modes do not bend, as those of a free end.
+    What tension stiffens is not in the modes' stiffness: they are no model of a beam that spins about as fast as it
+    vibrates. Cables' elements have no torsion: their modes bend and stretch, and the frame alone turns them.
+
+    Or ``data``, an .npz or netCDF file of arrays in SI units, in body axes, with ``position`` and ``orientation`` of
+    the frame: ``nodes`` (N, 3) where they are undeformed, ``modes`` (n, N, 3) displacements by a unit of each mode,
+    ``masses`` (N,), ``stiffness`` (n, n), and where a joint holds a section ``rotations`` (n, N, 3), turns in rad by a
+    unit of each mode. Modes must be orthogonal in the mass, unless ``orthogonal`` is false: then their full mass matrix
+    is used as it is.
+
+    damping_ratio: part of critical damping in every vibration with the frame held; velocity of the frame's origin in
+    m/s, angular_velocity in body axes in rad/s. A run starts undeformed.
+    """
+
+    kind: ClassVar[str] = "modal_body"
+    name: Name
+    start: Annotated[Vector | None, xyz("m")] = None
+    end: Annotated[Vector | None, xyz("m")] = None
+    section: AnySection | None = None
+    material: Material | None = None
+    up: Annotated[Vector, xyz()] = (0.0, 1.0, 0.0)
+    elements: Count = 10
+    element: str = "beam24"
+    law: str | None = None
+    modes: Count = 5
+    boundary: Annotated[str, one_of(("free", "attached"))] = "free"
+    data: Annotated[str | None, PlainValidator(_path)] = None
+    orthogonal: Flag = True
+    position: Annotated[Vector | None, xyz("m")] = None
+    orientation: Annotated[Quaternion, PlainValidator(unit_quaternion)] = (1.0, 0.0, 0.0, 0.0)
+    damping_ratio: Annotated[float, not_negative()] = 0.0
+    velocity: Annotated[Vector, xyz("m/s")] = (0.0, 0.0, 0.0)
+    angular_velocity: Annotated[Vector, xyz("rad/s")] = (0.0, 0.0, 0.0)
+
+    @model_validator(mode="after")
+    def _is_described(self) -> ModalBody:
+        drawn = {name: getattr(self, name) for name in ("start", "end", "section", "material")}
+        if self.data is not None:
+            if given := [name for name, value in drawn.items() if value is not None]:
+                raise ValueError(f"has data and {given[0]}", "give the file, or what a beam is made of")
+            if self.position is None:
+                raise ValueError("position is missing: where is the frame of its data?")
+            self.shape  # noqa: B018  what the file says is checked here
+            return self
+        if missing := [name for name, value in drawn.items() if value is None]:
+            raise ValueError(f"{missing[0]} is missing", "give start, end, section and material, or data")
+        if self.position is not None or self.orientation != (1.0, 0.0, 0.0, 0.0):
+            raise ValueError("has start and end, which say where its frame is",
+                             "leave out position and orientation: they go with data")
+        self._drawn  # noqa: B018
+        return self
+
+    @property
+    def mesh(self) -> Cable:
+        """The mesh that the modes are of, in body axes from its start."""
+        return Cable(name=self.name, start=(0, 0, 0), end=(self._drawn.length, 0, 0), elements=self.elements,
+                     element=self.element, law=self.law, section=self.section, material=self.material)
+
+    @cached_property
+    def _drawn(self) -> Cable:
+        return Cable(name=self.name, start=self.start, end=self.end, up=self.up, elements=self.elements,
+                     element=self.element, law=self.law, section=self.section, material=self.material)
+
+    @property
+    def offset(self) -> float:
+        """How far along the beam the frame's origin is, in m."""
+        return 0.0 if self.boundary == "attached" else self._drawn.length / 2
+
+    @cached_property
+    def shape(self) -> Shape:
+        """Its modes and inertia."""
+        from ..model.body_modes import of_file, of_mesh
+
+        return of_mesh(self) if self.data is None else of_file(self.data, self.orthogonal)
+
+    @property
+    def modes_in_words(self) -> str:
+        """Which modes it has, for a run's report."""
+        squares, _ = self.shape.vibrations
+        hertz = np.sqrt(np.maximum(squares, 0)) / (2 * np.pi)
+        kind = "of a file" if self.data is not None else {
+            "free": "free-free", "attached": "of the beam attached at its start"}[self.boundary]
+        mesh = "" if self.data is not None else f" on {self.elements} elements {self.element}"
+        return f"{self.shape.n} modes, {kind}{mesh}, {hertz.min(initial=np.inf):.4g} to {hertz.max(initial=0):.4g} Hz"
+
+    @property
+    def frame(self) -> tuple[np.ndarray, np.ndarray]:
+        """Where the frame's origin starts, (3,) in m, and its attitude, (4,) unit quaternion."""
+        if self.data is not None:
+            return np.array(self.position), np.array(self.orientation)
+        axes = self._drawn.axes.T
+        return np.array(self.start) + self.offset * axes[:, 0], quaternion(axes)
+
+    def spot(self, at: Vector) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """The point ``at`` (m, body axes) as the engine knows it: undeformed (3,), and there modes and turns (n, 3).
+
+        It is a node, or goes with a node's section, where sections turn: of a beam any point across its axis there.
+        Raises ValueError(cause, remedy).
+        """
+        shape, at = self.shape, np.array(at, dtype=float)
+        distance = np.linalg.norm(shape.nodes - at, axis=1)
+        node, size = int(np.argmin(distance)), max(float(np.ptp(shape.nodes, axis=0).max()), 1.0)
+        arm = at - shape.nodes[node]
+        along = abs(arm[0]) if self.data is None else 0.0 if shape.rotations.any() else distance[node]
+        if along > EXACT * size:
+            raise ValueError(f"{show(at, 'm')} is no node of the body",
+                             f"the nearest is at {show(shape.nodes[node], 'm')}")
+        return at, shape.modes[:, node] + np.cross(shape.rotations[:, node], arm), shape.rotations[:, node]
+
+    def point(self, at: Vector) -> np.ndarray:
+        """(3,): where the body's point ``at`` (m, body axes) starts, in m."""
+        position, orientation = self.frame
+        return position + rotate(orientation, at)
+
+    @property
+    def axes(self) -> np.ndarray:
+        """(3, 3): its axes at the start, as columns."""
+        return rotate(self.frame[1], np.eye(3)).T
+
+    def located(self, at: Vector | None = None, s: float | None = None) -> Vector:
+        """The point ``at`` or, of a beam, the one at the arc-length s (m), in body axes; the first end without either.
+
+        Raises ValueError(cause, remedy).
+        """
+        if s is None:
+            return tuple(self.shape.nodes[0].tolist()) if at is None else at
+        if self.data is not None:
+            raise ValueError("is given by a file and takes no arc-length s", "give a point in body axes")
+        return (s - self.offset, 0.0, 0.0)
+
+    @property
+    def mass(self) -> float:
+        """In kg."""
+        return self.shape.mass
+
+    @property
+    def inertia(self) -> np.ndarray:
+        """(3, 3) in kg m², about the frame's origin, undeformed."""
+        X = self.shape.X[0, 0]
+        return X.trace() * np.eye(3) - X
+
+
+def quaternion(A: np.ndarray) -> np.ndarray:
+    """(4,): unit quaternion of a rotation matrix (3, 3), by its largest component."""
+    squares = np.array([A.trace(), *(2 * np.diag(A) - A.trace())]) + 1
+    k = int(np.argmax(squares))
+    skew = np.array([A[2, 1] - A[1, 2], A[0, 2] - A[2, 0], A[1, 0] - A[0, 1]])
+    if k == 0:
+        q = np.concatenate([squares[:1], skew])
+    else:
+        q = np.concatenate([skew[k - 1 : k], (A + A.T)[k - 1]])
+        q[k] = squares[k]
+    return q / np.linalg.norm(q)

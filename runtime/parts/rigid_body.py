@@ -1,0 +1,80 @@
+"""Rigid bodies."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, ClassVar
+
+import numpy as np
+from pydantic import PlainValidator
+
+from ..rotations import rotate
+from .cable import EXACT
+from .validation import Name, Part, Vector, positive, show, vector, xyz
+
+Quaternion = tuple[float, float, float, float]
+
+
+def _inertia(value: Any) -> tuple[Vector, Vector, Vector]:
+    """A symmetric inertia from 3 principal moments or 3 rows, in kg m²."""
+    rows = value.tolist() if isinstance(value, np.ndarray) else value
+    if isinstance(rows, list | tuple) and len(rows) == 3 and all(isinstance(r, list | tuple) for r in rows):
+        matrix = np.array([vector(row, "kg m²") for row in rows])
+    else:
+        matrix = np.diag(vector(rows, "kg m²"))
+    if not np.allclose(matrix, matrix.T, rtol=0, atol=1e-12 * np.abs(matrix).max()):
+        raise ValueError(f"must be symmetric, got {matrix.tolist()}")
+    small, middle, large = np.linalg.eigvalsh(matrix).tolist()
+    shown = show((small, middle, large), "kg m²")
+    if not small > 0:
+        raise ValueError(f"must be positive, got the principal moments {shown}")
+    if large > (small + middle) * (1 + EXACT):
+        raise ValueError(f"is not that of a body: no principal moment exceeds the sum of the others, got {shown}")
+    return tuple(map(tuple, matrix.tolist()))
+
+
+def unit_quaternion(value: Any) -> Quaternion:
+    """A unit quaternion, rounded to one."""
+    quaternion = vector(value, size=4)
+    norm = math.hypot(*quaternion)
+    if abs(norm - 1) > 1e-3:
+        raise ValueError(
+            f"must be a unit quaternion (w, x, y, z), got {show(quaternion)}, of length {norm:.6g}",
+            "divide it by its length",
+        )
+    if abs(norm - 1) < 1e-15:  # already rounded to a unit: dividing again would only move the last digit
+        return quaternion
+    return tuple(component / norm for component in quaternion)
+
+
+class RigidBody(Part):
+    """A rigid body.
+
+    mass in kg; inertia about its centre of mass in body axes, 3 principal moments or 3x3, in kg m²; position
+    of its origin in m; orientation: the unit quaternion (w, x, y, z) from body axes to the ground's; centre: of mass, a
+    point in body axes, in m: the origin if not given; velocity of the origin in m/s; angular_velocity in body axes, in
+    rad/s. All points of the body count from the origin.
+    """
+
+    kind: ClassVar[str] = "rigid_body"
+    name: Name
+    mass: Annotated[float, positive("kg")]
+    inertia: Annotated[tuple[Vector, Vector, Vector], PlainValidator(_inertia)]
+    position: Annotated[Vector, xyz("m")]
+    orientation: Annotated[Quaternion, PlainValidator(unit_quaternion)] = (1.0, 0.0, 0.0, 0.0)
+    centre: Annotated[Vector, xyz("m")] = (0.0, 0.0, 0.0)
+    velocity: Annotated[Vector, xyz("m/s")] = (0.0, 0.0, 0.0)
+    angular_velocity: Annotated[Vector, xyz("rad/s")] = (0.0, 0.0, 0.0)
+
+    @property
+    def axes(self) -> np.ndarray:
+        """(3, 3): its axes at the start, as columns."""
+        return rotate(self.orientation, np.eye(3)).T
+
+    def arm(self, at: Vector) -> tuple[float, float, float]:
+        """The point ``at`` from the centre of mass, in body axes, in m: what the engine knows it by."""
+        return tuple(a - c for a, c in zip(at, self.centre, strict=True))
+
+    def point(self, at: Vector) -> np.ndarray:
+        """(3,): where the body's point ``at`` (m, body axes) starts, in m."""
+        return np.array(self.position) + rotate(self.orientation, at)

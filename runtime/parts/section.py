@@ -1,0 +1,236 @@
+"""Cross-sections. y runs along the cable's ``up`` (height), z along its width; lengths in m.
+
+A further section is one class with ``moments``, its torsion constant and shear factors, and one entry in `SHAPES`.
+"""
+
+from __future__ import annotations
+
+from math import exp, nan, pi
+from typing import Annotated, Any, ClassVar
+
+import numpy as np
+from pydantic import Field, PlainValidator, model_validator
+
+from ..errors import SceneError, near
+from .validation import Part, positive, show, shown, vector
+
+Length = Annotated[float, positive("m")]
+THINNEST = 1e-12
+"""Of its radius: the wall of a tube, whose moments are differences."""
+ZETA_5 = 1.03692775514336992633  # Σ 1/n⁵
+
+
+def _factors(value: Any) -> tuple[float, float]:
+    factors = vector(value, size=2)
+    if not min(factors) > 0:
+        raise ValueError(f"must be positive, got {show(factors)}", "give (ky, kz), 1 for no correction")
+    return factors
+
+
+TorsionConstant = Annotated[float, positive("m⁴")]
+ShearFactors = Annotated[tuple[float, float], PlainValidator(_factors)]
+
+
+class Section(Part):
+    """Base of doubly symmetric sections: their odd moments are zero, their axis is the centroid.
+
+    ``torsion_constant`` (m⁴) and ``shear_factors`` (ky, kz), given to a section, replace those of its shape.
+    """
+
+    shape: ClassVar[str]
+    given_torsion_constant: TorsionConstant | None = Field(None, alias="torsion_constant")
+    given_shear_factors: ShearFactors | None = Field(None, alias="shear_factors")
+
+    def moments(self) -> np.ndarray:
+        """The even moments up to order 4.
+
+        Returns (6,): [∫dA, ∫y²dA, ∫z²dA, ∫y⁴dA, ∫y²z²dA, ∫z⁴dA] in m², m⁴, m⁴, m⁶, m⁶, m⁶.
+        """
+        raise NotImplementedError
+
+    def mass_moments(self) -> np.ndarray:
+        """`moments` as the inertia takes them: density times these is mass and rotary inertia per length."""
+        return self.moments()
+
+    @property
+    def torsion_constant(self) -> float:
+        """St Venant's J in m⁴: torque = G J times the twist per length."""
+        return self._shape_torsion_constant() if self.given_torsion_constant is None else self.given_torsion_constant
+
+    def shear_factors(self, poisson_ratio: float) -> tuple[float, float]:
+        """Timoshenko's (ky, kz): shear force = k G A times the mean shear angle, along y and z."""
+        given = self.given_shear_factors
+        return self._shape_shear_factors(poisson_ratio) if given is None else given
+
+    def _shape_torsion_constant(self) -> float:
+        raise SceneError(type(self).__name__, "has no torsion_constant", "give it, in m⁴")
+
+    def _shape_shear_factors(self, poisson_ratio: float) -> tuple[float, float]:
+        raise SceneError(type(self).__name__, "has no shear_factors", "give (ky, kz)")
+
+    @property
+    def area(self) -> float:
+        """∫dA in m²."""
+        return float(self.moments()[0])
+
+    @property
+    def second_moment_about_z(self) -> float:
+        """∫y²dA in m⁴: resists bending in the plane of the axis and ``up``."""
+        return float(self.moments()[1])
+
+    @property
+    def second_moment_about_y(self) -> float:
+        """∫z²dA in m⁴: resists bending out of the plane of the axis and ``up``."""
+        return float(self.moments()[2])
+
+
+class Rectangle(Section):
+    """A solid rectangle, ``height`` along ``up``, in m."""
+
+    shape: ClassVar[str] = "rectangle"
+    height: Length
+    width: Length
+
+    def moments(self) -> np.ndarray:
+        """See `Section.moments`."""
+        h, w = self.height, self.width
+        area = h * w
+        yy, zz = h * h / 12, w * w / 12
+        return area * np.array([1, yy, zz, h**4 / 80, yy * zz, w**4 / 80])
+
+    def _shape_torsion_constant(self) -> float:
+        """St Venant's series (Timoshenko & Goodier, Theory of Elasticity, art. 109), to rounding.
+
+        J = long short³ / 3 (1 - 192/π⁵ short/long Σ tanh(nπ long / 2 short) / n⁵), n odd. Summed as Σ 1/n⁵, which is
+        31/32 ζ(5), less Σ (1 - tanh) / n⁵, whose terms fall like exp(-nπ).
+        """
+        short, long = sorted((self.height, self.width))
+        less = sum(2 / (exp(n * pi * long / short) + 1) / n**5 for n in range(1, 15, 2) if n * long < 200 * short)
+        return long * short**3 / 3 * (1 - 192 / pi**5 * short / long * (31 / 32 * ZETA_5 - less))
+
+    def _shape_shear_factors(self, poisson_ratio: float) -> tuple[float, float]:
+        """Cowper, J. Appl. Mech. 33 (1966) 335-340."""
+        factor = 10 * (1 + poisson_ratio) / (12 + 11 * poisson_ratio)
+        return factor, factor
+
+
+class Circle(Section):
+    """A solid circle, ``radius`` in m."""
+
+    shape: ClassVar[str] = "circle"
+    radius: Length
+
+    def moments(self) -> np.ndarray:
+        """See `Section.moments`."""
+        return _disc(self.radius)
+
+    def _shape_torsion_constant(self) -> float:
+        return self.second_moment_about_z + self.second_moment_about_y
+
+    def _shape_shear_factors(self, poisson_ratio: float) -> tuple[float, float]:
+        return _ring_shear_factors(poisson_ratio, 0.0)
+
+
+class Tube(Section):
+    """A ring between ``inner_radius`` and ``outer_radius``, in m."""
+
+    shape: ClassVar[str] = "tube"
+    outer_radius: Length
+    inner_radius: Length
+
+    @model_validator(mode="after")
+    def _has_a_wall(self) -> Tube:
+        if not self.inner_radius < self.outer_radius:
+            raise ValueError(
+                f"inner_radius must be smaller than outer_radius ({self.outer_radius:g} m), got {self.inner_radius:g} m"
+            )
+        if not self.outer_radius - self.inner_radius >= THINNEST * self.outer_radius:
+            raise ValueError(f"the wall must be thicker than {THINNEST:g} of outer_radius ({self.outer_radius:g} m), "
+                             f"got {self.outer_radius - self.inner_radius:g} m", "its moments are lost in rounding")
+        return self
+
+    def moments(self) -> np.ndarray:
+        """See `Section.moments`."""
+        return _disc(self.outer_radius) - _disc(self.inner_radius)
+
+    def _shape_torsion_constant(self) -> float:
+        return self.second_moment_about_z + self.second_moment_about_y
+
+    def _shape_shear_factors(self, poisson_ratio: float) -> tuple[float, float]:
+        return _ring_shear_factors(poisson_ratio, self.inner_radius / self.outer_radius)
+
+
+class GeneralSection(Section):
+    """A section known by its constants alone, for cables and for structural beams.
+
+    area in m²; second_moment_about_z (∫y²dA) and second_moment_about_y in m⁴, equal if only one is given; for beams
+    torsion_constant in m⁴ and shear_factors (ky, kz). rotary_moment_yy and rotary_moment_zz in m⁴, for beams: what
+    times the density is the rotary inertia per length in kg m, of a section whose mass is elsewhere than its stiffness;
+    equal if only one is given, the second moments if none is.
+    """
+
+    shape: ClassVar[str] = "general"
+    area_: Annotated[float, positive("m²")] = Field(alias="area")
+    yy: Annotated[float, positive("m⁴")] = Field(alias="second_moment_about_z")
+    zz: Annotated[float, positive("m⁴")] = Field(default_factory=lambda data: data["yy"], alias="second_moment_about_y")
+    rotary_yy: Annotated[float, positive("m⁴")] | None = Field(None, alias="rotary_moment_yy")
+    rotary_zz: Annotated[float, positive("m⁴")] | None = Field(None, alias="rotary_moment_zz")
+
+    @model_validator(mode="after")
+    def _twists_less_than_a_disc(self) -> GeneralSection:
+        """Warping only ever lowers J below the polar moment."""
+        constant, polar = self.given_torsion_constant, self.yy + self.zz
+        if constant is not None and constant > polar * (1 + 1e-9):
+            raise ValueError(f"torsion_constant must not exceed second_moment_about_z + second_moment_about_y = {polar:.6g} m⁴, "
+                             f"got {constant:.6g} m⁴")
+        return self
+
+    def moments(self) -> np.ndarray:
+        """See `Section.moments`; not known, hence NaN, are those of order 4."""
+        return np.array([self.area_, self.yy, self.zz, nan, nan, nan])
+
+    @property
+    def has_rotary(self) -> bool:
+        """Whether its rotary inertia is given apart from its stiffness."""
+        return self.rotary_yy is not None or self.rotary_zz is not None
+
+    def mass_moments(self) -> np.ndarray:
+        """See `Section.mass_moments`."""
+        if not self.has_rotary:
+            return self.moments()
+        yy, zz = self.rotary_yy or self.rotary_zz, self.rotary_zz or self.rotary_yy
+        return np.array([self.area_, yy, zz, nan, nan, nan])
+
+
+def _ring_shear_factors(poisson_ratio: float, inner: float) -> tuple[float, float]:
+    """Cowper, J. Appl. Mech. 33 (1966) 335-340; inner: the ratio of the radii."""
+    nu, square = poisson_ratio, (1 + inner**2) ** 2
+    factor = 6 * (1 + nu) * square / ((7 + 6 * nu) * square + (20 + 12 * nu) * inner**2)
+    return factor, factor
+
+
+def _disc(r: float) -> np.ndarray:
+    return pi * np.array([r**2, r**4 / 4, r**4 / 4, r**6 / 8, r**6 / 24, r**6 / 8])
+
+
+SHAPES = {section.shape: section for section in (Rectangle, Circle, Tube, GeneralSection)}
+
+
+def _section(value: Any) -> Section:
+    """A section from itself or from a table such as {shape="circle", radius=0.01}."""
+    if isinstance(value, Section):
+        return value
+    if not isinstance(value, dict):
+        raise ValueError(f"must be a section such as Rectangle(height=0.05, width=0.05), got {shown(value)}")
+    sizes = dict(value)
+    shape = sizes.pop("shape", None)
+    if shape is None:
+        raise ValueError("has no shape", "known: " + ", ".join(SHAPES))
+    if not isinstance(shape, str):
+        raise ValueError(f"has the shape {shown(shape)}, not a name", "known: " + ", ".join(SHAPES))
+    if shape not in SHAPES:
+        raise ValueError(f'has the unknown shape "{shape}"', near(shape, SHAPES))
+    return SHAPES[shape].model_validate(sizes)
+
+
+AnySection = Annotated[Section, PlainValidator(_section)]

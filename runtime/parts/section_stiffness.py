@@ -1,0 +1,111 @@
+"""Stiffness of a section, S of the kernels `stiffness`: what an elastic law takes of section and material.
+
+A further law is one function and one entry in `_LAWS`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from .material import Material
+from .section import Section
+
+
+def section_stiffness(law: str, section: Section, material: Material, dim: int = 3) -> np.ndarray:
+    """S of an elastic law.
+
+    law: a name in ``derive/laws``, or "poisson_split"; dim: 2 for a planar element, else 3.
+    Returns, in N times even powers of m: (2,) [EA, EI] for cables, (3,) with an assumed axial strain, see `_assumed`;
+    for a continuum (9, 6) or, planar, (4, 6): the
+    integrals over the section of D11, D22, D33, D12, D13, D23, G12, G13, G23 (planar: D11, D22, D12, G12) times
+    1, y², z², y⁴, y²z², z⁴; for structural (9,) or, planar, (4,), see `_structural`.
+    """
+    return _LAWS.get(law, _cable)(section, material, dim)
+
+
+CABLE_LAWS = tuple(f"{strain}_{curvature}" for strain in ("green", "engineering") for curvature in ("exact", "linear"))
+
+KERNEL_LAWS = {"poisson_split": "continuum"} | {f"{law}_reduced": f"{law}_assumed" for law in CABLE_LAWS}
+"""Laws that run on the kernels of another one: they differ by the stiffness of the section alone."""
+
+
+STABILISATION = 0.01
+"""Part of the axial stiffness that the upper modes of a reduced axial strain have."""
+
+
+def kernel_law(law: str) -> str:
+    """The law whose kernels a law runs on."""
+    return KERNEL_LAWS.get(law, law)
+
+
+def _cable(section: Section, material: Material, dim: int) -> np.ndarray:
+    return material.youngs_modulus * section.moments()[:2]
+
+
+def _assumed(section: Section, material: Material, dim: int) -> np.ndarray:
+    """EA, EI, and EA of the modes of the axial strain that the lengths of the slopes alone govern."""
+    EA, EI = _cable(section, material, dim)
+    return np.array([EA, EI, EA])
+
+
+def _reduced(section: Section, material: Material, dim: int) -> np.ndarray:
+    """The same with what keeps the lengths of the slopes stable."""
+    EA, EI = _cable(section, material, dim)
+    return np.array([EA, EI, STABILISATION * EA])
+
+
+def _continuum(section: Section, material: Material, dim: int) -> np.ndarray:
+    """St. Venant-Kirchhoff, alike over the section."""
+    return np.outer(_elasticity(material, dim), section.moments())
+
+
+def _poisson_split(section: Section, material: Material, dim: int) -> np.ndarray:
+    """The Poisson effect on the axis alone: an element whose section cannot warp locks under that of bending.
+
+    The section's mean shear takes its shear factors, its twist its torsion constant. Gerstmayr, Matikainen & Mikkola,
+    Multibody Syst. Dyn. 20 (2008) 359-384.
+    """
+    full, moments = _elasticity(material, dim), section.moments()
+    _, mu = material.lame()
+    factors = section.shear_factors(material.poisson())[: dim - 1]
+    shears = slice(-3, -1) if dim == 3 else slice(-1, None)  # G12, G13; planar G12
+    free = full * 0
+    free[:dim] = material.youngs_modulus
+    free[dim * (dim + 1) // 2 :] = mu
+    S = np.outer(free, moments)
+    S[:, 0] += (full - free) * moments[0]
+    S[shears, 0] *= factors
+    if dim == 3:
+        S[shears, 1:] *= section.torsion_constant / (moments[1] + moments[2])
+    return S
+
+
+def _structural(section: Section, material: Material, dim: int) -> np.ndarray:
+    """EA, GA_y, GA_z, GJ, EI about y and about z, and of the section's own strains those of its height, width, angle.
+
+    Shears with the shear factors. The section's own strains have no part in the bending of beams; their stiffness is
+    that of the material under one stress alone. Planar: EA, GA_y, EI about z, and that of the height.
+    """
+    E, (_, G) = material.youngs_modulus, material.lame()
+    area, yy, zz = section.moments()[:3]
+    k_y, k_z = section.shear_factors(material.poisson())
+    if dim == 2:
+        return np.array([E * area, k_y * G * area, E * yy, E * area])
+    return np.array([E * area, k_y * G * area, k_z * G * area, G * section.torsion_constant, E * zz, E * yy,
+                     E * area, E * area, G * area])
+
+
+def _elasticity(material: Material, dim: int) -> np.ndarray:
+    """D11, D22, ... of the material; planar: of plane stress, for the width of a beam is free to change."""
+    if dim == 3:
+        return material.elasticity()
+    lam, mu = material.lame()
+    lam = 2 * mu if np.isinf(lam) else lam * (2 * mu / (lam + 2 * mu))
+    return np.array([lam + 2 * mu, lam + 2 * mu, lam, mu])
+
+
+_LAWS: dict[str, Callable[[Section, Material, int], np.ndarray]] = {
+    "continuum": _continuum, "poisson_split": _poisson_split, "structural": _structural,
+    **{f"{law}_assumed": _assumed for law in CABLE_LAWS}, **{f"{law}_reduced": _reduced for law in CABLE_LAWS}}

@@ -1,0 +1,89 @@
+"""The settings of a run, of a search for equilibrium, and of an analysis of modes."""
+
+from __future__ import annotations
+
+import os
+from typing import Annotated, Any, ClassVar
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from .validation import Count, Flag, Part, one_of, positive, within
+
+INTEGRATORS = ("auto", "genalpha", "explicit", "radau", "energy")
+
+SMALLEST_STEP = 1e-12
+"""Of the duration, as in engine/run.c."""
+
+Duration = Annotated[float, positive("s")]
+
+
+def _text_of_path(value: Any) -> Any:
+    return os.fspath(value) if isinstance(value, os.PathLike) else value
+
+
+class RunSettings(Part):
+    """How a scene is run.
+
+    duration in s; tol: the error aimed at in positions, relative to the largest motion in the scene, by which
+    the step is chosen; step: a fixed step in s instead, divided where need be so that steps end on output times;
+    output_step in s, a hundredth of the duration if not given; integrator: "explicit" (Runge-Kutta of order 8),
+    "radau" (implicit, order 5, for stiff scenes), "genalpha" (implicit, order 2, with control of the dissipation),
+    "energy" (order 2, keeps energy and momenta to rounding), or "auto": the cheaper of the first two for this scene and
+    tol, genalpha where step or spectral_radius is given; spectral_radius of genalpha (0.9 if not given) and energy
+    (1) at infinity: 1 keeps and 0 removes the fastest vibrations, energy's of the cables, counted as dissipated with
+    what their algorithmic stresses hold at the time; initial: "drawn" or "equilibrium" (static, under the loads
+    at t = 0); save: the file to write, or None; threads over the elements of cables, for some thousand of them or more,
+    at most as many as there are processors.
+    """
+
+    kind: ClassVar[str] = "run"
+    duration: Duration
+    tol: Annotated[float, positive()] = 1e-4
+    step: Duration | None = None
+    output_step: Duration = Field(default_factory=lambda data: data["duration"] / 100)
+    integrator: Annotated[str, one_of(INTEGRATORS)] = "auto"
+    spectral_radius: Annotated[float, within(0, 1, ends=True)] = Field(
+        default_factory=lambda data: 1.0 if data.get("integrator") == "energy" else 0.9)
+    initial: Annotated[str, one_of(("drawn", "equilibrium"))] = "drawn"
+    save: Annotated[str | None, BeforeValidator(_text_of_path)] = None
+    threads: Count = 1
+
+    @model_validator(mode="after")
+    def _steps_fit(self) -> RunSettings:
+        for name in ("step", "output_step"):
+            value = getattr(self, name)
+            if value is not None and value > self.duration:
+                raise ValueError(f"{name} must not exceed the duration {self.duration:g} s, got {value:g} s")
+        if self.step is not None and self.step < SMALLEST_STEP * self.duration:
+            raise ValueError(f"step must not be below {SMALLEST_STEP:g} of the duration {self.duration:g} s, got "
+                             f"{self.step:g} s")
+        return self
+
+
+class EquilibriumSettings(Part):
+    """How a static equilibrium is sought.
+
+    load_steps: in how many steps the loads are raised from 0, more where one does not converge; tolerance: of the
+    last correction of positions, relative to the size of the scene; max_iterations of a load step; method: "newton",
+    which ends in a stable state, or "arc_length", which follows the path of equilibria, also where the load falls again
+    and where they are unstable; largest_step of such a path: what two states that follow each other differ by at most,
+    of the load fraction, and of positions relative to the size of the scene; seek_stable: whether "newton" goes on
+    where it has come to an unstable state, which else is returned with its label; scale_gravity: whether a load
+    fraction p is p times gravity, too, or whether gravity is whole from the start.
+    """
+
+    kind: ClassVar[str] = "equilibrium"
+    load_steps: Count = 1
+    tolerance: Annotated[float, within(0, 1, ends=False)] = 1e-9
+    max_iterations: Count = 50
+    method: Annotated[str, one_of(("newton", "arc_length"))] = "newton"
+    largest_step: Annotated[float, within(0, 1, ends=False)] = 0.1
+    seek_stable: Flag = True
+    scale_gravity: Flag = True
+
+
+class ModeSettings(Part):
+    """How many modes are sought."""
+
+    kind: ClassVar[str] = "modes"
+    n: Count

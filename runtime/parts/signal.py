@@ -1,0 +1,300 @@
+"""Functions of time as data: scales of loads and prescribed motions.
+
+A signal is a piecewise polynomial plus at most one sine, so that the engine needs to know nothing else of it:
+f(t) = Σ_k coefficients[piece, k] (t - breaks[piece])^k + amplitude sin(angular_frequency t + phase).
+A further form is one class with ``pieces`` and one entry in `FORMS`.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable
+from math import pi
+from numbers import Real
+from typing import Annotated, Any, ClassVar
+
+import numpy as np
+from pydantic import Field, PlainValidator, model_validator
+
+from ..errors import near
+from .validation import Part, finite, list_of, one_of, positive, show, shown
+
+DEGREE = 6
+"""Of the integral of a smooth rise; FU_SIGNAL_TERMS in engine.h is one more."""
+Time = Annotated[float, finite("s")]
+Value = Annotated[float, finite()]
+
+SHORTEST = 1e-12, 1e-14
+"""Two times of a signal must be apart by so many seconds, and by this part of their size: rounding keeps them apart."""
+
+_RISE = np.array([0, 0, 0, 10, -15, 6, 0])
+"""The polynomial from 0 to 1 over [0, 1] whose first and second derivatives vanish at both ends."""
+
+
+class Signal(Part):
+    """Base of the functions of time."""
+
+    form: ClassVar[str]
+
+    def pieces(self) -> tuple[np.ndarray, np.ndarray]:
+        """The polynomial part.
+
+        Returns breaks (n+1,) in s, increasing, and coefficients (n, 7) of ascending powers of t - breaks[k]. The first
+        piece holds before all breaks, too, and the last one after them.
+        """
+        raise NotImplementedError
+
+    @property
+    def amplitude(self) -> float:
+        """Of the sine; 0 if there is none."""
+        return 0.0
+
+    @property
+    def angular_frequency(self) -> float:
+        """Of the sine, in rad/s."""
+        return 0.0
+
+    @property
+    def phase(self) -> float:
+        """Of the sine at t = 0, in rad."""
+        return 0.0
+
+    def value(self, time, derivative: int = 0) -> np.ndarray:
+        """The signal, or a derivative of it, at the times ``time`` (any shape, s)."""
+        return value_at(self, *self.pieces(), time, derivative)
+
+
+def value_at(signal, breaks: np.ndarray, coefficients: np.ndarray, time, derivative: int = 0) -> np.ndarray:
+    """A derivative, at times of any shape, of such a piecewise polynomial with the sine of ``signal``."""
+    time = np.asarray(time, dtype=float)
+    result = np.zeros(time.shape)
+    if len(coefficients):
+        piece = np.clip(np.searchsorted(breaks, time, side="right") - 1, 0, len(coefficients) - 1)
+        since = time - breaks[piece]
+        for power in range(DEGREE, derivative - 1, -1):
+            factor = np.prod(np.arange(power - derivative + 1, power + 1))
+            result = result * since + factor * coefficients[piece, power]
+    w = signal.angular_frequency
+    return result + signal.amplitude * w**derivative * np.sin(w * time + signal.phase + derivative * pi / 2)
+
+
+def _steps(times: list[float], values: list[float]) -> tuple[np.ndarray, np.ndarray]:
+    """Constant before the first time and after the last, smooth rises from value to value between the times."""
+    breaks = np.array([times[0] - 1, *times, times[-1] + 1])
+    coefficients = np.zeros((len(breaks) - 1, DEGREE + 1))
+    coefficients[:, 0] = [values[0], *values]
+    for k, (duration, change) in enumerate(zip(np.diff(times), np.diff(values), strict=True), start=1):
+        coefficients[k] += change * _RISE / duration ** np.arange(DEGREE + 1)
+    return breaks, coefficients
+
+
+def _check_apart(times: Iterable[float]) -> None:
+    """ValueError where two times (s) that follow on each other are as good as one."""
+    for one, other in itertools.pairwise(times):
+        least = max(SHORTEST[0], SHORTEST[1] * max(abs(one), abs(other)))
+        if not other - one >= least:
+            raise ValueError(f"times must be {show(least, 's')} apart or more, got {other - one:.3g} s between "
+                             f"{one!r} s and {other!r} s")
+
+
+class Constant(Signal):
+    """The same ``constant`` at all times; in a scene a plain number."""
+
+    form: ClassVar[str] = "constant"
+    constant: Value
+
+    def pieces(self) -> tuple[np.ndarray, np.ndarray]:
+        """See `Signal.pieces`."""
+        return np.array([0.0, 1.0]), np.eye(1, DEGREE + 1) * self.constant
+
+
+class TableSignal(Signal):
+    """Values at given times, in s: a cubic spline through them, or straight lines.
+
+    Before the first time and after the last one the value stays; interpolation: "cubic" (twice continuously
+    differentiable, not-a-knot) or "linear".
+    """
+
+    form: ClassVar[str] = "table"
+    time: Annotated[tuple[float, ...], list_of("s", least=2)]
+    values: Annotated[tuple[float, ...], list_of("", least=2)] = Field(alias="value")
+    interpolation: Annotated[str, one_of(("cubic", "linear"))] = "cubic"
+
+    @model_validator(mode="after")
+    def _is_a_function(self) -> TableSignal:
+        if len(self.time) != len(self.values):
+            raise ValueError(f"time and value must be of equal length, got {len(self.time)} and {len(self.values)}")
+        steps = np.diff(self.time)
+        if not steps.min() > 0:
+            k = int(np.argmax(steps <= 0))
+            raise ValueError(f"time must increase, got {show(self.time[k + 1], 's')} after {show(self.time[k], 's')}")
+        _check_apart(self.time)
+        return self
+
+    def pieces(self) -> tuple[np.ndarray, np.ndarray]:
+        """See `Signal.pieces`."""
+        time, values = np.array(self.time), np.array(self.values)
+        breaks = np.array([time[0] - 1, *time, time[-1] + 1])
+        breaks[-2] = np.nextafter(time[-1], np.inf)  # a run that ends with the table ends on its slope
+        coefficients = np.zeros((len(breaks) - 1, DEGREE + 1))
+        coefficients[0, 0], coefficients[1:, 0] = values[0], values
+        if self.interpolation == "linear":
+            coefficients[1:-1, 1] = np.diff(values) / np.diff(time)
+        else:
+            from scipy.interpolate import CubicSpline
+
+            coefficients[1:-1, :4] = CubicSpline(time, values).c[::-1].T
+        return breaks, coefficients
+
+
+class Ramp(Signal):
+    """From ``before`` to ``after`` between ``start`` and ``end`` (s), without a jump of the second derivative."""
+
+    form: ClassVar[str] = "ramp"
+    start: Time
+    end: Time
+    before: Value = 0.0
+    after: Value = 1.0
+
+    @model_validator(mode="after")
+    def _takes_time(self) -> Ramp:
+        if not self.start < self.end:
+            raise ValueError(f"end must be after start {show(self.start, 's')}, got {show(self.end, 's')}")
+        _check_apart((self.start, self.end))
+        return self
+
+    def pieces(self) -> tuple[np.ndarray, np.ndarray]:
+        """See `Signal.pieces`."""
+        return _steps([self.start, self.end], [self.before, self.after])
+
+
+class Pulse(Signal):
+    """0, then ``height`` between ``start`` and ``end`` (s), then 0.
+
+    rise: how long it takes to rise from start on and to fall before end, in s, smoothly as a `Ramp`; half of the
+    pulse if not given.
+    """
+
+    form: ClassVar[str] = "pulse"
+    start: Time
+    end: Time
+    rise: Annotated[float, positive("s")] | None = None
+    height: Value = 1.0
+
+    @model_validator(mode="after")
+    def _takes_time(self) -> Pulse:
+        if not self.start < self.end:
+            raise ValueError(f"end must be after start {show(self.start, 's')}, got {show(self.end, 's')}")
+        if self.rise is not None and self.rise > (self.end - self.start) / 2 * (1 + 1e-12):
+            raise ValueError(f"rise must not exceed half of the pulse, {show((self.end - self.start) / 2, 's')}, "
+                             f"got {show(self.rise, 's')}")
+        _check_apart(self._times)
+        return self
+
+    @property
+    def _times(self) -> list[float]:
+        """Where it begins to rise, is up, begins to fall, where that is later, and is down."""
+        half = (self.end - self.start) / 2
+        if self.rise is None or self.rise >= half * (1 - 1e-12):
+            return [self.start, self.start + half, self.end]
+        return [self.start, self.start + self.rise, self.end - self.rise, self.end]
+
+    def pieces(self) -> tuple[np.ndarray, np.ndarray]:
+        """See `Signal.pieces`."""
+        return _steps(self._times, [0.0, *[self.height] * (len(self._times) - 2), 0.0])
+
+
+class Harmonic(Signal):
+    """``offset`` + ``sine`` sin(2π frequency t + phase); frequency in Hz, phase in rad, the sine is ``amplitude``."""
+
+    form: ClassVar[str] = "harmonic"
+    sine: Value = Field(alias="amplitude")
+    frequency: Annotated[float, positive("Hz")]
+    start_phase: Annotated[float, finite("rad")] = Field(0.0, alias="phase")
+    offset: Value = 0.0
+
+    def pieces(self) -> tuple[np.ndarray, np.ndarray]:
+        """See `Signal.pieces`."""
+        return Constant(constant=self.offset).pieces()
+
+    @property
+    def amplitude(self) -> float:
+        """See `Signal.amplitude`."""
+        return self.sine
+
+    @property
+    def angular_frequency(self) -> float:
+        """See `Signal.angular_frequency`."""
+        return 2 * pi * self.frequency
+
+    @property
+    def phase(self) -> float:
+        """See `Signal.phase`."""
+        return self.start_phase
+
+
+class Integral(Signal):
+    """``start`` at t = 0, from there on the integral of ``rate`` over time, exact piece by piece; in code only."""
+
+    form: ClassVar[str] = "integral"
+    rate: Signal
+    start: Value = 0.0
+
+    @model_validator(mode="after")
+    def _fits(self) -> Integral:
+        if isinstance(self.rate, Integral):
+            raise ValueError("rate is an integral already, and its own would be of too high a degree")
+        return self
+
+    def pieces(self) -> tuple[np.ndarray, np.ndarray]:
+        """See `Signal.pieces`."""
+        breaks, rates = self.rate.pieces()
+        powers = np.arange(1, DEGREE + 1)
+        coefficients = np.zeros(rates.shape)
+        coefficients[:, 1:] = rates[:, :-1] / powers
+        gains = np.sum(coefficients[:, 1:] * np.diff(breaks)[:, None] ** powers, axis=1)
+        coefficients[1:, 0] = np.cumsum(gains)[:-1]
+        first = int(np.clip(np.searchsorted(breaks, 0.0, side="right") - 1, 0, len(rates) - 1))
+        at_zero = np.sum(coefficients[first] * (0.0 - breaks[first]) ** np.arange(DEGREE + 1))
+        coefficients[:, 0] += self.start - at_zero - self.amplitude * np.sin(self.phase)
+        return breaks, coefficients
+
+    @property
+    def amplitude(self) -> float:
+        """See `Signal.amplitude`."""
+        return self.rate.amplitude / self.angular_frequency if self.rate.amplitude else 0.0
+
+    @property
+    def angular_frequency(self) -> float:
+        """See `Signal.angular_frequency`."""
+        return self.rate.angular_frequency
+
+    @property
+    def phase(self) -> float:
+        """See `Signal.phase`: a quarter of a turn late."""
+        return self.rate.phase - pi / 2
+
+
+FORMS = {signal.form: signal for signal in (TableSignal, Ramp, Harmonic, Pulse)}
+
+
+def signal(value: Any) -> Signal:
+    """A signal from itself, a number, or a table such as {form="ramp", start=0, end=1}; else ValueError."""
+    if isinstance(value, Signal):
+        return value
+    if isinstance(value, Real) and not isinstance(value, bool):
+        return Constant.model_validate({"constant": value})
+    if not isinstance(value, dict):
+        raise ValueError(f"must be a number or a signal such as Ramp(start=0, end=1), got {shown(value)}")
+    data = dict(value)
+    form = data.pop("form", None)
+    if form is None:
+        raise ValueError("has no form", "known: " + ", ".join(FORMS))
+    if not isinstance(form, str):
+        raise ValueError(f"has the form {shown(form)}, not a name", "known: " + ", ".join(FORMS))
+    if form not in FORMS:
+        raise ValueError(f'has the unknown form "{form}"', near(form, FORMS))
+    return FORMS[form].model_validate(data)
+
+
+AnySignal = Annotated[Signal, PlainValidator(signal)]

@@ -1,0 +1,82 @@
+"""Slides: sliding joints."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, ClassVar
+
+from pydantic import Field, model_validator
+
+from .attachment import Attachment
+from .end_stops import CableEnd, Stop
+from .friction import Friction
+from .signal import AnySignal, Integral, Signal
+from .validation import Name, Part, Reference, Vector, direction, finite, one_of, xyz
+
+
+class Slide(Part):
+    """A body's point that rides the centreline of a cable.
+
+    body, along: what rides, and the cable; s: the arc-length where it starts, in m; at: the rider's point in body
+    axes, in m; of a cable that rides, ``body_s`` (m) instead, its point's arc-length: body=("link", 0.5) gives both.
+
+    frame: "point", the rider turns freely; "tangent", it keeps the angle to the cable's tangent that it starts with,
+    so that a trolley's floor stays along the cable; "section", the whole orientation to the cable's section that it
+    starts with, which transmits torsion and needs an element with section axes. roll, with frame "tangent": "free", or
+    "held": the turn about the tangent is kept against the direction ``up``, fixed in the ground, by default the one
+    against gravity, else the cable's own.
+
+    drive: s over time as a signal, in m, or ``velocity``, its rate, in m/s: the slide follows it, whatever the force.
+    friction: see `Friction`. at_start, at_end: what waits at the cable's ends: "error", "leave" (the rider flies on),
+    a `HardStop` or a `Buffer`.
+    """
+
+    kind: ClassVar[str] = "slide"
+    body: Reference
+    body_s: Annotated[float, finite("m")] | None = None
+    along: Reference
+    s: Annotated[float, finite("m")]
+    at: Annotated[Vector, xyz("m")] = (0.0, 0.0, 0.0)
+    name: Name = Field(default_factory=lambda data: f"{data['body']}_on_{data['along']}")
+    frame: Annotated[str, one_of(("point", "tangent", "section"))] = "point"
+    roll: Annotated[str, one_of(("free", "held"))] = "free"
+    up: Annotated[Vector | None, direction()] = None
+    drive: AnySignal | None = None
+    velocity: AnySignal | None = None
+    friction: Friction | None = None
+    at_start: CableEnd = "error"
+    at_end: CableEnd = "error"
+
+    @model_validator(mode="before")
+    @classmethod
+    def _splits_a_point_of_a_cable(cls, data: Any) -> Any:
+        body = data.get("body") if isinstance(data, dict) else None
+        if isinstance(body, list | tuple) and len(body) == 2:
+            return data | {"body": body[0], "body_s": body[1]}
+        return data
+
+    @model_validator(mode="after")
+    def _is_of_one_mind(self) -> Slide:
+        if self.body_s is not None and any(self.at):
+            raise ValueError("at is a point in body axes, but body_s one on a cable", "give one of the two")
+        if self.roll == "held" and self.frame != "tangent":
+            raise ValueError(f'roll "held" is for frame "tangent", got frame "{self.frame}"',
+                             "section axes hold the roll of themselves" if self.frame == "section" else
+                             'leave it out, or take frame="tangent"')
+        if self.up is not None and self.roll != "held":
+            raise ValueError("up is given, but roll is free", 'leave it out, or take roll="held"')
+        if self.drive is not None and self.velocity is not None:
+            raise ValueError("drive and velocity are given", "give one of the two")
+        for name in ("at_start", "at_end"):
+            if self.prescribed is not None and isinstance(getattr(self, name), Stop):
+                raise ValueError(f"is driven, and a stop {name} would hold against that", "leave one of them out")
+        return self
+
+    @property
+    def rider(self) -> Attachment:
+        """The point that rides."""
+        return Attachment(on=self.body, at=self.at) if self.body_s is None else Attachment(on=self.body, s=self.body_s)
+
+    @property
+    def prescribed(self) -> Signal | None:
+        """s over time in m, where it is driven."""
+        return self.drive if self.velocity is None else Integral(rate=self.velocity, start=self.s)

@@ -1,0 +1,35 @@
+"""Springs with dampers."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar
+
+from pydantic import model_validator
+
+from .attachment import AnyAttachment
+from .validation import Name, Part, not_negative
+
+
+class Spring(Part):
+    """A linear spring with a damper between two points of cables, bodies or the ground.
+
+    a, b: its ends: ("wire", s), ("A", (x, y, z) in body axes), "A" for its origin, or a point (x, y, z) of the
+    ground, in m; stiffness in N/m; damping in N s/m; length: where it is free of force, in m, that at the start if
+    not given.
+    """
+
+    kind: ClassVar[str] = "spring"
+    name: Name | None = None
+    a: AnyAttachment
+    b: AnyAttachment
+    stiffness: Annotated[float, not_negative("N/m")]
+    damping: Annotated[float, not_negative("N s/m")] = 0.0
+    length: Annotated[float, not_negative("m")] | None = None
+
+    @model_validator(mode="after")
+    def _acts(self) -> Spring:
+        if self.a.on is None and self.b.on is None:
+            raise ValueError("has both ends on the ground", "let one of them hold a cable or a body")
+        if self.stiffness == 0 and self.damping == 0:
+            raise ValueError("has neither stiffness nor damping", "give one of them, or both")
+        return self

@@ -1,0 +1,163 @@
+"""What holds or joins the nodes of cables: pins, clamps, joins, prescribed motions."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, ClassVar
+
+from pydantic import PlainValidator, model_validator
+
+from .signal import Signal, signal
+from .validation import Name, Part, Reference, Vector, finite, one_of, shown, vector
+
+
+def _called(cable: Any) -> str:
+    """What messages call a cable, given as itself, as its name, or as what is neither."""
+    name = getattr(cable, "name", cable)
+    return f'"{name}"' if isinstance(name, str) else shown(name)
+
+
+class Support(Part):
+    """Base of what holds a cable's node at ``s`` (m)."""
+
+    cable: Reference
+    s: Annotated[float, finite("m")]
+
+    @classmethod
+    def place(cls, data: dict) -> str:
+        """How messages name the support."""
+        return f"{cls.kind} on {_called(data.get('cable'))}"
+
+    @property
+    def label(self) -> str:
+        """Its name in the results, such as ``wire@0``."""
+        return f"{self.cable}@{self.s + 0.0:.12g}"
+
+
+class Pin(Support):
+    """Holds the position of a cable's node at ``s`` (m) where it starts; its slopes stay free."""
+
+    kind: ClassVar[str] = "pin"
+
+
+class Clamp(Support):
+    """Holds the position of a cable's node at ``s`` (m) and its section, or all of its nodal vectors.
+
+    hold: "section": of cables the direction of the tangent, while its length stays free; of beams the axes of the
+    section, r_y and r_z, while r_x stays free, so that shear and stretch are not hindered. "all": every nodal vector.
+    """
+
+    kind: ClassVar[str] = "clamp"
+    hold: Annotated[str, one_of(("section", "all"))] = "section"
+
+
+class Rotation(Part):
+    """A turn about ``axis``, fixed in the ground, by the signal ``angle`` in rad."""
+
+    axis: Vector
+    angle: Signal
+
+
+FREE = "free"
+"""A direction that a motion leaves free, in scenes."""
+
+
+Displacement = tuple[Signal | None, Signal | None, Signal | None]
+"""A signal for each direction, None for one that stays free."""
+
+
+def _displacement(value: Any) -> Displacement | None:
+    if value is None:
+        return None
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if not isinstance(value, list | tuple) or len(value) != 3:
+        raise ValueError(f"must be 3 signals or numbers, got {shown(value)}",
+                         'give 0 for a direction without motion, "free" for one that is not prescribed')
+    made = tuple(None if each is None or each == FREE else _component(axis, each)
+                 for axis, each in zip("xyz", value, strict=True))
+    if not any(made):
+        raise ValueError("leaves all directions free", "leave it out, or give a signal or number for one of them")
+    return made
+
+
+def _component(axis: str, value: Any) -> Signal:
+    try:
+        return signal(value)
+    except ValueError as error:
+        raise _of(axis, error) from None
+
+
+def _of(name: str, error: ValueError) -> ValueError:
+    """The same complaint about a part of a quantity; a model's own errors name theirs."""
+    if hasattr(error, "errors"):
+        first = error.errors(include_url=False)[0]
+        cause = first.get("ctx", {}).get("error")
+        inner, args = ".".join(map(str, first["loc"])), cause.args if cause else ("is missing",)
+        return ValueError(f"{name}: {inner} {args[0]}".replace("  ", " "), *args[1:])
+    return ValueError(f"{name} {error.args[0]}", *error.args[1:])
+
+
+def _rotation(value: Any) -> Rotation | None:
+    if value is None or isinstance(value, Rotation):
+        return value
+    if isinstance(value, dict) and set(value) == {"axis", "angle"}:
+        value = value["axis"], value["angle"]
+    if not isinstance(value, list | tuple) or len(value) != 2:
+        raise ValueError(f"must be an axis and a signal, got {shown(value)}",
+                         "such as ((0, 0, 1), Ramp(start=0, end=1))")
+    try:
+        axis = vector(value[0])
+    except ValueError as error:
+        raise _of("axis", error) from None
+    norm = math.hypot(*axis)
+    if not norm > 0:
+        raise ValueError("axis must not be zero")
+    if abs(norm - 1) > 1e-15:  # already rounded to a unit: dividing again would only move the last digit
+        axis = tuple(a / norm for a in axis)
+    return Rotation(axis=axis, angle=_component("angle", value[1]))
+
+
+class Motion(Support):
+    """Moves a cable's node at ``s`` (m) as prescribed.
+
+    displacement: three signals in m, from where the node is drawn, or numbers, 0 for a direction that is held; None, or
+    "free", leaves a direction free. Without it the position stays free. rotation: an axis and a signal in rad, by which
+    the section turns from where it is drawn (of cables r_x, whose length is held, too; of beams r_y and r_z); without
+    it the section stays free.
+    """
+
+    kind: ClassVar[str] = "motion"
+    displacement: Annotated[Displacement | None, PlainValidator(_displacement)] = None
+    rotation: Annotated[Rotation | None, PlainValidator(_rotation)] = None
+
+    @model_validator(mode="after")
+    def _moves_something(self) -> Motion:
+        if self.displacement is None and self.rotation is None:
+            raise ValueError("has neither displacement nor rotation", "give one of them, or both")
+        return self
+
+
+class Tie(Part):
+    """Joins the node at ``s`` (m) of one cable to the node at arc-length ``at`` of another one, ``to``.
+
+    They share their position. With rotation "rigid" (a frame's corner) their sections turn together, at the angle at
+    which they are drawn; in line, and in space, they share the gradient of the deformation, all slopes. In space that
+    makes a corner of beams, and a beam joined to a cable, too soft, which a `FunicularWarning` says: take a `Joint` of
+    the kind "weld". With "free" they turn freely (a hinge).
+    """
+
+    kind: ClassVar[str] = "tie"
+    name: Name | None = None
+    cable: Reference
+    s: Annotated[float, finite("m")]
+    to: Reference
+    at: Annotated[float, finite("m")]
+    rotation: Annotated[str, one_of(("rigid", "free"))] = "rigid"
+
+    @classmethod
+    def place(cls, data: dict) -> str:
+        """How messages name the join."""
+        if data.get("name") is not None:
+            return super().place(data)
+        return f"tie of {_called(data.get('cable'))} and {_called(data.get('to'))}"

@@ -1,0 +1,286 @@
+"""Checked quantities and the base of the models that a scene is described with.
+
+A quantity is ``Annotated[float, positive("m")]``; its checks raise ``ValueError(cause)`` or
+``ValueError(cause, remedy)``, and `Part` turns the first of them into a `SceneError` that names its place.
+
+Numbers are bounded (`LIMITS`), so that no power or product that the equations take of them leaves the range of double
+precision: the sixth power of a radius, for instance, is a moment of its section.
+"""
+
+from __future__ import annotations
+
+import math
+import reprlib
+from collections.abc import Iterable
+from numbers import Integral, Real
+from typing import Annotated, Any, ClassVar
+
+import numpy as np
+from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainValidator, ValidationError, model_validator
+
+from ..errors import SceneError, near
+
+LIMITS = {"m": (1e-12, 1e9), "s": (1e-12, 1e12), "m²": (1e-24, 1e24), "m⁴": (1e-48, 1e48)}
+"""By unit: the least size of a number that must be positive, and the largest of any number; else `OTHER_LIMITS`."""
+
+OTHER_LIMITS = (1e-30, 1e30)
+
+MOST = 1_000_000
+"""The largest count: elements of a cable, modes, iterations."""
+
+LONGEST_NAME = 100
+"""Characters; with the name of a quantity behind it, it has to be a name in a netCDF file, too."""
+
+
+class _Short(reprlib.Repr):
+    """Values in messages, whatever their size and depth."""
+
+    def __init__(self):
+        super().__init__()
+        self.maxlevel, self.maxstring, self.maxother = 4, 80, 120
+        self.maxlist = self.maxtuple = self.maxdict = 12
+
+    def repr_int(self, value: int, level: int) -> str:
+        """Python writes no integers of thousands of digits."""
+        return repr(value) if value.bit_length() < 256 else f"an integer of {value.bit_length()} bits"
+
+
+shown = _Short().repr
+"""``shown(value)``: a value as messages quote it, shortened where it is long or nested deeply."""
+
+
+def _real(value: Any) -> float:
+    if isinstance(value, bool) or not isinstance(value, Real):
+        raise ValueError(f"must be a number, got {shown(value)}")
+    try:
+        return float(value)
+    except OverflowError:  # an integer of more than 308 digits
+        return math.inf
+
+
+def _in_range(numbers: tuple[float, ...], unit: str, got: str) -> None:
+    """ValueError unless all numbers are finite and within the limits of their unit; got: how messages quote them."""
+    if not all(map(math.isfinite, numbers)):
+        raise ValueError(f"must be finite, got {got}")
+    largest = LIMITS.get(unit, OTHER_LIMITS)[1]
+    if max(map(abs, numbers), default=0.0) > largest:
+        raise ValueError(f"must not exceed {show(largest, unit)} in size, got {got}")
+
+
+def number(value: Any, unit: str = "") -> float:
+    """``value`` as a finite float within `LIMITS`; ValueError if it is none. Text and booleans are no numbers."""
+    result = _real(value)
+    _in_range((result,), unit, show(result, unit))
+    return result
+
+
+def vector(value: Any, unit: str = "", size: int = 3) -> tuple[float, ...]:
+    """``value`` as ``size`` finite floats within `LIMITS`; ValueError if it is anything else."""
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if not isinstance(value, list | tuple) or len(value) != size:
+        raise ValueError(f"must be {size} numbers, got {shown(value)}")
+    numbers = tuple(map(_real, value))
+    farthest = LIMITS["m"][1]
+    if unit == "m" and farthest < max(map(abs, numbers), default=0.0) < math.inf:
+        raise ValueError(f"must lie within {farthest:g} m of the origin, beyond which positions are rounded to more "
+                         f"than 1e-7 m, got {show(numbers, unit)}", "draw the scene nearer to the origin")
+    _in_range(numbers, unit, show(numbers, unit))
+    return numbers
+
+
+def show(value: float | tuple[float, ...] | np.ndarray, unit: str = "") -> str:
+    """A number or vector for a message, with its unit."""
+    if isinstance(value, float):
+        return f"{value:.9g} {unit}".strip()
+    numbers = [f"{v:.9g}" for v in value]
+    if len(numbers) > 12:
+        numbers[6:-3] = ["..."]
+    return f"({', '.join(numbers)}) {unit}".strip()
+
+
+def one_of(known: Iterable[str], optional: bool = False) -> PlainValidator:
+    """Check of a name among known ones, or of None where it may be left out; the refusal suggests the near one."""
+    def check(value: Any) -> str | None:
+        if value is None and optional:
+            return None
+        if not isinstance(value, str):
+            raise ValueError(f"must be a name, got {shown(value)}", "known: " + ", ".join(known))
+        if value not in known:
+            raise ValueError(f'"{value}" is not known', near(value, known))
+        return value
+
+    return PlainValidator(check)
+
+
+def finite(unit: str = "") -> PlainValidator:
+    """Check of a finite number."""
+    return PlainValidator(lambda value: number(value, unit))
+
+
+def _bounded(unit: str, holds, rule: str) -> PlainValidator:
+    def check(value: Any) -> float:
+        result = number(value, unit)
+        if not holds(result):
+            raise ValueError(f"must {rule}, got {show(result, unit)}")
+        return result
+
+    return PlainValidator(check)
+
+
+def positive(unit: str = "") -> PlainValidator:
+    """Check of a finite number above 0 and within `LIMITS`."""
+    least = LIMITS.get(unit, OTHER_LIMITS)[0]
+
+    def check(value: Any) -> float:
+        result = number(value, unit)
+        if not result > 0:
+            raise ValueError(f"must be positive, got {show(result, unit)}")
+        if result < least:
+            raise ValueError(f"must not be below {show(least, unit)}, got {show(result, unit)}")
+        return result
+
+    return PlainValidator(check)
+
+
+def not_negative(unit: str = "") -> PlainValidator:
+    """Check of a finite number, 0 or above."""
+    return _bounded(unit, lambda x: x >= 0, "not be negative")
+
+
+def within(low: float, high: float, *, ends: bool) -> PlainValidator:
+    """Check of a finite number between ``low`` and ``high``, the ends included or not."""
+    if ends:
+        return _bounded("", lambda x: low <= x <= high, f"lie in [{low:g}, {high:g}]")
+    return _bounded("", lambda x: low < x < high, f"lie inside ({low:g}, {high:g})")
+
+
+def above(low: float, most: float) -> PlainValidator:
+    """Check of a finite number above ``low`` and at most ``most``."""
+    return _bounded("", lambda x: low < x <= most, f"be above {low:g} and at most {most:g}")
+
+
+def xyz(unit: str = "") -> PlainValidator:
+    """Check of three finite numbers."""
+    return PlainValidator(lambda value: vector(value, unit))
+
+
+def direction() -> PlainValidator:
+    """Check of three finite numbers that are not all zero; their length is free."""
+    def check(value: Any) -> tuple[float, ...]:
+        result = vector(value)
+        if not any(result):
+            raise ValueError("must not be zero")
+        if math.hypot(*result) < OTHER_LIMITS[0]:
+            raise ValueError(f"must not be shorter than {show(OTHER_LIMITS[0])}, got {show(result)}")
+        return result
+
+    return PlainValidator(check)
+
+
+def list_of(unit: str = "", *, least: int) -> PlainValidator:
+    """Check of a list of at least ``least`` finite numbers."""
+    def check(value: Any) -> tuple[float, ...]:
+        value = value.tolist() if isinstance(value, np.ndarray) else value
+        if not isinstance(value, list | tuple) or len(value) < least:
+            raise ValueError(f"must be a list of {least} numbers or more, got {shown(value)}")
+        return vector(value, unit, len(value))
+
+    return PlainValidator(check)
+
+
+def _count(value: Any) -> int:
+    if isinstance(value, bool) or not isinstance(value, Integral) or value < 1:
+        raise ValueError(f"must be a whole number, 1 or more, got {shown(value)}")
+    if value > MOST:
+        raise ValueError(f"must not exceed {MOST}, got {shown(int(value))}")
+    return int(value)
+
+
+def _flag(value: Any) -> bool:
+    if not isinstance(value, bool | np.bool_):
+        raise ValueError(f"must be true or false, got {shown(value)}")
+    return bool(value)
+
+
+def _name(value: Any) -> str:
+    # Results are addressed as "name.quantity" and "cable@s": a name must leave these signs alone.
+    if not isinstance(value, str) or not value.replace("-", "_").isidentifier():
+        raise ValueError(f"must be made of letters, digits, _ and -, and begin with no digit, got {shown(value)}")
+    if len(value) > LONGEST_NAME:
+        raise ValueError(f"must not be longer than {LONGEST_NAME} characters, got {len(value)}")
+    return value
+
+
+Count = Annotated[int, PlainValidator(_count)]
+Flag = Annotated[bool, PlainValidator(_flag)]
+Name = Annotated[str, PlainValidator(_name)]
+Reference = Annotated[str, BeforeValidator(lambda value: getattr(value, "name", value))]
+"""The name of a part of the scene, given as that or as the part itself."""
+Vector = tuple[float, float, float]
+
+
+class _TranslatingType(type(BaseModel)):
+    """Makes a constructor call raise `SceneError`.
+
+    In the metaclass and not in ``__init__``, so that a model inside another one still reports to pydantic,
+    which knows the path to it.
+    """
+
+    def __call__(cls, /, **data):
+        try:
+            return super().__call__(**data)
+        except ValidationError as error:
+            raise _scene_error(cls.place(data), error) from None
+
+
+class Part(BaseModel, metaclass=_TranslatingType):
+    """Base of what a scene is described with: frozen, and strict about names."""
+
+    model_config = ConfigDict(frozen=True, defer_build=True)  # built when first used: the import stays quick
+
+    kind: ClassVar[str] = ""
+    """What messages call it; the class name when empty."""
+
+    @classmethod
+    def place(cls, data: dict) -> str:
+        """How messages name the part made of ``data``."""
+        kind = cls.kind or cls.__name__
+        return f'{kind} "{data["name"]}"' if isinstance(data.get("name"), str) else kind
+
+    @classmethod
+    def keywords(cls) -> dict[str, str]:
+        """What a part is made with: the keywords, and the names of the fields that hold them."""
+        return {field.alias or name: name for name, field in cls.model_fields.items()}
+
+    @property
+    def where(self) -> str:
+        """How messages name this part."""
+        return self.place(dict(self))
+
+    @model_validator(mode="before")
+    @classmethod
+    def _knows_all_names(cls, data: Any) -> Any:
+        if isinstance(data, dict):
+            known = cls.keywords()
+            for key in data:
+                if key not in known:
+                    raise ValueError(f'"{key}" is not known here', near(key, known))
+        return data
+
+
+def _scene_error(place: str, error: ValidationError) -> SceneError:
+    """The first of pydantic's complaints in our words."""
+    first = error.errors(include_url=False)[0]
+    path = ".".join(map(str, first["loc"]))
+    match first["type"]:
+        case "value_error":
+            cause, *remedy = first["ctx"]["error"].args
+        case "missing":
+            cause, remedy = "is missing", []
+        case "model_type":
+            name = first["ctx"]["class_name"]
+            cause, remedy = f"must be a {name} or a table of its values, got {shown(first['input'])}", []
+        case _:
+            cause, remedy = f"{first['msg'][:1].lower() + first['msg'][1:]}, got {shown(first['input'])}", []
+    return SceneError(place, f"{path} {cause}".strip(), *remedy)

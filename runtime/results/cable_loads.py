@@ -1,0 +1,258 @@
+"""What acts on cables between their nodes at given instants: loads, springs, joints, riders, as generalised forces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..kernels.libraries import kernels_of
+from ..model.attachments import CARRIED, UP, AttachmentModel
+from ..model.loads import GAUSS
+from ..parts import DistributedForce, Moment
+from ..rotations import rotate
+from .recording import end_points, spatial
+
+if TYPE_CHECKING:
+    from ..model.build import CableModel, Model
+    from ..scene import Scene
+
+
+@dataclass
+class Instants:
+    """A scene at T instants: q (T, n_q), v (T, n_dof) of the cables, nil of bodies, and quantities of its parts.
+
+    value(name): a result by name, (T, ...); load, weight: how much of the loads and of gravity is on.
+    """
+
+    time: np.ndarray
+    q: np.ndarray
+    v: np.ndarray
+    value: object
+    load: float = 1.0
+    weight: float = 1.0
+
+
+@dataclass
+class Action:
+    """A force at a place of a cable: element and x (m) in it (T,), generalised force f (T, vectors, dim)."""
+
+    element: np.ndarray
+    x: np.ndarray
+    f: np.ndarray
+
+
+@dataclass
+class Spread:
+    """A force a length along an element from x = start to stop (m).
+
+    x (n,): places in between; density (T, n, 3) there, in N/m, a polynomial between them; f (T, vectors, dim).
+    """
+
+    element: int
+    start: float
+    stop: float
+    x: np.ndarray
+    density: np.ndarray
+    f: np.ndarray
+
+
+def at_element(cable: CableModel, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Elements that hold arc-lengths s, and x in them; at a node the element that begins there."""
+    element = np.clip((np.asarray(s) // cable.length).astype(int), 0, cable.n_elements - 1)
+    return element, s - element * cable.length
+
+
+def element_coordinates(cable: CableModel, values: np.ndarray, element: np.ndarray | None = None) -> np.ndarray:
+    """(T, elements, vectors, dim) of a cable from (T, n), or with element (T,) those of one each: (T, vectors, dim)."""
+    nodal = values[:, cable.coordinates].reshape(len(values), *cable.shape)
+    if element is not None:
+        rows = np.arange(len(values))
+        return np.concatenate([nodal[rows, element], nodal[rows, element + 1]], axis=1)
+    return np.concatenate([nodal[:, :-1], nodal[:, 1:]], axis=2)
+
+
+def shape_on_axis(cable: CableModel, x: np.ndarray) -> np.ndarray:
+    """(..., vectors): shape functions at places x of an element's centreline."""
+    x = np.asarray(x, dtype=float)
+    return rows(cable.kernel("on_axis"), x.size, cable.length, x.ravel())[0].reshape(*x.shape, -1)
+
+
+def rows(kernel, n: int, *given):
+    """A kernel n times; each argument has the kernel's shape, or that after n."""
+    return kernel.rows(n, *given)
+
+
+class CableActions:
+    """Collects what acts on cables between nodes. Gravity, inertia and what is given to nodes are not in it."""
+
+    def __init__(self, scene: Scene, model: Model, at: Instants):
+        self.scene, self.model, self.at, self.dim = scene, model, at, model.dim
+        self.times, self.gravity = len(at.time), at.weight * np.array(scene.gravity)[: self.dim]
+        self.points: dict[int, list[Action]] = {}
+        self.spreads: dict[int, list[Spread]] = {}
+        names = [cable.name for cable in model.cables]
+        self.number = {name: k for k, name in enumerate(names)}
+        self._loads()
+        self._slides()
+        self._joints()
+        self._springs()
+
+    def _add(self, cable: int, element, x, f: np.ndarray) -> None:
+        element, x = (np.broadcast_to(value, self.times) for value in (element, x))
+        self.points.setdefault(cable, []).append(Action(element, x, f))
+
+    def _loads(self) -> None:
+        for load in self.scene.loads.values():
+            on = load.cable if isinstance(load, DistributedForce) else load.on
+            if on not in self.number:
+                continue
+            scale = self.at.load * load.scale.value(self.at.time)
+            if isinstance(load, DistributedForce):
+                self._distributed(load, self.number[on], scale)
+                continue
+            cable = self.model.cables[self.number[on]]
+            element, x = at_element(cable, load.s)
+            if isinstance(load, Moment):
+                component = np.array(load.value)[slice(2, 3) if self.dim == 2 else slice(0, 3)]
+                f = self._turning(cable, "moment", element, x, component)
+            else:
+                f = self._force(cable, element, x, np.array(load.value), load.follower)
+            self._add(self.number[on], element, x, scale[:, None, None] * f)
+
+    def _turning(self, cable: CableModel, kernel: str, element, x, c: np.ndarray) -> np.ndarray:
+        """(T, vectors, dim): of a load that turns with the section."""
+        e = element_coordinates(cable, self.at.q, np.broadcast_to(element, self.times))
+        return rows(cable.kernel(kernel), self.times, cable.length, x, e, c)[0]
+
+    def _force(self, cable: CableModel, element, x, value: np.ndarray, follower: bool) -> np.ndarray:
+        """(T, vectors, dim): of a force along the ground's axes, or the local ones."""
+        if follower:
+            return self._turning(cable, "follower_force", element, x, value[: self._follower_components(cable)])
+        f = np.outer(shape_on_axis(cable, x), value[: self.dim])
+        return np.broadcast_to(f, (self.times, *f.shape))
+
+    @staticmethod
+    def _follower_components(cable: CableModel) -> int:
+        return cable.kernel("follower_force").shapes["c"][0]
+
+    def _distributed(self, load: DistributedForce, number: int, scale: np.ndarray) -> None:
+        cable, value = self.model.cables[number], np.array(load.value)
+        is_r = positions(cable)
+        for element in range(cable.n_elements):
+            start = max(load.start - element * cable.length, 0.0)
+            stop = min(load.stop - element * cable.length, cable.length)
+            if stop <= start:
+                continue
+            half = (stop - start) / 2
+            places = (start + stop) / 2 + half * GAUSS[0]
+            each = [scale[:, None, None] * self._force(cable, element, x, value, load.follower) for x in places]
+            density = spatial(np.stack([f[:, is_r].sum(axis=1) for f in each], axis=1))
+            f = sum(half * w * part for w, part in zip(GAUSS[1], each, strict=True))
+            self.spreads.setdefault(number, []).append(Spread(element, start, stop, places, density, f))
+
+    def _slides(self) -> None:
+        """Riders: their force at s, with the opposite on what rides; and moments of slides that keep axes."""
+        for joint in self.model.slides:
+            force, s = self.at.value(f"{joint.name}.force"), self.at.value(f"{joint.name}.s")
+            cable = self.model.cables[joint.cable]
+            element, x = at_element(cable, np.clip(s, 0.0, cable.length * cable.n_elements))
+            N = shape_on_axis(cable, x)
+            self._add(joint.cable, element, x, -N[:, :, None] * force[:, None, : self.dim])
+            self._on_end(joint.rider, force, None)
+        for link in self.model.joints:
+            if link.slide is None:
+                continue
+            moment = self.at.value(f"{link.slide}.moment")
+            joint = next(j for j in self.model.slides if j.name == link.slide)
+            cable = self.model.cables[joint.cable]
+            s = np.clip(self.at.value(f"{link.slide}.s"), 0.0, cable.length * cable.n_elements)
+            element, x = at_element(cable, s)
+            f = self._couple(cable, link.ends[0], element, x, -moment)
+            self._add(joint.cable, element, x, f)
+            self._on_end(link.ends[1], None, moment)
+
+    def _joints(self) -> None:
+        for link in self.model.joints:
+            if link.slide is not None or all(end.cable < 0 for end in link.ends):
+                continue
+            force, moment = self.at.value(f"{link.name}.force"), self.at.value(f"{link.name}.moment")
+            one, other = link.ends[::-1] if link.reversed else link.ends
+            self._on_end(other, force, moment)
+            if one.cable >= 0:  # its moment balances the other end's, and the forces where these stand apart
+                gap = self._end_point(other) - self._end_point(one)
+                self._on_end(one, -force, -moment - np.cross(gap, force))
+
+    def _end_point(self, end: AttachmentModel) -> np.ndarray:
+        """(T, 3): where an end is."""
+        if end.body < 0:
+            return end_points(self.model, end, self.at.q)
+        body = self.model.bodies[end.body]
+        arm = body.centre + end.u
+        if end.spot is not None:
+            arm = spatial(end.spot[0] + self.at.value(f"{body.name}.modal_coordinates") @ end.spot[1])
+        return self.at.value(f"{body.name}.position") + rotate(self.at.value(f"{body.name}.orientation"), arm)
+
+    def _springs(self) -> None:
+        for spring in self.model.springs:
+            if any(end.cable >= 0 for end in spring.ends):
+                force = self.at.value(f"{spring.name}.force")
+                self._on_end(spring.ends[0], force, None)
+                self._on_end(spring.ends[1], -force, None)
+
+    def _on_end(self, end: AttachmentModel, force: np.ndarray | None, moment: np.ndarray | None) -> None:
+        """A force and a moment (T, 3) on what carries an end, where that is a cable."""
+        if end.cable < 0:
+            return
+        cable = self.model.cables[end.cable]
+        x = self._x_of(cable, end)
+        f = np.zeros((self.times, len(end.N), self.dim))
+        if force is not None:
+            f = f + end.N[:, None] * force[:, None, : self.dim]
+        if moment is not None and end.frame:
+            f = f + self._couple(cable, end, np.full(self.times, end.element), np.full(self.times, x), moment)
+        self._add(end.cable, end.element, x, f)
+
+    def _couple(self, cable: CableModel, end: AttachmentModel, element, x, moment: np.ndarray) -> np.ndarray:
+        """(T, vectors, dim): of a moment (T, 3) on the frame that an end has of its cable, T' m."""
+        e = element_coordinates(cable, self.at.q, element)
+        S = rows(cable.kernel("slopes"), self.times, cable.length, x)[:, :, 0]  # (T, xyz, vectors)
+        e_local = e - np.where(positions(cable)[:, None], e[:, :1], 0.0)
+        vectors = []
+        for slope in end.slopes:
+            if slope >= 0:
+                vectors.append(np.einsum("tk,tkd->td", S[:, slope], e_local))
+            else:
+                vectors.append(np.broadcast_to(np.asarray(end.up, dtype=float)[: self.dim], (self.times, self.dim)))
+        if end.slopes[1] == CARRIED:  # any direction across does: it turns with the tangent
+            vectors[1] = across(vectors[0])
+        if self.dim == 2 and end.slopes[1] == UP:
+            vectors[1] = np.zeros_like(vectors[0])
+        m = moment[:, 2:] if self.dim == 2 else moment
+        kernel = getattr(kernels_of(None), f"{end.frame}_moment")
+        g = rows(kernel, self.times, *vectors, m)[0].reshape(self.times, 2, self.dim)
+        return sum(S[:, slope, :, None] * g[:, k, None] for k, slope in enumerate(end.slopes) if slope >= 0)
+
+    def _x_of(self, cable: CableModel, end: AttachmentModel) -> float:
+        """x of an end in its element, from its shape functions: those of positions and slopes weigh a line's points."""
+        straight = np.zeros(len(end.N))
+        names = [*cable.vectors, *cable.vectors]
+        for k, name in enumerate(names):
+            if name == "r_x":
+                straight[k] = 1.0
+            elif name == "r" and k >= len(cable.vectors):
+                straight[k] = cable.length
+        return float(np.clip(end.N @ straight, 0.0, cable.length))
+
+
+def positions(cable: CableModel) -> np.ndarray:
+    """(vectors,): which of an element's nodal vectors are positions."""
+    return np.array([name == "r" for name in cable.vectors] * 2)
+
+
+def across(tangent: np.ndarray) -> np.ndarray:
+    """(T, dim): unit vectors square to others."""
+    least = np.eye(tangent.shape[-1])[np.argmin(np.abs(tangent), axis=-1)]
+    part = least - tangent * (np.sum(least * tangent, axis=-1) / np.sum(tangent**2, axis=-1))[:, None]
+    return part / np.linalg.norm(part, axis=-1)[:, None]

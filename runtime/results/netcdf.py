@@ -1,0 +1,431 @@
+"""Files of results: netCDF, the classic format with 64-bit offsets, written row by row.
+
+A row holds all variables at one time, and last its checksum. Rows are added behind those that count, then their number
+in the header is raised, so that the file is whole at every instant. The header has a checksum, too, which leaves out
+what changes while the file grows: the number of rows and the report, whose lines have their own. All are ordinary
+variables and attributes for other readers. Format: NetCDF Classic Format Specification, Unidata.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import struct
+import weakref
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from .checksums import row_checksums, text_checksum
+from .locks import created
+
+MAGIC = b"CDF\x02"
+COUNT_AT = len(MAGIC)
+"""Where the number of rows stands in the header, four bytes."""
+
+_DIMENSION, _VARIABLE, _ATTRIBUTE = 10, 11, 12
+_CHAR, _INT, _DOUBLE = 2, 4, 6
+_TYPES = {1: ">i1", _CHAR: "S1", 3: ">i2", _INT: ">i4", 5: ">f4", _DOUBLE: ">f8"}
+_BLOCK = 1 << 22
+"""Bytes that are read at once."""
+MOST_HEADER, MOST_ROW = 1 << 28, 1 << 31
+"""Bytes that a header and a row may have."""
+
+ROW_CHECKSUM = "row_checksum"
+HEADER_CHECKSUM = "header_checksum"
+_NOT_YET = "00000000"
+"""In the place of a text's checksum while that is computed."""
+_REPORT_CHECKSUM = '{"checksum": "'
+"""How a line of the report begins that has one."""
+
+
+class Variable(NamedTuple):
+    """An array with the names of its dimensions, its unit and what it is."""
+
+    dims: tuple[str, ...]
+    values: np.ndarray
+    units: str
+    long_name: str
+
+
+class Entry(NamedTuple):
+    """A variable as the header describes it; `begin` is where it starts, in bytes: in the file, or in a row."""
+
+    dims: tuple[str, ...]
+    shape: tuple[int, ...]
+    attributes: dict[str, str | np.ndarray]
+    dtype: np.dtype
+    in_rows: bool
+    begin: int
+
+
+class File:
+    """An open file of results; rows are counted from 0, and only `write` and `truncate` change their number."""
+
+    def __init__(self, path: str | os.PathLike, writable: bool = False, descriptor: int | None = None):
+        """Open a file, or take over its descriptor.
+
+        Raises OSError, ValueError where it is no such file, was cut short or has a damaged header.
+        """
+        self.path = os.fspath(path)
+        self.descriptor = descriptor
+        if descriptor is None:
+            self.descriptor = os.open(path, (os.O_RDWR if writable else os.O_RDONLY) | os.O_CLOEXEC)
+        self.close = weakref.finalize(self, os.close, self.descriptor)
+        size = os.fstat(self.descriptor).st_size
+        self.rows, self.attributes, places, self.entries = self._head(size)
+        self._report_at = places.get("report", (0, 0))
+        records = {name: entry for name, entry in self.entries.items() if entry.in_rows}
+        self._first = first = min((entry.begin for entry in records.values()), default=size)
+        row_bytes = max((entry.begin + _bytes(entry) - first for entry in records.values()), default=0)
+        ends = [entry.begin + _bytes(entry) for entry in self.entries.values() if not entry.in_rows]
+        if row_bytes > MOST_ROW or max([first + self.rows * row_bytes, *ends]) > size:
+            raise ValueError("the file ends too early")
+        self._row = np.dtype({
+            "names": list(records),
+            "formats": [(entry.dtype, entry.shape) for entry in records.values()],
+            "offsets": [entry.begin - first for entry in records.values()]})
+        self.left_out = np.zeros(0, int)
+        self.has_checksums = ROW_CHECKSUM in records and HEADER_CHECKSUM in places
+        if HEADER_CHECKSUM in places:
+            head = os.pread(self.descriptor, min(first, MOST_HEADER), 0)
+            if _header_checksum(head, places) != self.attributes[HEADER_CHECKSUM]:
+                raise ValueError("the header is damaged: it has another checksum")
+
+    def _head(self, size: int) -> tuple[int, dict, dict[str, tuple[int, int]], dict[str, Entry]]:
+        length = _BLOCK
+        while True:
+            try:
+                return _parse(os.pread(self.descriptor, length, 0))
+            except (struct.error, IndexError, KeyError, OverflowError, UnicodeDecodeError) as error:
+                if length >= min(size, MOST_HEADER):
+                    raise ValueError("the header is damaged") from error
+            length *= 2
+
+    @property
+    def row_bytes(self) -> int:
+        """Size of a row."""
+        return self._row.itemsize
+
+    def read(self, name: str) -> np.ndarray:
+        """All values of a variable, in this machine's order of bytes; texts as str. Not of rows that are left out."""
+        entry = self.entries[name]
+        if not entry.in_rows:
+            raw = os.pread(self.descriptor, _bytes(entry), entry.begin)
+            values = np.frombuffer(raw, entry.dtype).reshape(entry.shape)
+            return _texts(values) if entry.dtype.kind == "S" else values.astype(entry.dtype.newbyteorder("="))
+        values = np.empty((self.rows - len(self.left_out), *entry.shape), entry.dtype.newbyteorder("="))
+        at = 0
+        for block in self._kept_blocks():
+            values[at : at + len(block)] = block[name]
+            at += len(block)
+        return values
+
+    def damaged_rows(self, rows: int | None = None) -> np.ndarray:
+        """Numbers of the rows, of all or of so many, whose checksum is not theirs. Raises OSError."""
+        damaged = [np.zeros(0, int)]
+        for start, block in self._blocks(self.rows if rows is None else rows):
+            damaged.append(start + np.flatnonzero(block[ROW_CHECKSUM] != self._checksums(block)))
+        return np.concatenate(damaged)
+
+    def _checksums(self, rows: np.ndarray) -> np.ndarray:
+        """(rows,): of whole rows as they are in the file."""
+        words = rows.view("<u8").reshape(len(rows), self.row_bytes // 8)
+        return row_checksums(words[:, :-1])
+
+    def _blocks(self, rows: int) -> Iterator[tuple[int, np.ndarray]]:
+        if not rows:
+            return
+        block = np.empty(min(rows, max(1, _BLOCK // max(1, self.row_bytes))), self._row)
+        for start in range(0, rows, len(block)):
+            part = block[: rows - start]
+            if os.preadv(self.descriptor, [part.view("u1")], self._first + start * self.row_bytes) != part.nbytes:
+                raise OSError(f"{self.path}: was cut short while it was read")
+            yield start, part
+
+    def _kept_blocks(self) -> Iterator[np.ndarray]:
+        """Rows that are not left out."""
+        for start, block in self._blocks(self.rows):
+            gone = self.left_out[(self.left_out >= start) & (self.left_out < start + len(block))] - start
+            yield np.delete(block, gone) if len(gone) else block
+
+    def described(self, over_time: bool) -> dict[str, Variable]:
+        """The variables over time without their values, or the other ones."""
+        return {name: self.variable(name, np.empty((0, *entry.shape)) if over_time else self.read(name))
+                for name, entry in self.entries.items() if entry.in_rows == over_time and name != ROW_CHECKSUM}
+
+    def variable(self, name: str, values: np.ndarray) -> Variable:
+        """A variable with its labels."""
+        entry = self.entries[name]
+        units, long_name = (str(entry.attributes.get(label, "")) for label in ("units", "long_name"))
+        return Variable(entry.dims[: values.ndim], values, units, long_name)
+
+    def rename(self, path: str | os.PathLike) -> None:
+        """Move the file, in the place of another one."""
+        os.replace(self.path, path)
+        self.path = os.fspath(path)
+
+    def write(self, first: int, values: Mapping[str, np.ndarray]) -> None:
+        """Put rows from row `first` on; those behind them go. values: all variables, first axis the rows."""
+        (count,) = {len(array) for array in values.values()}
+        self._check_follows(first)
+        rows = np.empty(count, self._row)
+        for name, array in values.items():
+            rows[name] = array
+        rows[ROW_CHECKSUM] = self._checksums(rows)
+        self._put(rows.view("u1"), self._first + first * self.row_bytes)
+        self._set_rows(first + count)
+
+    def copy_rows(self, source: File) -> None:
+        """Add all rows of a file with the same variables, but for those that it leaves out."""
+        for block in source._kept_blocks():
+            self.write(self.rows, {name: block[name] for name in self._row.names if name != ROW_CHECKSUM})
+
+    def truncate(self, rows: int) -> None:
+        """Drop the rows from `rows` on."""
+        self._check_follows(rows)
+        self._set_rows(rows)
+
+    def add_report(self, text: str) -> bool:
+        """Put a new text, of a JSON object, into the attribute `report`; False where there is no room for it.
+
+        The last line that has an end of line counts: the new one is whole before blanks go over the old one.
+        """
+        begin, size = self._report_at
+        old = self.attributes["report"]
+        used = len(old[: old.rfind("\n") + 1].encode())
+        line = _line(text)
+        if used + len(line) > size:
+            return False
+        self._put(line + b" " * (size - used - len(line)), begin + used)
+        self._put(b" " * used, begin)
+        self.attributes["report"] = os.pread(self.descriptor, size, begin).decode()
+        return True
+
+    def _check_follows(self, first: int) -> None:
+        if not 0 <= first <= self.rows:
+            raise ValueError(f"{self.path}: has {self.rows} rows, {first} cannot be the next")
+
+    def _set_rows(self, rows: int) -> None:
+        self._put(struct.pack(">i", rows), COUNT_AT)
+        self.rows = rows
+
+    def _put(self, data, at: int) -> None:
+        left = memoryview(data)
+        while len(left):
+            done = os.pwrite(self.descriptor, left, at)
+            left, at = left[done:], at + done
+
+
+def _line(text: str) -> bytes:
+    """A JSON object as a line of the report, with its checksum as first entry."""
+    bare = f'{_REPORT_CHECKSUM}{_NOT_YET}", {text[1:]}'
+    checksum = f"{text_checksum(bare.encode()):08x}"
+    return f'{_REPORT_CHECKSUM}{checksum}", {text[1:]}\n'.encode()
+
+
+def last_report(text: str, has_checksum: bool) -> dict:
+    """What the last whole line of the attribute `report` says, or all of it where it is not in lines.
+
+    Raises ValueError where it is damaged.
+    """
+    lines = text.split("\n")
+    line = (lines[:-1] or lines)[-1].strip(" ")
+    if has_checksum:
+        begin = len(_REPORT_CHECKSUM)
+        end = begin + len(_NOT_YET)
+        bare = line[:begin] + _NOT_YET + line[end:]
+        if not line.startswith(_REPORT_CHECKSUM) or line[begin:end] != f"{text_checksum(bare.encode()):08x}":
+            raise ValueError("the report is damaged: it has another checksum")
+    try:
+        report = json.loads(line)
+    except RecursionError:
+        raise ValueError("the report is damaged") from None
+    if not isinstance(report, dict):
+        raise ValueError("the report is damaged")
+    report.pop("checksum", None)
+    return report
+
+
+class Stored(Mapping[str, Variable]):
+    """Variables of a file, read when they are asked for and kept then."""
+
+    def __init__(self, file: File, names: list[str]):
+        """names: of those variables."""
+        self.file, self._names, self._read = file, dict.fromkeys(names), {}
+
+    def __getitem__(self, name: str) -> Variable:
+        """A variable with its values."""
+        if name not in self._names:
+            raise KeyError(name)
+        if name not in self._read:
+            self._read[name] = self.file.variable(name, self.file.read(name))
+        return self._read[name]
+
+    def __contains__(self, name: object) -> bool:
+        """Whether there is such a variable."""
+        return name in self._names
+
+    def __iter__(self) -> Iterator[str]:
+        """Their names."""
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        """Their number."""
+        return len(self._names)
+
+
+def create(path: str | os.PathLike, coords: Mapping[str, Variable], variables: Mapping[str, Variable],
+           attributes: Mapping[str, str | int], report: str, room: int = 0, descriptor: int | None = None) -> File:
+    """A new file, without rows yet; of the variables over time only shapes count.
+
+    attributes: but for the report, a JSON object, for which there is room to grow by so many bytes; descriptor: of a
+    file of that path which is open already, and becomes this one.
+    """
+    checksum = Variable(("time",), np.zeros(0), "1", "checksum of the row")
+    header = _header({**coords, **variables, ROW_CHECKSUM: checksum},
+                     {**attributes, HEADER_CHECKSUM: _NOT_YET, "report": _line(report) + b" " * room})
+    places = _parse(header)[2]
+    at, size = places[HEADER_CHECKSUM]
+    header = header[:at] + _header_checksum(header, places).encode() + header[at + size :]
+    descriptor = created(path) if descriptor is None else descriptor
+    os.ftruncate(descriptor, 0)
+    with open(descriptor, "wb", closefd=False) as file:
+        file.write(header)
+    return File(path, descriptor=descriptor)
+
+
+def _header_checksum(head: bytes, places: Mapping[str, tuple[int, int]]) -> str:
+    """Of all before the first row, but for the number of rows, the report's text and the checksum itself."""
+    checksum, at = 0, 0
+    for begin, size in sorted([(COUNT_AT, 4), places[HEADER_CHECKSUM], places.get("report", (COUNT_AT, 0))]):
+        checksum, at = text_checksum(head[at:begin], checksum), begin + size
+    return f"{text_checksum(head[at:], checksum):08x}"
+
+
+def _header(variables: dict[str, Variable], attributes: dict) -> bytes:
+    """The header, and behind it the variables that are not over time."""
+    sizes, entries, fixed = {"time": 0}, {}, {}
+    for name, variable in variables.items():
+        values, dims = variable.values, variable.dims
+        labels = {"units": variable.units, "long_name": variable.long_name}
+        if values.dtype.kind == "U":  # characters along one more dimension, as xarray writes them, too
+            texts = np.char.encode(values, "utf-8")
+            values = texts.view("S1").reshape(*texts.shape, texts.itemsize)
+            dims = (*dims, f"string{texts.itemsize}")
+            labels["_Encoding"] = "utf-8"
+        sizes |= {dim: size for dim, size in zip(dims, values.shape, strict=True) if dim != "time"}
+        entries[name] = (dims, labels, _CHAR if values.dtype.kind == "S" else _DOUBLE)
+        if dims[:1] != ("time",):
+            fixed[name] = _padded(values.astype(_TYPES[entries[name][2]]).tobytes())
+    number = {dim: k for k, dim in enumerate(sizes)}
+    size = {name: np.dtype(_TYPES[kind]).itemsize * int(np.prod([sizes[d] for d in dims if d != "time"], dtype=int))
+            for name, (dims, _, kind) in entries.items()}
+
+    def head(begins: dict[str, int]) -> bytes:
+        written = [_text(name) + struct.pack(">i", len(dims)) + b"".join(struct.pack(">i", number[d]) for d in dims)
+                   + _attributes(labels)
+                   + struct.pack(">iIq", kind, min(-(-size[name] // 4) * 4, 2**32 - 4), begins.get(name, 0))
+                   for name, (dims, labels, kind) in entries.items()]
+        dimensions = [_text(dim) + struct.pack(">i", length) for dim, length in sizes.items()]
+        return (MAGIC + struct.pack(">i", 0) + _list(_DIMENSION, dimensions) + _attributes(attributes)
+                + _list(_VARIABLE, written))
+
+    at, begins = len(head({})), {}
+    for name in [*fixed, *(name for name in entries if name not in fixed)]:
+        begins[name] = at
+        at += -(-size[name] // 4) * 4
+    return head(begins) + b"".join(fixed.values())
+
+
+def _padded(data: bytes) -> bytes:
+    return data + bytes(-len(data) % 4)
+
+
+def _text(text: str) -> bytes:
+    data = text.encode()
+    return struct.pack(">i", len(data)) + _padded(data)
+
+
+def _list(tag: int, items: list[bytes]) -> bytes:
+    return struct.pack(">ii", tag if items else 0, len(items)) + b"".join(items)
+
+
+def _attributes(attributes: Mapping[str, str | bytes | int]) -> bytes:
+    items = []
+    for name, value in attributes.items():
+        if isinstance(value, int):
+            items.append(_text(name) + struct.pack(">iii", _INT, 1, value))
+        else:
+            data = value if isinstance(value, bytes) else value.encode()
+            items.append(_text(name) + struct.pack(">ii", _CHAR, len(data)) + _padded(data))
+    return _list(_ATTRIBUTE, items)
+
+
+def _parse(header: bytes) -> tuple[int, dict, dict[str, tuple[int, int]], dict[str, Entry]]:
+    """Number of rows, attributes, their places and sizes, variables.
+
+    Raises ValueError, and what struct and dicts raise, where the header is damaged or longer than what is given.
+    """
+    at = len(MAGIC)
+    if header[:at] != MAGIC:
+        raise ValueError("it does not begin as the classic format with 64-bit offsets does")
+
+    def ints(count: int = 1) -> tuple[int, ...]:
+        nonlocal at
+        found = struct.unpack_from(f">{count}i", header, at)
+        at += 4 * count
+        return found
+
+    def data(size: int) -> bytes:
+        nonlocal at
+        found = header[at : at + size]
+        if size < 0 or len(found) < size:
+            raise IndexError
+        at += -(-size // 4) * 4
+        return found
+
+    def attributes() -> tuple[dict, dict]:
+        found, places = {}, {}
+        for _ in range(ints(2)[1]):
+            name = data(*ints()).decode()
+            kind, count = ints(2)
+            dtype = np.dtype(_TYPES[kind])
+            places[name] = at, count
+            value = data(dtype.itemsize * count)
+            found[name] = value.decode() if kind == _CHAR else np.frombuffer(value, dtype)
+        return found, places
+
+    def known(value: int, most: int) -> int:
+        if not 0 <= value <= most:
+            raise ValueError("the header is damaged")
+        return value
+
+    rows = known(*ints(), 2**31)
+    dims = [(data(*ints()).decode(), known(*ints(), 2**31)) for _ in range(ints(2)[1])]
+    general, places = attributes()
+    entries = {}
+    for _ in range(ints(2)[1]):
+        name = data(*ints()).decode()
+        along = [dims[known(k, len(dims) - 1)] for k in ints(known(*ints(), len(dims)))]
+        labels, _ = attributes()
+        kind, _ = ints(2)
+        (begin,) = struct.unpack_from(">q", header, at)
+        at += 8
+        in_rows = bool(along) and along[0][1] == 0
+        shape = tuple(size for _, size in along[in_rows:])
+        known(begin, 2**62)
+        entries[name] = Entry(tuple(dim for dim, _ in along), shape, labels, np.dtype(_TYPES[kind]), in_rows, begin)
+    return rows, general, places, entries
+
+
+def _bytes(entry: Entry) -> int:
+    return entry.dtype.itemsize * math.prod(entry.shape)
+
+
+def _texts(characters: np.ndarray) -> np.ndarray:
+    """(..., n) characters -> (...) str."""
+    joined = np.ascontiguousarray(characters).view(f"S{characters.shape[-1]}")[..., 0]
+    return np.char.decode(joined, "utf-8")

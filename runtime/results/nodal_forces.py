@@ -1,0 +1,160 @@
+"""What the nodes of cables give to each element: its elastic and damping force and inertia, less what acts on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.sparse import block_diag, coo_array, csc_array, kron
+from scipy.sparse.linalg import splu
+
+from .cable_loads import CableActions, Instants, element_coordinates, rows
+
+if TYPE_CHECKING:
+    from ..model.build import CableModel, Model
+    from ..scene import Scene
+
+
+@dataclass
+class ElementForces:
+    """Of the elements of one cable at T instants.
+
+    given (T, elements, vectors, dim): the generalised forces of its nodes on each element; inertia, the same shape:
+    nodal accelerations with what mass damping adds, those of gravity subtracted, so that mass times inertia is what a
+    length of cable takes; e, likewise, nodal vectors.
+    """
+
+    given: np.ndarray
+    inertia: np.ndarray
+    e: np.ndarray
+
+
+def element_forces(scene: Scene, model: Model, at: Instants, actions: CableActions, cable: int,
+                   at_rest: bool) -> ElementForces:
+    """Those of cable number `cable`; at_rest: without accelerations."""
+    tied = [cable] if at_rest else tied_cables(scene, model, cable)
+    forces = {k: internal(model.cables[k], at) - _external(model, k, at, actions) for k in tied}
+    accelerations = np.zeros_like(at.v) if at_rest else _accelerations(model, at, forces)
+    of = model.cables[cable]
+    a = element_coordinates(of, accelerations)
+    given = forces[cable] + np.einsum("kl,teld->tekd", of.m, a)
+    inertia = a + of.mass_damping * element_coordinates(of, at.v) - _uniform(of, actions.gravity)
+    return ElementForces(given, inertia, element_coordinates(of, at.q))
+
+
+def tied_cables(scene: Scene, model: Model, cable: int) -> list[int]:
+    """Numbers of the cables that joins tie to one, itself included: their accelerations go together."""
+    found, new = {model.cables[cable].name}, [model.cables[cable].name]
+    while new:
+        name = new.pop()
+        for join in scene.ties.values():
+            pair = {join.cable, join.to}
+            if name in pair:
+                new += pair - found
+                found |= pair
+    return [k for k, each in enumerate(model.cables) if each.name in found]
+
+
+def internal(cable: CableModel, at: Instants) -> np.ndarray:
+    """(T, elements, vectors, dim): elastic forces, those of Kelvin-Voigt and of mass damping."""
+    e, v = element_coordinates(cable, at.q), element_coordinates(cable, at.v)
+    law = f"{cable.law}_"
+    moving = cable.tau > 0 and np.any(v)
+
+    def forces(e: np.ndarray, v: np.ndarray, A: np.ndarray) -> np.ndarray:
+        found = rows(cable.kernel(law + "elastic_force"), len(e), cable.length, e, A)
+        if moving:
+            found = found + rows(cable.kernel(law + "damping_force"), len(e), cable.length, e, v, A, cable.tau)
+        return found
+
+    if len(cable.A) == 1:
+        shape = e.shape
+        f = forces(e.reshape(-1, *shape[2:]), v.reshape(-1, *shape[2:]), cable.A[0]).reshape(shape)
+    else:  # a constant a element: a curved stress-free shape
+        f = np.stack([forces(e[:, k], v[:, k], A) for k, A in enumerate(cable.A)], axis=1)
+    if cable.mass_damping > 0:
+        f = f + cable.mass_damping * np.einsum("kl,teld->tekd", cable.m, v)
+    return f
+
+
+def _uniform(cable: CableModel, acceleration: np.ndarray) -> np.ndarray:
+    """(vectors, dim): nodal accelerations of a uniform field."""
+    return np.array([name == "r" for name in cable.vectors] * 2)[:, None] * acceleration
+
+
+def _external(model: Model, number: int, at: Instants, actions: CableActions) -> np.ndarray:
+    """(T, elements, vectors, dim): gravity, and all that acts between nodes."""
+    cable = model.cables[number]
+    f = np.zeros((len(at.time), cable.n_elements, 2 * cable.shape[1], cable.shape[2]))
+    f += np.einsum("kl,ld->kd", cable.m, _uniform(cable, actions.gravity))
+    instants = np.arange(len(at.time))
+    for action in actions.points.get(number, []):
+        f[instants, action.element] += action.f
+    for spread in actions.spreads.get(number, []):
+        f[:, spread.element] += spread.f
+    return f
+
+
+def _accelerations(model: Model, at: Instants, forces: dict[int, np.ndarray]) -> np.ndarray:
+    """(T, n_dof): nodal accelerations of these cables; forces (T, elements, vectors, dim) are internal less outer ones.
+
+    M a = -forces on what is free, with what supports and joins hold and motions prescribe. Eq 38 gave the same at each
+    of the instants: so a run need not keep them.
+    """
+    held = np.concatenate([np.arange(model.cables[k].coordinates.start, model.cables[k].coordinates.stop)
+                           for k in forces])
+    masses, assembled = [], np.zeros((len(at.time), model.n_dof))
+    for k, f in forces.items():
+        cable = model.cables[k]
+        nodal = np.zeros((len(f), *cable.shape))
+        nodal[:, :-1] += f[:, :, : cable.shape[1]]
+        nodal[:, 1:] += f[:, :, cable.shape[1] :]
+        assembled[:, cable.coordinates] = nodal.reshape(len(f), -1)
+        masses.append(_mass(cable))
+    M = block_diag(masses, format="csr")
+    T = _reduction(model, held)
+    prescribed = _prescribed(model, at.time)[:, held]
+    right = -(assembled[:, held] + (M @ prescribed.T).T)
+    found = np.zeros_like(assembled)
+    if T.shape[1]:
+        solve = splu(csc_array(T.T @ M @ T)).solve
+        found[:, held] = (T @ solve(np.ascontiguousarray(T.T @ right.T))).T
+    found[:, held] += prescribed
+    return found
+
+
+def _mass(cable: CableModel):
+    """(coordinates, coordinates) sparse."""
+    per_node = cable.shape[1]
+    n = cable.shape[0] * per_node
+    index = np.arange(cable.n_elements)[:, None, None] * per_node
+    local = np.arange(2 * per_node)
+    at_row = np.broadcast_to(index + local[:, None], (cable.n_elements, 2 * per_node, 2 * per_node))
+    at_column = np.broadcast_to(index + local, at_row.shape)
+    m = coo_array((np.broadcast_to(cable.m, at_row.shape).ravel(), (at_row.ravel(), at_column.ravel())), shape=(n, n))
+    return kron(m.tocsr(), np.eye(cable.shape[2]), format="csr")
+
+
+def _reduction(model: Model, dofs: np.ndarray):
+    """(dofs, unknowns that they have) sparse: dofs = T unknowns + what is prescribed."""
+    place, combinations = model.place[dofs], model.combinations.tocsr()
+    free, combined = np.flatnonzero(place >= 0), np.flatnonzero(place < -1)
+    n = max(combinations.shape[1], int(place.max(initial=-1)) + 1)
+    T = coo_array((np.ones(len(free)), (free, place[free])), shape=(len(dofs), n)).tocsr()
+    if len(combined):
+        part = combinations[-2 - place[combined]].tocoo()
+        T = T + coo_array((part.data, (combined[part.row], part.col)), shape=T.shape).tocsr()
+    used = np.flatnonzero(np.diff(T.tocsc().indptr))
+    return T.tocsc()[:, used].tocsr()
+
+
+def _prescribed(model: Model, time: np.ndarray) -> np.ndarray:
+    """(T, n_dof): accelerations that motions prescribe."""
+    found = np.zeros((len(time), model.n_dof))
+    for motion in model.motions:
+        f, rate, second = (model.signals[motion.signal].value(time, order) for order in range(3))
+        c, s = np.cos(f), np.sin(f)
+        slope = motion.linear - motion.cosine * s + motion.sine * c
+        found[:, motion.dof] += slope * second - (motion.cosine * c + motion.sine * s) * rate**2
+    return found

@@ -1,0 +1,155 @@
+"""Section forces in balance: what a cut passes on, from what the nodes give to its element and what acts before it.
+
+An element's elastic and damping forces and its inertia, less the loads on it, leave what its two nodes give to it
+(results/nodal_forces.py). Shape functions of positions add up to one, so that these forces are in balance with loads and
+inertia; and nothing elastic changes when all turns, so that their moments are, too. The force at its first node is
+therefore known without the stress inside the element, which jumps from element to element and cannot follow a kink.
+From there on
+
+    n' = rho A (a - g) - p,     m' = -r' x n + rate of spin of the section - moments a length,
+
+with jumps where a rider, a force, a spring or a joint holds on, are integrated over the part of the element before the
+cut. a, r and the section's slopes are those of the shape functions, for which the balance of the element holds exactly.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..parts.cable import EXACT, Cable
+from .cable_loads import CableActions, positions, rows, shape_on_axis
+from .recording import spatial
+
+if TYPE_CHECKING:
+    from ..model.build import CableModel
+    from .nodal_forces import ElementForces
+
+
+class Cuts:
+    """Places of cuts on a cable: s (T or 1, n) in m; element and x in it, likewise.
+
+    after: of a jump at s the side of larger s, else that of smaller; at the ends of the cable always that inside.
+    """
+
+    def __init__(self, cable: CableModel, s: np.ndarray, after: bool):
+        total = cable.length * cable.n_elements
+        self.near = EXACT * total
+        self.s = np.clip(s, 0.0, total)
+        self.after = np.where(self.s <= self.near, True, np.where(self.s >= total - self.near, False, after))
+        node = np.rint(self.s / cable.length)
+        on_node = np.abs(self.s - node * cable.length) <= self.near
+        element = np.where(on_node, node - ~self.after, np.floor(self.s / cable.length)).astype(int)
+        self.element = np.clip(element, 0, cable.n_elements - 1)
+        self.x = np.clip(self.s - self.element * cable.length, 0.0, cable.length)
+        self.x = np.where(on_node, np.where(self.after, 0.0, cable.length), self.x)
+
+
+def resultants(f: np.ndarray, e: np.ndarray, is_r: np.ndarray, about: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Force and moment (..., 3) about a point `about` (..., 3) of generalised forces f (..., vectors, dim) on e."""
+    f, e = spatial(f), spatial(e)
+    arms = e - np.where(is_r[:, None], about[..., None, :], 0.0)
+    return f[..., is_r, :].sum(axis=-2), np.cross(arms, f).sum(axis=-2)
+
+
+def balanced(cable: Cable, model: CableModel, forces: ElementForces, actions: CableActions, number: int,
+             cuts: Cuts) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Force and moment (T, n, 3) on the part before each cut, along the ground's axes, in N and N m.
+
+    The third is the derivative of the force by s there, in N/m.
+    """
+    is_r, half = positions(model), model.shape[1]
+    times, n = len(forces.e), cuts.s.shape[1]
+    instants = np.arange(times)[:, None]
+    element = np.broadcast_to(cuts.element, (times, n))
+    x = np.broadcast_to(cuts.x, (times, n))
+    after = np.broadcast_to(cuts.after, (times, n))
+    first = spatial(forces.e[:, :, 0])  # r of each element's first node
+    at_node = resultants(forces.given[:, :, :half], forces.e[:, :, :half], is_r[:half], first)
+    start = first[instants, element]
+    e, inertia = (spatial(values)[instants, element] for values in (forces.e, forces.inertia))
+    e = e - np.where(is_r[:, None], start[:, :, None], 0.0)
+    force, moment = (-value[instants, element] for value in at_node)
+    taken = _of_inertia(cable, model, cuts, e, inertia)
+    force, moment = force + taken[0], moment + taken[1]
+    change = cable.material.density * cable.section.area * _at(_shape(model, cuts.x), inertia)
+    for spread in actions.spreads.get(number, []):
+        inside = (cuts.element == spread.element) & (cuts.x > spread.start)
+        columns = np.flatnonzero(inside.any(axis=0))
+        if len(columns):
+            here, reach = inside[:, columns, None], cuts.x[:, columns]
+            ends = here & (reach <= spread.stop)[..., None]
+            parts = _of_spread(model, spread, np.clip(reach, spread.start, spread.stop), e[:, columns])
+            for total, part, where in zip((force, moment, change), parts, (here, here, ends), strict=True):
+                total[:, columns] -= np.where(where, part, 0.0)
+    for action in actions.points.get(number, []):
+        of = forces.e[instants[:, 0], action.element]
+        jump = resultants(action.f, of, is_r, spatial(of[:, 0]))
+        near = np.where(after, cuts.near, -cuts.near)
+        before = (element == action.element[:, None]) & (action.x[:, None] <= x + near)
+        for total, value in zip((force, moment), jump, strict=True):
+            total -= before[..., None] * value[:, None]
+    r = np.einsum("tnk,tnkd->tnd", _shape(model, cuts.x), e)
+    return force, moment - np.cross(r, force), change
+
+
+def _shape(model: CableModel, x: np.ndarray) -> np.ndarray:
+    return shape_on_axis(model, x)
+
+
+def _of_inertia(cable: Cable, model: CableModel, cuts: Cuts, e: np.ndarray, a: np.ndarray):
+    """Force and moment (T, n, 3) about the element's first node that the element takes up to the cut.
+
+    Gauss points in as large a number as the product of two shape functions needs.
+    """
+    places, weights = np.polynomial.legendre.leggauss(2 * sum(set(name) <= set("r_x") for name in model.vectors))
+    density = cable.material.density
+    area, yy, zz = cable.section.mass_moments()[:3]
+    force = moment = 0.0
+    across = [(k, I) for k, (name, I) in enumerate((("r_y", yy), ("r_z", zz)), start=1) if name in model.vectors]
+    for place, weight in zip((1 + places) / 2, weights / 2, strict=True):
+        x = cuts.x * place
+        N, share = _shape(model, x), (weight * density * cuts.x)[..., None]
+        pull = share * area * _at(N, a)
+        force = force + pull
+        moment = moment + np.cross(_at(N, e), pull)
+        if across:
+            slopes = rows(model.kernel("slopes"), x.size, model.length, x.ravel())[:, :, 0].reshape(*x.shape, 3, -1)
+        for k, I in across:
+            moment = moment + share * I * np.cross(_at(slopes[..., k, :], e), _at(slopes[..., k, :], a))
+    return force, moment
+
+
+def _at(N: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """(T, n, 3) from shape functions (T or 1, n, vectors) and vectors (T, n, vectors, 3)."""
+    return np.einsum("tnk,tnkd->tnd", np.broadcast_to(N, (len(values), *N.shape[1:])), values)
+
+
+def _of_spread(model: CableModel, spread, x: np.ndarray, e: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Force and moment (T, n, 3) about the element's first node of what is spread up to x, and the force a length at x.
+
+    x: (T or 1, n) in m; e: (T, n, vectors, 3).
+    """
+    places, weights = np.polynomial.legendre.leggauss(len(spread.x))
+    force = moment = 0.0
+    length = x - spread.start
+    for place, weight in zip((1 + places) / 2, weights / 2, strict=True):
+        at = spread.start + place * length
+        share = _density(spread, at) * (weight * length)[..., None]
+        force = force + share
+        moment = moment + np.cross(_at(_shape(model, at), e), share)
+    return force, moment, _density(spread, x)
+
+
+def _density(spread, x: np.ndarray) -> np.ndarray:
+    """(T, n, 3): force a length at x (T or 1, n)."""
+    weights, times = _lagrange(spread.x, x), len(spread.density)
+    return np.einsum("tnp,tpd->tnd", np.broadcast_to(weights, (times, *weights.shape[1:])), spread.density)
+
+
+def _lagrange(nodes: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """(..., nodes): weights of the values at nodes in the polynomial through them, at x (...)."""
+    others = [np.delete(nodes, k) for k in range(len(nodes))]
+    return np.stack([np.prod((x[..., None] - other) / (node - other), axis=-1)
+                     for node, other in zip(nodes, others, strict=True)], axis=-1)

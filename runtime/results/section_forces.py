@@ -1,0 +1,209 @@
+"""Section forces: what one part of a cable exerts on the other across a cut, in balance with all that acts on it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..errors import FunicularError, UnknownResultError, near
+from ..kernels.libraries import kernels_of
+from ..parts.cable import EXACT, Cable
+from ..parts.section_stiffness import section_stiffness
+from ..parts.validation import show
+from .cable_loads import CableActions, Instants, rows
+from .nodal_forces import element_forces
+from .section_balance import Cuts, balanced
+from .section_components import balanced_components, components, labels, taut_bending
+from .section_kinks import kinks
+
+if TYPE_CHECKING:
+    import xarray
+
+    from ..model.build import Model
+    from .equilibrium import Equilibrium
+    from .run import Run
+
+PLACES = 8
+"""Places on each element, where none are asked for."""
+BESIDE = 4 * EXACT
+"""Of the cable's length: how far from a jump its two sides are looked at."""
+AT_ONCE = 100_000
+"""Cuts or elements, over all times, that are worked on together."""
+METHODS = ("balance", "constitutive")
+SIDES = ("after", "before")
+
+GLOBAL = {
+    "force": ("N", "force on the part before the cut"),
+    "moment": ("N m", "moment on the part before the cut"),
+}
+
+def constitutive(cable: Cable, nodal_vectors: np.ndarray, cuts: Cuts) -> tuple[np.ndarray, ...]:
+    """The elastic law at cuts: force, moment (T, n, 3), axes of the section (T, n, 3, 3), strains (T, n, 6).
+
+    nodal_vectors: (T, nodes, vectors, 3). Force and moment are along the ground's axes.
+    """
+    kernel = getattr(kernels_of(cable.library), f"{cable.element}_{cable.kernel_law}_section_forces")
+    dim, reference = cable.dim, cable.reference
+    S = section_stiffness(cable.stiffness_law, cable.section, cable.material, dim)
+    shape = len(nodal_vectors), cuts.s.shape[1]
+    element, x = np.broadcast_to(cuts.element, shape), np.broadcast_to(cuts.x, shape)
+    instants = np.arange(shape[0])[:, None]
+    e = np.concatenate([nodal_vectors[instants, element], nodal_vectors[instants, element + 1]], axis=2)[..., :dim]
+    e0 = [] if reference is None else [reference[element].reshape(-1, *reference.shape[1:])]
+    found = rows(kernel, x.size, cable.length / cable.elements, x.ravel(), e.reshape(-1, *e.shape[2:]), S, *e0)
+    return tuple(values.reshape(*shape, *values.shape[1:]) for values in found)
+
+
+def cut_forces(scene, model: Model, at: Instants, name: str, s: np.ndarray, *, method: str = "balance",
+               side: str = "after", at_rest: bool = False) -> dict[str, np.ndarray]:
+    """Forces in sections of the cable ``name`` at instants.
+
+    s: (1 or T, n) arc-lengths in m. Returns force and moment (T, n, 3), along the ground's axes, and the components
+    of `section_components.labels` (T, n). at_rest: accelerations are nil.
+    """
+    cable, number = scene.cables[name], list(scene.cables).index(name)
+    of = model.cables[number]
+    cuts = Cuts(of, s, side == "after")
+    nodal = at.value(f"{name}.nodal_vectors")
+    force, moment, axes, strain = constitutive(cable, nodal, cuts)
+    if method == "constitutive":
+        return {"force": force, "moment": moment} | components(cable, force, moment, axes, strain)
+    actions = CableActions(scene, model, at)
+    forces = element_forces(scene, model, at, actions, number, at_rest)
+    *balance, change = balanced(cable, of, forces, actions, number, cuts)
+    taut = moment if cable.is_curved else taut_bending(  # a bent wire that is drawn straight has a moment
+        cable, balance[0], change, axes, cuts, lambda: kinks(scene, cable, of, forces, actions, number))
+    return balanced_components(cable, balance, (force, moment), taut, axes, strain)
+
+
+def of_run(run: Run, name: str, s: np.ndarray, chosen=slice(None), *, method: str = "balance",
+           side: str = "after") -> dict[str, np.ndarray]:
+    """`cut_forces` of a run at the chosen times; s: (1 or T, n)."""
+    time = run.time[chosen]
+    numbers = np.arange(len(run.time))[chosen]
+    found: list[dict] = []
+    block = max(1, AT_ONCE // max(1, s.shape[1], sum(cable.elements for cable in run.scene.cables.values())))
+    for first in range(0, len(time), block):
+        part = numbers[first : first + block]
+        found.append(cut_forces(run.scene, run.model, _instants(run, part), name,
+                                s if len(s) == 1 else s[first : first + block], method=method, side=side))
+    return {key: np.concatenate([each[key] for each in found]) for key in found[0]}
+
+
+def _instants(run: Run, numbers: np.ndarray) -> Instants:
+    model, kept = run.model, {}
+    chosen = slice(numbers[0], numbers[-1] + 1) if numbers[-1] - numbers[0] + 1 == len(numbers) else numbers
+
+    def value(name: str) -> np.ndarray:
+        if name not in kept:
+            kept[name] = run[name][chosen]
+        return kept[name]
+
+    q, v = np.zeros((len(numbers), model.n_q)), np.zeros((len(numbers), model.n_dof))
+    for cable in model.cables:
+        for into, kind in ((q, "nodal_vectors"), (v, "nodal_velocity")):
+            into[:, cable.coordinates] = value(f"{cable.name}.{kind}")[..., : model.dim].reshape(len(numbers), -1)
+    return Instants(run.time[chosen], q, v, value)
+
+
+def of_equilibrium(state: Equilibrium, name: str, s: np.ndarray, *, method: str = "balance",
+                   side: str = "after") -> dict[str, np.ndarray]:
+    """`cut_forces` of a state of rest: T = 1; s: (1, n)."""
+    return cut_forces(state.scene, state.model, rest_instants(state), name, s, method=method, side=side, at_rest=True)
+
+
+def rest_instants(state: Equilibrium) -> Instants:
+    """A state of rest as one instant, with as much of the loads as it has."""
+    return Instants(np.zeros(1), state.placed["q"][None], np.zeros((1, state.model.n_dof)),
+                    lambda quantity: state[quantity][None], state.load_fraction, state.gravity_fraction)
+
+
+def jumps(scene, name: str) -> np.ndarray:
+    """Arc-lengths of the cable at which something that stays there holds on: inside, in order."""
+    cable = scene.cables[name]
+    places = [load.s for load in scene.loads.values() if getattr(load, "on", None) == name]
+    anchors = [slide.rider for slide in scene.slides.values()]
+    anchors += [end for part in (*scene.springs.values(), *scene.joints.values()) for end in (part.a, part.b)]
+    places += [anchor.s for anchor in anchors if anchor.on == name]
+    places += [support.s for support in scene.supports if support.cable == name]
+    for join in scene.ties.values():
+        places += [s for on, s in ((join.cable, join.s), (join.to, join.at)) if on == name]
+    for load in scene.loads.values():
+        if getattr(load, "cable", None) == name:
+            places += [load.start, load.stop]
+    beside = BESIDE * cable.length
+    return np.array(sorted({float(s) for s in places if s is not None and beside < s < cable.length - beside}))
+
+
+def even(cable: Cable) -> np.ndarray:
+    """Places along all of a cable, its nodes among them."""
+    return np.linspace(0, cable.length, PLACES * cable.elements + 1)
+
+
+def with_sides(cable: Cable, s: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """s (n,), in order, with a point on either side of each of the places (..., m): (..., n + 2 m)."""
+    beside = BESIDE * cable.length
+    sides = np.clip(np.concatenate([places - beside, places + beside], axis=-1), 0.0, cable.length)
+    return np.sort(np.concatenate([np.broadcast_to(s, (*sides.shape[:-1], len(s))), sides], axis=-1), axis=-1)
+
+
+def dataset(state: Run | Equilibrium, name: str, s=None, *, method: str = "balance",
+            side: str = "after") -> xarray.Dataset:
+    """See `Run.section_forces`; of an equilibrium without the time."""
+    import xarray
+
+    scene, name = state.scene, getattr(name, "name", name)
+    if name not in scene.cables:
+        raise UnknownResultError(f'there is no cable "{name}"; {near(name, scene.cables)}')
+    for word, value, known in (("method", method, METHODS), ("side", side, SIDES)):
+        if value not in known:
+            raise FunicularError(f'section forces of "{name}": {word} must be '
+                                 + " or ".join(f'"{each}"' for each in known) + f", got {value!r}")
+    cable, over_time = scene.cables[name], hasattr(state, "time")
+    s, follows = _places(state, cable, s, over_time)
+    compute: Callable = of_run if over_time else of_equilibrium
+    values = compute(state, name, s, method=method, side=side)
+    label = GLOBAL | labels(cable)
+    coords: dict = {"xyz": ["x", "y", "z"]}
+    told = {"units": "m", "long_name": "undeformed arc-length"}
+    if over_time:
+        coords["time"] = ("time", state.time, {"units": "s", "long_name": "time"})
+    if follows:
+        coords["s"] = ("time", s[:, 0], told) if over_time else ((), s[0, 0], told)
+    else:
+        coords["s"] = ("s", s[0], told)
+    dims = ("time",) * over_time + ("s",) * (not follows) + ("xyz",)
+    index = (slice(None) if over_time else 0, 0 if follows else slice(None))
+    return xarray.Dataset(
+        {key: (dims[: value[index].ndim], value[index], {"units": label[key][0], "long_name": label[key][1]})
+         for key, value in values.items()},
+        coords, {"cable": name, "element": cable.element, "law": cable.law, "method": method, "side": side})
+
+
+def _places(state: Run | Equilibrium, cable: Cable, s, over_time: bool) -> tuple[np.ndarray, bool]:
+    """(1 or T, n) arc-lengths from what was asked for, and whether they go with a slide."""
+    scene, name = state.scene, cable.name
+    if s is None:
+        places = jumps(scene, name)
+        if not over_time:
+            riders = [state[f"{slide.name}.s"] for slide in scene.slides.values() if slide.along == name]
+            places = np.append(places, riders)
+        return np.unique(with_sides(cable, even(cable), places))[None], False
+    slide = scene.slides.get(getattr(s, "name", s)) if isinstance(getattr(s, "name", s), str) else None
+    if slide is not None:
+        if slide.along != name:
+            raise FunicularError(f'section forces of "{name}": slide "{slide.name}" is on cable "{slide.along}"')
+        return np.clip(np.atleast_1d(state[f"{slide.name}.s"])[:, None], 0.0, cable.length), True
+    try:
+        s = np.atleast_1d(np.asarray(s, dtype=float))
+    except (TypeError, ValueError):
+        raise FunicularError(f'section forces of "{name}": s must be arc-lengths in m, or a slide on it, '
+                             f"got {s!r}") from None
+    off = (s < -EXACT * cable.length) | (s > (1 + EXACT) * cable.length) | ~np.isfinite(s)
+    if s.ndim != 1 or off.any():
+        wrong = show(float(s[off][0]), "m") if s.ndim == 1 else f"an array of shape {s.shape}"
+        raise FunicularError(f'section forces of "{name}": s must lie on the cable, in [0, {cable.length:.9g}] m, '
+                             f"got {wrong}")
+    return s[None], False

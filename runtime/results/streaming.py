@@ -1,0 +1,382 @@
+"""Results on disk while a run goes on, and checkpoints from which a run that was stopped goes on.
+
+A run that is saved as OUT.nc writes its rows there as it goes. At some of its pauses (see `pauses`) it replaces
+OUT.nc.state, the checkpoint. At which of them depends on the clock, but results do not: the engine is brought into a
+state that a checkpoint holds in full at all of them. Runs that end by themselves leave no checkpoint.
+"""
+
+from __future__ import annotations
+
+import errno
+import hashlib
+import json
+import os
+import time
+from collections.abc import Callable
+from copy import copy
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from ..errors import ResultFileError
+from .checkpoints import Checkpoint, DamagedCheckpointError, Facts
+from .locks import NoLocks, Taken, claimed, is_at, lock
+from .netcdf import File
+from .run import (
+    Run,
+    check_writable,
+    create_file,
+    file_text,
+    labelled,
+    open_file,
+    opened,
+    over_time,
+)
+
+if TYPE_CHECKING:
+    from ..model.build import Model
+    from ..parts.settings import RunSettings
+    from ..scene import Scene
+    from .recording import Recording, Rows
+
+PAUSES = 100
+"""The least number of pauses of a run with so many output times."""
+BUFFER = 8e6
+"""Bytes of rows that are kept in memory."""
+ROWS_INTERVAL = 0.5
+"""Seconds between two times that rows are written, at most."""
+CHECKPOINT_INTERVAL = 0.5
+"""Seconds between two checkpoints, at least, where the buffer lasts so long."""
+REPORT_ROOM = 8192
+"""Bytes for what the report will say at the end."""
+GOES_ON = ("unfinished", "interrupted")
+"""What the status of a run is that can be resumed."""
+
+
+class Pauses(NamedTuple):
+    """Output rows from one pause to the next, and rows that are kept in memory."""
+
+    every: int
+    room: int
+
+
+def pauses(rows: int, row_bytes: int) -> Pauses:
+    """When a run pauses: it must not depend on the clock, nor on whether results are saved."""
+    most = max(1, int(BUFFER // row_bytes))
+    every = min(most, -(-rows // PAUSES))
+    return Pauses(every, min(rows, most // every * every) + 2)  # the start, and where a run is cut short
+
+
+class Stream:
+    """The file of a run while it goes on, and its checkpoint."""
+
+    def __init__(self, path: str | os.PathLike, scene: Scene, settings: RunSettings, resume: bool):
+        """Check that the file can be written or, to resume, that it holds a run of this scene and these settings.
+
+        From here to the end no other run can write it. Raises ResultFileError.
+        """
+        self._path = check_writable(path)
+        self._state, self._part = _state_of(self._path), _part_of(self._path)
+        self._scene, self._settings = scene, settings
+        self._file: File | None = None
+        self._new = self._older = -1  # descriptors of the part file, and of the file that it will take the place of
+        self._taken, self._resumed = 0, []
+        self._added = self._checked = time.monotonic()
+        self._facts = _facts(scene, settings)
+        try:
+            if not resume:
+                self._new = self._claim(self._part)
+            self._older = self._claim_older()
+            self._kept = self._to_resume() if resume else None
+        except BaseException:
+            self._let_go()
+            raise
+
+    def __enter__(self) -> Stream:
+        """The stream."""
+        return self
+
+    def __exit__(self, *exception) -> None:
+        """Let other runs have the file."""
+        self._let_go()
+
+    def _let_go(self) -> None:
+        if self._new >= 0:  # no file was made of it
+            self._part.unlink(missing_ok=True)
+        for descriptor in (self._new, self._older):
+            if descriptor >= 0:
+                os.close(descriptor)
+        self._new = self._older = -1
+        if self._file is not None:
+            self._file.close()
+
+    @property
+    def elapsed(self) -> float:
+        """Seconds that the run took before it was resumed."""
+        return self._kept.facts.elapsed_s if self._kept else 0.0
+
+    @property
+    def free(self) -> int:
+        """Bytes that the file can have: those that are free, and those of the one that is there."""
+        disk = os.statvfs(self._path.parent)
+        return disk.f_bavail * disk.f_frsize + (self._path.stat().st_size if self._path.exists() else 0)
+
+    def start(self, model: Model, engine, rows: Callable[[], Rows], pace: Pauses, events: list[dict]) -> None:
+        """Make the file, with the first row, or go on where the checkpoint was taken.
+
+        rows: those of the engine, by name; events: those that have happened, a list to which more are added.
+        """
+        self._engine, self._rows, self._pace, self._events = engine, rows, pace, events
+        self._begin = time.monotonic()
+        self._facts |= {"start": _start_of(model), "integrator": engine.integrator}
+        if self._kept is None:
+            self._make(labelled(rows()))
+            engine.take_rows()
+            self._checkpoint()
+            return
+        facts, state = self._kept
+        self._compare("start", "from another state")
+        self._compare("integrator", f'with integrator "{engine.integrator}"')
+        try:
+            engine.restore(state, facts.rows)
+        except ValueError:
+            raise self._refused(f"its checkpoint {self._state.name} is damaged") from None
+        self._taken = facts.rows
+        events[:] = facts.events
+        self._resumed = [*facts.resumed_at_s, engine.time]
+        self._report(self._unfinished())  # first: the older one may tell the number of times
+        self._written(lambda: self._file.truncate(self._taken))
+
+    def pause(self) -> None:
+        """Write rows and a checkpoint if it is time to, or if the buffer does not last to the next pause."""
+        room = self._pace.room - (self._engine.n_rows - self._taken)
+        if time.monotonic() - self._checked > CHECKPOINT_INTERVAL or room < self._pace.every + 1:
+            self._take()
+            self._checkpoint()
+
+    def between(self) -> None:
+        """Write rows if it is time to."""
+        if time.monotonic() - self._added > ROWS_INTERVAL and self._engine.n_rows > self._taken:
+            self._take()
+
+    def _take(self) -> None:
+        self._add(self._rows())
+        self._engine.take_rows()
+        self._added = time.monotonic()
+
+    def finish(self, recording: Recording) -> Run:
+        """Write the last rows and the report; the run as read from the file. Raises ResultFileError.
+
+        A run that has failed before its first row leaves no file, or an older one as it was; it is returned, too.
+        """
+        last = Run.from_recording(recording, self._scene, self._settings)
+        if self._resumed:
+            last.report["resumed_at_s"] = self._resumed
+        if self._file is None:
+            if not len(recording.time):
+                return last
+            self._make((last.variables, last.coords))
+        else:
+            self._add(recording)
+        self._report(last.report, self._file.rows)
+        if recording.status not in GOES_ON:
+            self._state.unlink(missing_ok=True)
+        file = open_file(self._path)
+        if not is_at(self._file.descriptor, self._path):
+            raise self._lost()
+        return opened(file, self._scene.libraries, check=False)  # it is what was just written
+
+    def _unfinished(self) -> dict:
+        return {"status": "unfinished", "message": "the run goes on, or was killed", "resumed_at_s": self._resumed,
+                "messages": self._scene.messages, "settings": self._settings.model_dump()}
+
+    def _make(self, arrays: tuple[dict, dict]) -> None:
+        """A new file with these rows, in the place of an older one, whose checkpoint goes first."""
+        variables, coords = arrays
+
+        def make() -> None:
+            self._replace(coords, variables, self._unfinished())
+            self._file.write(0, over_time(coords, variables))
+            self._state.unlink(missing_ok=True)
+            self._file.rename(self._path)
+
+        self._written(make)
+        self._taken = self._file.rows
+
+    def _replace(self, coords: dict, variables: dict, report: dict, rows: int | None = None) -> None:
+        """The part file, whole but for its rows."""
+        descriptor, self._new = self._new if self._new >= 0 else self._claim(self._part), -1
+        self._file = create_file(self._part, coords, variables, self._scene.to_toml(), file_text(report, rows),
+                                 REPORT_ROOM, descriptor)
+
+    def _add(self, rows: Rows) -> None:
+        variables, coords = labelled(rows)
+        self._written(lambda: self._file.write(self._taken, over_time(coords, variables)))
+        self._taken = self._file.rows
+
+    def _report(self, report: dict, rows: int | None = None) -> None:
+        """Write a report; rows: number of rows of a file that is whole."""
+        def add() -> None:
+            if not self._file.add_report(file_text(report, rows)):  # with more room, then
+                old = self._file
+                self._replace(old.described(over_time=False), old.described(over_time=True), report, rows)
+                self._file.copy_rows(old)
+                self._file.rename(self._path)
+
+        self._written(add)
+
+    def _checkpoint(self) -> None:
+        if not is_at(self._file.descriptor, self._path):
+            raise self._lost()
+        elapsed = self.elapsed + time.monotonic() - self._begin
+        facts = Facts(**self._facts, rows=self._taken, elapsed_s=elapsed, resumed_at_s=self._resumed,
+                      events=self._events)
+        self._written(lambda: Checkpoint(facts, self._engine.checkpoint()).write(self._state))
+        self._checked = time.monotonic()
+
+    def _lost(self) -> ResultFileError:
+        return self._refused("it was removed or replaced while the run was writing it",
+                             "leave it where it is until the run has come to its end")
+
+    def _written(self, write: Callable[[], None]) -> None:
+        try:
+            write()
+        except OSError as error:
+            whole = f"its first {self._file.rows} times are whole; " if self._file and self._path.exists() else ""
+            raise ResultFileError(f"{self._path}: the results could not be written: {error.strerror}; {whole}"
+                                  "make room, and go on with resume where there is a checkpoint") from error
+
+    def _claim(self, path: Path) -> int:
+        """A descriptor of a file that is this run's alone."""
+        try:
+            return claimed(path)
+        except Taken:
+            raise self._taken_already() from None
+        except NoLocks:
+            raise self._refused(f"another run may be writing it: there is {path.name}, and this file system has no "
+                                "locks", f"delete {path.name} if there is none") from None
+        except OSError as error:
+            if error.errno == errno.ELOOP:
+                raise self._refused(f"{path.name} beside it is a link", "delete the link") from None
+            raise self._unwritable(error) from None
+
+    def _claim_older(self) -> int:
+        """A descriptor of the file that is there already, which no other run can then write; -1 where there is none."""
+        while self._path.exists():
+            try:
+                descriptor = os.open(self._path, os.O_RDWR | os.O_CLOEXEC)
+            except FileNotFoundError:
+                return -1
+            except OSError as error:
+                raise self._unwritable(error) from None
+            try:
+                lock(descriptor)
+            except Taken:
+                os.close(descriptor)
+                raise self._taken_already() from None
+            if is_at(descriptor, self._path):
+                return descriptor
+            os.close(descriptor)  # replaced while it was opened
+        return -1
+
+    def _unwritable(self, error: OSError) -> ResultFileError:
+        return self._refused(f"the results cannot be written here: {error.strerror}", "give another path")
+
+    def _taken_already(self) -> ResultFileError:
+        return self._refused("another run is writing it", "wait for its end, or give another name")
+
+    def _refused(self, cause: str, remedy: str = "start the run anew, without resume") -> ResultFileError:
+        return ResultFileError(f"{self._path}: {cause}; {remedy}")
+
+    def _compare(self, name: str, difference: str) -> None:
+        if getattr(self._kept.facts, name) != self._facts[name]:
+            raise self._refused(f"its run cannot go on {difference}")
+
+    def _to_resume(self) -> Checkpoint:
+        """The checkpoint, if it is one of this scene and these settings; opens the file."""
+        if self._older < 0:
+            raise self._refused("there is no run to resume: there is no such file")
+        status = opened(open_file(self._path), check=False).status
+        if status not in GOES_ON:
+            raise self._refused(f"its run has come to its end ({status}): there is nothing to resume")
+        self._kept = kept = self._read_checkpoint()
+        for name, now in self._facts["settings"].items():
+            if (before := kept.facts.settings.get(name)) != now:
+                raise self._refused(f"its run was started with {name} = {before}, and cannot go on with {now}",
+                                    "resume it with the settings that it was started with, or start it anew")
+        self._compare("scene", "with another scene")
+        self._compare("programs", "with another version of funicular, NumPy or SciPy")
+        descriptor, self._older = self._older, -1
+        self._file = File(self._path, descriptor=descriptor)
+        if kept.facts.rows > self._file.rows:
+            raise self._refused(f"it has {self._file.rows} times, but its checkpoint is of the one after "
+                                f"{kept.facts.rows}")
+        if len(damaged := self._file.damaged_rows(kept.facts.rows)):
+            raise self._refused(f"{len(damaged)} of the output times up to its checkpoint are damaged, the first is "
+                                f"that of row {damaged[0]}")
+        return kept
+
+    def _read_checkpoint(self) -> Checkpoint:
+        try:
+            return Checkpoint.read(self._state)
+        except FileNotFoundError:
+            raise self._refused(f"its checkpoint {self._state.name} is missing") from None
+        except DamagedCheckpointError as error:
+            raise self._refused(f"its checkpoint {self._state.name} {error}") from None
+        except OSError as error:
+            raise self._refused(f"its checkpoint {self._state.name} cannot be read: {error.strerror}") from None
+
+
+def add_events(report: dict, path: Path) -> None:
+    """Put into the report of a run that has not come to its end what events have found up to its checkpoint."""
+    try:
+        report["events"] = Checkpoint.read(_state_of(path)).facts.events
+    except (OSError, DamagedCheckpointError):
+        report["events"] = []
+        report["messages"].append(f"what events have found is not known: there is no whole checkpoint "
+                                  f"{_state_of(path).name}")
+
+
+def _state_of(path: Path) -> Path:
+    return path.with_name(f"{path.name}.state")
+
+
+def _part_of(path: Path) -> Path:
+    """What becomes the file when it is whole; the same for all runs, so that a killed one's is written over."""
+    return path.with_name(f".{path.name}.part")
+
+
+def _facts(scene: Scene, settings: RunSettings) -> dict:
+    """What must be the same for a run to go on."""
+    alone = copy(scene)
+    alone.run_settings = {}
+    said = {name: value for name, value in settings.model_dump().items() if name != "save"}
+    return {"scene": _digest(alone.to_toml().encode()), "settings": json.loads(json.dumps(said, default=str)),
+            "programs": _programs(scene)}
+
+
+def _digest(*parts: bytes) -> str:
+    digest = hashlib.sha256()
+    for part in parts:
+        digest.update(part)
+    return digest.hexdigest()
+
+
+def _programs(scene: Scene) -> str:
+    """Digest of the machine code that computes the run."""
+    import numpy
+    import scipy
+    from funicular.generated import kernels
+
+    from .. import engine
+    from ..kernels.libraries import load
+
+    files = [engine.__file__, kernels.__file__]
+    versions = f"{numpy.__version__} {scipy.__version__}"
+    return _digest(versions.encode(), *(Path(file).read_bytes() for file in files),
+                   *(load(library).digest.encode() for library in scene.libraries))
+
+
+def _start_of(model: Model) -> str:
+    """Digest of the state that a run starts from."""
+    places = [(joint.s, joint.element, joint.director.tolist()) for joint in model.slides]
+    return _digest(model.q.tobytes(), model.v.tobytes(), repr(places).encode())

@@ -1,0 +1,1 @@
+"""Runs, equilibria and modes of a model."""

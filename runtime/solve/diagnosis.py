@@ -1,0 +1,140 @@
+"""Why a run stopped, and what its results are worth: place, likely cause and remedy, in words."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..model.redundant_constraints import redundant
+
+if TYPE_CHECKING:
+    from ..model.build import CableModel, Model
+    from ..parts.settings import RunSettings
+
+KEPT = "what was computed up to there is kept"
+
+FOLDED, STRETCHED = 0.8, 3.0
+"""Elements shorter or longer than this part of their undeformed length are named."""
+
+ROUNDED = 4e-16
+"""Of the farthest coordinate: below this the error control does not go (engine/run.c)."""
+
+LEAST_MOTION = 1e-9
+"""Of the farthest coordinate: what moves less may be at rest (engine/run.c)."""
+STEADY = 0.01
+"""Of the kinetic energy: where less is exchanged, as where bodies turn freely, errors go by this part of it."""
+
+QUIET_ERROR, QUIET_LOSS, LOOSE_LOSS = 5e-3, 0.01, 0.05
+"""Of the largest motion, and of the energy exchanged: errors of a fixed step, and energy that nothing explains, beyond
+these are told; the last is for loose tolerances, where energy may be off by so much more."""
+
+
+def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
+    """The message of a run that found no acceptable step, lost a joint or whose energy grew."""
+    when = f"t = {engine.time:.6g} s of {settings.duration:.6g} s"
+    cause, dof, joint = engine.failure
+    _, q, v, _ = engine.now()
+    where, (state, folded) = place(model, dof, joint), condition(model, dof, q, v)
+    if status == "unstable":
+        grown, _, exchanged, in_motion, _ = engine.balance
+        exchanged = max(exchanged, in_motion)
+        return (f"energy came from nowhere at {when}: {grown:.3g} J, where {exchanged:.3g} J were exchanged; fastest "
+                f"is {where} ({state}); {KEPT}. {_too_large(engine, settings)}")
+    if cause is None and status == "no_convergence":
+        return (f"no step could be made at {when}: to pass an event there it would have to be shorter than 1e-12 of "
+                f"the duration; {KEPT}. Look at slides, stops and events that act at the same instant")
+    if doubled := redundant(model, engine):
+        return (f"no step converged at {when}: {doubled} hold nearly the same; {KEPT}. "
+                "Leave one of them out, or hold the body at points farther apart")
+    if status == "singular" or cause == "matrix":
+        return (f"the equations are singular at {when}, first at {where} ({state}): a joint or the mass matrix is "
+                f"degenerate, as where a cable's tangent vanishes or its director lies along it; {KEPT}. "
+                "Look at the masses and at up, or take more elements there")
+    what = {"iteration": f"the iteration does not settle, least of all at {where}",
+            "error": f"the error stays above what tol allows, most of all at {where}",
+            "lost_rider": f"{where} does not find its place on the cable any more",
+            "not_finite": f"{where} runs away",
+            "jam": f"friction jams {where}: the more it holds, the more it is pressed on the cable"}[cause]
+    counts = engine.statistics
+    gone = f" after {counts['steps']} steps down to {counts['smallest_step_s']:.2g} s" if counts["steps"] else ""
+    if settings.step is not None and engine.integrator == "explicit":
+        remedy = _too_large(engine, settings)
+    elif folded:
+        remedy = "The cable folds up there: take more elements, or damping_time in the material"
+    else:
+        remedy = ("Look at loads, masses and stiffnesses there; else try a smaller "
+                  f"{'tol' if settings.step is None else 'step'}, or damping_time in the material")
+    return f"no step converged at {when}{gone}: {what} ({state}); {KEPT}. {remedy}"
+
+
+def _too_large(engine, settings: RunSettings) -> str:
+    size = f"tol {settings.tol:g}" if settings.step is None else f"step {settings.step:g} s"
+    others = "" if settings.step is None else ", or none, so that tol chooses it"
+    stable = ', or integrator="genalpha"' if engine.integrator == "explicit" else ""
+    return f'The {size} is too large for integrator "{engine.integrator}": take a smaller one{others}{stable}'
+
+
+def place(model: Model, dof: int, joint: int | None = None) -> str:
+    """What a dof, or a joint, is of."""
+    if joint is not None:
+        return f'slide "{model.slides[joint].name}" on cable "{model.cables[model.slides[joint].cable].name}"'
+    if (found := _node(model, dof)) is not None:
+        cable, node = found
+        return f'cable "{cable.name}" at s = {node * cable.length:.6g} m'
+    return [f'body "{body.name}"' for body in model.bodies if body.dof <= dof][-1]
+
+
+def condition(model: Model, dof: int, q: np.ndarray, v: np.ndarray) -> tuple[str, bool]:
+    """How the place of a dof fares, and whether its cable is folded up there."""
+    speed = f"{abs(v[dof]) * model.weight[dof]:.3g} m/s"
+    if (found := _node(model, dof)) is None:
+        return speed, False
+    cable, node = found
+    r = q[cable.coordinates].reshape(cable.shape)[:, 0]
+    stretch = np.linalg.norm(np.diff(r, axis=0), axis=1)[max(node - 1, 0) : node + 1] / cable.length
+    worst = stretch[np.argmax(np.abs(np.log(np.maximum(stretch, 1e-300))))]
+    fair = FOLDED < worst < STRETCHED
+    told = "" if fair else f"its elements there are {worst:.3g} times their length at rest, "
+    return told + speed, bool(worst <= FOLDED)
+
+
+def _node(model: Model, dof: int) -> tuple[CableModel, int] | None:
+    """Cable and number of the node that a dof is of; None where it is a body's."""
+    for cable in model.cables:
+        if cable.coordinates.start <= dof < cable.coordinates.stop:
+            return cable, (dof - cable.first) // (cable.shape[1] * cable.shape[2])
+    return None
+
+
+def notes(engine, settings: RunSettings) -> list[str]:
+    """What a user should know of a completed run whose results are coarse; empty where they are good."""
+    counts, told = engine.statistics, []
+    if settings.step is not None and counts["rejected_steps"]:
+        told.append(f"{counts['rejected_steps']} times no step of {settings.step:g} s was possible: it was divided, "
+                    f"down to {counts['smallest_step_s']:.3g} s")
+    rounded, motion = ROUNDED * engine.extent, counts["largest_motion_m"]
+    if settings.step is None and LEAST_MOTION * engine.extent < motion < rounded / settings.tol:
+        told.append(f"positions are rounded to {rounded:.2g} m so far from the origin, which is more than tol = "
+                    f"{settings.tol:g} allows: draw the scene nearer to it")
+    if not engine.moves:
+        return told
+    error = counts["sum_of_local_error_estimates_m"] / counts["largest_motion_m"]
+    if settings.step is not None and error > QUIET_ERROR:
+        told.append(f"the estimated errors of the steps sum up to {error:.2g} of the largest motion: take a smaller "
+                    "step, or none, so that tol chooses it")
+    return told + unexplained(engine, settings)
+
+
+def unexplained(engine, settings: RunSettings) -> list[str]:
+    """A note where energy has come or gone that nothing in the scene explains; empty where the balance closes."""
+    grown, lost, exchanged, in_motion, rounding = engine.balance
+    off, fixed = max(grown, lost), settings.step is not None
+    quiet = QUIET_LOSS if fixed else min(max(QUIET_LOSS, 100 * settings.tol), LOOSE_LOSS)
+    if not off > quiet * max(exchanged, STEADY * in_motion) + rounding:
+        return []
+    what = ("went that neither damping nor friction nor impacts took", "came that nothing did work for")[grown > lost]
+    damped = ", or a spectral_radius nearer to 1" if lost > grown and settings.spectral_radius < 1 else ""
+    part = f"{off / exchanged:.2g} of the {exchanged:.3g} J exchanged" if exchanged > off else "all that was exchanged"
+    return [f"the energy balance is off by up to {off:.3g} J, {part}: energy {what}. The integration makes this error: "
+            f"take a smaller {'step, or none, so that tol chooses it' if fixed else 'tol'}{damped}"]

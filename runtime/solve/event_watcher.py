@@ -1,0 +1,154 @@
+"""What the engine watches for a scene's events, and what a run tells of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..checks.placement import node_at
+from ..errors import SceneError, near
+from ..parts.event import Event
+from ..results.recording import body_rates, body_state, spatial
+
+if TYPE_CHECKING:
+    from ..model.build import Model
+    from ..scene import Scene
+
+AXES = ("x", "y", "z")
+WATCHABLE = {"rigid_body": ("position", "velocity"), "modal_body": ("position", "velocity"),
+             "cable": ("position", "velocity"), "slide": ("s", "s_rate", "traction")}
+"""Quantities that a threshold can be set on, by kind of part."""
+
+
+def check_event(scene: Scene, event: Event) -> None:
+    """A threshold needs a quantity that the scene has. Raises SceneError."""
+    if event.quantity is None:
+        return
+    name, _, quantity = event.quantity.partition(".")
+    what, _, axis = quantity.partition(".")
+    parts = {**scene.bodies, **scene.cables, **scene.slides}
+    if name not in parts:
+        raise SceneError(event.where, f'there is no body, cable or slide "{name}"', near(name, parts))
+    part = parts[name]
+    known = WATCHABLE[part.kind]
+    if what not in known or (axis not in AXES if part.kind != "slide" else axis):
+        forms = ", ".join(f"{name}.{k}" if part.kind == "slide" else f"{name}.{k}.x" for k in known)
+        raise SceneError(event.where, f'"{event.quantity}" cannot be watched', f"{forms}, with x, y or z, can"
+                         if part.kind != "slide" else f"{forms} can")
+    if scene.dim == 2 and axis == "z":
+        raise SceneError(event.where, f'"{event.quantity}" is always 0: the scene is planar', "watch x or y")
+    if part.kind == "cable":
+        if event.s is None:
+            raise SceneError(event.where, "s is missing: where on the cable?", "give the s of a node")
+        node_at(scene, name, event.where, event.s)
+    elif event.s is not None:
+        raise SceneError(event.where, f'"{event.quantity}" has no place s', "leave it out")
+
+
+class Watch:
+    """What the engine watches for an event: kind, entry, value, direction.
+
+    kind: "q" or "v", of which the index is an entry; "s", "s_rate", "traction", of which it is a slide; "function".
+    """
+
+    def __init__(self, event: Event, scene: Scene, model: Model):
+        self.event, self.value = event, event.value
+        self.direction = {"rising": 1, "falling": -1, "both": 0}[event.direction]
+        if event.function is not None:
+            self.kind, self.index = "function", 0
+            return
+        name, what, *axis = event.quantity.split(".")
+        if name in scene.slides:
+            self.kind, self.index = what, list(scene.slides).index(name)
+            return
+        of = "configuration" if what == "position" else "dof"
+        self.kind = "q" if what == "position" else "v"
+        if name in scene.bodies and np.any(getattr(scene.bodies[name], "centre", 0.0)):
+            self.kind, self.index = "function", 0  # the engine knows the mass centre, and not the body's origin
+            return
+        if name in scene.bodies:
+            start = getattr(model.bodies[list(scene.bodies).index(name)], of)
+        else:
+            start = model.nodes[name][scene.cables[name].node_at(event.s)].dofs("r")[0]
+        self.index = start + AXES.index(axis[0])
+
+
+class State:
+    """Quantities at one instant, by the names that results have: positions, velocities, nodal vectors, s."""
+
+    def __init__(self, model: Model, q: np.ndarray, v: np.ndarray, s: np.ndarray):
+        """q (n_q,), v (n_dof,), s (slides,): the engine's state."""
+        self._model, self._q, self._v, self._s = model, q, v, s
+
+    def __getitem__(self, name: str) -> np.ndarray | float:
+        """position, orientation, velocity, angular_velocity of a body (3 or 4,); nodal_vectors, nodal_velocity of a
+        cable (nodes, vectors, 3); s of a slide. Raises KeyError.
+        """
+        of, _, quantity = name.partition(".")
+        found = self._all(of)
+        if quantity not in found:
+            raise KeyError(f'the state has no "{name}"; {near(quantity, found) if found else "known: "}'
+                           + ("" if found else ", ".join(self.names())))
+        return found[quantity]
+
+    def names(self) -> list[str]:
+        """Bodies, cables and slides that the state has quantities of."""
+        return [part.name for part in (*self._model.bodies, *self._model.cables, *self._model.joints)]
+
+    def _all(self, name: str) -> dict[str, Any]:
+        model = self._model
+        for body in model.bodies:
+            if body.name == name:
+                state = body_state(model, body, self._q[None])
+                state |= body_rates(model, body, state["orientation"], self._v[None])
+                return {name: values[0] for name, values in state.items()}
+        for cable in model.cables:
+            if cable.name == name:
+                return {"nodal_vectors": spatial(self._q[cable.coordinates].reshape(cable.shape)),
+                        "nodal_velocity": spatial(self._v[cable.coordinates].reshape(cable.shape))}
+        slides = [joint.name for joint in model.slides]
+        return {"s": float(self._s[slides.index(name)])} if name in slides else {}
+
+
+class Watcher:
+    """The events of a run as the engine meets them: what it asks, and what has happened."""
+
+    def __init__(self, scene: Scene, model: Model):
+        self.model = model
+        self.watches = [Watch(event, scene, model) for event in scene.events.values()]
+        self.happened: list[dict] = []
+        self.stopped_by: str | None = None
+
+    def call(self, which: int, time: float, q: np.ndarray, v: np.ndarray, s: np.ndarray) -> float:
+        """The function of an event at a state. Raises SceneError where it fails or gives no number."""
+        event = self.watches[which].event
+        try:
+            value = float((event.function or self._of_quantity(event))(time, State(self.model, q, v, s)))
+        except Exception as error:
+            raise SceneError(event.where, f"its function failed at t = {time:.6g} s: {type(error).__name__}: {error}",
+                             "it gets (time, state) and must give a number") from error
+        if not np.isfinite(value):
+            raise SceneError(event.where, f"its function gave {value} at t = {time:.6g} s", "it must give a number")
+        return value
+
+    def _of_quantity(self, event: Event) -> Callable[[float, State], float]:
+        """The function that a threshold on a body's origin stands for."""
+        name, axis = event.quantity.rsplit(".", 1)
+        return lambda time, state: state[name][AXES.index(axis)] - event.value
+
+    def acts(self, which: int, what: str, time: float, s: float) -> None:
+        """Note what a slide has done of itself: stuck, struck the end, and so on."""
+        self.happened.append({"name": self.model.slides[which].name, "time": time, "what": what, "s": s})
+
+    def happens(self, which: int, time: float, q: np.ndarray, v: np.ndarray, s: np.ndarray) -> bool:
+        """Note an event; whether the run goes on."""
+        event, state = self.watches[which].event, State(self.model, q, v, s)
+        at = {f"{body.name}.{k}": state[f"{body.name}.{k}"].tolist() for body in self.model.bodies
+              for k in ("position", "velocity")}
+        at |= {f"{joint.name}.s": state[f"{joint.name}.s"] for joint in self.model.slides}
+        self.happened.append({"name": event.name, "time": time, "state": at})
+        if event.action == "stop":
+            self.stopped_by = event.name
+        return event.action != "stop"

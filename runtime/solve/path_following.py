@@ -1,0 +1,192 @@
+"""The path of equilibria x(p) by arc-length continuation (Riks 1979; Crisfield 1981), and the critical points on it.
+
+The load fraction p is one unknown more, so that limit points are passed. Unstable states are passed on purpose; each
+is labelled. Between two states the number of unstable directions or the sense of the load may change: the point at
+which it does is found by bisection along the path.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import block_array
+
+from .stability import Stability, stability
+from .static_problem import StaticProblem, solver
+
+MOST_STATES = 1000
+MOST_CORRECTIONS = 12
+GROWTH = 10.0
+"""Of a correction over the least one before: it does not converge."""
+SMALLEST_STEP = 1e-8
+"""Of the path, in units of the load fraction or of the scene's size: shorter steps make no way."""
+TURN = 0.8
+"""Cosine of the angle between the directions of states that follow each other, at least."""
+SHARP = 1e-6
+"""Of the load fraction: how well critical points are found."""
+
+
+@dataclass
+class Point:
+    """A state on the path: its load fraction, and where the path leads. along (unknowns,) and rate are dx and dp for a
+    unit of arc-length, which is measured over displacements relative to the scene's size, and p; heading
+    (unknowns + 1,) is the unit vector of these; way: the arc-length from the point that it was found from.
+    """
+
+    kept: dict
+    fraction: float
+    along: np.ndarray
+    rate: float
+    heading: np.ndarray
+    stability: Stability
+    way: float = 0.0
+
+    @property
+    def kind(self) -> tuple[int, bool]:
+        """What changes at a critical point: unstable directions, and whether the load rises along the path."""
+        return self.stability.unstable, self.rate > 0
+
+
+@dataclass
+class Critical:
+    """A point of the path at which the load turns ("limit"), or another path crosses it ("bifurcation").
+
+    directions: how many more directions are unstable beyond it.
+    """
+
+    point: Point
+    kind: str
+    directions: int
+
+
+def follow(problem: StaticProblem, fraction: float, heading: np.ndarray | None) -> Iterator[Point | Critical]:
+    """Points and critical points from the static state, at rest at this load fraction, until p = 1 or no way is left.
+
+    heading: as of a `Point`, the sense in which to go on; None: to higher loads.
+    """
+    largest = problem.settings.largest_step
+    problem.load(fraction)
+    point = _point(problem, heading)
+    if point is None:
+        return
+    step = largest / problem.settings.load_steps
+    for _ in range(MOST_STATES):
+        step = min(step, largest / float(np.max(np.abs(point.heading))))
+        following = None
+        while step > SMALLEST_STEP:
+            following = _advance(problem, point, step)
+            if following is not None and following.fraction >= 1.0:
+                following = _at_full_load(problem, point, following)
+                if following is not None:
+                    yield from _critical(problem, point, following)
+                    yield following
+                    return
+            if following is not None and point.heading @ following.heading > TURN:
+                break
+            following = None
+            step *= 0.25
+        if following is None:
+            return
+        yield from _critical(problem, point, following)
+        yield following
+        point, step = following, 1.5 * step
+
+
+def _point(problem: StaticProblem, before: np.ndarray | None, way: float = 0.0) -> Point | None:
+    """The static state as a point of the path, in the sense of the heading before."""
+    if before is None:
+        before = np.append(np.zeros(len(problem.weight)), 1.0)
+    try:
+        ahead = _bordered(problem, before)(np.append(np.zeros(len(problem.weight)), 1.0))
+    except RuntimeError:
+        return None
+    heading = np.append(problem.weight / problem.size, 1.0) * ahead
+    length = np.linalg.norm(heading)
+    if not np.isfinite(length):
+        return None
+    return Point(problem.keep(), problem.fraction, ahead[:-1] / length, float(ahead[-1] / length), heading / length,
+                 stability(problem), way)
+
+
+def _bordered(problem: StaticProblem, heading: np.ndarray):
+    """Solver of the tangent with the load as a further unknown, and a further row: the way along the heading. It is not
+    singular where the load turns. Raises RuntimeError where it is.
+    """
+    row = heading * np.append(problem.weight / problem.size, 1.0)
+    return solver(block_array([[problem.regular_tangent(), -problem.load_vector()[:, None]],
+                               [row[None, :-1], row[None, -1:]]], format="csc"))
+
+
+def _advance(problem: StaticProblem, point: Point, way: float) -> Point | None:
+    """Predict along the heading, then Newton in the plane normal to it; None where that does not converge."""
+    problem.restore(point.kept)
+    problem.move(way * point.along)
+    problem.load(point.fraction + way * point.rate)
+    tolerance, least = problem.settings.tolerance, np.inf
+    for _ in range(MOST_CORRECTIONS):
+        problem.iterations += 1
+        try:
+            change = _bordered(problem, point.heading)(np.append(-problem.residual(), 0.0))
+        except RuntimeError:
+            return None
+        size = problem.length(change[:-1])
+        if not size < min(GROWTH * least, problem.size):
+            return None
+        problem.move(change[:-1])
+        problem.load(problem.fraction + float(change[-1]))
+        least = max(min(size, least), tolerance * problem.size)
+        if size <= tolerance * problem.size and abs(change[-1]) <= tolerance * max(abs(problem.fraction), way):
+            return _point(problem, point.heading, way) if problem.on_cables() else None
+    return None
+
+
+def _at_full_load(problem: StaticProblem, point: Point, beyond: Point) -> Point | None:
+    """The state at p = 1 between two points; None where Newton does not find it there."""
+    way = beyond.way * (1.0 - point.fraction) / (beyond.fraction - point.fraction)
+    if _advance(problem, point, way) is None:
+        return None
+    problem.load(1.0)
+    if not problem.newton() or problem.distance(point.kept) > 3.0 * beyond.way * problem.size:
+        return None
+    return _point(problem, point.heading, way)
+
+
+def _critical(problem: StaticProblem, point: Point, following: Point) -> list[Critical]:
+    """The critical points between a point and one that was found from it, by bisection."""
+    found: list[Critical] = []
+    intervals = [(point, following)]
+    while intervals:
+        near, far = intervals.pop()
+        if near.kind == far.kind:
+            continue
+        start = 0.0 if near is point else near.way
+        between = None
+        if not _sharp(near, far, start):
+            tries = (_advance(problem, point, start + part * (far.way - start)) for part in (0.5, 0.4, 0.65))
+            between = next((each for each in tries if each is not None), None)
+        if between is None:
+            _add(found, near, far)
+        else:
+            intervals += [(between, far), (near, between)]
+    return found
+
+
+def _sharp(near: Point, far: Point, start: float) -> bool:
+    """Whether two points are so near that what lies between them is one critical point: the load cannot differ by more
+    than the arc-length between them times its rate at either end.
+    """
+    width, rate = far.way - start, max(abs(near.rate), abs(far.rate))
+    return width < SMALLEST_STEP or width * rate <= SHARP * max(abs(far.fraction), SHARP)
+
+
+def _add(found: list[Critical], near: Point, far: Point) -> None:
+    """Two changes at one load are one critical point: at a limit point the load turns and stability changes."""
+    turns = near.kind[1] != far.kind[1]
+    more = far.stability.unstable - near.stability.unstable
+    if found and abs(far.fraction - found[-1].point.fraction) <= 10 * SHARP * abs(far.fraction) and (
+            turns != (found[-1].kind == "limit")):
+        found[-1] = Critical(found[-1].point, "limit", found[-1].directions + more)
+        return
+    found.append(Critical(near, "limit" if turns else "bifurcation", more))

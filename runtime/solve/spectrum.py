@@ -1,0 +1,288 @@
+"""The lowest eigenpairs of K x = λ M x on C x = 0, all of them: counted by the signs of a factorisation's pivots."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.linalg import eigh, qr
+from scipy.sparse import block_array, csc_array, diags_array
+from scipy.sparse.linalg import splu
+
+from .inertia import equilibrating, negatives
+
+MORE = 4
+"""Pairs computed beyond those asked for: a gap is needed to count at."""
+
+DENSE = 40
+"""Degrees of freedom up to which all eigenvalues are computed."""
+
+CONVERGED = 1e-8
+"""Residual of a pair of the inverse, relative to it; the error of the eigenvalue is of the order of its square."""
+
+STALLED = 6
+"""Extensions of the subspace without a smaller residual, after which rounding rules it."""
+
+MOST_EXTENSIONS = 200
+MOST_STARTS = 4
+LARGEST_SPACE = 12
+"""Blocks of the subspace, beyond which it is restarted with what it has found."""
+
+FACTOR = 16.0
+"""Ratio of the shifts between which a search for an eigenvalue's size ends."""
+
+DEEPEST = 1e-30
+"""Of the largest eigenvalue: below this nothing is looked for. It is the square of what rounding leaves of a shape."""
+
+CLUSTER = 1e-4
+"""Of the shift: smaller eigenvalues are not well told apart by its inverse."""
+
+LEVEL = 1e6
+"""Ratio of eigenvalues that rounding makes of zeros to those that are none, at least."""
+
+MOST_AT_ONE_PLACE = 2000
+"""Eigenvalues too close to each other to be told apart, of which all are computed."""
+
+RELATIVE = 1e-14
+"""Of the largest eigenvalue computed together with others: the rounding of these."""
+
+NEGLIGIBLE = 1e-6
+"""Of the eigenvalue that follows: a cluster is not looked at more closely than this."""
+
+APART = 1e-6
+"""Relative distance of neighbours between which a count is sure."""
+
+ROUNDING = 4 * np.finfo(float).eps
+"""Relative error of the entries of K and of their sums."""
+
+
+class IncompleteError(Exception):
+    """Eigenvalues that the factorisation counts were not found."""
+
+
+class Pencil:
+    """K x = λ M x on C x = 0, scaled to coordinates of unit inertia.
+
+    K: (n, n) sparse symmetric; M: (n, n) sparse, symmetric, positive definite on C x = 0; C: (m, n) sparse of rank m.
+    A coordinate without inertia is one that the constraints determine.
+    """
+
+    def __init__(self, K: csc_array, M: csc_array, C: csc_array):
+        self.unit = float(abs(K).max()) if K.nnz else 0.0  # of stiffness; eigenvalues are in parts of it
+        self.unit = self.unit or 1.0
+        K = K / self.unit
+        inertia = M.diagonal()
+        heavy = inertia > 0
+        scale = np.ones(len(inertia))
+        scale[heavy] = 1 / np.sqrt(inertia[heavy])
+        if C.shape[0]:
+            size = abs(C) @ diags_array(scale)
+            rows = np.asarray(size.tocsc()[:, heavy].max(axis=1).todense()).ravel()
+            for at in np.flatnonzero(~heavy):  # as large in the constraints as the coordinates with inertia
+                column = size.tocsc()[:, [at]].toarray().ravel()
+                if column.any():
+                    scale[at] = rows[column > 0].max() / column.max()
+        by = diags_array(scale)
+        self.scale = scale
+        self.K = _symmetric((by @ K @ by).tocsc())
+        self.M = _symmetric((by @ M @ by).tocsc())
+        C = (C @ by).tocsr()
+        if C.shape[0]:
+            C = (diags_array(1 / np.asarray(abs(C).max(axis=1).todense()).ravel()) @ C).tocsr()
+        self.C = C
+        self.degrees = K.shape[0] - C.shape[0]
+        self.largest = float(np.max(np.asarray(abs(self.K).sum(axis=1)).ravel()[heavy], initial=0.0)) or 1.0
+        self.floor = DEEPEST * self.largest
+        self.random = np.random.default_rng(0)
+
+    def below(self, shift: float) -> int:
+        """How many eigenvalues are smaller than a shift. Raises ArithmeticError where that is not known."""
+        for nudge in (0.0, 1e-7, -1e-7, 1e-5):  # beside a shift at which a part of the matrix is singular
+            try:
+                return negatives((self.K - shift * (1 + nudge) * self.M).tocsc(), self.C)
+            except ArithmeticError:
+                continue
+        raise ArithmeticError("the pivots of the stiffness are too small for their signs to be known")
+
+    def inverse(self, shift: float) -> Callable[[np.ndarray], np.ndarray]:
+        """Solver of (K - shift M) x = M y on C x = 0 for y (n, k)."""
+        n, m = self.K.shape[0], self.C.shape[0]
+        whole = (self.K - shift * self.M).tocsc()
+        if m:
+            whole = block_array([[whole, self.C.T], [self.C, None]], format="csc")
+        by = equilibrating(whole)
+        factor = splu((diags_array(by) @ whole @ diags_array(by)).tocsc())
+
+        def solve(y: np.ndarray) -> np.ndarray:
+            right = np.zeros((n + m, y.shape[1]))
+            right[:n] = self.M @ y
+            return by[:n, None] * factor.solve(by[:, None] * right)[:n]
+
+        return solve
+
+    def lowest(self, n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+        """The n smallest eigenvalues or some more, their vectors, and what rounding leaves undecided of eigenvalues.
+
+        Returns (n,), (coordinates, n) with x'Mx = 1, (n,), and the eigenvalue that follows, infinite if there is none.
+        Raises IncompleteError, ArithmeticError, RuntimeError.
+        """
+        all_at_once = n + MORE >= self.degrees or self.degrees <= DENSE
+        values, x, after, top = self._by_lapack() if all_at_once else self._by_inverse(n)
+        values, x, error = self._taken_apart(values, x, after, top)
+        return self.unit * values, self.scale[:, None] * x, self.unit * error, self.unit * after
+
+    def _by_lapack(self) -> tuple[np.ndarray, np.ndarray, float, float]:
+        """All pairs of the scaled matrices, infinity, which follows, and the size of the largest."""
+        free = basis(self.C)
+        k, m = free.T @ (self.K @ free), free.T @ (self.M @ free)
+        values, x = eigh((k + k.T) / 2, (m + m.T) / 2)
+        return values, free @ x, np.inf, np.abs(values).max(initial=0.0)
+
+    def _by_inverse(self, n: int) -> tuple[np.ndarray, np.ndarray, float, float]:
+        """The lowest pairs, n or some more, the eigenvalue that follows, and the scale at which they were found."""
+        while n + MORE < self.degrees:
+            top = self.reaching(n + MORE)
+            try:
+                return *self._from_below(n, top), top
+            except IncompleteError:  # n of many at one place, zero most often: all of these, and some above them
+                n = max(2 * n, self.below(LEVEL * top))
+                if n > MOST_AT_ONE_PLACE:
+                    raise
+        return self._by_lapack()
+
+    def _from_below(self, n: int, top: float) -> tuple[np.ndarray, np.ndarray, float]:
+        """The lowest pairs and what follows by the inverse at a shift below them; at two where some are negative."""
+        middle = -top / FACTOR
+        negative = self.below(middle)
+        values, x, after = np.zeros(0), np.zeros((self.K.shape[0], 0)), 0.0
+        if negative:
+            bottom = middle
+            while self.below(bottom) and -bottom < 1e3 * self.largest:
+                bottom *= FACTOR
+            values, x, after = self._above(bottom, min(n, negative), values, x)
+        if len(values) < n:
+            values, x, after = self._above(middle, n, values, x)
+        return values, x, after
+
+    def _taken_apart(self, values: np.ndarray, x: np.ndarray, after: float, top: float
+                     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Pairs found at the scale of ``top``, to which much smaller ones are one cluster: these at their own scale.
+
+        after: the eigenvalue that follows. Returns the pairs, and what is undecided of the eigenvalues.
+        """
+        error = np.maximum(self.uncertainty(x), max(RELATIVE * top, self.floor))
+        small = int(np.count_nonzero(values < CLUSTER * top))
+        if not small or values[0] < -CLUSTER * top or small == self.degrees:
+            return values, x, error
+        after = values[small] if small < len(values) else after
+        scale = max(self.reaching(small), NEGLIGIBLE * after)
+        if not scale < CLUSTER * top or self.below(np.sqrt(NEGLIGIBLE) * after) != small:
+            return values, x, error
+        own = self._nearest(self.inverse(-scale / FACTOR), x[:, :small], x[:, :0], small)
+        found, own = self._sorted(own)
+        values[:small], x[:, :small], error[:small] = self._taken_apart(found, own, after, scale)
+        return values, x, error
+
+    def uncertainty(self, x: np.ndarray) -> np.ndarray:
+        """What rounding of K's entries makes of x'Kx / x'Mx, for each column of x."""
+        return ROUNDING * np.sum(np.abs(x) * (abs(self.K) @ np.abs(x)), axis=0) / np.sum(x * (self.M @ x), axis=0)
+
+    def reaching(self, n: int) -> float:
+        """A positive shift with n eigenvalues or more below it, not much larger than it need be."""
+        low, high = self.floor, self.largest
+        while self.below(high) < n:
+            high *= FACTOR
+            if high > LEVEL * self.largest:
+                raise IncompleteError("there are fewer eigenvalues than degrees of freedom")
+        while high / low > FACTOR:
+            shift = np.sqrt(low * high)
+            low, high = (low, shift) if self.below(shift) >= n else (shift, high)
+        return high
+
+    def _above(self, shift: float, n: int, values: np.ndarray, x: np.ndarray
+               ) -> tuple[np.ndarray, np.ndarray, float]:
+        """The lowest pairs, n or some more, and the eigenvalue after them; known are those below the shift."""
+        known, more, solve = len(values), MORE, self.inverse(shift)
+        start = np.zeros((self.K.shape[0], 0))
+        for _ in range(MOST_STARTS):
+            wanted = min(n - known + more, self.degrees - known)
+            random = solve(self.random.standard_normal((self.K.shape[0], wanted)))
+            found, start = self._sorted(self._nearest(solve, np.hstack([start, random]), x, wanted))
+            at = self._gap(found, start, n - known, known)
+            if at is None:
+                more *= 2
+            elif at == len(found) or self.below(0.5 * (found[at - 1] + found[at])) == known + at:
+                return (np.append(values, found[:at]), np.hstack([x, start[:, :at]]),
+                        found[at] if at < len(found) else np.inf)
+        raise IncompleteError("not all that are counted were found")
+
+    def _gap(self, values: np.ndarray, x: np.ndarray, n: int, known: int) -> int | None:
+        """The first of the pairs, behind n of them, that is apart from the one before; all, if there are no more."""
+        rounding = self.uncertainty(x)
+        for at in range(n, len(values)):
+            size = max(abs(values[at]), abs(values[at - 1]))
+            if values[at] - values[at - 1] > APART * size + rounding[at] + rounding[at - 1]:
+                return at
+        return len(values) if len(values) == self.degrees - known else None
+
+    def _sorted(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Rayleigh's quotients of the columns of x, which have x'Mx = 1 then, rising; and the columns."""
+        x = x / np.sqrt(np.sum(x * (self.M @ x), axis=0))
+        values = np.sum(x * (self.K @ x), axis=0)
+        order = np.argsort(values)
+        return values[order], x[:, order]
+
+    def _nearest(self, solve: Callable, start: np.ndarray, known: np.ndarray, wanted: int) -> np.ndarray:
+        """(n, wanted): vectors of the next eigenvalues above the shift of ``solve``, but for those of known vectors.
+
+        A block method: the subspace grows from many vectors at once by the residuals of the inverse (Davidson, J.
+        Comput. Phys. 17 (1975) 87-94, there with one vector), so that repeated eigenvalues are found as others are.
+        """
+        known = self._orthonormal(known)
+        V = self._orthonormal(start, known)
+        MV, W = self.M @ V, solve(V)
+        T = MV.T @ W
+        least, stalled = np.inf, 0
+        for _ in range(MOST_EXTENSIONS):
+            theta, Y = np.linalg.eigh((T + T.T) / 2)
+            theta, Y = theta[::-1], Y[:, ::-1]
+            y, of = Y[:, :wanted], theta[:wanted]
+            R = W @ y - (V @ y) * of
+            error = np.sqrt(np.abs(np.sum(R * (self.M @ R), axis=0))) / np.abs(of)
+            stalled = 0 if error.max() < 0.5 * least else stalled + 1
+            least = min(least, error.max())
+            if least <= CONVERGED or stalled > STALLED:
+                break
+            if V.shape[1] > LARGEST_SPACE * wanted:
+                kept = Y[:, : 2 * wanted]
+                V, MV, W, T = V @ kept, MV @ kept, W @ kept, np.diag(theta[: 2 * wanted])
+            new = self._orthonormal(R[:, error > CONVERGED], known, V)
+            if not new.shape[1]:
+                break
+            image = solve(new)
+            across = MV.T @ image
+            T = np.block([[T, across], [across.T, new.T @ (self.M @ image)]])
+            V, MV, W = np.hstack([V, new]), np.hstack([MV, self.M @ new]), np.hstack([W, image])
+        return W @ y / of  # once more by the inverse: what rounding left of the highest eigenvalues is gone
+
+    def _orthonormal(self, x: np.ndarray, *against: np.ndarray) -> np.ndarray:
+        """A basis of the columns of x, x'Mx = 1, orthogonal to others; columns that follow are left out."""
+        for _ in range(2):
+            for others in against:
+                x = x - others @ (others.T @ (self.M @ x))
+            size = np.sqrt(np.maximum(np.sum(x * (self.M @ x), axis=0), 0.0))
+            x = x[:, size > 0] / size[size > 0]
+            values, turn = np.linalg.eigh(x.T @ (self.M @ x))
+            kept = values > 1e-12
+            x = x @ (turn[:, kept] / np.sqrt(values[kept]))
+        return x
+
+
+def basis(C: csc_array) -> np.ndarray:
+    """(n, n - m): orthonormal vectors with C x = 0; C (m, n) of rank m."""
+    m, n = C.shape
+    return qr(C.toarray().T)[0][:, m:] if m else np.eye(n)
+
+
+def _symmetric(K: csc_array) -> csc_array:
+    return ((K + K.T) / 2).tocsc()

@@ -1,0 +1,133 @@
+"""The search for a stable state of rest under the load that is on, from wherever the state is.
+
+Newton's method ends at any state of rest, on unstable branches too: a slack cable drawn straight stays straight, under
+compression. Where the inertia of the stiffness says so, the search starts again, from the same state, by two ways that
+descend: `stiffen`, for scenes with cables, and `relax`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .softening import Softening
+from .stability import Stability, lowest_direction, stability
+from .static_problem import StaticProblem
+
+MOST_RELAXATIONS = 400
+LARGEST_MOVE = 0.2
+"""Of the scene's size, in a step."""
+GONE = 10.0
+"""Times the scene's size: who has come so far will not come to rest."""
+LEAST_MASS = 1e-12
+"""Of the pseudo-dynamics, over that of the fastest vibration: below, steps are those of Newton."""
+PUSH = 1e-3
+"""Of the scene's size, by which a state is pushed off an unstable branch."""
+STIFFER = 100.0
+"""Times as stiff: the next stage of `stiffen`."""
+
+CHOICE = ("; nothing says to which side it leaves the other, so that there may be more such states: draw the scene "
+          "slightly bent, or add a small load, to choose")
+
+
+def find_rest(problem: StaticProblem) -> Stability | None:
+    """Bring the static state to rest, stable if that can be found; None where there is none, or none was found.
+
+    What was passed on the way, and what is doubtful, is added to problem.messages.
+    """
+    begin = problem.keep()
+    passed = passed_at = None
+    problem.pushed = False
+    if problem.newton():
+        found = stability(problem)
+        if not found.unstable or not problem.settings.seek_stable:
+            return found
+        passed, passed_at = found, problem.keep()
+    for descend in (stiffen, relax) if problem.settings.seek_stable else (relax,):
+        problem.restore(begin)
+        if (found := descend(problem)) is not None:
+            if passed is not None:
+                problem.messages.append(f"Newton's method found a state of rest that is {passed}; the search went on "
+                                        f"to a stable one{CHOICE * problem.pushed}")
+            return found
+    if passed is not None:
+        problem.restore(passed_at)
+    return passed
+
+
+def relax(problem: StaticProblem) -> Stability | None:
+    """Pseudo-transient continuation (Kelley & Keyes 1998): implicit Euler without regard to accuracy, its step growing
+    as the motion fades; to a stable state, or None.
+
+    A step never goes along a direction of negative curvature: it is made shorter until mass outweighs that, so that it
+    descends (the test of curvature is that of Chiang & Zavala 2016). A state that its symmetry keeps at rest on an
+    unstable branch is pushed off along the direction of the least curvature. Where any state of rest will do
+    (seek_stable), neither is done.
+    """
+    mass, near, kept, begin = 1e-3 * problem.fastest, 1e-5, problem.keep(), problem.keep()
+    least, descends = LEAST_MASS * problem.fastest, problem.settings.seek_stable
+    for _ in range(MOST_RELAXATIONS):
+        problem.iterations += 1
+        try:
+            change = problem.solver(mass)(-problem.residual())
+        except RuntimeError:
+            mass *= 10.0
+            continue
+        size = problem.length(change)
+        if not size < LARGEST_MOVE * problem.size or (descends and problem.curvature(change, mass) < 0):
+            mass *= 4.0
+            if not mass < 1e30:
+                return None
+            continue
+        problem.move(change)
+        if not np.isfinite(np.linalg.norm(problem.residual())):
+            problem.restore(kept)
+            mass *= 100.0
+            continue
+        kept = problem.keep()
+        if problem.distance(begin) > GONE * problem.size:
+            return None
+        mass = max(least, mass * (0.5 if size < 0.1 * LARGEST_MOVE * problem.size else 1.0))
+        if mass > 100 * least and size > near * problem.size:
+            continue
+        if descends and stability(problem).unstable:
+            if size < 1e-6 * problem.size and mass <= least:
+                problem.move(PUSH * problem.size * lowest_direction(problem))
+                kept = problem.keep()
+                problem.pushed = True
+            continue
+        if problem.newton() and not ((found := stability(problem)).unstable and descends):
+            return found
+        problem.restore(kept)
+        near *= 0.1
+        mass *= 10.0
+        if near < 1e-10:
+            return None
+    return None
+
+
+def stiffen(problem: StaticProblem) -> Stability | None:
+    """Cables first so soft along their axis that their loads put all of them in tension, then stiffer in stages, each
+    starting from the one before; the last is the true scene. None where there is no cable to soften.
+
+    A slack cable that is as stiff as it is would fold up in short waves while it falls into its shape.
+    """
+    softening = Softening(problem)
+    if softening.factor is None:
+        return None
+    found, factor = None, softening.factor
+    try:
+        while True:
+            softening.apply(factor)
+            if factor < softening.factor * STIFFER and found is None:
+                found = relax(problem)
+            else:
+                kept = problem.keep()
+                found = stability(problem) if problem.newton() else None
+                if found is None or found.unstable:
+                    problem.restore(kept)
+                    found = relax(problem)
+            if found is None or factor == 1.0:
+                return found
+            factor = min(1.0, factor * STIFFER)
+    finally:
+        softening.apply(1.0)

@@ -1,0 +1,173 @@
+"""Equilibrium: a scene's rest under its loads, found at once, in load steps, or along the path of equilibria.
+
+A state at the load fraction p is at rest under p times all loads (solve/static_problem.py): a scene drawn with stress first
+comes to rest without them.
+"""
+
+from __future__ import annotations
+
+import warnings
+
+from ..errors import EquilibriumError, FunicularWarning
+from ..parts.settings import EquilibriumSettings
+from ..results.equilibrium import CriticalPoint, Equilibrium
+from ..scene import Scene
+from .path_following import Critical, Point, follow
+from .stability import stability
+from .stable_search import find_rest
+from .static_problem import StaticProblem
+
+SMALLEST_STEP = 1e-3
+"""Of the load: where smaller steps do not converge either, the search ends."""
+FEW = 1e-3
+"""Of the load: what moves things that are free without loads to their place."""
+MOVED = 1e-9
+"""Of the scene's size: what rounding may move."""
+
+
+def equilibrium(scene: Scene, settings: EquilibriumSettings, start: Equilibrium | None = None) -> Equilibrium:
+    """The scene at rest under gravity, its loads at t = 0 and its springs; start: a state to begin from, else as drawn.
+
+    Raises SceneError, EquilibriumError.
+    """
+    problem = StaticProblem(scene, settings)
+    if start is not None:
+        problem.restore(start.placed)
+    search = _Search(problem)
+    reached = search.along_path(start) if settings.method == "arc_length" else search.in_steps()
+    state = search.state
+    _note(problem, state)
+    if reached < 1.0:
+        remedy = ('; take method="newton", which goes on to any stable state, or draw the scene nearer to its rest'
+                  if settings.method == "arc_length" else
+                  "; smaller steps of the load do not converge either: something may be free to move away, or it is a "
+                  'limit point, which method="arc_length" passes; or take more load_steps or max_iterations')
+        raise EquilibriumError(
+            f"no equilibrium was reached: the path from the drawn state ends at {100 * reached:.4g} % of the load"
+            f"{remedy}; the state there is kept in .state", state, reached)
+    return state
+
+
+def _note(problem: StaticProblem, state: Equilibrium) -> None:
+    """Complete a state's messages; what a user must know is a warning, too."""
+    if rubbing := [name for name, slide in problem.scene.slides.items() if slide.friction is not None]:
+        names = " and ".join(f'"{name}"' for name in rubbing)
+        problem.messages.append(f"friction of {names} is left out: at rest slides move freely")
+    if not state.stable:
+        leaves = "; a small disturbance leaves it" * state.stability.known
+        problem.messages.append(f"the state is {state.stability}{leaves}")
+    state.messages = problem.messages
+    for message in problem.messages:
+        warnings.warn(message, FunicularWarning, stacklevel=4)
+
+
+class _Search:
+    """The states of rest found so far, and the ways to the next ones; the last one is `state`."""
+
+    def __init__(self, problem: StaticProblem):
+        self.problem = problem
+        self.state: Equilibrium | None = None
+        self.path: list[Equilibrium] = []
+        self.critical: list[CriticalPoint] = []
+
+    def remember(self, state: Equilibrium) -> None:
+        """Add a state to the path."""
+        self.state = state
+        self.path.append(state)
+        state.path, state.critical_points = list(self.path), list(self.critical)
+
+    def in_steps(self) -> float:
+        """Load steps, halved where no state of rest is found; returns the fraction of the load reached.
+
+        One step needs no path: the state at rest is sought under all loads at once.
+        """
+        problem, steps = self.problem, self.problem.settings.load_steps
+        begin, reached, step = problem.keep(), 0.0, 1.0 / steps
+        if steps == 1:
+            if (found := find_rest(problem)) is not None:
+                self.remember(Equilibrium.of(problem, found))
+                return 1.0
+            step = 0.5
+            problem.restore(begin)
+        if not self.without_loads():
+            return 0.0
+        largest = step
+        while reached < 1.0:
+            kept, target = problem.keep(), reached + step
+            if target > 1.0 - SMALLEST_STEP / 2:  # a sum of steps is not 1 to the last digit
+                target = 1.0
+            problem.load(target)
+            if (found := find_rest(problem)) is not None:
+                reached, step = target, min(2 * step, largest)
+                self.remember(Equilibrium.of(problem, found))
+                continue
+            problem.restore(kept)
+            problem.load(reached)
+            step = 0.5 * (target - reached)
+            if step < SMALLEST_STEP:
+                break
+        return reached
+
+    def without_loads(self) -> bool:
+        """Bring the static state to rest without loads; returns whether that was found."""
+        problem = self.problem
+        drawn = problem.keep()
+        problem.load(0.0)
+        found = find_rest(problem)
+        if found is None:
+            problem.restore(drawn)
+        self.state = Equilibrium.of(problem, found or stability(problem))
+        moved = problem.distance(drawn)
+        if found is not None and moved > MOVED * problem.size:
+            what = "loads" if problem.settings.scale_gravity else "loads, under its weight"
+            problem.messages.append(f"the scene is drawn with stress: it first came to rest without {what}, which "
+                                    f"moved points by up to {moved:.3g} m")
+        return found is not None
+
+    def lightly_loaded(self) -> float:
+        """Where something is free to move without loads, the loads say where it rests: the path begins with a few."""
+        problem = self.problem
+        free = problem.keep()
+        problem.load(FEW)
+        if (found := find_rest(problem)) is None:
+            problem.restore(free)
+            problem.load(0.0)
+            return 0.0
+        self.remember(Equilibrium.of(problem, found))
+        problem.messages.append(f"without loads something is free to move: the path begins at {100 * FEW:g} % of them")
+        return FEW
+
+    def along_path(self, start: Equilibrium | None) -> float:
+        """The path from rest without loads, or from a state of rest on it; returns the fraction of the load reached."""
+        problem = self.problem
+        if start is None or start.load_fraction >= 1.0:
+            reached, heading = 0.0, None
+            if not self.without_loads():
+                return reached
+            if self.state.neutral_directions:
+                reached = self.lightly_loaded()
+        else:
+            reached, heading = start.load_fraction, start.heading
+            problem.load(reached)
+            if not problem.newton():
+                self.state = Equilibrium.of(problem, stability(problem))
+                return reached
+            self.state = Equilibrium.of(problem, stability(problem))
+        for point in follow(problem, reached, heading):
+            if isinstance(point, Critical):
+                self.critical.append(CriticalPoint(point.point.fraction, point.kind, point.directions,
+                                                   self.at(point.point)))
+            else:
+                self.remember(self.at(point))
+                reached = point.fraction
+        return min(reached, 1.0)
+
+    def at(self, point: Point) -> Equilibrium:
+        """A point of the path as a state."""
+        fraction, kept = self.problem.fraction, self.problem.keep()
+        self.problem.restore(point.kept)
+        self.problem.load(point.fraction)
+        state = Equilibrium.of(self.problem, point.stability, point.heading)
+        self.problem.restore(kept)
+        self.problem.load(fraction)
+        return state

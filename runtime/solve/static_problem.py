@@ -1,0 +1,182 @@
+"""The static problem R(x, p) = 0: what forces and constraints leave over at a state x under p times all loads.
+
+x are the coordinates, arc-lengths and forces of slides, joints and springs; p is the load fraction. R is linear in p,
+also for loads that turn with what they act on: a load's components are multiplied by p, and nothing else is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.sparse import csc_array
+from scipy.sparse.linalg import splu
+
+from ..model.build import build
+from ..model.redundant_constraints import settle
+from ..parts.settings import EquilibriumSettings
+from ..results.recording import end_points
+from ..scene import Scene
+from .modes import condensed, fastest
+
+GROWTH = 1e3
+"""Of a correction over the least one before: Newton diverges."""
+FREE = 1e-14
+"""Of the fastest vibration's square: a stiffness this small is none."""
+
+
+class StaticProblem:
+    """The engine's static state, its residual and tangent, and Newton's method; `load` says how much load is on."""
+
+    def __init__(self, scene: Scene, settings: EquilibriumSettings):
+        from ..engine import Engine
+
+        self.scene, self.settings = scene, settings
+        self.model = build(scene)
+        self.engine = Engine(self.model)
+        settle(self.model, self.engine)
+        self.engine.place(0.0)
+        self.load(1.0)
+        drawn = self.residual()
+        place = self.model.place
+        free = place >= 0
+        self.weight = np.zeros(len(drawn))  # forces and arc-lengths do not count in the size of a correction
+        self.weight[place[free]] = self.model.weight[free]
+        self.size = self._extent()
+        self.mass = self.engine.matrix(1.0, 0.0, 0.0)
+        # rad²/s²: what is left free (a rider that may turn about its rope) has no stiffness. Of points, not of
+        # directors: a thin beam's section vibrates so fast that its share of mass would stop the beam
+        points = np.flatnonzero(self.weight == 1.0)
+        stiffness, _ = condensed(self.engine.matrix(0.0, 0.0, 1.0), self.model)
+        self.fastest = max(fastest(stiffness, self.mass, points), self._falls(drawn, points))
+        n = self.model.n_band + self.model.n_border_dof
+        arcs = [n + slide.unknown for slide in self.model.slides if slide.drive < 0]
+        self.coordinates = np.append(np.arange(n), np.array(arcs, dtype=int))
+        self.places = _places(self.model)
+        self.iterations = 0
+        self.pushed = False  # off an unstable branch, in a direction that nothing prefers
+        self.messages: list[str] = []
+
+    def _falls(self, drawn: np.ndarray, points: np.ndarray) -> float:
+        """rad²/s², of pendulums: where nothing is elastic, weight is all that holds."""
+        inertia = self.mass.diagonal()[points]
+        return float(np.max(np.abs(drawn[points]) / inertia, initial=0.0, where=inertia > 0)) / self.size
+
+    def _extent(self) -> float:
+        """The scene's size in m."""
+        model = self.model
+        lengths = [cable.length * cable.n_elements for cable in model.cables]
+        lengths += [np.linalg.norm(model.q[b.configuration : b.configuration + model.dim]) for b in model.bodies]
+        gaps = [end_points(model, s.ends[1], model.q[None]) - end_points(model, s.ends[0], model.q[None])
+                for s in model.springs]
+        return max([*lengths, *(np.linalg.norm(gap) for gap in gaps)], default=0.0) or 1.0
+
+    def load(self, fraction: float) -> None:
+        """Put this fraction of all loads on; of gravity, too, unless the settings say that it stays whole."""
+        self.fraction = fraction
+        self.engine.load(fraction, self.settings.scale_gravity)
+
+    def residual(self) -> np.ndarray:
+        """R at the static state, under the load that is on: internal less external forces, and constraints."""
+        return self.engine.static_residual()
+
+    def load_vector(self) -> np.ndarray:
+        """-dR/dp at the static state."""
+        fraction = self.fraction
+        self.load(0.0)
+        without = self.residual()
+        self.load(1.0)
+        with_all = self.residual()
+        self.load(fraction)
+        return without - with_all
+
+    def tangent(self) -> csc_array:
+        """dR/dx."""
+        return self.engine.matrix(0.0, 0.0, 1.0)
+
+    def stiffness(self) -> tuple[csc_array, csc_array, np.ndarray]:
+        """K over the coordinates, constraints C on them, and how far a unit of each moves a point (coordinates,)."""
+        K, C = condensed(self.tangent(), self.model)
+        return K, C, np.where(self.weight[self.coordinates] > 0, self.weight[self.coordinates], 1.0)
+
+    def curvature(self, change: np.ndarray, mass: float) -> float:
+        """Of the energy along a change, with this much mass, less a tenth of what the mass has in it."""
+        along = change[self.coordinates]
+        K, _ = condensed(self.tangent(), self.model)
+        return float(along @ (K @ along)) + 0.9 * mass * float(change @ (self.mass @ change))
+
+    def distance(self, kept: dict) -> float:
+        """How far the farthest coordinate of a position has moved from a state, in m."""
+        moved = np.abs(self.engine.placed()["q"] - kept["q"])[self.places]
+        return float(np.max(moved, initial=0.0))
+
+    def solver(self, inertia: float = 0.0) -> Callable[[np.ndarray], np.ndarray]:
+        """Solver of the tangent, with some mass added. Raises RuntimeError where it is exactly singular."""
+        return solver(self.regular_tangent() if inertia == 0.0 else self.tangent() + inertia * self.mass)
+
+    def regular_tangent(self) -> csc_array:
+        """dR/dx, with as much mass as keeps what is free to move from being singular."""
+        return self.tangent() + FREE * self.fastest * self.mass
+
+    def length(self, change: np.ndarray) -> float:
+        """Size of a correction in m."""
+        size = float(np.linalg.norm(self.weight * change))
+        return size if np.isfinite(size) else np.inf
+
+    def keep(self) -> dict:
+        """The static state."""
+        return self.engine.placed()
+
+    def restore(self, kept: dict) -> None:
+        """Back to a state."""
+        self.engine.place(0.0, **kept)
+
+    def move(self, change: np.ndarray) -> None:
+        """Move the state; slides that leave their element enter the next."""
+        self.engine.move(change)
+        if self.model.slides:
+            self.engine.place(0.0, **self.engine.placed())
+
+    def newton(self) -> bool:
+        """Newton under the load that is on, full steps.
+
+        Corrections may grow for a while: the second order of a turn stretches what is stiff along its axis, and the
+        next correction takes that back. A line search makes hundreds of small steps of it; `relax` does better.
+        """
+        least = np.inf
+        for _ in range(self.settings.max_iterations):
+            self.iterations += 1
+            try:
+                change = self.solver()(-self.residual())
+            except RuntimeError:
+                return False
+            size = self.length(change)
+            if not size < min(GROWTH * least, 10.0 * self.size):
+                return False
+            least = min(least, size)
+            self.move(change)
+            if size <= self.settings.tolerance * self.size:
+                return self.on_cables()
+        return False
+
+    def on_cables(self) -> bool:
+        """Whether no slide is past an end of its cable, where the last element would go on for ever."""
+        ends = np.array([self.model.cables[j.cable].length * self.model.cables[j.cable].n_elements
+                         for j in self.model.slides])
+        s = self.engine.placed()["s"]
+        past = np.maximum(-s, s - ends)
+        return bool(np.all(past <= self.settings.tolerance * self.size))
+
+
+def _places(model) -> np.ndarray:
+    """Entries of the configuration that are coordinates of points."""
+    nodes = [node.dofs("r") for cable in model.nodes.values() for node in cable]
+    bodies = [range(body.configuration, body.configuration + model.dim) for body in model.bodies]
+    return np.array([place for part in (*nodes, *bodies) for place in part], dtype=int)
+
+
+def solver(matrix: csc_array) -> Callable[[np.ndarray], np.ndarray]:
+    """Of a sparse matrix; raises RuntimeError where it is exactly singular."""
+    if not matrix.shape[0]:
+        return lambda right: right
+    return splu(matrix.tocsc(), permc_spec="COLAMD").solve

@@ -1,0 +1,75 @@
+"""Struts that a run left perfectly straight though they are compressed beyond their buckling load.
+
+Without any disturbance across it a straight strut stays straight, at any load: a result of the model, and none of the
+strut. Whether it would buckle is counted by the inertia of its stiffness, as in statics.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..model.build import Model
+from ..scene import Scene
+from .inertia import inertia
+from .modes import condensed
+
+STRAIGHT = 1e-9
+"""Of the length: nodes that are nearer to the line between the ends lie on it."""
+
+
+def notes(scene: Scene, model: Model, engine) -> list[str]:
+    """A note for each such strut at the time at which it is compressed most, of those still in memory."""
+    rows = engine.rows()
+    end, q, _, s = engine.now()
+    times, states = np.append(rows["time"], end), np.vstack([rows["q"], q])
+    arcs = np.vstack([rows["s"], s])
+    told = []
+    for cable in model.cables:
+        part = scene.cables[cable.name]
+        if part.is_curved:
+            continue
+        r = states[:, cable.coordinates].reshape(-1, *cable.shape)[:, :, cable.vectors.index("r")]
+        shortening = 1 - np.linalg.norm(np.diff(r, axis=1), axis=2) / cable.length
+        force = part.material.youngs_modulus * part.section.moments()[0] * shortening.max(axis=1)
+        straight = _straight(r)
+        force[~straight | ~np.append(straight[1:], straight[-2:-1])] = 0.0  # bent an output later: something bends it
+        k = int(np.argmax(force))
+        length = cable.length * cable.n_elements
+        weakest = part.material.youngs_modulus * min(part.section.moments()[1:3])
+        if force[k] < weakest / length**2:  # a cantilever, the weakest of struts, buckles at 2.47 times this
+            continue
+        try:
+            buckles = _unstable(model, cable, times[k], states[k], arcs[k])
+        except ArithmeticError:  # no factorisation is accurate enough to count
+            continue
+        if buckles:
+            told.append(f'cable "{part.name}" is perfectly straight at t = {times[k]:.6g} s under a compression of '
+                        f"{force[k]:.4g} N, beyond its buckling load ({buckles} independent direction"
+                        f"{'s lower' if buckles > 1 else ' lowers'} its energy): nothing in the scene bends it. "
+                        "Draw it slightly bent, or add a small force across it")
+    return told
+
+
+def _straight(r: np.ndarray) -> np.ndarray:
+    """(times,): whether nodes r (times, nodes, dim) lie on a line, one after the other."""
+    chord = r[:, -1] - r[:, 0]
+    length = np.linalg.norm(chord, axis=1)
+    way = r - r[:, :1]
+    along = np.einsum("tnd,td->tn", way, chord) / np.where(length > 0, length, 1.0)[:, None] ** 2
+    off = np.linalg.norm(way - along[:, :, None] * chord[:, None], axis=2).max(axis=1)
+    return (off <= STRAIGHT * length) & np.all(np.diff(along, axis=1) > 0, axis=1)
+
+
+def _unstable(model: Model, cable, t: float, q: np.ndarray, s: np.ndarray) -> int:
+    """How many directions of a cable, all else fixed, lower the energy; joints hold it, with forces left out."""
+    from ..engine import Engine
+
+    engine = Engine(model)
+    engine.place(t, q=q, s=s)
+    K, C = condensed(engine.matrix(0.0, 0.0, 1.0), model)
+    place = model.place[cable.coordinates]
+    own = np.unique(place[place >= 0])
+    units = np.ones(K.shape[0])
+    units[place[place >= 0]] = model.weight[cable.coordinates][place >= 0]
+    K = K.tocsr()[own][:, own]
+    return inertia((K + K.T) / 2, C.tocsc()[:, own], units[own]).negative

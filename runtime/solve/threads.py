@@ -1,0 +1,94 @@
+"""Threads: how many share the elements of a run, and that linear algebra on small matrices has one."""
+
+from __future__ import annotations
+
+import os
+import threading
+from functools import cache
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from threadpoolctl import ThreadpoolController
+
+    from ..engine import Engine
+
+_used_in: int | None = None
+"""The process that shared elements among threads first; of a forked process that is one of its parents."""
+
+
+def available() -> int:
+    """Processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def share_elements(engine: Engine, asked: int) -> list[str]:
+    """Let as many threads as are asked for share the elements of cables; says where fewer do.
+
+    Never more than there are processors. One alone in a process that was forked from one which had used threads: GNU's
+    OpenMP keeps them for the next time, and in the forked process, which has none of them, it would wait for ever.
+    """
+    global _used_in
+    threads, why = asked, ""
+    if asked > available():
+        threads, why = available(), f"there are {available()} processors for this process"
+    if threads > 1 and _used_in not in (None, os.getpid()):
+        threads, why = 1, ("this process was forked from one that had used threads; start it anew instead, with the "
+                           'method "spawn" of multiprocessing')
+    if threads > 1 and not engine.use_threads(threads):
+        threads, why = 1, "the compiler that built this had no OpenMP"
+    if threads > 1:
+        _used_in = os.getpid()
+    return [f"threads = {asked} came to {threads}: {why}"] if why else []
+
+
+class _OneBlasThread:
+    """Holds the BLAS of NumPy and SciPy at one thread in the whole process, while anything is inside.
+
+    OpenBLAS starts its threads from blocks of a few dozen rows on, where handing out the work takes longer than the
+    work. What the process had before comes back when the last one leaves.
+    """
+
+    def __init__(self):
+        self._reset()
+        os.register_at_fork(after_in_child=self._reset)  # what other threads were inside of is not in the child
+
+    def _reset(self) -> None:
+        self._lock, self._inside, self._limiter = threading.Lock(), 0, None
+
+    def __enter__(self) -> None:
+        with self._lock:
+            if self._inside == 0:
+                blas = _blas()
+                _let_this_thread_set_limits()
+                self._limiter = blas.limit(limits=1)
+            self._inside += 1
+
+    def __exit__(self, *exception) -> None:
+        with self._lock:
+            self._inside -= 1
+            if self._inside == 0:
+                _let_this_thread_set_limits()
+                self._limiter.restore_original_limits()
+                _let_this_thread_set_limits()  # and who had set limits before
+
+
+one_blas_thread = _OneBlasThread()
+"""For ``with``."""
+
+
+def _let_this_thread_set_limits() -> None:
+    """From 3.8 on threadpoolctl lets only one thread set OpenBLAS's limits, and leaves others without a word."""
+    import threadpoolctl
+
+    controller = getattr(threadpoolctl, "OpenBLASController", None)
+    if hasattr(controller, "clear_controlling_thread"):
+        controller.clear_controlling_thread(force=True)
+
+
+@cache
+def _blas() -> ThreadpoolController:
+    from threadpoolctl import ThreadpoolController
+
+    from .. import engine  # noqa: F401  brings SciPy's BLAS along
+
+    return ThreadpoolController().select(user_api="blas")
