@@ -77,7 +77,8 @@ def _frame(dim: int) -> Family:
 
 
 def _resistance(dim: int) -> Family:
-    return Family(resistance.RESISTANCES[dim], f"friction and buffers of slides in {_SPACE[dim]}", partial(resistance.build, dim),
+    return Family(resistance.RESISTANCES[dim], f"friction and buffers of slides in {_SPACE[dim]}",
+                  partial(resistance.build, dim),
                   ("couplings.resistance",), role="resistance", facts={"dim": dim}, dim=dim)
 
 

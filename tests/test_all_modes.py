@@ -65,8 +65,8 @@ def test_a_body_on_a_spherical_joint(elements):
     here = found(elements)
     assert np.all(here[:3] == 0)
     np.testing.assert_allclose(here[3::2], here[4::2], rtol=1e-6)
-    assert here[3] == pytest.approx(np.sqrt(48 * 2e11 * SQUARE.second_moment_about_z / (2.0 + 17 / 35 * 7850 * SQUARE.area)),
-                                    rel=2e-3)  # Rayleigh's estimate, the beam's share of the mass 17/35
+    mass = 2.0 + 17 / 35 * 7850 * SQUARE.area  # Rayleigh's estimate of the beam's share
+    assert here[3] == pytest.approx(np.sqrt(48 * 2e11 * SQUARE.second_moment_about_z / mass), rel=2e-3)
     np.testing.assert_allclose(here[3:], found(32)[3:], rtol=3e-4)
 
 

@@ -117,7 +117,8 @@ def test_rotary_inertia_slows_bending():
 
 
 def test_rotary_inertia_in_a_file():
-    scene = cable(section=GeneralSection(area=1e-4, second_moment_about_z=1e-9, torsion_constant=2e-9, shear_factors=(1, 1),
+    scene = cable(section=GeneralSection(area=1e-4, second_moment_about_z=1e-9, torsion_constant=2e-9,
+                                         shear_factors=(1, 1),
                                   rotary_moment_zz=3e-9))
     assert "rotary_moment_zz = 3e-09" in scene.to_toml()
     from funicular.scene_file import loads

@@ -185,7 +185,8 @@ CONSTANTS = {"area": 1, "second_moment_about_z": 1}
 
 
 @pytest.mark.parametrize(("element", "section", "law", "complaint"), [
-    ("beam24", GeneralSection(**CONSTANTS), {}, 'law "continuum" integrates over the shape of the section, which a general '
+    ("beam24", GeneralSection(**CONSTANTS), {},
+     'law "continuum" integrates over the shape of the section, which a general '
      'section does not tell; take law="structural", a rectangle, circle or tube, or element="cable12" or "cable18"'),
     ("beam12p", GeneralSection(**CONSTANTS), {"law": "poisson_split"},
      'law "poisson_split" integrates over the shape of the section, which a general section does not tell; '
@@ -225,7 +226,8 @@ def test_elements_laws_and_sections_that_do_not_suit(element, section, law, comp
 @pytest.mark.parametrize(("element", "section", "law", "expected"), [
     ("beam24", Circle(radius=1), {}, "continuum"),
     ("beam24", Circle(radius=1, torsion_constant=1), {"law": "poisson_split"}, "poisson_split"),
-    ("beam24", GeneralSection(**CONSTANTS, torsion_constant=1, shear_factors=(1, 1)), {"law": "structural"}, "structural"),
+    ("beam24", GeneralSection(**CONSTANTS, torsion_constant=1, shear_factors=(1, 1)), {"law": "structural"},
+     "structural"),
     ("beam12p", GeneralSection(**CONSTANTS, shear_factors=(1, 1)), {"law": "structural"}, "structural"),
     ("cable12", GeneralSection(**CONSTANTS), {"strain": "engineering"}, "engineering_exact"),
     ("cable18", GeneralSection(**CONSTANTS), {"law": "engineering_exact"}, "engineering_exact"),

@@ -71,7 +71,8 @@ def test_cables_take_axial_and_bending_stiffness():
 
 def test_structural_beams_take_what_the_section_says():
     """Bending about y is resisted by ∫z²dA, about z by ∫y²dA."""
-    section = GeneralSection(area=2, second_moment_about_z=3, second_moment_about_y=4, torsion_constant=5, shear_factors=(0.5, 0.6))
+    section = GeneralSection(area=2, second_moment_about_z=3, second_moment_about_y=4, torsion_constant=5,
+                             shear_factors=(0.5, 0.6))
     material = Material(youngs_modulus=26, poisson_ratio=0.3, density=1)  # G = 10
     S = section_stiffness("structural", section, material)
     np.testing.assert_allclose(S, [52, 10, 12, 50, 104, 78, 52, 52, 20], rtol=1e-14)

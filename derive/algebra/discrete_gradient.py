@@ -74,7 +74,8 @@ class DiscreteGradient:
 class _Along:
     """Discrete derivatives by one symbol, the others of `by` held."""
 
-    def __init__(self, secant: DiscreteGradient, symbol: sp.Symbol, by: Sequence[sp.Symbol], constant: Sequence[sp.Symbol]):
+    def __init__(self, secant: DiscreteGradient, symbol: sp.Symbol, by: Sequence[sp.Symbol],
+                 constant: Sequence[sp.Symbol]):
         self.secant, self.tag = secant, symbol.name
         self.known: dict[sp.Symbol, sp.Expr] = {s: sp.Integer(s == symbol) for s in by}
         self.known.update(dict.fromkeys(constant, sp.S.Zero))
@@ -129,7 +130,9 @@ def _root(expr: sp.Expr) -> sp.Expr:
 
 
 def staged(program: Program, vectors: np.ndarray) -> tuple[Program, np.ndarray]:
-    """A program for `DiscreteGradient` with the symbols of `program`, whose one input c has the shape of these vectors; and c."""
+    """A program for `DiscreteGradient` with the symbols of `program`, whose one input c has the shape of these vectors;
+    and c.
+    """
     law = Program("law", "a law at one state", "")
     law.symbols.update(program.symbols)
     return law, law.input("c", vectors.shape, "1", "strain vectors")

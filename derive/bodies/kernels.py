@@ -146,7 +146,8 @@ def inertia_tangent(body: ModuleType) -> Program:
     w = body.velocity(p)
     force = _gyroscopic(p, body, J, w)
     p.output("M", _mass_matrix(body, mass, J), "kg, kg m^2", "mass matrix")
-    p.output("D", np.stack([DirectionalDerivative(p, f"d_w{k}", {symbol: 1}).array(force) for k, symbol in enumerate(w)], axis=1),
+    columns = [DirectionalDerivative(p, f"d_w{k}", {symbol: 1}).array(force) for k, symbol in enumerate(w)]
+    p.output("D", np.stack(columns, axis=1),
              "kg m/s", "derivative of the inertia force by w")
     return p
 

@@ -43,7 +43,8 @@ def rate(b: np.ndarray, A: np.ndarray, w: np.ndarray) -> dict[sp.Symbol, sp.Expr
 def tangents(program: Program, b: np.ndarray, A: np.ndarray) -> list[DirectionalDerivative]:
     """The three derivations: two translations and the rotation."""
     units = np.eye(N_VELOCITY, dtype=int)
-    return [DirectionalDerivative(program, f"d_{name}", rate(b, A, units[k])) for k, name in enumerate(("X", "Y", "th"))]
+    return [DirectionalDerivative(program, f"d_{name}", rate(b, A, units[k]))
+            for k, name in enumerate(("X", "Y", "th"))]
 
 
 def origin(b: np.ndarray) -> np.ndarray:

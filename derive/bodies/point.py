@@ -45,7 +45,8 @@ class Point:
     def tangents(self, program: Program, b: np.ndarray, A: None) -> list[DirectionalDerivative]:
         """Derivations along the axes."""
         units = np.eye(self.DIM, dtype=int)
-        return [DirectionalDerivative(program, f"d_{AXES[k].upper()}", self.rate(b, A, units[k])) for k in range(self.DIM)]
+        return [DirectionalDerivative(program, f"d_{AXES[k].upper()}", self.rate(b, A, units[k]))
+                for k in range(self.DIM)]
 
     def origin(self, b: np.ndarray) -> np.ndarray:
         """Where the arm starts."""

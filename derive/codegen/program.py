@@ -74,7 +74,8 @@ class Program:
     def define(self, name: str, expr: sp.Expr, derivative_of: sp.Expr | None = None) -> sp.Expr:
         """Give an expression a name. Numbers and bare symbols pass through: a name would say nothing more.
 
-        `derivative_of` is an expression that differs from this one by a constant: derivatives are taken of that one instead.
+        `derivative_of` is an expression that differs from this one by a constant: derivatives are taken of that one
+        instead.
         """
         expr = sp.sympify(expr)
         if expr.is_Number or expr.is_Symbol:
@@ -216,7 +217,7 @@ def jacobian(program: Program, values: np.ndarray, wrt: Sequence[sp.Symbol],
     Definitions in `constant` count as constants, whatever they depend on.
     """
     fixed = dict.fromkeys(constant, 0)
-    columns = [DirectionalDerivative(program, f"d_{_plain(s)}", {s: 1, **{o: 0 for o in wrt if o != s}, **fixed}).array(values)
+    columns = [DirectionalDerivative(program, f"d_{_plain(s)}", dict.fromkeys(wrt, 0) | {s: 1} | fixed).array(values)
                for s in wrt]
     return np.stack(columns, axis=-1)
 

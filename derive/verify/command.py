@@ -1,7 +1,8 @@
 """`funicular verify`: every derivative in the generated C, tried by independent methods, rounding, and the invariances.
 
 The files of generated/ are compiled as they stand: a sign changed by hand shows at once. Relations are in
-verify/relations/element.py and verify/relations/slide.py, methods and their ceilings in verify/methods.py, rounding and its ceilings in
+verify/relations/element.py and verify/relations/slide.py, methods and their ceilings in verify/methods.py, rounding and
+its ceilings in
 verify/rounding.py; families come from the list in catalogue.py, so a new element or rider is covered by being there.
 """
 

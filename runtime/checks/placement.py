@@ -121,7 +121,8 @@ def check_tie(scene: Scene, join: Tie) -> None:
 def _shears_the_end(a: Cable, s: float, b: Cable, at: float) -> bool:
     """Whether a rigid join in space ties the tangent of one cable to the section of the other.
 
-    In the plane, joins at an angle share the turn of the section alone (model/unknowns.py), which is not linear in space.
+    In the plane, joins at an angle share the turn of the section alone (model/unknowns.py), which is not linear in
+    space.
     """
     if 2 in (a.dim, b.dim):
         return False

@@ -51,7 +51,8 @@ class AttachmentModel:
 class JointModel:
     """A joint between two ends; unknown, multiplier: places of its rows; signal: that drives it, or -1.
 
-    slide: the one beside which it ties a rider's axes to the cable; redundant_rows: those that other joints imply (model/redundant_constraints.py);
+    slide: the one beside which it ties a rider's axes to the cable; redundant_rows: those that other joints imply
+    (model/redundant_constraints.py);
     reversed: the first end is the joint's b.
     """
 
@@ -100,7 +101,8 @@ class AttachmentBuilder:
             if isinstance(part, ModalBody):
                 return AttachmentModel(-1, self.body_index[anchor.on], 0, -1, (0.0,) * 3, none, none, body.mass, length,
                                 axes=axes, spot=self._spot(part.spot(anchor.at)))
-            return AttachmentModel(-1, self.body_index[anchor.on], 0, -1, part.arm(anchor.at), none, none, body.mass, length,
+            return AttachmentModel(-1, self.body_index[anchor.on], 0, -1, part.arm(anchor.at), none, none, body.mass,
+                                   length,
                             axes=axes)
         found = self._on_cable(anchor.on, anchor.s, axes, up, draws_section(self.scene.cables[anchor.on]))
         found.element, x = self.element(anchor.on, anchor.s)

@@ -119,7 +119,8 @@ class BodyModel:
 class SlideModel:
     """One slide: kernels, its cable and its rider, its unknowns, what drives it, and where it starts.
 
-    rider_is_rigid: the kernels take the rider's own configuration; max_multipliers: how many it may have; drive: a signal, or -1;
+    rider_is_rigid: the kernels take the rider's own configuration; max_multipliers: how many it may have; drive: a
+    signal, or -1;
     resistance: kernels of friction and buffers, or none; ends: what waits at the start and at the end of the cable.
     """
 
@@ -225,7 +226,8 @@ def build(scene: Scene) -> Model:
         actions.load(load)
     joints = []
     for slide in scene.slides.values():
-        joints.append(_joint(slide, scene, holder, actions.signal, len(joints), sum(joint.max_multipliers for joint in joints)))
+        joints.append(_joint(slide, scene, holder, actions.signal, len(joints),
+                             sum(joint.max_multipliers for joint in joints)))
     links, used, held = [], (1 + dim) * len(joints), sum(joint.max_multipliers for joint in joints)
     for k, part in enumerate([*scene.slides.values(), *scene.joints.values()]):
         if k >= len(joints):

@@ -47,7 +47,8 @@ def integral_over_volume(stiffness_at, length: float, e0: np.ndarray, S: np.ndar
 
 
 def section_points(S: np.ndarray) -> Iterator[tuple[float, float, np.ndarray]]:
-    """Nine points of a section (three of a planar one) that have its table S, as in derive/laws/continuum/curved_section.py.
+    """Nine points of a section (three of a planar one) that have its table S, as in
+    derive/laws/continuum/curved_section.py.
 
     S: (9, 6) or, planar, (4, 6), see `section_stiffness`. Yields y, z in m and the elastic constants there, times the
     part of the section that it stands for, in N.

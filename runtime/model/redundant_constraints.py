@@ -54,8 +54,8 @@ def settle(model: Model, engine) -> list[str]:
         link = model.joints[k]
         own = range(link.multiplier, link.multiplier + link.rows)
         names = _listed([owner[other] for row in own for other in follows.get(row, ()) if other not in own])
-        told.append(f"over-constrained: {len(link.redundant_rows)} of the {link.rows} equations of {owner[own[0]]} follow from "
-                    f"those of {names} and are left out, without force or moment of their own")
+        told.append(f"over-constrained: {len(link.redundant_rows)} of the {link.rows} equations of {owner[own[0]]} "
+                    f"follow from those of {names} and are left out, without force or moment of their own")
     return told
 
 
@@ -138,8 +138,9 @@ def _following(S: np.ndarray) -> dict[int, list[int]]:
 def _owners(model: Model) -> list[str]:
     """What each multiplier is of, as messages call it."""
     names = [""] * model.n_multipliers
-    for joint in model.slides:
-        names[joint.multiplier : joint.multiplier + joint.max_multipliers] = [f'slide "{joint.name}"'] * joint.max_multipliers
+    for slide in model.slides:
+        count = slide.max_multipliers
+        names[slide.multiplier : slide.multiplier + count] = [f'slide "{slide.name}"'] * count
     for link in model.joints:
         kind = "joint" if link.slide is None else "slide"
         names[link.multiplier : link.multiplier + link.rows] = [f'{kind} "{link.name}"'] * link.rows

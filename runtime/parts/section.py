@@ -181,8 +181,8 @@ class GeneralSection(Section):
         """Warping only ever lowers J below the polar moment."""
         constant, polar = self.given_torsion_constant, self.yy + self.zz
         if constant is not None and constant > polar * (1 + 1e-9):
-            raise ValueError(f"torsion_constant must not exceed second_moment_about_z + second_moment_about_y = {polar:.6g} m⁴, "
-                             f"got {constant:.6g} m⁴")
+            raise ValueError("torsion_constant must not exceed second_moment_about_z + second_moment_about_y = "
+                             f"{polar:.6g} m⁴, got {constant:.6g} m⁴")
         return self
 
     def moments(self) -> np.ndarray:

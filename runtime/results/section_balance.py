@@ -1,7 +1,8 @@
 """Section forces in balance: what a cut passes on, from what the nodes give to its element and what acts before it.
 
 An element's elastic and damping forces and its inertia, less the loads on it, leave what its two nodes give to it
-(results/nodal_forces.py). Shape functions of positions add up to one, so that these forces are in balance with loads and
+(results/nodal_forces.py). Shape functions of positions add up to one, so that these forces are in balance with loads
+and
 inertia; and nothing elastic changes when all turns, so that their moments are, too. The force at its first node is
 therefore known without the stress inside the element, which jumps from element to element and cannot follow a kink.
 From there on

@@ -86,7 +86,8 @@ class Radau:
     """Radau IIA of three stages, of order 5 (Hairer & Wanner 1996, IV.5 and IV.8), from its nodes.
 
     Steps are chosen by an embedded estimate of order 3 and, for vibrations, by one of the method's own order that
-    follows from it (engine/radau.c). After a step that failed the next ones stay below ``retry_factor`` of it for a while:
+    follows from it (engine/radau.c). After a step that failed the next ones stay below ``retry_factor`` of it for a
+    while:
     factorisations are dear.
     """
 

@@ -1,6 +1,7 @@
 """Equilibrium: a scene's rest under its loads, found at once, in load steps, or along the path of equilibria.
 
-A state at the load fraction p is at rest under p times all loads (solve/static_problem.py): a scene drawn with stress first
+A state at the load fraction p is at rest under p times all loads (solve/static_problem.py): a scene drawn with stress
+first
 comes to rest without them.
 """
 

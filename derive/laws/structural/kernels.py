@@ -1,7 +1,8 @@
 """The kernels of the structural law: signatures as in laws/kernels.py but for the reference e0 that it takes:
 stiffness(l, e0, S), section_forces(l, x, e, S, e0).
 
-Energy, forces and tangents go through the parts of a configuration (laws/structural/structural.py): r_x at three places, moved
+Energy, forces and tangents go through the parts of a configuration (laws/structural/structural.py): r_x at three
+places, moved
 along x, y, z, and the two frames, turned about their own axes.
 """
 

@@ -1,7 +1,8 @@
 """The roots of verification: shape functions and integrals that share nothing with the derivation but the spec.
 
 Shape functions come from a numerical solve of the nodal conditions, integrals from Gauss quadrature with as many
-points as the integrand's degree asks for, all at 50 digits. Nothing goes through algebra/gram.py or algebra/section_integrals.py.
+points as the integrand's degree asks for, all at 50 digits. Nothing goes through algebra/gram.py or
+algebra/section_integrals.py.
 """
 
 from __future__ import annotations

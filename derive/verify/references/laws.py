@@ -1,6 +1,7 @@
 """The roots of verification for the laws: energy and dissipated power by quadrature, from their definitions.
 
-All at 50 digits, from the shape functions of verify/references/element.py: r', r'' and F are formed at each point, and nothing
+All at 50 digits, from the shape functions of verify/references/element.py: r', r'' and F are formed at each point, and
+nothing
 goes through Gram products or invariants. Where a law is a polynomial, its kernels claim the exact integral; where it
 is not (engineering strain, exact curvature, damping of cables), the number of Gauss points is part of what it is.
 """

@@ -1,6 +1,7 @@
 """The roots of verification for section forces: the stress over a section, and variations of the energy of a cable.
 
-All at 50 digits from the shape functions of verify/references/element.py; derivatives are differences at that precision.
+All at 50 digits from the shape functions of verify/references/element.py; derivatives are differences at that
+precision.
 """
 
 from __future__ import annotations

@@ -65,7 +65,8 @@ def elastica(kind: Kind, elements: int) -> list[float]:
     section, E = Rectangle(height=SLENDER, width=SLENDER), 1e9
     found = []
     for load in ELASTICA:
-        r, slope = tip(cantilever(kind, elements, 1, section, E), force=(0, load * E * section.second_moment_about_z, 0))
+        r, slope = tip(cantilever(kind, elements, 1, section, E),
+                       force=(0, load * E * section.second_moment_about_z, 0))
         found += [r[1], 1 - r[0], np.arctan2(slope[1], slope[0])]
     return found
 
