@@ -10,7 +10,8 @@ from pathlib import Path
 from markdown_it import MarkdownIt
 
 ROOT = Path(__file__).parents[1]
-PAGES = ("README.md", "derive/README.md", "runtime/README.md", "tests/benchmarks/README.md", "tests/reference/README.md")
+PAGES = ("README.md", "derive/README.md", "runtime/README.md", "tests/benchmarks/README.md",
+         "tests/reference/README.md")
 
 
 @dataclass

@@ -255,6 +255,12 @@ def test_files_that_it_names_exist(of):
         assert list(ROOT.glob(path)), path
 
 
+def keywords_of(called) -> set[str]:
+    """Of a part its fields, as users write them; of a function its parameters."""
+    fields = getattr(called, "model_fields", None)
+    return {f.alias or name for name, f in fields.items()} if fields else set(inspect.signature(called).parameters)
+
+
 @pytest.mark.parametrize("of", pages, ids=lambda of: of.path)
 def test_names_of_the_package_exist(of):
     """Classes, functions and methods, with the keywords that they are shown with."""
@@ -263,7 +269,7 @@ def test_names_of_the_package_exist(of):
             called = getattr(funicular if owner == "fu" else funicular.Scene, name, None)
             assert called is not None, word
             if keywords := re.findall(r"(\w+)=", given):
-                assert set(keywords) <= set(inspect.signature(called).parameters), word
+                assert set(keywords) <= keywords_of(called), word
 
 
 def test_front_page_is_short():
