@@ -7,6 +7,7 @@ import re
 import runpy
 import subprocess
 import sys
+import tomllib
 import warnings
 from pathlib import Path
 
@@ -121,6 +122,16 @@ def test_its_scene_is_the_bundled_one():
     scene, bundled = in_toml(), funicular.load_scene("paper51")
     for parts in ("pins", "bodies", "slides"):
         assert getattr(scene, parts) == getattr(bundled, parts)
+
+
+def test_parts_within_parts_are_the_same_in_a_file():
+    rows = re.findall(r"^\| `(fu\..*?)` \| `(\{.*\})` \|$", RUNTIME.section("Scene files"), re.MULTILINE)
+    assert len(rows) >= 4
+    for in_python, in_file in rows:
+        part, table = eval(in_python, {"fu": funicular}), tomllib.loads(f"x = {in_file}")["x"]
+        for tag in ("shape", "form", "stop"):
+            assert table.pop(tag, None) == getattr(part, tag, None), in_file
+        assert type(part).model_validate(table) == part
 
 
 # --- commands ---------------------------------------------------------------------------------------------------
