@@ -25,8 +25,8 @@ from funicular.kernels.libraries import load as load_library
 from funicular.results.run import load_run
 from funicular.scene_file import load_scene, loads
 from funicular.view.plot import save_plots
+from pages import page
 from scenery import SQUARE, TABLE_1
-from test_readme import README
 from typer.testing import CliRunner
 
 SPEC = '''
@@ -517,20 +517,19 @@ def test_elements_are_those_that_are_generated():
         False, True, False, True]
 
 
-# --- README -----------------------------------------------------------------------------------------------------
-
-SECTION = README.split("## Your own element")[1].split("\n## ")[0]
+# --- derive/README.md -------------------------------------------------------------------------------------------
 
 
 @pytest.mark.slow
 def test_the_example_of_the_readme_is_cable18(tmp_path, monkeypatch):
     """Its spec, its command, its scene in Python and as a file; the run is that of cable18."""
-    text, in_python = re.findall(r"^```python\n(.*?)^```", SECTION, re.MULTILINE | re.DOTALL)
+    here = page("derive/README.md")
+    text, in_python = here.of("Your own element", "python")
     assert [getattr(load_spec(tmp_path, text), name) for name in ("basis", "nodal_vectors", "director", "dim")] == [
         CABLE18.basis, CABLE18.nodal_vectors, CABLE18.director, CABLE18.dim]
-    (shell,) = re.findall(r"^    \.venv/bin/funicular (derive --spec .*?)(?:  .*)?$", SECTION, re.MULTILINE)
-    made = subprocess.run([sys.executable, "-m", "funicular.cli", *shell.split()], cwd=tmp_path, capture_output=True,
-                          text=True)
+    (command_line,) = (words for section, words in here.commands() if section == "Your own element")
+    made = subprocess.run([sys.executable, "-m", "funicular.cli", *command_line[1:]], cwd=tmp_path,
+                          capture_output=True, text=True)
     assert made.returncode == 0, made.stderr
     space = {}
     monkeypatch.chdir(tmp_path)

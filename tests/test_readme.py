@@ -1,61 +1,59 @@
-"""What README.md shows is true: its scene runs, in Python and as TOML, and the files that it names exist."""
+"""What the pages that hosts show say is true: their code and commands run, their links and names lead somewhere."""
 
+import argparse
+import inspect
+import os
 import re
+import runpy
+import subprocess
+import sys
+import tomllib
+import warnings
 from pathlib import Path
 
 import funicular
 import pytest
+from funicular.cli import app
 from funicular.scene_file import loads
+from pages import PAGES, ROOT, page
+from typer.testing import CliRunner
 
-ROOT = Path(__file__).parents[1]
-README = (ROOT / "README.md").read_text(encoding="utf-8")
-
-
-def block(language: str) -> str:
-    section = README.split("## Your own scene")[1].split("\n## ")[0]
-    (found,) = re.findall(rf"^```{language}\n(.*?)^```", section, re.MULTILINE | re.DOTALL)
-    return found
-
-
-def test_both_ways_of_writing_the_scene_are_one(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    space = {}
-    exec(block("python"), space)
-    assert "completed" in capsys.readouterr().out
-    assert (tmp_path / "first.nc").is_file()
-    from_file = loads(block("toml"), "README.md")
-    assert from_file.run_settings == {"duration": 1.0, "tol": 1e-4, "output_step": 0.01}
-    from_file.run_settings = {}
-    assert from_file.to_toml() == space["scene"].to_toml()
+README, DERIVE, RUNTIME, BENCHMARKS, _ = pages = [page(path) for path in PAGES]
+OUTSIDE = "python3 -m venv", "funicular derive", "funicular verify", "funicular derive --check"
+"""Commands that .ci/run starts; `funicular derive --spec` is in tests/test_own_element.py."""
+SHORT = {"bench": ["--duration", "0.02", "--repetitions", "1"]}
+"""What a command gets here so that it is quick."""
+QUICK = ("first_scene", "order", "paper52", "planar", "crossing", "taut_rope", "choice", "linear_cost")
+"""Benchmarks that take less than 20 s; the cases and hard cases are asserted by tests of their own."""
 
 
-def test_its_events_happen():
-    """On the scene above them, run a little longer than there."""
-    space = {"scene": loads(block("toml"), "README.md")}
-    (example,) = re.findall(r"^```python\n(.*?)^```", README.split("## Through time")[1].split("\n## ")[0],
-                            re.MULTILINE | re.DOTALL)
-    exec(example, space)
-    run = space["scene"].run(duration=1.0, tol=1e-4)
-    assert {event["name"] for event in run.events} >= {"low"}
-    assert run.status == "event" and run["A.position"][-1, 1] == pytest.approx(-0.03, abs=1e-9)
+def sections(language: str) -> list:
+    """Page and section of all blocks in a language, for parametrize."""
+    found = dict.fromkeys((p.path, block.section) for p in pages for block in p.blocks if block.language == language)
+    return [pytest.param(p, section, id=f"{p.path}: {section}")
+            for p in pages for path, section in found if path == p.path]
 
 
-def test_rest_vibrations_and_section_forces(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (example,) = re.findall(r"^```python\n(.*?)^```", README.split("## What a scene may hold")[1].split("\n## ")[0],
-                            re.MULTILINE | re.DOTALL)
-    space = {}
-    exec(example, space)
+# --- code -------------------------------------------------------------------------------------------------------
+
+
+def first_scene(space):
+    assert space["run"].status == "completed"
+    assert space["run"]["A.position"].shape == (101, 3)
+
+
+def saved(space):
+    first_scene(space)
+    assert funicular.load_run("first.nc")["trolley.force"].shape == (101, 3)
+
+
+def rest(space):
     rest, run = space["rest"], space["run"]
     assert rest["rope@0.force"][1] > 1000
     assert abs(run["rope.nodal_vectors"][-1] - rest["rope.nodal_vectors"]).max() < 1e-8
 
 
-def test_its_trolley_runs():
-    section = README.split("## What rides, and what joins")[1].split("\n## ")[0]
-    (example,) = re.findall(r"^```python\n(.*?)^```", section, re.MULTILINE | re.DOTALL)
-    space = {}
-    exec(example, space)
+def trolley(space):
     run = space["run"]
     assert run["trolley.s"][-1] > 4
     mean = run["hinge.force"][run.time > 0.5].mean(axis=0)
@@ -63,17 +61,238 @@ def test_its_trolley_runs():
     assert run["energy.dissipated"][-1] > 0
 
 
+def events(space):
+    run = space["run"]
+    assert {event["name"] for event in run.events} >= {"low"}
+    assert run.status == "event"
+    assert run["A.position"][-1, 1] == pytest.approx(-0.03, abs=1e-9)
+
+
+def middle_of_an_element(space):
+    assert space["r"] == pytest.approx([0.25, 0, 0])
+
+
+def own_element(space):
+    assert space["run"].status == "completed"
+
+
+AFTERWARDS = {("README.md", "First scene"): saved,
+              ("runtime/README.md", "Scenes"): first_scene,
+              ("runtime/README.md", "Joints and springs"): trolley,
+              ("runtime/README.md", "Events"): events,
+              ("runtime/README.md", "Statics, modes and section forces"): rest,
+              ("derive/README.md", "Kernels from Python"): middle_of_an_element,
+              ("derive/README.md", "Your own element"): own_element}
+"""What must be true when the Python of a section has run."""
+
+
+@pytest.mark.parametrize(("of", "section"), sections("python"))
+def test_python_runs(of, section, tmp_path, monkeypatch):
+    """Block after block of a section, in one namespace; the user's own element stands in for by its twin here."""
+    monkeypatch.chdir(tmp_path)
+    space = {}
+    for block in of.of(section, "python"):
+        exec(block.replace('element="quintic", library="quintic"', 'element="cable18"'), space)
+    AFTERWARDS[of.path, section](space)
+
+
+def test_all_python_is_looked_at():
+    assert {(p.values[0].path, p.values[1]) for p in sections("python")} == set(AFTERWARDS)
+
+
+def in_toml() -> funicular.Scene:
+    (block,) = RUNTIME.of("Scene files", "toml")
+    return loads(block, RUNTIME.path)
+
+
+@pytest.mark.parametrize("of", [README, RUNTIME], ids=lambda of: of.path)
+def test_both_ways_of_writing_the_scene_are_one(of, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (block,) = of.of("First scene" if of is README else "Scenes", "python")
+    space = {}
+    exec(block.split("run = ")[0], space)
+    from_file = in_toml()
+    assert from_file.run_settings == {"duration": 1.0, "tol": 1e-4, "output_step": 0.01}
+    assert 'run(duration=1.0, tol=1e-4, output_step=0.01)' in block
+    from_file.run_settings = {}
+    assert from_file.to_toml() == space["scene"].to_toml()
+
+
 def test_its_scene_is_the_bundled_one():
-    scene, bundled = loads(block("toml"), "README.md"), funicular.load_scene("paper51")
+    scene, bundled = in_toml(), funicular.load_scene("paper51")
     for parts in ("pins", "bodies", "slides"):
         assert getattr(scene, parts) == getattr(bundled, parts)
 
 
+def test_parts_within_parts_are_the_same_in_a_file():
+    rows = re.findall(r"^\| `(fu\..*?)` \| `(\{.*\})` \|$", RUNTIME.section("Scene files"), re.MULTILINE)
+    assert len(rows) >= 4
+    for in_python, in_file in rows:
+        part, table = eval(in_python, {"fu": funicular}), tomllib.loads(f"x = {in_file}")["x"]
+        for tag in ("shape", "form", "stop"):
+            assert table.pop(tag, None) == getattr(part, tag, None), in_file
+        assert type(part).model_validate(table) == part
+
+
+# --- commands ---------------------------------------------------------------------------------------------------
+
+
+def commands(program: str) -> list:
+    """Words after the program of every command that starts with it, for parametrize."""
+    found = {" ".join(words): words for p in pages for _, words in p.commands()
+             if " ".join(words).startswith(f".venv/bin/{program} ")}
+    return [pytest.param(words[1:], id=" ".join(words[1:])) for words in found.values()]
+
+
+def test_every_command_is_one_that_is_looked_at():
+    known = ("python3 -m venv ", ".venv/bin/funicular ", ".venv/bin/python tests/benchmarks/")
+    for of in pages:
+        for _, words in of.commands():
+            assert " ".join(words).startswith(known), f"{of.path}: {words}"
+
+
 def test_exactly_two_commands():
-    section = README.split("## Two commands")[1].split("\n## ")[0]
-    assert [line.startswith("    python3 -m venv") for line in section.splitlines() if line[:1] == " "] == [True] * 2
+    """As .ci/run takes them, with the same words for the place."""
+    ci = (ROOT / ".ci" / "run").read_text(encoding="utf-8")
+    assert "sed -n '/^## Two commands/,/^## /s/^    //p' README.md" in ci
+    assert [words[:3] for section, words in README.commands() if section == "Two commands"] == [
+        ["python3", "-m", "venv"]] * 2
+    assert ".venv/bin/funicular verify" in ci
+    assert ".venv/bin/funicular derive --check" in ci
 
 
-@pytest.mark.parametrize("path", sorted(set(re.findall(r"[(`]((?:derive|runtime|tests|generated)/[\w./]*)", README))))
-def test_files_that_it_names_exist(path):
-    assert (ROOT / path).exists()
+@pytest.mark.parametrize("words", commands("funicular"))
+def test_commands_run(words, tmp_path, monkeypatch):
+    if words[0] in ("derive", "verify"):  # of .ci/run and of tests/test_own_element.py: minutes
+        words = [*words, "--help"]
+    monkeypatch.chdir(tmp_path)
+    (block,) = RUNTIME.of("Scene files", "toml")
+    Path("first.toml").write_text(block, encoding="utf-8")
+    short = SHORT.get(words[0], [])
+    if "--resume" in words:
+        interrupted(block)
+        short = []
+    done = CliRunner().invoke(app, [*words, *short], catch_exceptions=False)
+    assert done.exit_code == 0, done.output
+    if "--plot" in words:
+        assert list(tmp_path.glob("*-shape.png"))
+    if "--resume" in words:
+        run = funicular.load_run("long.nc")
+        assert run.status == "completed"
+        assert run.report["resumed_at_s"]
+
+
+def interrupted(scene: str) -> None:
+    """Leave a run of long.toml that Ctrl-C has ended half way."""
+    Path("long.toml").write_text(scene.replace("duration = 1.0", "duration = 0.1"), encoding="utf-8")
+
+    def stop(time: float) -> None:
+        if time > 0.05:
+            raise KeyboardInterrupt
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", funicular.FunicularWarning)
+        run = funicular.load_scene("long.toml").run(save="long.nc", progress=stop)
+    assert run.status == "interrupted"
+
+
+class Accepted(Exception):  # noqa: N818
+    """The command line was understood."""
+
+
+@pytest.mark.parametrize("words", commands("python"))
+def test_benchmarks_take_their_arguments(words, monkeypatch):
+    def parsed(self, *args, **given):
+        parse(self, *args, **given)
+        raise Accepted
+
+    parse = argparse.ArgumentParser.parse_args
+    monkeypatch.setattr(argparse.ArgumentParser, "parse_args", parsed)
+    monkeypatch.setattr(os, "environ", dict(os.environ))  # they ask for one thread
+    monkeypatch.setattr(sys, "argv", words)
+    if "exudyn" in words[0]:
+        pytest.importorskip("exudyn")
+    with pytest.raises(Accepted):
+        runpy.run_path(str(ROOT / words[0]), run_name="__main__")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("words", [p for p in commands("python") if Path(p.values[0][0]).stem in QUICK])
+def test_quick_benchmarks_run(words, tmp_path):
+    done = subprocess.run([sys.executable, ROOT / words[0], *words[1:]], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    pictures = [word for word in words if word.endswith(".png")]
+    assert done.stdout.count("\n") > 3
+    assert all((tmp_path / name).stat().st_size > 1000 for name in pictures)
+
+
+def test_every_benchmark_is_on_its_page():
+    scripts = {path.name for path in (ROOT / "tests" / "benchmarks").glob("*.py")
+               if '__name__ == "__main__"' in path.read_text(encoding="utf-8")}
+    assert scripts == {Path(words[1]).name for _, words in BENCHMARKS.commands() if words[0] == ".venv/bin/python"}
+
+
+# --- links and names --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("of", pages, ids=lambda of: of.path)
+def test_links_and_pictures_are_there(of):
+    """Relative ones: so a copy of the repository, its host and the source distribution show them."""
+    for link in of.links:
+        if link.startswith("https://"):
+            continue
+        name, _, anchor = link.partition("#")
+        target = (ROOT / of.path).parent / name if name else ROOT / of.path
+        assert target.resolve().is_relative_to(ROOT), link
+        assert target.exists(), link
+        if anchor:
+            assert anchor in page(target.resolve().relative_to(ROOT).as_posix()).anchors, link
+
+
+@pytest.mark.parametrize("of", pages[1:4], ids=lambda of: of.path)
+def test_a_page_lists_all_its_sections(of):
+    contents = of.text.split("\n## ")[0]
+    linked = {link[1:] for link in of.links if link.startswith("#") and f"({link})" in contents}
+    titles = {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-")
+              for title in re.findall(r"^## (.*)$", of.text, re.MULTILINE)}
+    assert linked == titles
+
+
+@pytest.mark.parametrize("of", pages, ids=lambda of: of.path)
+def test_files_that_it_names_exist(of):
+    named = {word.rstrip("/") for text in of.words
+             for word in re.findall(r"(?:derive|runtime|tests|generated|\.ci)/[\w./*]*", text)}
+    for path in named:
+        assert list(ROOT.glob(path)), path
+
+
+def keywords_of(called) -> set[str]:
+    """Of a part its fields, as users write them; of a function its parameters."""
+    fields = getattr(called, "model_fields", None)
+    return {f.alias or name for name, f in fields.items()} if fields else set(inspect.signature(called).parameters)
+
+
+@pytest.mark.parametrize("of", pages, ids=lambda of: of.path)
+def test_names_of_the_package_exist(of):
+    """Classes, functions and methods, with the keywords that they are shown with."""
+    for word in of.words:
+        for owner, name, given in re.findall(r"\b(fu|scene)\.(\w+)(\([^)]*\))?", word):
+            called = getattr(funicular if owner == "fu" else funicular.Scene, name, None)
+            assert called is not None, word
+            if keywords := re.findall(r"(\w+)=", given):
+                assert set(keywords) <= keywords_of(called), word
+
+
+def test_front_page_is_short():
+    assert README.text.count("\n") <= 160
+
+
+def test_layout_is_that_of_the_folders():
+    """Folders that the tables under "Layout" name, from the top and from derive/."""
+    rows = [row.split("|") for row in README.section("Layout").splitlines() if row.startswith("| ")][1:]
+    named = {re.search(r"\w+", row[1])[0]: re.findall(r"`(\w+)`", row[3]) for row in rows}
+    assert set(named) == {"derive", "generated", "runtime", "tests"}
+    named["derive"] += re.findall(r"^\| `(\w+)` \|", DERIVE.section("Layout"), re.MULTILINE)
+    for folder, inside in named.items():
+        for name in inside:
+            assert (ROOT / folder / name).is_dir(), f"{folder}/{name}"

@@ -25,7 +25,7 @@ UNITS = {"angle": "rad", "distance": "m"}
 class Joint(Part):
     """A joint of ``kind`` between two ends.
 
-    a, b: its ends: ("A", (x, y, z)), a point in body axes; "A", the body's centre; ("wire", s), the place of a cable
+    a, b: its ends: ("A", (x, y, z)), a point in body axes; "A", its origin; ("wire", s), the place of a cable
     with its section, or its tangent where the elements have no sections; or a point (x, y, z) of the ground, in m.
     Directions are the ground's, at the start.
 
