@@ -168,20 +168,33 @@ cdef class Engine(Statics):
         run.watched, run.late = self._doubles(np.zeros(run.n_watches)), self._ints(np.zeros(run.n_watches))
         run.watch_work = self._doubles(np.zeros(self.model.n_dof))
 
+    def _knots(self, times, jumps):
+        """Let steps end at these instants."""
+        PyMem_Free(self.knots)
+        self.knots = <fu_knot *>PyMem_Calloc(len(times) + 1, sizeof(fu_knot))
+        if not self.knots:
+            raise MemoryError
+        for i, (time, jump) in enumerate(zip(times, jumps, strict=True)):
+            self.knots[i].t, self.knots[i].jumps = time, jump
+        self.run.n_knots, self.run.knots = len(times), self.knots
+
     cdef _snapshot(self, const fu_state *state):
         """t, q, v, s of a state."""
         m = &self.model
         return (state.t, np.array([state.q[i] for i in range(m.n_q)]), np.array([state.v[i] for i in range(m.n_dof)]),
                 np.array([state.s[i] for i in range(m.n_joints)]))
 
-    def start(self, *, duration, output_step, tol, step, method, first_step, room=None, rest_start=False):
+    def start(self, *, duration, output_step, tol, step, method, first_step, knots=((), ()), room=None,
+              rest_start=False):
         """Allocate output rows, `room` of them or all, and compute the consistent start; method: see integrators.py.
 
+        knots: times at which steps end, increasing, and what jumps there; see knots.py.
         Returns a status where that failed, else None, and the change of velocities that the joints asked for.
         """
         run = &self.run
         run.duration, run.output_step, run.tol = duration, output_step, tol
         run.fixed_step, run.h, run.rest_start = step, first_step, rest_start
+        self._knots(*knots)
         run.order, run.slack, run.caution = method.order, method.slack, method.caution
         if method.name == "explicit":
             run.integrator = &fu_explicit_method

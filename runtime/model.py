@@ -22,6 +22,7 @@ from funicular.errors import FunicularWarning, SceneError
 from funicular.friction import Friction
 from funicular.holding import EndModel, Holder, LinkModel, linked, tied
 from funicular.integrators import choose
+from funicular.knots import knots
 from funicular.libraries import kernels_of, tables_of
 from funicular.long_runs import LongRun
 from funicular.modal_shape import Shape
@@ -433,6 +434,7 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Meter, initial=No
         step=settings.step or 0.0,
         method=method,
         first_step=min(output_step, 1e-3 * settings.duration),
+        knots=knots(model, settings.duration, settings.tol),
         room=None if stream is None else pace.room,
     )
     if status == "singular" and engine.jammed >= 0:
