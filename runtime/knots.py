@@ -1,8 +1,9 @@
 """Knots of signals: the instants at which one is not smooth, where integration steps end.
 
-A piecewise polynomial has a knot where two pieces meet. A step over a knot sees one function where there are two, and
-neither its result nor its estimate of the error is of the method's order. Knots that do not matter are left out, so that
-a table of many samples of a smooth function does not rule the steps.
+A piecewise polynomial has a knot where two pieces meet. A step over a knot sees one function where there are two:
+neither its result nor its estimate of the error is of the method's order, and a pulse shorter than the step is not seen
+at all. Knots that do not matter are left out, so that a table of many samples of a smooth function does not rule the
+steps. Steps of a fixed length keep their grid, but for knots where the rate of a prescribed motion jumps.
 """
 
 from __future__ import annotations
@@ -53,9 +54,9 @@ def driving_signals(model: Model) -> set[int]:
 def _of_signal(signal: SignalModel, drives: bool, tol: float) -> list[tuple[float, int]]:
     """Return time and jump of each knot of a signal that counts.
 
-    A knot counts where the piece before it, continued over the shorter one of the pieces that meet there, parts from the
-    one after it by more than tol of the signal; of a signal that prescribes a motion, also where their rates do. No step
-    sees a jump of the rate, and what is lost at several adds up: all that are left out together may be tol of the rate.
+    A knot counts where the piece before it, continued over the shorter one of the two that meet there, parts from the
+    one after it by more than tol of the signal; of a signal that prescribes a motion, also where their rates do. No
+    step sees a jump of the rate, and what is lost at several adds up: all that are left out may be tol of the rate.
     """
     breaks, coefficients = signal.breaks, signal.coefficients
     if len(coefficients) < 2:
