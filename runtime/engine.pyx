@@ -178,6 +178,14 @@ cdef class Engine(Statics):
             self.knots[i].t, self.knots[i].jumps = time, jump
         self.run.n_knots, self.run.knots = len(times), self.knots
 
+    @property
+    def knots_passed(self):
+        """Return at how many knots of signals steps have ended, if they are not of a fixed length."""
+        cdef int k, passed = 0
+        for k in range(self.run.n_knots):
+            passed += self.run.knots[k].t <= self.run.now.t
+        return passed
+
     cdef _snapshot(self, const fu_state *state):
         """t, q, v, s of a state."""
         m = &self.model

@@ -111,6 +111,8 @@ def test_whatever_slides_do_dissipation_never_falls(seeds):
 class Stub:
     """An engine that has counted this."""
 
+    integrator = "genalpha"
+
     def __init__(self, *books):
         self.books = books
 
