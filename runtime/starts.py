@@ -1,4 +1,4 @@
-"""Velocities that jump, in words: of motions that start at another rate than the cable they move, or whose rate jumps."""
+"""Velocities that jump, in words: of motions that start at another rate than their cable, or whose rate jumps later."""
 
 from __future__ import annotations
 

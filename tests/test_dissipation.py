@@ -126,6 +126,16 @@ def test_a_hundredth_of_what_is_exchanged_is_told(grown, lost, tol, says):
     assert (says is None) == (notes == []) and (says is None or says in notes[0])
 
 
+@pytest.mark.parametrize(("off", "exchanged", "in_motion", "rounding", "noted"), [
+    (1e-3, 1e-6, 100.0, 0.0, False), (2e-2, 1e-6, 100.0, 0.0, True),  # a hundredth of a hundredth of what moves
+    (2e-2, 1.0, 1.0, 1e-2, False), (2.1e-2, 1.0, 1.0, 1e-2, True)])
+def test_neither_rounding_nor_little_beside_a_steady_motion_is_told(off, exchanged, in_motion, rounding, noted):
+    """Where bodies turn freely hardly anything is exchanged; far from the origin rounding is beyond a hundredth."""
+    settings = RunSettings(duration=1.0, tol=1e-4)
+    for grown, lost in ((off, 0.0), (0.0, off)):
+        assert bool(unexplained(Stub(grown, lost, exchanged, in_motion, rounding), settings)) == noted
+
+
 def shaken(distance: float, amplitude: float) -> Scene:
     """A body gives a weightless cable a push, of which little moves, at a distance from the origin."""
     scene = Scene(gravity=(0, 0, 0))

@@ -218,7 +218,7 @@ def test_a_motion_at_the_velocity_of_its_cable_is_no_jump():
         scene.cable("rope", start=(0, 0, 0), end=(3, 0, 0), elements=2, element="cable12", section=SECTION,
                     material=SOFT, velocity=(0, speed, 0))
         scene.motion("rope", s=3.0, displacement=(0, signal, 0))
-        assert any("starts at 3 m/s, but its node at 2 m/s" in message for message in jumps(scene)) == noted
+        assert any("starts at 3 m/s, but its node" in message for message in jumps(scene)) == noted
 
 
 def test_later_jumps_of_a_motions_rate_are_noted():
