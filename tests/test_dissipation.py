@@ -8,6 +8,7 @@ from funicular import (
     Buffer,
     EndOfCableError,
     Friction,
+    FunicularError,
     FunicularWarning,
     HardStop,
     Material,
@@ -157,6 +158,15 @@ def test_neither_distance_nor_little_motion_hides_what_is_lost(distance):
         warnings.simplefilter("error", FunicularWarning)
         warnings.filterwarnings("ignore", "initial velocities")
         shaken(distance, 0.03).run(0.1, tol=1e-5, progress=False)
+
+
+@pytest.mark.filterwarnings("ignore:initial velocities broke a joint")
+@pytest.mark.parametrize("distance", [0.0, 1e4])
+def test_no_distance_hides_energy_that_comes_from_nowhere(distance):
+    """An explicit step just beyond its limit ends the run before anything has moved by a thousandth of the cable."""
+    with pytest.raises(FunicularError, match="energy came from nowhere") as stopped:
+        shaken(distance, 0.03).run(0.5, integrator="explicit", step=2.8e-4, output_step=2.8e-4, progress=False)
+    assert stopped.value.run.report["largest_motion_m"] < 1e-3
 
 
 def test_what_is_lost_where_a_frame_passes_a_node_is_dissipated():
