@@ -1,5 +1,5 @@
-"""Build of the extension modules: their C files side by side, since setuptools compiles those of one module in turn;
-OpenMP for those that take it, where the compiler has it.
+"""Build of the extension modules: their C files are found and compiled side by side, since setuptools compiles those
+of one module in turn; OpenMP for those that take it, where the compiler has it.
 """
 
 from __future__ import annotations
@@ -14,10 +14,36 @@ from setuptools.errors import CompileError, LinkError
 
 THREADED = ("funicular.engine",)
 OPENMP = "-fopenmp"
+SOURCES = {"funicular.generated.kernels": ["generated/*.c"],
+           "funicular.engine": ["runtime/engine/**/*.c", "generated/blocks.c"]}
+"""Patterns of the C files of a module; blocks.c is compiled into the engine, with the options of its hot loops."""
+NOT_OF_KERNELS = ("generated/blocks.c", "generated/kernels.c")
+"""C files in generated/ of another module, and Cython's own."""
+DEPENDENCIES = {"funicular.generated.kernels": ["generated/kernels.h"],
+                "funicular.engine": ["generated/*.h", "runtime/engine/**/*.h", "runtime/engine/**/*.pxi"]}
+"""Patterns of the files whose change has a module built anew."""
+
+
+def found(patterns: list[str]) -> list[str]:
+    """Return the files below the working folder that match one of the patterns, sorted by pattern and name."""
+    return [path.as_posix() for pattern in patterns for path in sorted(Path().glob(pattern))]
+
+
+def c_files(module: str) -> list[str]:
+    """Return the C files of an extension module, without those that Cython writes."""
+    return [path for path in found(SOURCES[module])
+            if module != "funicular.generated.kernels" or path not in NOT_OF_KERNELS]
 
 
 class ParallelBuild(build_ext):
     """build_ext of pyproject.toml."""
+
+    def finalize_options(self) -> None:
+        """Add to each module the C files that are there."""
+        super().finalize_options()
+        for module in self.extensions:
+            module.sources += [path for path in c_files(module.name) if path not in module.sources]
+            module.depends += found(DEPENDENCIES[module.name])
 
     def build_extensions(self) -> None:
         """Build all modules; files in a pool of as many threads as there are cores, each calling the compiler."""

@@ -1,6 +1,6 @@
 """The model: what the engine integrates, made from a scene; and the run of it.
 
-Coordinates, unknowns and their order are those of engine/engine.h.
+Coordinates, unknowns and their order are those of engine/include/engine.h.
 """
 
 from __future__ import annotations
@@ -146,7 +146,7 @@ class SlideModel:
 
 @dataclass
 class Model:
-    """Arrays that the engine reads; see engine/engine.h for their meaning. tables: addresses of further kernels."""
+    """Arrays that the engine reads; engine/include/ says what they mean. tables: addresses of further kernels."""
 
     dim: int
     cables: list[CableModel]

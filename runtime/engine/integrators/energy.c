@@ -11,7 +11,7 @@
  *
  * Unknowns as in genalpha.c with sigma = h^2/2. The Newton matrix takes elasticity at the middle, which leaves the
  * change of curvature of the energy over a step out: Newton converges linearly, by a factor that falls as h^2 or faster.
- * Algorithmic dissipation (algorithmic.c) stands in it as so much more stiffness, which it is but for turns and tension.
+ * Algorithmic dissipation (algorithmic_dissipation.c) stands in it as so much more stiffness, which it is but for turns and tension.
  */
 #include "engine.h"
 

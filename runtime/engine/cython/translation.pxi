@@ -102,7 +102,7 @@ cdef class Translation(Arrays):
         return 0
 
     def anchor(self, int index, x, phi, psi, b, w, f, m):
-        """A point of modal body `index` with its axes, as engine/modal.c has it; for tests.
+        """A point of modal body `index` with its axes, as engine/bodies/modal.c has it; for tests.
 
         x (dim,), phi (modes, dim), psi (modes, turns); b, w: the body's entries of q and v. Returns what `fu_modal_point`
         holds, P, T, and K for a force f and a moment m on the point.
