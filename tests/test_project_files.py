@@ -7,6 +7,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
+PAGES = [str(path.relative_to(ROOT)) for pattern in ("*.md", "*/README.md", "tests/*/README.md")
+         for path in ROOT.glob(pattern)]
 
 
 def text(name: str) -> str:
@@ -31,6 +33,13 @@ def test_contributing_names_files_that_exist():
     named = set(re.findall(r"`((?:derive|runtime|tests|generated|\.ci)/[\w./]*)`", text("CONTRIBUTING.md")))
     assert len(named) > 5
     assert [path for path in sorted(named) if path != "derive/elements/NAME.py" and not (ROOT / path).exists()] == []
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_pages_link_to_what_exists(page):
+    """Pictures, too; the source distribution has all that the repository has, so that they show there."""
+    links = re.findall(r"\]\((?!https?:|#)([^)#\s]+)", text(page))
+    assert [link for link in links if not (ROOT / page).parent.joinpath(link).exists()] == []
 
 
 def test_python_versions_are_those_of_the_metadata(project):
