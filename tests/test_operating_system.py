@@ -26,7 +26,7 @@ def locking(descriptor, mode, size):
 sys.modules["msvcrt"] = types.SimpleNamespace(locking=locking, LK_NBLCK="LK_NBLCK")
 real, sys.modules["fcntl"] = fcntl, None
 for name in ("pread", "preadv", "pwrite", "sysconf", "sched_getaffinity", "O_NOFOLLOW", "O_CLOEXEC"):
-    delattr(os, name)
+    vars(os).pop(name, None)
 
 class Kernel32:
     def GlobalMemoryStatusEx(self, status):
