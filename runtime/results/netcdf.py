@@ -18,6 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..operating_system import BYTES, read_at, read_into, write_at
 from .checksums import row_checksums, text_checksum
 from .locks import created
 
@@ -72,7 +73,7 @@ class File:
         self.path = os.fspath(path)
         self.descriptor = descriptor
         if descriptor is None:
-            self.descriptor = os.open(path, (os.O_RDWR if writable else os.O_RDONLY) | os.O_CLOEXEC)
+            self.descriptor = os.open(path, (os.O_RDWR if writable else os.O_RDONLY) | BYTES)
         self.close = weakref.finalize(self, os.close, self.descriptor)
         size = os.fstat(self.descriptor).st_size
         self.rows, self.attributes, places, self.entries = self._head(size)
@@ -90,7 +91,7 @@ class File:
         self.left_out = np.zeros(0, int)
         self.has_checksums = ROW_CHECKSUM in records and HEADER_CHECKSUM in places
         if HEADER_CHECKSUM in places:
-            head = os.pread(self.descriptor, min(first, MOST_HEADER), 0)
+            head = read_at(self.descriptor, min(first, MOST_HEADER), 0)
             if _header_checksum(head, places) != self.attributes[HEADER_CHECKSUM]:
                 raise ValueError("the header is damaged: it has another checksum")
 
@@ -98,7 +99,7 @@ class File:
         length = _BLOCK
         while True:
             try:
-                return _parse(os.pread(self.descriptor, length, 0))
+                return _parse(read_at(self.descriptor, length, 0))
             except (struct.error, IndexError, KeyError, OverflowError, UnicodeDecodeError) as error:
                 if length >= min(size, MOST_HEADER):
                     raise ValueError("the header is damaged") from error
@@ -113,7 +114,7 @@ class File:
         """All values of a variable, in this machine's order of bytes; texts as str. Not of rows that are left out."""
         entry = self.entries[name]
         if not entry.in_rows:
-            raw = os.pread(self.descriptor, _bytes(entry), entry.begin)
+            raw = read_at(self.descriptor, _bytes(entry), entry.begin)
             values = np.frombuffer(raw, entry.dtype).reshape(entry.shape)
             return _texts(values) if entry.dtype.kind == "S" else values.astype(entry.dtype.newbyteorder("="))
         values = np.empty((self.rows - len(self.left_out), *entry.shape), entry.dtype.newbyteorder("="))
@@ -141,7 +142,8 @@ class File:
         block = np.empty(min(rows, max(1, _BLOCK // max(1, self.row_bytes))), self._row)
         for start in range(0, rows, len(block)):
             part = block[: rows - start]
-            if os.preadv(self.descriptor, [part.view("u1")], self._first + start * self.row_bytes) != part.nbytes:
+            at = self._first + start * self.row_bytes
+            if read_into(self.descriptor, memoryview(part.view("u1")), at) != part.nbytes:
                 raise OSError(f"{self.path}: was cut short while it was read")
             yield start, part
 
@@ -201,7 +203,7 @@ class File:
             return False
         self._put(line + b" " * (size - used - len(line)), begin + used)
         self._put(b" " * used, begin)
-        self.attributes["report"] = os.pread(self.descriptor, size, begin).decode()
+        self.attributes["report"] = read_at(self.descriptor, size, begin).decode()
         return True
 
     def _check_follows(self, first: int) -> None:
@@ -215,7 +217,7 @@ class File:
     def _put(self, data, at: int) -> None:
         left = memoryview(data)
         while len(left):
-            done = os.pwrite(self.descriptor, left, at)
+            done = write_at(self.descriptor, left, at)
             left, at = left[done:], at + done
 
 

@@ -11,6 +11,7 @@ import errno
 import hashlib
 import json
 import os
+import shutil
 import time
 from collections.abc import Callable
 from copy import copy
@@ -18,6 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..errors import ResultFileError
+from ..operating_system import BYTES
 from .checkpoints import Checkpoint, DamagedCheckpointError, Facts
 from .locks import NoLocks, Taken, claimed, is_at, lock
 from .netcdf import File
@@ -117,8 +119,7 @@ class Stream:
     @property
     def free(self) -> int:
         """Bytes that the file can have: those that are free, and those of the one that is there."""
-        disk = os.statvfs(self._path.parent)
-        return disk.f_bavail * disk.f_frsize + (self._path.stat().st_size if self._path.exists() else 0)
+        return shutil.disk_usage(self._path.parent).free + (self._path.stat().st_size if self._path.exists() else 0)
 
     def start(self, model: Model, engine, rows: Callable[[], Rows], pace: Pauses, events: list[dict]) -> None:
         """Make the file, with the first row, or go on where the checkpoint was taken.
@@ -263,7 +264,7 @@ class Stream:
         """A descriptor of the file that is there already, which no other run can then write; -1 where there is none."""
         while self._path.exists():
             try:
-                descriptor = os.open(self._path, os.O_RDWR | os.O_CLOEXEC)
+                descriptor = os.open(self._path, os.O_RDWR | BYTES)
             except FileNotFoundError:
                 return -1
             except OSError as error:
