@@ -397,11 +397,11 @@ void modal_mode_tangent(const fu_real *b, const fu_real *w, const fu_real *a, co
 void modal_pair_tangent(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *X_kl, fu_real *D, fu_real *K);
 void modal_kinetic_energy(const fu_real *b, const fu_real *w, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *X, const fu_real *X1, fu_real X11, fu_real *T);
 void modal_potential_energy(const fu_real *b, const fu_real *g, fu_real mass, const fu_real *S, fu_real *V);
-void modal_anchor(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *w, const fu_real *u1, const fu_real *theta1, fu_real *p, fu_real *axes, fu_real *P, fu_real *T, fu_real *velocity, fu_real *omega, fu_real *bias, fu_real *omega_bias);
-void modal_anchor_mode(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, fu_real *P, fu_real *T);
-void modal_anchor_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *f, const fu_real *m, fu_real *K);
-void modal_anchor_mode_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *f, const fu_real *m, fu_real *K, fu_real *K_frame);
-void modal_anchor_pair_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K);
+void modal_attachment(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *w, const fu_real *u1, const fu_real *theta1, fu_real *p, fu_real *axes, fu_real *P, fu_real *T, fu_real *velocity, fu_real *omega, fu_real *bias, fu_real *omega_bias);
+void modal_attachment_mode(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, fu_real *P, fu_real *T);
+void modal_attachment_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *f, const fu_real *m, fu_real *K);
+void modal_attachment_mode_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *f, const fu_real *m, fu_real *K, fu_real *K_frame);
+void modal_attachment_pair_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K);
 
 /* planar_modal: modal body on a planar_rigid frame */
 void planar_modal_inertia_force(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *S2, const fu_real *X, const fu_real *X1, const fu_real *X2, fu_real *f);
@@ -413,11 +413,11 @@ void planar_modal_mode_tangent(const fu_real *b, const fu_real *w, const fu_real
 void planar_modal_pair_tangent(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *X_kl, fu_real *D, fu_real *K);
 void planar_modal_kinetic_energy(const fu_real *b, const fu_real *w, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *X, const fu_real *X1, fu_real X11, fu_real *T);
 void planar_modal_potential_energy(const fu_real *b, const fu_real *g, fu_real mass, const fu_real *S, fu_real *V);
-void planar_modal_anchor(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *w, const fu_real *u1, const fu_real *theta1, fu_real *p, fu_real *axes, fu_real *P, fu_real *T, fu_real *velocity, fu_real *omega, fu_real *bias, fu_real *omega_bias);
-void planar_modal_anchor_mode(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, fu_real *P, fu_real *T);
-void planar_modal_anchor_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *f, const fu_real *m, fu_real *K);
-void planar_modal_anchor_mode_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *f, const fu_real *m, fu_real *K, fu_real *K_frame);
-void planar_modal_anchor_pair_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K);
+void planar_modal_attachment(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *w, const fu_real *u1, const fu_real *theta1, fu_real *p, fu_real *axes, fu_real *P, fu_real *T, fu_real *velocity, fu_real *omega, fu_real *bias, fu_real *omega_bias);
+void planar_modal_attachment_mode(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, fu_real *P, fu_real *T);
+void planar_modal_attachment_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *f, const fu_real *m, fu_real *K);
+void planar_modal_attachment_mode_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *f, const fu_real *m, fu_real *K, fu_real *K_frame);
+void planar_modal_attachment_pair_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K);
 
 /* slide_beam24_rigid: sliding joint of a rigid rider on a beam24 cable */
 void slide_beam24_rigid_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
@@ -645,11 +645,11 @@ typedef struct {
     void (*pair_tangent)(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *X_kl, fu_real *D, fu_real *K);
     void (*kinetic_energy)(const fu_real *b, const fu_real *w, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *X, const fu_real *X1, fu_real X11, fu_real *T);
     void (*potential_energy)(const fu_real *b, const fu_real *g, fu_real mass, const fu_real *S, fu_real *V);
-    void (*anchor)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *w, const fu_real *u1, const fu_real *theta1, fu_real *p, fu_real *axes, fu_real *P, fu_real *T, fu_real *velocity, fu_real *omega, fu_real *bias, fu_real *omega_bias);
-    void (*anchor_mode)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, fu_real *P, fu_real *T);
-    void (*anchor_force)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *f, const fu_real *m, fu_real *K);
-    void (*anchor_mode_force)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *f, const fu_real *m, fu_real *K, fu_real *K_frame);
-    void (*anchor_pair_force)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K);
+    void (*attachment)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *w, const fu_real *u1, const fu_real *theta1, fu_real *p, fu_real *axes, fu_real *P, fu_real *T, fu_real *velocity, fu_real *omega, fu_real *bias, fu_real *omega_bias);
+    void (*attachment_mode)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, fu_real *P, fu_real *T);
+    void (*attachment_force)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *f, const fu_real *m, fu_real *K);
+    void (*attachment_mode_force)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *f, const fu_real *m, fu_real *K, fu_real *K_frame);
+    void (*attachment_pair_force)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K);
 } fu_modal_kernels;
 
 /* What the engine needs of a slide. */

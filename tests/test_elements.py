@@ -8,7 +8,8 @@ from funicular.derive.catalogue import families
 from funicular.derive.elements import ELEMENTS
 from funicular.derive.laws.continuum.continuum import Form
 from funicular.derive.spec import ASSUMED_LAWS, CABLE_LAWS, Element, l, x, y, z
-from funicular.derive.verify.states import element_state, loads, reference, rotation, section
+from funicular.derive.verify.samples.element import element_state, loads
+from funicular.derive.verify.samples.shapes import reference, rotation, section
 from funicular.generated import kernels
 from funicular.kernels.elements import manifest
 from funicular.model.constants import element_constants
@@ -58,7 +59,7 @@ class Elastic:
             S = S if self.element.dim == 3 else S[[0, 1, 5, 6]]
         else:
             S = cable_stiffness(law, area, EI)
-        self.A = element_constants(kernels, name, law, self.l, S, *at_rest(name, law, self.l))
+        self.A = element_constants(None, name, law, self.l, S, *at_rest(name, law, self.l))
 
     def __call__(self, name: str):
         return kernel(self._family, name)

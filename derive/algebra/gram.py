@@ -20,7 +20,7 @@ import sympy as sp
 
 from ..codegen.program import Program
 from ..spec import Element, l, x, y, z
-from . import section_integrals as moments
+from . import section_integrals as integrals
 
 DIRECTIONS = "xyz"
 
@@ -33,12 +33,12 @@ class Gram:
         ring_basis, names = [], []
         for monomial in element.basis:
             a, b, c = sp.Poly(monomial, x, y, z).monoms()[0]
-            section = moments.Y**b * moments.Z**c
+            section = integrals.Y**b * integrals.Z**c
             if b == c == 0 and a > 0:  # the axis: psi' = P_{a-1}, so that r_x is a Legendre series
-                psi = _antiderivative(moments.legendre(a - 1))
+                psi = _antiderivative(integrals.legendre(a - 1))
                 names.append(f"t{a - 1}")
             else:
-                psi = section * moments.legendre(a)
+                psi = section * integrals.legendre(a)
                 names.append("y" * b + "z" * c + str(a))
             ring_basis.append(psi)
         self.psi = ring_basis[1:]
@@ -60,7 +60,7 @@ class Gram:
     @cached_property
     def gradient(self) -> list[list]:
         """F = sum_m c_m (x) gradient[m]: derivatives of psi_m by x, y, z in the ring."""
-        by = [moments.d_dx, lambda p: p.diff(moments.Y), lambda p: p.diff(moments.Z)]
+        by = [integrals.d_dx, lambda p: p.diff(integrals.Y), lambda p: p.diff(integrals.Z)]
         return [[by[i](p) for i in range(self.element.dim)] for p in self.psi]
 
     @cached_property
@@ -125,10 +125,10 @@ class Gram:
 
 def _antiderivative(p):
     """Integral from the element's start of a polynomial in X, times dx/dX = l/2."""
-    integral = sum((moments.RING(c / (k[0] + 1)) * moments.X ** (k[0] + 1) for k, c in p.terms()),
-                   moments.RING(0))
-    at_start = sum((c * (-1) ** k[0] for k, c in integral.terms()), moments.RING(0))
-    return (integral - at_start) * moments.L / 2
+    integral = sum((integrals.RING(c / (k[0] + 1)) * integrals.X ** (k[0] + 1) for k, c in p.terms()),
+                   integrals.RING(0))
+    at_start = sum((c * (-1) ** k[0] for k, c in integral.terms()), integrals.RING(0))
+    return (integral - at_start) * integrals.L / 2
 
 
 def _to_sympy(p) -> sp.Expr:

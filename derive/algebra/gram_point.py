@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import sympy as sp
 
-from . import section_integrals as moments
+from . import section_integrals as integrals
 from .gram import Gram
 
 Expansion = dict[tuple[int, int], np.ndarray]
@@ -26,7 +26,7 @@ def axis(gram: Gram, c: np.ndarray, X: sp.Expr, w: sp.Expr, order: int) -> np.nd
     """Derivative of the centreline by x, `order` times."""
     polynomials = [columns[0] for columns in gram.gradient]
     for _ in range(order - 1):
-        polynomials = [moments.d_dx(p) for p in polynomials]
+        polynomials = [integrals.d_dx(p) for p in polynomials]
     zero = np.full(gram.element.dim, sp.S.Zero)
     return expansion(polynomials, c, X, w).get((0, 0), zero)
 

@@ -5,21 +5,20 @@ A body (bodies/) gives its configuration and the derivations along its velocitie
 
 from __future__ import annotations
 
-from types import ModuleType
-
 import numpy as np
 
 from ..algebra.tangent_frame import cross
 from ..codegen.program import DirectionalDerivative, Program
+from .body import Body
 
 
-def build(body: ModuleType) -> list[Program]:
+def build(body: Body) -> list[Program]:
     """Every kernel of a body."""
     return [point(body), point_force(body), frame(body), inertia_force(body), inertia_tangent(body),
             kinetic_energy(body), discrete_point(body)]
 
 
-def _position(p: Program, body: ModuleType, b: np.ndarray, u: np.ndarray):
+def _position(p: Program, body: Body, b: np.ndarray, u: np.ndarray):
     """Stage: p, with the axes and the derivations by translation and rotation."""
     p.stage("position")
     A = body.axes(p, b)
@@ -35,7 +34,7 @@ def _jacobian(p: Program, at: np.ndarray, by: list[DirectionalDerivative]) -> np
     return p_q
 
 
-def point(body: ModuleType) -> Program:
+def point(body: Body) -> Program:
     """R + A u, along the motion."""
     p = Program(f"{body.NAME}_point", "position, Jacobian, velocity and acceleration bias of a point", body.SOURCE)
     b, u, w = body.configuration(p), body.attachment(p), body.velocity(p)
@@ -48,7 +47,7 @@ def point(body: ModuleType) -> Program:
     return p
 
 
-def point_force(body: ModuleType) -> Program:
+def point_force(body: Body) -> Program:
     """p_q' f and its derivative."""
     p = Program(f"{body.NAME}_point_force", "position and Jacobian of a point, derivative of the force p_q' f",
                 body.SOURCE)
@@ -63,7 +62,7 @@ def point_force(body: ModuleType) -> Program:
     return p
 
 
-def frame(body: ModuleType) -> Program:
+def frame(body: Body) -> Program:
     """The body's axes, and what a moment on them does."""
     p = Program(f"{body.NAME}_frame", "axes, their turn, and the derivative of a moment on them", body.SOURCE)
     b = body.configuration(p)
@@ -84,7 +83,7 @@ def frame(body: ModuleType) -> Program:
 class Step:
     """Input b_next and stages: the turn theta of a body over a step, and axes half-way."""
 
-    def __init__(self, p: Program, body: ModuleType, b: np.ndarray):
+    def __init__(self, p: Program, body: Body, b: np.ndarray):
         self.b_next = p.input("b_next", body.N_CONFIGURATION, "m, 1", "b at the end of the step")
         p.stage("attitudes at both ends of the step")
         self.ends = [body.axes(p, b), body.axes(p, self.b_next)]
@@ -97,7 +96,7 @@ class Step:
         return np.concatenate([np.eye(len(arm), dtype=int), turns], axis=1)
 
 
-def discrete_point(body: ModuleType) -> Program:
+def discrete_point(body: Body) -> Program:
     """P."""
     p = Program(f"{body.NAME}_discrete_point", "Jacobian of a point over a step psi: p_next - p = P psi",
                 f"{body.SOURCE}; Simo & Wong, Int. J. Numer. Meth. Eng. 31 (1991) 19-52")
@@ -110,25 +109,25 @@ def discrete_point(body: ModuleType) -> Program:
     return p
 
 
-def _inertia(p: Program, body: ModuleType):
+def _inertia(p: Program, body: Body):
     mass = p.input("mass", (), "kg", "mass")
     J = p.input("J", (3, 3), "kg m^2", "inertia about the mass centre in body axes, symmetric")
     return mass, body.turning_inertia(J)
 
 
-def _mass_matrix(body: ModuleType, mass, J: np.ndarray) -> np.ndarray:
+def _mass_matrix(body: Body, mass, J: np.ndarray) -> np.ndarray:
     M = np.zeros((body.N_VELOCITY, body.N_VELOCITY), dtype=object)
     M[: body.DIM, : body.DIM], M[body.DIM :, body.DIM :] = mass * np.eye(body.DIM, dtype=int), J
     return M
 
 
-def _gyroscopic(p: Program, body: ModuleType, J: np.ndarray, w: np.ndarray) -> np.ndarray:
+def _gyroscopic(p: Program, body: Body, J: np.ndarray, w: np.ndarray) -> np.ndarray:
     """Stage: the inertia force at zero accelerations."""
     p.stage("gyroscopic moment")
     return np.concatenate([np.zeros(body.DIM, dtype=int), body.gyroscopic_moment(p, J, w[body.DIM :])])
 
 
-def inertia_force(body: ModuleType) -> Program:
+def inertia_force(body: Body) -> Program:
     """M w' and the gyroscopic moment."""
     p = Program(f"{body.NAME}_inertia_force", "m R'' and J omega' + omega x J omega", "M q'' of eq 12")
     mass, J = _inertia(p, body)
@@ -138,7 +137,7 @@ def inertia_force(body: ModuleType) -> Program:
     return p
 
 
-def inertia_tangent(body: ModuleType) -> Program:
+def inertia_tangent(body: Body) -> Program:
     """M, and what the gyroscopic moment adds."""
     p = Program(f"{body.NAME}_inertia_tangent", "mass matrix and derivative of the inertia force by velocity",
                 "derivative of M q''")
@@ -152,7 +151,7 @@ def inertia_tangent(body: ModuleType) -> Program:
     return p
 
 
-def kinetic_energy(body: ModuleType) -> Program:
+def kinetic_energy(body: Body) -> Program:
     """Of translation and rotation."""
     p = Program(f"{body.NAME}_kinetic_energy", "kinetic energy", "eq 3 for a rigid body")
     mass, J = _inertia(p, body)

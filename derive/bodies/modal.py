@@ -18,15 +18,15 @@ s = int rho phi and Y, Y1, Y2 = int rho phi u^T, phi u'^T, phi u''^T.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from types import ModuleType
 
 import numpy as np
 
 from ..algebra.tangent_frame import cross
 from ..codegen.program import DirectionalDerivative, Program
 from . import planar_rigid, rigid
+from .body import Body
 
-FRAMES = {"modal": rigid, "planar_modal": planar_rigid}
+FRAMES: dict[str, Body] = {"modal": rigid, "planar_modal": planar_rigid}
 SOURCE = "paper eq 12; Shabana, Dynamics of Multibody Systems, 2013, ch. 5"
 
 
@@ -98,7 +98,7 @@ class ModeMoments:
 class Motion:
     """Inputs b, w, a, g; stages: the axes, a0, omega~ and W."""
 
-    def __init__(self, p: Program, frame: ModuleType):
+    def __init__(self, p: Program, frame: Body):
         dim = frame.DIM
         self.program, self.frame = p, frame
         self.b, self.w = frame.configuration(p), frame.velocity(p)

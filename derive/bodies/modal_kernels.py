@@ -6,11 +6,10 @@ kernels of a mode for each, those of a pair for each pair.
 
 from __future__ import annotations
 
-from types import ModuleType
-
 import numpy as np
 
 from ..codegen.program import DirectionalDerivative, Program
+from .body import Body
 from .modal import (
     SOURCE,
     ModeMoments,
@@ -25,14 +24,15 @@ from .modal import (
 )
 
 
-def build(name: str, frame: ModuleType) -> list[Program]:
+def build(name: str, frame: Body) -> list[Program]:
     """Every kernel of a modal body on a frame."""
     return [make(name, frame) for make in (
         inertia_force, mass_matrix, inertia_tangent, mode_force_, mode_mass, mode_tangent, pair_tangent,
-        kinetic_energy, potential_energy, anchor, anchor_mode, anchor_force, anchor_mode_force, anchor_pair_force)]
+        kinetic_energy, potential_energy, attachment, attachment_mode, attachment_force, attachment_mode_force,
+        attachment_pair_force)]
 
 
-def inertia_force(name: str, frame: ModuleType) -> Program:
+def inertia_force(name: str, frame: Body) -> Program:
     """The frame's rows."""
     p = Program(f"{name}_inertia_force", "inertia and weight of a modal body: force, moment about its origin",
                 SOURCE)
@@ -42,7 +42,7 @@ def inertia_force(name: str, frame: ModuleType) -> Program:
     return p
 
 
-def mass_matrix(name: str, frame: ModuleType) -> Program:
+def mass_matrix(name: str, frame: Body) -> Program:
     """M_rr, undeformed or not."""
     p = Program(f"{name}_mass_matrix", "M_rr: the frame's part of the mass matrix", "paper eq 12")
     dim = frame.DIM
@@ -58,7 +58,7 @@ def mass_matrix(name: str, frame: ModuleType) -> Program:
     return p
 
 
-def inertia_tangent(name: str, frame: ModuleType) -> Program:
+def inertia_tangent(name: str, frame: Body) -> Program:
     """Their derivatives by the frame."""
     p = Program(f"{name}_inertia_tangent", "derivatives of inertia_force by the frame's motion", SOURCE)
     motion = Motion(p, frame)
@@ -69,7 +69,7 @@ def inertia_tangent(name: str, frame: ModuleType) -> Program:
     return p
 
 
-def mode_force_(name: str, frame: ModuleType) -> Program:
+def mode_force_(name: str, frame: Body) -> Program:
     """The row of a mode."""
     p = Program(f"{name}_mode_force", "inertia and weight of a mode", SOURCE)
     motion = Motion(p, frame)
@@ -78,7 +78,7 @@ def mode_force_(name: str, frame: ModuleType) -> Program:
     return p
 
 
-def mode_mass(name: str, frame: ModuleType) -> Program:
+def mode_mass(name: str, frame: Body) -> Program:
     """A column of M_rf."""
     p = Program(f"{name}_mode_mass", "column of a mode in M_rf: what couples its acceleration with the frame's",
                 "paper eq 12")
@@ -90,7 +90,7 @@ def mode_mass(name: str, frame: ModuleType) -> Program:
     return p
 
 
-def mode_tangent(name: str, frame: ModuleType) -> Program:
+def mode_tangent(name: str, frame: Body) -> Program:
     """What couples a mode with the frame."""
     p = Program(f"{name}_mode_tangent", "derivatives of a mode's force by the frame's motion, and the other way round",
                 SOURCE)
@@ -105,7 +105,7 @@ def mode_tangent(name: str, frame: ModuleType) -> Program:
     return p
 
 
-def pair_tangent(name: str, frame: ModuleType) -> Program:
+def pair_tangent(name: str, frame: Body) -> Program:
     """What couples modes."""
     p = Program(f"{name}_pair_tangent", "derivatives of mode k's force by the motion of mode l", SOURCE)
     motion = Motion(p, frame)
@@ -116,7 +116,7 @@ def pair_tangent(name: str, frame: ModuleType) -> Program:
     return p
 
 
-def kinetic_energy(name: str, frame: ModuleType) -> Program:
+def kinetic_energy(name: str, frame: Body) -> Program:
     """int rho v.v/2, v = A'R' + omega~ u + u'."""
     p = Program(f"{name}_kinetic_energy", "kinetic energy", "eq 3 for a modal body")
     dim = frame.DIM
@@ -134,7 +134,7 @@ def kinetic_energy(name: str, frame: ModuleType) -> Program:
     return p
 
 
-def potential_energy(name: str, frame: ModuleType) -> Program:
+def potential_energy(name: str, frame: Body) -> Program:
     """- g . int rho p."""
     p = Program(f"{name}_potential_energy", "potential energy of gravity", SOURCE)
     dim = frame.DIM
@@ -154,7 +154,7 @@ class Point:
     orthonormal without a root or a limit: C = 1 + (theta~ + theta~ theta~/2)/(1 + theta^2/4).
     """
 
-    def __init__(self, p: Program, frame: ModuleType):
+    def __init__(self, p: Program, frame: Body):
         dim = frame.DIM
         self.program, self.frame, self.turns = p, frame, frame.N_VELOCITY - dim
         self.b = frame.configuration(p)
@@ -212,9 +212,9 @@ class Point:
         return DirectionalDerivative(self.program, "d_eta", along).array(values)
 
 
-def anchor(name: str, frame: ModuleType) -> Program:
+def attachment(name: str, frame: Body) -> Program:
     """p, axes; P, T by the frame; velocities and biases."""
-    p = Program(f"{name}_anchor", "a point and its axes: dp = P dq, d(axes) = (T dq)~ axes, with rates", SOURCE)
+    p = Program(f"{name}_attachment", "a point and its axes: dp = P dq, d(axes) = (T dq)~ axes, with rates", SOURCE)
     point = Point(p, frame)
     w = frame.velocity(p)
     u1 = p.input("u1", frame.DIM, "m/s", "rate of u")
@@ -238,9 +238,9 @@ def anchor(name: str, frame: ModuleType) -> Program:
     return p
 
 
-def anchor_mode(name: str, frame: ModuleType) -> Program:
+def attachment_mode(name: str, frame: Body) -> Program:
     """Columns of P and T."""
-    p = Program(f"{name}_anchor_mode", "columns of a mode in P and T", SOURCE)
+    p = Program(f"{name}_attachment_mode", "columns of a mode in P and T", SOURCE)
     point = Point(p, frame)
     phi, psi = point.mode()
     p.output("P", point.A.dot(phi), "1", "dp by eta")
@@ -248,9 +248,9 @@ def anchor_mode(name: str, frame: ModuleType) -> Program:
     return p
 
 
-def anchor_force(name: str, frame: ModuleType) -> Program:
+def attachment_force(name: str, frame: Body) -> Program:
     """K of the frame."""
-    p = Program(f"{name}_anchor_force", "derivatives of the frame's rows of P' f + T' m by the frame", SOURCE)
+    p = Program(f"{name}_attachment_force", "derivatives of the frame's rows of P' f + T' m by the frame", SOURCE)
     point = Point(p, frame)
     force = point.frame_force(*point.loads())
     p.stage("derivatives")
@@ -258,10 +258,10 @@ def anchor_force(name: str, frame: ModuleType) -> Program:
     return p
 
 
-def anchor_mode_force(name: str, frame: ModuleType) -> Program:
+def attachment_mode_force(name: str, frame: Body) -> Program:
     """K between frame and mode."""
-    p = Program(f"{name}_anchor_mode_force", "derivatives of P' f + T' m: the mode's row by the frame, and the reverse",
-                SOURCE)
+    p = Program(f"{name}_attachment_mode_force",
+                "derivatives of P' f + T' m: the mode's row by the frame, and the reverse", SOURCE)
     point = Point(p, frame)
     phi, psi = point.mode()
     f, m = point.loads()
@@ -272,9 +272,9 @@ def anchor_mode_force(name: str, frame: ModuleType) -> Program:
     return p
 
 
-def anchor_pair_force(name: str, frame: ModuleType) -> Program:
+def attachment_pair_force(name: str, frame: Body) -> Program:
     """K between modes."""
-    p = Program(f"{name}_anchor_pair_force", "derivative of mode k's row of P' f + T' m by eta of mode l", SOURCE)
+    p = Program(f"{name}_attachment_pair_force", "derivative of mode k's row of P' f + T' m by eta of mode l", SOURCE)
     point = Point(p, frame)
     phi, psi = point.mode()
     phi_l, psi_l = point.mode("_l")

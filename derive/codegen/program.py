@@ -89,7 +89,7 @@ class Program:
         self.definition[symbol] = expr if derivative_of is None else derivative_of
         return symbol
 
-    def once(self, name: str, expr: sp.Expr) -> sp.Expr:
+    def define_once(self, name: str, expr: sp.Expr) -> sp.Expr:
         """Give an expression a name, the first time; later the same name."""
         symbol = sp.Symbol(name)
         return symbol if self.definition.get(symbol) == expr else self.define(name, expr)

@@ -16,7 +16,7 @@ from ..codegen.program import DirectionalDerivative, Program
 from .frame import TURNS, spun
 
 
-class Pair:
+class TwoFrames:
     """Inputs of a kernel: the gap, the axes of both frames, and what drives the joint."""
 
     def __init__(self, program: Program, dim: int):
@@ -40,7 +40,7 @@ class Pair:
                 for k, unit in enumerate(np.eye(n, dtype=int))]
 
 
-def _meet(p: Pair) -> list[sp.Expr]:
+def _meet(p: TwoFrames) -> list[sp.Expr]:
     return [*p.gap]
 
 
@@ -59,13 +59,13 @@ def _moved(axis: str) -> Callable:
     return lambda p: [p.gap.dot(p.A1[:, "xyz".index(axis)]) - p.c[0]]
 
 
-def _turned(p: Pair) -> list[sp.Expr]:
+def _turned(p: TwoFrames) -> list[sp.Expr]:
     """Sine of the second frame's angle, from x of the first towards y, less c: one solution within half a turn."""
     x = p.A2[:, 0]
     return [p.A1[:, 1].dot(x) * p.c[1] - p.A1[:, 0].dot(x) * p.c[2]]
 
 
-def _distant(p: Pair) -> list[sp.Expr]:
+def _distant(p: TwoFrames) -> list[sp.Expr]:
     return [p.program.define("distance", sp.sqrt(p.gap.dot(p.gap))) - p.c[0]]
 
 
@@ -95,13 +95,13 @@ JOINTS = {3: {"spherical": [_meet],
 
 def rows(dim: int, name: str) -> int:
     """Number of equations."""
-    return len(_equations(Pair(Program(name, "", ""), dim), name))
+    return len(_equations(TwoFrames(Program(name, "", ""), dim), name))
 
 
-def _equations(pair: Pair, name: str) -> np.ndarray:
-    pair.program.stage("equations of the joint")
-    every = [e for equations in JOINTS[pair.dim][name] for e in equations(pair)]
-    return np.array([pair.program.define(f"phi_{k}", e) for k, e in enumerate(every)])
+def _equations(frames: TwoFrames, name: str) -> np.ndarray:
+    frames.program.stage("equations of the joint")
+    every = [e for equations in JOINTS[frames.dim][name] for e in equations(frames)]
+    return np.array([frames.program.define(f"phi_{k}", e) for k, e in enumerate(every)])
 
 
 def build(dim: int, name: str) -> list[Program]:
@@ -112,10 +112,10 @@ def build(dim: int, name: str) -> list[Program]:
 def force(dim: int, name: str) -> Program:
     """phi, its Jacobian J, and the derivative of J' f."""
     p = Program(f"joint_{name}_force", "equations, their derivatives, and those of the force J' f", "eq 19, 28")
-    pair = Pair(p, dim)
-    phi = _equations(pair, name)
+    frames = TwoFrames(p, dim)
+    phi = _equations(frames, name)
     f = p.input("f", len(phi), "N, N m", "multipliers, held fixed")
-    by = pair.moves()
+    by = frames.moves()
     p.stage("derivatives")
     J = np.stack([d.array(phi) for d in by], axis=1)
     p.stage("force")
@@ -130,17 +130,17 @@ def force(dim: int, name: str) -> Program:
 def motion(dim: int, name: str) -> Program:
     """What stays of phi' and phi'' at rest and without accelerations."""
     p = Program(f"joint_{name}_motion", "derivatives of the equations in time", "eq 33")
-    pair = Pair(p, dim)
-    phi = _equations(pair, name)
+    frames = TwoFrames(p, dim)
+    phi = _equations(frames, name)
     gap_rate = p.input("gap_rate", dim, "m/s", "rate of the gap")
-    turns = [p.input(f"omega{k}", pair.turns, "rad/s", f"angular velocity of frame {k}, global axes") for k in (1, 2)]
+    turns = [p.input(f"omega{k}", frames.turns, "rad/s", f"angular velocity of frame {k}, global axes") for k in (1, 2)]
     c_rate = p.input("c_rate", 2, "m/s or rad/s, and per s", "rate of c and its rate")
-    c, rest = pair.c, np.zeros(dim, dtype=int)
+    c, rest = frames.c, np.zeros(dim, dtype=int)
     driving = dict(zip(c, c_rate[0] * np.array([1, -c[2], c[1]]), strict=True)) | {c_rate[0]: c_rate[1]}
     p.stage("derivatives in time")
-    still = np.zeros(pair.turns, dtype=int)
-    driven = pair.along("dc", rest, still, still, driving)
-    moved = pair.along("dt", gap_rate, *turns, driving)
+    still = np.zeros(frames.turns, dtype=int)
+    driven = frames.along("dc", rest, still, still, driving)
+    moved = frames.along("dt", gap_rate, *turns, driving)
     p.output("phi_t", driven.array(phi), "m/s, 1/s", "rate at rest: what drives the joint")
     p.output("Q_d", moved.array(moved.array(phi)), "m/s^2, 1/s^2", "second rate at zero accelerations")
     return p

@@ -8,7 +8,6 @@ Cable and rider are both planar, with C = (C_l, C_m), or both spatial.
 from __future__ import annotations
 
 from functools import partial
-from types import ModuleType
 
 import numpy as np
 
@@ -16,7 +15,7 @@ from ..algebra.axis import Axis
 from ..algebra.discrete_gradient import STATES, DiscreteGradient
 from ..algebra.tangent_frame import cross, tangent_frame
 from ..bodies import kernels as body_kernels
-from ..bodies.point import Point
+from ..bodies.body import Rider
 from ..codegen.program import DirectionalDerivative, Program, jacobian
 from ..spec import Element
 
@@ -27,7 +26,7 @@ _C_DOC = "constraint in the tangent frame: C_l, then C_m across the cable"
 class Slide:
     """Symbols that every kernel of the joint starts from: inputs, derivations and r_p = r - p (eq 19)."""
 
-    def __init__(self, program: Program, element: Element, rider: ModuleType | Point):
+    def __init__(self, program: Program, element: Element, rider: Rider):
         self.program, self.element, self.rider = program, element, rider
         self.entries = ENTRIES[element.dim]
         self.axis = Axis(program, element)
@@ -90,13 +89,13 @@ class Slide:
         return self.C_cut.dot(derivation.array(np.array(self.cut, dtype=object)))
 
 
-def build(element: Element, rider: ModuleType | Point) -> list[Program]:
+def build(element: Element, rider: Rider) -> list[Program]:
     """The kernels of the slide of a rider on a cable of this element."""
     name = f"slide_{element.name}_{rider.NAME}"
     return [kernel(name, element, rider) for kernel in (_constraint, _terms, _residual, _tangent, _discrete_gradient)]
 
 
-def _constraint(name: str, element: Element, rider: ModuleType | Point) -> Program:
+def _constraint(name: str, element: Element, rider: Rider) -> Program:
     p = Program(f"{name}_constraint", "C, C_s and the Newton step for s", "eq 19-22")
     slide = Slide(p, element, rider)
     C = slide.constraint()
@@ -109,7 +108,7 @@ def _constraint(name: str, element: Element, rider: ModuleType | Point) -> Progr
     return p
 
 
-def _terms(name: str, element: Element, rider: ModuleType | Point) -> Program:
+def _terms(name: str, element: Element, rider: Rider) -> Program:
     p = Program(f"{name}_terms", "terms of the equations of motion with the slide", "eq 20-37")
     slide = Slide(p, element, rider)
     v = p.input("v", slide.e.shape, "m/s, 1/s", "rates of the nodal vectors")
@@ -146,7 +145,7 @@ def _terms(name: str, element: Element, rider: ModuleType | Point) -> Program:
     return p
 
 
-def _lagrangian(p: Program, element: Element, rider: ModuleType | Point):
+def _lagrangian(p: Program, element: Element, rider: Rider):
     """phi = r_p, its Jacobian by (e, rider, s), and the gradient of f . phi.
 
     The integrator carries s and the whole force f on the joint as unknowns instead of C_M and its multipliers:
@@ -162,7 +161,7 @@ def _lagrangian(p: Program, element: Element, rider: ModuleType | Point):
     return slide, J, g
 
 
-def _residual(name: str, element: Element, rider: ModuleType | Point) -> Program:
+def _residual(name: str, element: Element, rider: Rider) -> Program:
     p = Program(f"{name}_residual", "phi and the gradient of f . phi by (e, rider, s)", "eq 19, 28-30")
     slide, _, g = _lagrangian(p, element, rider)
     p.output("phi", slide.r_p, "m", "r(s) - p")
@@ -170,7 +169,7 @@ def _residual(name: str, element: Element, rider: ModuleType | Point) -> Program
     return p
 
 
-def _tangent(name: str, element: Element, rider: ModuleType | Point) -> Program:
+def _tangent(name: str, element: Element, rider: Rider) -> Program:
     p = Program(f"{name}_tangent", "derivatives of phi and of the gradient of f . phi", "eq 19, 28-30")
     slide, J, g = _lagrangian(p, element, rider)
     p.stage("derivative of the gradient")
@@ -180,7 +179,7 @@ def _tangent(name: str, element: Element, rider: ModuleType | Point) -> Program:
     return p
 
 
-def _discrete_gradient(name: str, element: Element, rider: ModuleType | Point) -> Program:
+def _discrete_gradient(name: str, element: Element, rider: Rider) -> Program:
     """G (de, psi, ds) = phi_next - phi - theta x (phi_next + phi)/2, theta the rider's turn: zero on the joint.
 
     With N~ = (N(s) + N(s_next))/2 and the divided difference D = N[s, s_next] of the shape functions
@@ -200,10 +199,10 @@ def _discrete_gradient(name: str, element: Element, rider: ModuleType | Point) -
     x_next = p.input("x_next", (), "m", "x at the end of the step")
     e = p.input("e", (element.n_vectors, element.dim), "m, 1", "nodal vectors (eq 1)")
     e_next = p.input("e_next", e.shape, "m, 1", "nodal vectors at the end of the step")
-    secant = DiscreteGradient(p, law, {axis.length: (length, length), axis.x: (x, x_next)})
+    discrete = DiscreteGradient(p, law, {axis.length: (length, length), axis.x: (x, x_next)})
     p.stage("mean shape functions, and their divided differences")
-    mean = np.array([p.define(f"mean_N_{node}", secant.mean(n)) for node, n in zip(element.names, N, strict=True)])
-    slope = np.array([p.define(f"D_N_{node}", *secant.gradient(n, [axis.x]))
+    mean = np.array([p.define(f"mean_N_{node}", discrete.mean(n)) for node, n in zip(element.names, N, strict=True)])
+    slope = np.array([p.define(f"D_N_{node}", *discrete.gradient(n, [axis.x]))
                       for node, n in zip(element.names, N, strict=True)])
     b = rider.configuration(p)
     step = body_kernels.Step(p, rider, b)

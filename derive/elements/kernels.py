@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import sympy as sp
 
-from ..algebra import section_integrals as moments
+from ..algebra import section_integrals as integrals
 from ..codegen.program import Program
 from ..spec import Element, l, x, y, z
 from . import load_kernels
@@ -15,15 +15,15 @@ def _ring(expr: sp.Expr):
     """A polynomial in x, y, z, 1/l of the spec, in the ring of `moments`."""
     w = sp.Symbol("w", positive=True)
     poly = sp.Poly(sp.expand(expr.subs(l, 1 / w)), x, y, z, w, 1 / w)
-    xi = moments.L * (1 + moments.X) / 2
-    return sum((moments.RING(c) * xi**a * moments.Y**b * moments.Z**d * moments.W**n * moments.L**m
-                for (a, b, d, n, m), c in poly.terms()), moments.RING(0))
+    xi = integrals.L * (1 + integrals.X) / 2
+    return sum((integrals.RING(c) * xi**a * integrals.Y**b * integrals.Z**d * integrals.W**n * integrals.L**m
+                for (a, b, d, n, m), c in poly.terms()), integrals.RING(0))
 
 
 def _integral(p, length, section) -> sp.Expr:
     """Integral of a ring polynomial over the element, in kernel symbols."""
     return sum((sp.Rational(int(c.numerator), int(c.denominator)) * length**power * section[m]
-                for (m, power), c in sorted(moments.over_element(p).items())), sp.S.Zero)
+                for (m, power), c in sorted(integrals.over_element(p).items())), sp.S.Zero)
 
 
 def build(element: Element) -> list[Program]:
@@ -42,7 +42,7 @@ def _length(program: Program) -> sp.Symbol:
 
 
 def _section(program: Program) -> np.ndarray:
-    return program.input("section", len(moments.SECTION), moments.SECTION_UNITS, moments.SECTION_DOC)
+    return program.input("section", len(integrals.SECTION), integrals.SECTION_UNITS, integrals.SECTION_DOC)
 
 
 def _coordinates(program: Program, element: Element, name="e", unit="m, 1", doc="nodal vectors (eq 1)"):
@@ -82,7 +82,7 @@ def inertia_force(element: Element, shape) -> Program:
     n = element.n_vectors
     m = p.input("m", (n, n), "kg, kg m, kg m^2", f"mass matrix from {element.name}_mass")
     a = _coordinates(p, element, "a", "m/s^2, 1/s^2", "accelerations of the nodal vectors")
-    filled = [[bool(moments.over_element(shape[j] * shape[k])) for k in range(n)] for j in range(n)]
+    filled = [[bool(integrals.over_element(shape[j] * shape[k])) for k in range(n)] for j in range(n)]
     p.output("f", [sum(m[j, k] * a[k] for k in range(n) if filled[j][k]) for j in range(n)], "N, N m", "M a")
     return p
 

@@ -15,7 +15,7 @@ from ..algebra.gram_tangent import nodal_tangent
 from ..algebra.tangent_frame import spatial, tangent_frame, unit
 from ..codegen.program import Program
 from ..spec import Element
-from . import LAWS, law_class, law_name, stress_free
+from . import LAWS, law_class, law_name, law_traits, stress_free
 
 DAMPING = ("damping_force", "damping_tangent", "dissipation")
 DISCRETE = ("discrete_force", "step_stiffness")
@@ -23,15 +23,16 @@ ALGORITHMIC = ("algorithmic_force",)
 RETARDATION = ("tau", (), "s", "retardation time of the Kelvin-Voigt law")
 
 
-def lacks(law: str | type) -> tuple[str, ...]:
-    """Kernels that a law does not give: a discrete gradient of its energy, a measure of strain for a step."""
+def missing(law: str | type) -> tuple[str, ...]:
+    """Return the kernels that a law does not give: a discrete gradient of its energy, a measure of strain for a step.
+    """
     return tuple(kernel for kernels, method in ((DISCRETE, "discrete_forces"), (ALGORITHMIC, "algorithmic_forces"))
                  for kernel in kernels if not hasattr(_class(law), method))
 
 
 def facts(element: Element, law: str | type) -> dict[str, int]:
-    """What the engine needs to know of a law's rates of strain."""
-    return {"rates": 0, "spins": 0} if lacks(law) else _class(law).rates(element)
+    """Return what the engine needs to know of a law's rates of strain: how many, and whether a spin is one."""
+    return {"rates": 0, "spins": 0} if missing(law) else _class(law).rates(element)
 
 
 def _class(law: str | type) -> type | None:
@@ -41,8 +42,8 @@ def _class(law: str | type) -> type | None:
 
 def build(element: Element, law: str | type, damping: bool = True) -> list[Program]:
     """Every kernel of a law on an element; those of damping where it does not take another law's."""
-    missing = lacks(law)
-    discrete, damped = ([kernel for kernel in kernels if kernel not in missing]
+    left_out = missing(law)
+    discrete, damped = ([kernel for kernel in kernels if kernel not in left_out]
                         for kernels in (DISCRETE, (*DAMPING, *ALGORITHMIC) if damping else ()))
     kernels = Kernels(element, law)
     return [kernels.set_up(), kernels.energy(), kernels.elastic_force(), kernels.elastic_tangent(),
@@ -55,6 +56,7 @@ class Kernels:
     def __init__(self, element: Element, law: str | type):
         self.element, self.gram = element, Gram(element)
         self.law, self.name = law_class(law)(self.gram), f"{element.name}_{law_name(law)}"
+        self.traits = law_traits(law)
 
     def _program(self, kernel: str, doc: str, source: str) -> Program:
         return Program(f"{self.name}_{kernel}", doc, f"{source}; {self.law.source}")
@@ -164,12 +166,13 @@ class Kernels:
 
     def algorithmic_force(self) -> Program:
         """Of a step with algorithmic dissipation: of stresses that its integrator makes of changes of strain."""
-        p = self._program("algorithmic_force", "force of the stress D (weight dE - known), dE the strain that v makes",
+        p = self._program("algorithmic_force",
+                          "force of the stress D (weight dE - relaxed_strain), dE the strain that v makes",
                           "D of Q_d of eq 9")
-        w, A, weight, known, c, dc = self._rates(
+        w, A, weight, relaxed_strain, c, dc = self._rates(
             p, ("weight", (), "1", "of the strains that v makes"),
-            ("known", (self.law.rates(self.element)["rates"],), "1, 1/m", "strains, taken off"))
-        f, dE = self.law.algorithmic_forces(p, A, weight, known, c, dc, w)
+            ("relaxed_strain", (self.law.rates(self.element)["rates"],), "1, 1/m", "strains, taken off"))
+        f, dE = self.law.algorithmic_forces(p, A, weight, relaxed_strain, c, dc, w)
         p.output("f", self._nodal(p, f, w), "N, N m", "force; its power with v is that of the stress with dE")
         p.output("dE", dE, "1, 1/m", "strains: one a point and component, or over Gram pairs")
         return p
@@ -179,7 +182,7 @@ class Kernels:
         p = self._program("section_forces", "force and moment resultants of a section", "eq 6-8 at a section")
         length, x = p.input("l", (), "m", "length of the element"), p.input("x", (), "m", "arc-length from its start")
         e, S = self._coordinates(p), self.law.section_stiffness(p)
-        e0 = [stress_free.shape(p, self.element)] if self.law.curved else []
+        e0 = [stress_free.shape(p, self.element)] if self.traits.takes_shape else []
         p.stage("strain vectors")
         w = p.define("w", 1 / length)
         X = p.define("X", 2 * w * x - 1)

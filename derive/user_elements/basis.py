@@ -10,7 +10,7 @@ from itertools import pairwise
 import sympy as sp
 from funicular.errors import near
 
-from ..laws import LAWS, law_like, law_name
+from ..laws import LAWS, TRAITS, law_name, stiffness_of
 from ..spec import Element, l, x, y, z
 from .load import SpecError, taken
 
@@ -127,20 +127,20 @@ def _laws(element: Element) -> Iterator[tuple[str, str]]:
         if isinstance(law, str) and law not in LAWS:
             yield f'law "{law}" is not known', near(law, LAWS)
         if not isinstance(law, str):
-            name, like = getattr(law, "name", None), getattr(law, "like", None)
+            name, borrowed = getattr(law, "name", None), getattr(law, "stiffness_of", None)
             if not isinstance(name, str) or not re.fullmatch(r"[a-z][a-z0-9_]*", name):
                 yield f"law {law!r} must have a name of small letters, digits and _, got {name!r}", 'write name = "..."'
-            if like not in LAWS:
-                yield (f'law "{name}" must say in `like` the law of funicular whose section stiffness it takes, '
-                       f"got {like!r}", "known: " + ", ".join(LAWS))
+            if borrowed not in LAWS:
+                yield (f'law "{name}" must say in `stiffness_of` the law of funicular whose section stiffness it '
+                       f"takes, got {borrowed!r}", "known: " + ", ".join(LAWS))
     names = [law_name(law) for law in element.laws]
     if len(set(names)) < len(names) or any(n in LAWS and not isinstance(law, str)
                                            for n, law in zip(names, element.laws, strict=True)):
         yield f"a law stands twice, or has the name of one of funicular's: {', '.join(names)}", "give another name"
     across = {v for v in (y, z) if any(sp.sympify(f).has(v) for f in element.basis)}
     for law in element.laws:
-        name, like = law_name(law), law_like(law)
-        if like.startswith(("green_", "engineering_")):
+        name = law_name(law)
+        if TRAITS[stiffness_of(law)].kind == "cable":
             if across:
                 more = ", ".join(sorted(map(str, across)))
                 yield (f"law {name} knows the centreline alone, but the basis has {more}: "

@@ -13,10 +13,10 @@ from rich.console import Console
 from rich.table import Table
 
 from ..codegen import rendering as emit
-from ..codegen import timing
+from ..codegen.family import Family
 from ..laws import law_name
 from ..laws.kernels import Kernels
-from ..spec import Family
+from ..verify import timing
 from ..verify.command import examined
 from ..verify.compiled import CompilerError, compile_units, compiler
 from ..verify.report import WIDE, Report

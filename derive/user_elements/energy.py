@@ -10,11 +10,12 @@ import mpmath
 import numpy as np
 import sympy as sp
 
+from ..codegen.family import Family
 from ..codegen.program import Program
-from ..spec import Family
 from ..verify import numbers as verify_numbers
 from ..verify.exact import DIGITS
-from ..verify.states import reference, rotation, states
+from ..verify.samples import states
+from ..verify.samples.shapes import reference, rotation
 from .load import SpecError
 
 SAMPLES = ("bent element 1", "bent element 2", "the straight reference", "the straight reference, turned")

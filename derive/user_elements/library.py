@@ -13,8 +13,8 @@ from funicular.kernels.libraries import LibraryError, manifest_digest, read_mani
 
 from ..codegen import rendering as emit
 from ..codegen.drift import MANIFEST
+from ..codegen.family import Family
 from ..codegen.rendering import Derived
-from ..spec import Family
 from ..verify.compiled import compiler
 from .load import SpecError
 

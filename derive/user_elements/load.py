@@ -11,7 +11,8 @@ from pathlib import Path
 from funicular.errors import FunicularError
 
 from ..catalogue import families, of_element
-from ..spec import Element, Family
+from ..codegen.family import Family
+from ..spec import Element
 
 
 class SpecError(FunicularError):

@@ -1,9 +1,9 @@
 """`funicular verify`: every derivative in the generated C, tried by independent methods, rounding, and the invariances.
 
-The files of generated/ are compiled as they stand: a sign changed by hand shows at once. Relations are in
-verify/relations/element.py and verify/relations/slide.py, methods and their ceilings in verify/methods.py, rounding and
-its ceilings in
-verify/rounding.py; families come from the list in catalogue.py, so a new element or rider is covered by being there.
+The files of generated/ are compiled as they stand: a sign changed by hand shows at once. Relations, invariances,
+references and samples are packages with a file for each role. Methods and their ceilings are in verify/methods.py,
+rounding and its ceilings in verify/rounding.py. Families come from the list in catalogue.py, so a new element or rider
+is covered by being there.
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ import numpy as np
 from ..catalogue import families, named
 from ..codegen import rendering as emit
 from ..codegen.drift import folder
+from ..codegen.family import Family
 from ..codegen.program import Program
-from ..spec import Family
 from . import numbers as verify_numbers
 from .compiled import CompilerError, Library
 from .exact import DIGITS
-from .invariances.element import invariances
+from .invariances import invariances
 from .methods import Finding, examine
-from .relations.element import relations
+from .relations import relations
 from .report import Report
 from .rounding import Rounding, roundings
-from .states import states
+from .samples import states
 
 Item = Finding | Rounding | tuple[str, float, float]
 

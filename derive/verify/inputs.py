@@ -16,10 +16,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..spec import Element, Family
+from ..codegen.family import Family
+from ..spec import Element
 from .motion import RIDERS
 from .numbers import State
-from .states import SEEDS, director, following, on_axis, reference, rotation
+from .samples import SEEDS
+from .samples.shapes import director, on_axis, reference, rotation
+from .samples.step import following
 
 KINDS = ("ordinary", "tiny strain", "large rotation", "far origin")
 TINY, FAR = 1e-9, 1e4

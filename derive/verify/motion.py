@@ -222,3 +222,21 @@ def frame(numbers, tangent: np.ndarray, director: np.ndarray | None) -> np.ndarr
     j = director - i.dot(director) * i
     j = j / numbers.sqrt(j.dot(j))
     return np.stack([i, j, cross(i, j)], axis=1)
+
+
+def spatial(vector: np.ndarray) -> np.ndarray:
+    """In three dimensions: a rotation about z where it is one number."""
+    zero = 0 * vector[:1]
+    return {1: lambda: np.concatenate([zero, zero, vector]), 2: lambda: np.concatenate([vector, zero]),
+            3: lambda: vector}[len(vector)]()
+
+
+def turned_axes(numbers, theta: np.ndarray, A: np.ndarray) -> np.ndarray:
+    """Axes after a finite rotation about global axes."""
+    q = exponential(numbers, spatial(theta))
+    return np.stack([turned(q, spatial(column))[: len(column)] for column in A.T], axis=1)
+
+
+def swung_axes(theta: np.ndarray, A: np.ndarray) -> np.ndarray:
+    """theta~ A."""
+    return np.stack([cross(spatial(theta), spatial(column))[: len(column)] for column in A.T], axis=1)

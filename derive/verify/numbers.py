@@ -14,6 +14,7 @@ import mpmath
 import numpy as np
 
 from ..codegen.program import Program
+from .exact import ExactProgram
 
 EPS = float(np.finfo(float).eps)
 State = Mapping[str, np.ndarray]
@@ -55,8 +56,6 @@ def complex_(family: str, programs: list[Program], library) -> Numbers:
 
 def exact(family: str, programs: list[Program]) -> Numbers:
     """50 digits, from the SymPy expressions."""
-    from .exact import ExactProgram
-
     kernels = {p.name: ExactProgram(p) for p in programs}
     convert = np.vectorize(mpmath.mpf, otypes=[object])
     return Numbers(family, programs, lambda name, inputs: kernels[name](inputs), mpmath.mp, convert,

@@ -87,7 +87,7 @@ class Report:
         for finding in self._failed:
             self._detail(finding)
         for output in self.uncovered:
-            self.out.print(f"{output}: no relation verifies this output; add one in verify/relations/element.py")
+            self.out.print(f"{output}: no relation verifies this output; add one in verify/relations")
         for r in self._rounded:
             self.out.print(f"{r.kernel}: {r.place} loses digits on input of the kind {r.kind}: {r.computed:.16g} is "
                            f"off by {r.error:.2g}, {r.entry:.2g} times what rounded inputs allow, may be {ENTRY:.0f}; "

@@ -22,8 +22,8 @@ from dataclasses import dataclass
 import mpmath
 import numpy as np
 
+from ..codegen.family import Family
 from ..codegen.program import Program
-from ..spec import Family
 from .inputs import Input, inputs
 from .numbers import EPS, Numbers, State
 

@@ -26,14 +26,20 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import sympy as sp
 
-from ...algebra import section_integrals as moments
+from ...algebra import section_integrals as integrals
 from ...algebra.gram import Gram
 from ...codegen.program import Program
+from ...spec import LawTraits
 from .blocks import named_blocks
 from .cable import Cable, Point, Term
 from .points import gathered
 
 STIFFNESS_DOC = "axial and bending stiffness EA, EI, and EA of the strain's upper modes"
+
+
+def traits(strain: str, curvature: str) -> LawTraits:
+    """Return what the law with these measures is; it is damped like the full law with the same strain."""
+    return LawTraits("cable", strain, curvature, membrane="assumed", damped_like=f"{strain}_exact")
 
 
 class AssumedCable(Cable):
@@ -99,7 +105,8 @@ class AssumedCable(Cable):
 
     def _stiffnesses(self, program: Program, A, w) -> list[sp.Expr]:
         """EA_m l/2."""
-        full, upper = (program.once(name, value / (2 * w)) for name, value in (("EA_l", A[0]), ("EA_up_l", A[2])))
+        full, upper = (program.define_once(name, value / (2 * w))
+                       for name, value in (("EA_l", A[0]), ("EA_up_l", A[2])))
         return [full if m < self.n_full else upper for m in range(self.degree)]
 
     def _modes(self, program: Program, points: Sequence[Point], strains: Sequence[sp.Expr]) -> list[sp.Expr]:
@@ -135,7 +142,7 @@ class AssumedCable(Cable):
 
     def _product(self, m: int, i: int, k: int) -> sp.Rational:
         """(2m + 1)/2 ∫ P_m P_i P_k dX."""
-        integrand = moments.legendre(m) * moments.legendre(i) * moments.legendre(k)
+        integrand = integrals.legendre(m) * integrals.legendre(i) * integrals.legendre(k)
         total = sum((c * 2 / (powers[0] + 1) for powers, c in integrand.terms() if powers[0] % 2 == 0), sp.QQ(0))
         return sp.Rational(2 * m + 1, 2) * sp.Rational(int(total.numerator), int(total.denominator))
 

@@ -16,16 +16,17 @@ from itertools import groupby
 import numpy as np
 import sympy as sp
 
-from ...algebra import section_integrals as moments
+from ...algebra import section_integrals as integrals
 from ...algebra.discrete_gradient import DiscreteGradient, staged
 from ...algebra.gram import Gram
 from ...codegen.program import Program, jacobian
+from ...spec import LawTraits
 from .blocks import by_vectors, named_blocks, spread
 from .damping import Damping
 from .points import gathered, on_vectors, values
 from .section import resultants
 
-SOURCE = "DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)"
+SOURCE = "Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)"
 STIFFNESS_DOC = "axial and bending stiffness EA, EI"
 
 
@@ -71,10 +72,16 @@ class Term:
         return [self.stress] if self.stress.is_Symbol else []
 
 
+def traits(strain: str, curvature: str) -> LawTraits:
+    """Return what the law with these measures is. Damping knows the strain alone: laws of one strain share it."""
+    damped_like = "" if curvature == "exact" else f"{strain}_exact"
+    return LawTraits("cable", strain, curvature, membrane="full", damped_like=damped_like)
+
+
 class Cable(Damping):
     """The law over an element's strain vectors."""
 
-    source, curved, set_up_kernel = SOURCE, False, "stiffness"
+    source, set_up_kernel = SOURCE, "stiffness"
 
     def __init__(self, gram: Gram, strain: str, curvature: str):
         self.gram, self.strain, self.curvature = gram, strain, curvature
@@ -100,7 +107,7 @@ class Cable(Damping):
         """Gauss-Legendre."""
         nodes, weights = np.polynomial.legendre.leggauss(n)
         return [Point(_number(w), tuple(_number(_at(p, x)) for p in self._axis),
-                      tuple(_number(_at(p.diff(moments.X), x)) for p in self._axis))
+                      tuple(_number(_at(p.diff(integrals.X), x)) for p in self._axis))
                 for x, w in zip(nodes.tolist(), weights.tolist(), strict=True)]
 
     @property
@@ -145,8 +152,8 @@ class Cable(Damping):
         """From a - 1, without losing the digits of a small strain."""
         if self.strain == "green":
             return program.define(f"eps{tag}", a1 / 2)
-        length = program.once(f"len{tag}", sp.sqrt(1 + a1))
-        program.once(f"inv_len{tag}", 1 / length)
+        length = program.define_once(f"len{tag}", sp.sqrt(1 + a1))
+        program.define_once(f"inv_len{tag}", 1 / length)
         return program.define(f"eps{tag}", a1 / (1 + length), derivative_of=length)  # |r'| - 1
 
     def _at_points(self, program: Program, rule: str, names: str, points: list[Point], c: np.ndarray) -> list[tuple]:
@@ -187,7 +194,7 @@ class Cable(Damping):
     def _weighted(self, program: Program, points: list[Point], g: int, name: str, stiffness: sp.Expr) -> sp.Expr:
         """Weight of a point times a stiffness; points that mirror each other share it."""
         first = min(g, len(points) - 1 - g)
-        return program.once(f"{name}{len(points)}_{first}", points[first].weight * stiffness)
+        return program.define_once(f"{name}{len(points)}_{first}", points[first].weight * stiffness)
 
     def measures(self, program: Program, tag: str, a1, b, c, factor=sp.S.One) -> tuple:
         """Axial strain, factor times the squared curvature, and what leads to that from |r' x r''|^2; None where it is
@@ -233,7 +240,7 @@ class Cable(Damping):
         law, c = staged(program, now)
         terms = list(self._terms(law, A, c, w))
         inputs = zip(c.ravel(), zip(now.ravel(), then.ravel(), strict=True), strict=True)
-        secant = DiscreteGradient(program, law, dict(inputs))
+        discrete = DiscreteGradient(program, law, dict(inputs))
         f = np.zeros((len(self.gram.names), self.gram.element.dim), dtype=object)
         for names, group in groupby(terms, key=lambda term: term.names):
             group = list(group)
@@ -241,8 +248,8 @@ class Cable(Damping):
             forces = []
             for g, term in enumerate(group):
                 D = [program.define(f"D_{s.name}", d) for s, d in
-                     zip(term.invariants, secant.gradient(term.varied, term.invariants, term.constant), strict=True)]
-                means = [secant.means(f"mean{k + 1}_{names}{g}", v) for k, v in enumerate(term.vectors)]
+                     zip(term.invariants, discrete.gradient(term.varied, term.invariants, term.constant), strict=True)]
+                means = [discrete.means(f"mean{k + 1}_{names}{g}", v) for k, v in enumerate(term.vectors)]
                 forces.append(on_vectors(program, f"{names}{g}", means, D))
             f[self.axis_indices] += self._gathered(program, names, group, forces)
         return self._named(program, f)

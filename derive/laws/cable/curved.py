@@ -21,6 +21,7 @@ import numpy as np
 import sympy as sp
 
 from ...codegen.program import Program
+from ...spec import LawTraits
 from .. import stress_free
 from .cable import Cable, Term
 
@@ -45,10 +46,16 @@ class Reference:
 N_REFERENCE = 6
 
 
+def traits(strain: str, curvature: str) -> LawTraits:
+    """Return what the law with these measures is; it is damped like the law for a straight shape."""
+    straight = f"{strain}_{curvature}"
+    return LawTraits("cable", strain, curvature, "full", straight, takes_shape=True, damped_like=straight)
+
+
 class CurvedCable(Cable):
     """The law with e0; the damping is that of the straight law."""
 
-    curved, floor = True, FLOOR
+    floor = FLOOR
 
     def __init__(self, gram, strain: str, curvature: str):
         super().__init__(gram, strain, curvature)

@@ -73,13 +73,15 @@ class Damping:
         """Forces on strain vectors."""
         return self._summed(program, list(self._damping_points(program, A, tau, c, dc, w)))
 
-    def algorithmic_forces(self, program, A, weight, known, c, dc, w) -> tuple[np.ndarray, Sequence[sp.Expr]]:
-        """Forces on strain vectors of the stiffnesses times weight dE - known, and dE: the rates that dc makes."""
+    def algorithmic_forces(self, program, A, weight, relaxed_strain, c, dc, w) -> tuple[np.ndarray, Sequence[sp.Expr]]:
+        """Return the forces on strain vectors of the stiffnesses times weight dE - relaxed_strain, and dE, the rates
+        that dc makes.
+        """
         dE: list[sp.Expr] = []
 
         def strain(rates):
             dE.extend(rates)
-            return [program.define(f"excess_{s.name}", weight * s - known[k])
+            return [program.define(f"excess_{s.name}", weight * s - relaxed_strain[k])
                     for k, s in enumerate(rates, len(dE) - len(rates))]
 
         return self._summed(program, list(self._damping_points(program, A, sp.S.One, c, dc, w, strain))), dE

@@ -12,16 +12,17 @@ from functools import cached_property
 import numpy as np
 import sympy as sp
 
-from ...algebra import section_integrals as moments
+from ...algebra import section_integrals as integrals
 from ...algebra.gram import Gram
 from ...algebra.gram_tangent import blocks
 from ...codegen.program import Program
-from ...spec import Element
+from ...spec import Element, LawTraits
 from .section import Resultants
 
 NAME = "continuum"
 DOC = "St. Venant-Kirchhoff continuum, orthotropic, fully integrated"
 SOURCE = "eq 5-8"
+TRAITS = LawTraits("continuum")
 ROWS = {3: ("D11", "D22", "D33", "D12", "D13", "D23", "G12", "G13", "G23"), 2: ("D11", "D22", "D12", "G12")}
 
 
@@ -66,7 +67,7 @@ class Form:
                         continue
                     integrand = self.strain[ij][p] * self.strain[kl][q]
                     if integrand not in products:
-                        products[integrand] = moments.over_element(integrand)
+                        products[integrand] = integrals.over_element(integrand)
                     weight = sp.QQ(1, 4) if ij[0] == ij[1] else sp.QQ(1)
                     for (m, power), value in products[integrand].items():
                         entry[k, m, power] = entry.get((k, m, power), 0) + weight * value
@@ -90,7 +91,7 @@ class Form:
 class Continuum:
     """The law over an element's Gram products."""
 
-    name, doc, source, curved, set_up_kernel = NAME, DOC, SOURCE, False, "stiffness"
+    name, doc, source, set_up_kernel = NAME, DOC, SOURCE, "stiffness"
 
     def __init__(self, gram: Gram):
         self.gram, self.form = gram, Form(gram)
@@ -103,7 +104,7 @@ class Continuum:
     def section_stiffness(self, program: Program) -> np.ndarray:
         """Input S: elastic constants integrated over the section, times even powers of y and z."""
         rows = ROWS[self.gram.element.dim]
-        return program.input("S", (len(rows), len(moments.SECTION)), "N, N m^2, N m^2, N m^4, N m^4, N m^4",
+        return program.input("S", (len(rows), len(integrals.SECTION)), "N, N m^2, N m^2, N m^4, N m^4, N m^4",
                              f"section stiffness: integrals over A of {', '.join(rows)} (rows; orthotropic, axes x, y, "
                              "z) times 1, y^2, z^2, y^4, y^2 z^2, z^4 (columns)")
 
@@ -198,12 +199,15 @@ class Continuum:
         """Number of strain rates that the damping of an element has, and whether a spin about the tangent is one."""
         return {"rates": element.n_vectors * (element.n_vectors - 1) // 2, "spins": 0}
 
-    def algorithmic_forces(self, program, A, weight, known, c, dc, w) -> tuple[np.ndarray, Sequence[sp.Expr]]:
-        """Forces on strain vectors of the stiffnesses times weight dE - known, and dE: the rates that dc makes."""
+    def algorithmic_forces(self, program, A, weight, relaxed_strain, c, dc, w) -> tuple[np.ndarray, Sequence[sp.Expr]]:
+        """Return the forces on strain vectors of the stiffnesses times weight dE - relaxed_strain, and dE, the rates
+        that dc makes.
+        """
         program.stage("change of the Gram products")
         dG = self.gram.gram_rate(program, c, dc)
-        program.stage("u = A (weight dG - known)")
-        excess = [program.define(f"excess_{self.gram.pair(p)}", weight * d - known[p]) for p, d in enumerate(dG)]
+        program.stage("u = A (weight dG - relaxed_strain)")
+        excess = [program.define(f"excess_{self.gram.pair(p)}", weight * d - relaxed_strain[p])
+                  for p, d in enumerate(dG)]
         u = self._times(program, self._viscous_moduli(A), excess)
         program.stage("forces on strain vectors")
         return self.gram.vector_forces(program, c, u), dG

@@ -15,12 +15,14 @@ import sympy as sp
 from ...algebra.gram import DIRECTIONS, Gram
 from ...algebra.gram_point import by_section
 from ...codegen.program import Program
+from ...spec import LawTraits
 from .. import stress_free
 from .continuum import ROWS, Continuum, Form
 from .curved_point import Metric, at_point, columns, frame, voigt
 from .curved_section import resultants
 
 NAME = "continuum_curved"
+TRAITS = LawTraits("continuum", straight="continuum", takes_shape=True, damped_like="continuum")
 
 
 class DenseForm(Form):
@@ -43,7 +45,7 @@ class CurvedContinuum(Continuum):
     """The law with e0."""
 
     set_up_kernel = "stiffness_at"
-    name, doc, curved = NAME, "St. Venant-Kirchhoff continuum, orthotropic, its stress-free shape curved", True
+    name, doc = NAME, "St. Venant-Kirchhoff continuum, orthotropic, its stress-free shape curved"
 
     def __init__(self, gram: Gram):
         self.gram, self.straight = gram, Form(gram)

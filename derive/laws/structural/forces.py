@@ -9,7 +9,7 @@ import sympy as sp
 
 from ...algebra.tangent_frame import spatial
 from ...codegen.program import DirectionalDerivative
-from .midspan_strains import Middle
+from .midspan_strains import MidspanStrains
 from .structural import Configuration
 
 ZERO = sp.S.Zero
@@ -64,7 +64,8 @@ class Forces:
         self.configuration, self.program, self.law = configuration, configuration.program, configuration.law
         self.resultants, n = resultants, len(self.law.axes)
         self.program.stage("forces on the parts")
-        self.middle = Middle(configuration, [*resultants[n:2 * n], *resultants[3 * n:3 * n + len(self.law.spins)]])
+        curvature = slice(3 * n, 3 * n + len(self.law.spins))
+        self.midspan = MidspanStrains(configuration, [*resultants[n:2 * n], *resultants[curvature]])
         self.by_part = self._by_part()
         along = [sum((d * motion[s] for s, d in self.by_part.items()), ZERO) for motion in configuration.motions]
         self.slopes = [self.program.vector(f"f_x{tag}", along[place * n:(place + 1) * n])
@@ -82,7 +83,7 @@ class Forces:
     def _by_part(self) -> dict[sp.Symbol, sp.Expr]:
         """dV by each scalar part."""
         configuration, n = self.configuration, len(self.law.axes)
-        by_scalar, values = dict(zip(self.middle.scalars, self.middle.gradient, strict=True)), {}
+        by_scalar, values = dict(zip(self.midspan.scalars, self.midspan.gradient, strict=True)), {}
         for i in self.law.axes:
             values |= {configuration.along[node][i]: self.resultants[2 * n * node + i] for node in range(2)}
             values |= {p[i]: by_scalar[configuration.mean[i]] / 2 for p in configuration.between}

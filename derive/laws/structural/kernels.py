@@ -22,7 +22,7 @@ from .structural import Configuration, Structural
 from .tangent import Tangent
 
 
-def build(element: Element, law: str) -> list[Program]:
+def build(element: Element) -> list[Program]:
     """Every kernel of the law on an element."""
     kernels = Kernels(element)
     return [kernels.stiffness(), kernels.energy(), kernels.elastic_force(), kernels.elastic_tangent(),

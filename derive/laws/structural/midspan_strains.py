@@ -17,7 +17,7 @@ from .structural import Configuration
 ZERO = sp.S.Zero
 
 
-class Middle:
+class MidspanStrains:
     """V, the sum of resultants times strains half way, the resultants held, and its derivatives by the scalars.
 
     strains (strains, scalars) and gradient (scalars) are named expressions.

@@ -33,7 +33,7 @@ import sympy as sp
 
 from ...algebra.tangent_frame import spatial
 from ...codegen.program import Program
-from ...spec import Element, l, x, y, z
+from ...spec import Element, LawTraits, l, x, y, z
 from .. import stress_free
 from .section_frame import SectionFrame, turned
 
@@ -42,7 +42,7 @@ DOC = "beam with Reissner's strains, its section's frame from the directors, fre
 SOURCE = ("Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, "
           "J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 "
           "(1999) 1125-1147")
-
+TRAITS = LawTraits("structural", takes_shape=True)
 
 X = sp.Symbol("X")
 PLACES = (-1, 0, 1)  # X of the first node, half way, the second node

@@ -42,12 +42,12 @@ class Tangent(Forces):
         self.parts = np.full((count, count), ZERO, dtype=object)
         forces = np.array([*(f for slope in self.slopes for f in slope),
                            *(moment[k] for moment in self.moments for k in self.law.spins)])
-        hessian = self.middle.hessian()
+        hessian = self.midspan.hessian()
         for column in [*(configuration.stretch(1, i) for i in self.law.axes), *range(first, count)]:
             motion = configuration.motions[column]
             moved = self._scalars_moved[column]
             by_scalar = {v: self.program.define(f"dV_{s.name}_{column}", row.dot(moved))
-                         for v, s, row in zip(self.middle.gradient, self.middle.scalars, hessian, strict=True)}
+                         for v, s, row in zip(self.midspan.gradient, self.midspan.scalars, hessian, strict=True)}
             rate = DirectionalDerivative(self.program, f"turn{column}", self.held | motion | by_scalar)
             for row in range(column + 1):
                 self.parts[row, column] = self.program.define(f"P_{row}_{column}", rate(forces[row]))
@@ -128,7 +128,7 @@ class Tangent(Forces):
         B = np.full((self.law.n_strains, len(configuration.motions)), ZERO, dtype=object)
         for column, motion in enumerate(configuration.motions):
             values = [self.program.define(f"B_{row}_{column}", v)
-                      for row, v in enumerate(self.middle.strains.dot(self._scalars_moved[column]))]
+                      for row, v in enumerate(self.midspan.strains.dot(self._scalars_moved[column]))]
             for i in self.law.axes:
                 for node in range(2):
                     B[2 * n * node + i, column] = motion[configuration.along[node][i]]

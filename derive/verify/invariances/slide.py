@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...spec import Family
+from ...codegen.family import Family
 from ..motion import RIDERS, swung
 from ..numbers import EPS, Numbers, State
-from .element import FAR, Invariance, quantised, relative
+from .measures import FAR, Invariance, quantised, relative
 
 _OUTPUTS = ("C", "C_s", "s_rate", "Q_d", "W", "s_bias")
 

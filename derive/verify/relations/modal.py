@@ -1,57 +1,15 @@
-"""Modal bodies under verification: a handful of mass points with two modes, moved for real.
-
-The kernels see integrals over the points; the paths here sum over the points themselves, along finite motions.
-"""
+"""What the outputs of a modal body's kernels are: sums over mass points, moved along finite motions."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 
-from ...bodies.modal import axial, vector_product
-from ...spec import Family
-from ..invariances.element import FAR, Invariance, quantised, relative
+from ...bodies.modal import axial
+from ...codegen.family import Family
 from ..methods import Relation
 from ..motion import RIDERS, cross, swung
-from ..numbers import EPS, Numbers, State
-
-POINTS, MODES = 4, 2
-RATES = ("eta", "eta1", "eta2")
-
-
-def sample(random: np.random.Generator, dim: int) -> dict[str, np.ndarray]:
-    """Mass points, modes and their coordinates; the modes at one more point, which an anchor takes."""
-    turns = 1 if dim == 2 else 3
-    made = {"points": random.normal(size=(POINTS, dim)), "modes": random.normal(size=(MODES, POINTS, dim)) / 2,
-            "masses": random.uniform(0.5, 1.5, POINTS), "g": random.normal(size=dim),
-            "place": random.normal(size=dim), "phis": random.normal(size=(MODES, dim)),
-            "psis": random.uniform(0.5, 1.5, (MODES, turns)), "m": random.normal(size=turns)}
-    # of one sign: what cancels by chance would be held to digits that it has not
-    made |= {name: random.uniform(-0.8, -0.2, MODES) for name in RATES}
-    return made | integrals(made)
-
-
-def integrals(s: State, **moved: np.ndarray) -> dict[str, np.ndarray]:
-    """What the kernels take at these coordinates, some of them moved."""
-    s = {**s, **moved}
-    rho = s["masses"]
-    fields = [s["points"] + np.tensordot(s["eta"], s["modes"], 1),
-              *(np.tensordot(s[name], s["modes"], 1) for name in RATES[1:])]
-    mode, other = s["modes"]
-
-    def second(a, b):
-        return (rho[:, None] * a).T.dot(b)
-
-    made = {"mass": rho.sum(), "s": rho.dot(mode), "X_kl": second(mode, other),
-            "X11": second(fields[1], fields[1]).trace()}
-    for k, field in enumerate(fields):
-        made |= {f"S{k or ''}": rho.dot(field), f"X{k or ''}": second(fields[0], field),
-                 f"Y{k or ''}": second(mode, field)}
-    theta = [s[name].dot(s["psis"]) for name in RATES[:2]]
-    return made | {"u": s["place"] + s["eta"].dot(s["phis"]), "u1": s["eta1"].dot(s["phis"]), "theta": theta[0],
-                   "theta1": theta[1], "phi": s["phis"][0], "psi": s["psis"][0], "phi_l": s["phis"][1],
-                   "psi_l": s["psis"][1]}
+from ..numbers import Numbers, State
+from ..samples.modal import MODES, RATES, integrals
 
 
 def unit(n: int, j: int) -> np.ndarray:
@@ -94,8 +52,8 @@ class Paths:
         """The same along a mode."""
         return (s["masses"][:, None] * s["modes"][0].dot(self.axes(s["b"]).T) * self.falling(k, s, t)).sum()
 
-    def anchored(self, k: Numbers, s: State, motion: np.ndarray, eta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Place and axes of the anchor's point; the section turned by quaternions."""
+    def attached(self, k: Numbers, s: State, motion: np.ndarray, eta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the position and axes of the attachment; its section is turned by Cayley's formula."""
         b = self.rider.moved(k, s["b"], motion)
         theta = (s["eta"] + eta).dot(s["psis"])
         if self.dim == 2:
@@ -147,27 +105,27 @@ def modal(family: Family) -> list[Relation]:
         def path(k, s, t, j):
             motion, eta = {"frame": (t * unit(n, j), zero), "mode": (0 * s["w"], t * unit(MODES, 0)),
                            "time": (t * s["w"], t * s["eta1"])}[by]
-            return p.anchored(k, s, motion, eta)[which]
+            return p.attached(k, s, motion, eta)[which]
         return path
 
     def turning(kernel: str, output: str, columns: bool = True):
         """What turns the axes by each column (or by the one vector) of an output."""
         def of(k, s):
-            axes, T = k("anchor", s)["axes"], k(kernel, s)[output]
+            axes, T = k("attachment", s)["axes"], k(kernel, s)[output]
             T = T if columns else T[:, None]
             return np.stack([_swung(T[:, j], axes) for j in range(T.shape[1])], axis=-1)
         return of
 
     def second(k, s):
-        out = k("anchor", s)
+        out = k("attachment", s)
         return _swung(out["omega_bias"], out["axes"]) + _swung(out["omega"], _swung(out["omega"], out["axes"]))
 
     def pulled(k, s, **changes):
-        out = k("anchor", s, **changes)
+        out = k("attachment", s, **changes)
         return out["P"].T.dot(s["f"]) + out["T"].T.dot(s["m"])
 
     def mode_pulled(k, s, **changes):
-        out = k("anchor_mode", s, **changes)
+        out = k("attachment_mode", s, **changes)
         return out["P"].dot(s["f"]) + out["T"].dot(s["m"])
 
     def by_frame(pull):
@@ -196,22 +154,23 @@ def modal(family: Family) -> list[Relation]:
         Relation("pair_tangent", "K", "df by eta of the other", 1, mode_moved("mode_force", "eta", 1)),
         Relation("kinetic_energy", "T", "Σ ½ m v² of mass points", 0, kinetic),
         Relation("potential_energy", "V", "-Σ m g.p of mass points", 0, potential),
-        Relation("anchor", "p", "R + A (x + Σ phi eta)", 0, point(0, "time")),
-        Relation("anchor", "axes", "A C by Cayley's formula", 0, point(1, "time")),
-        Relation("anchor", "P", "dp by translation and rotation", 1, point(0, "frame"), n),
-        Relation("anchor", "T", "d axes = (T dq)~ axes", 1, point(1, "frame"), n, of=turning("anchor", "T")),
-        Relation("anchor", "velocity", "dp/dt", 1, point(0, "time")),
-        Relation("anchor", "omega", "d axes/dt", 1, point(1, "time"), of=turning("anchor", "omega", columns=False)),
-        Relation("anchor", "bias", "d²p/dt² at constant velocities", 2, point(0, "time")),
-        Relation("anchor", "omega_bias", "d² axes/dt² at constant velocities", 2, point(1, "time"), of=second),
-        Relation("anchor_mode", "P", "dp by eta", 1, point(0, "mode")),
-        Relation("anchor_mode", "T", "d axes by eta", 1, point(1, "mode"),
-                 of=turning("anchor_mode", "T", columns=False)),
-        Relation("anchor_force", "K", "d(P' f + T' m) by translation and rotation", 1, by_frame(pulled), n),
-        Relation("anchor_mode_force", "K", "d(P' f + T' m) of the mode by translation and rotation", 1,
+        Relation("attachment", "p", "R + A (x + Σ phi eta)", 0, point(0, "time")),
+        Relation("attachment", "axes", "A C by Cayley's formula", 0, point(1, "time")),
+        Relation("attachment", "P", "dp by translation and rotation", 1, point(0, "frame"), n),
+        Relation("attachment", "T", "d axes = (T dq)~ axes", 1, point(1, "frame"), n, of=turning("attachment", "T")),
+        Relation("attachment", "velocity", "dp/dt", 1, point(0, "time")),
+        Relation("attachment", "omega", "d axes/dt", 1, point(1, "time"),
+                 of=turning("attachment", "omega", columns=False)),
+        Relation("attachment", "bias", "d²p/dt² at constant velocities", 2, point(0, "time")),
+        Relation("attachment", "omega_bias", "d² axes/dt² at constant velocities", 2, point(1, "time"), of=second),
+        Relation("attachment_mode", "P", "dp by eta", 1, point(0, "mode")),
+        Relation("attachment_mode", "T", "d axes by eta", 1, point(1, "mode"),
+                 of=turning("attachment_mode", "T", columns=False)),
+        Relation("attachment_force", "K", "d(P' f + T' m) by translation and rotation", 1, by_frame(pulled), n),
+        Relation("attachment_mode_force", "K", "d(P' f + T' m) of the mode by translation and rotation", 1,
                  by_frame(mode_pulled), n),
-        Relation("anchor_mode_force", "K_frame", "d(P' f + T' m) of the frame by eta", 1, by_mode(pulled, 0)),
-        Relation("anchor_pair_force", "K", "d(P' f + T' m) of the mode by eta of the other", 1,
+        Relation("attachment_mode_force", "K_frame", "d(P' f + T' m) of the frame by eta", 1, by_mode(pulled, 0)),
+        Relation("attachment_pair_force", "K", "d(P' f + T' m) of the mode by eta of the other", 1,
                  by_mode(mode_pulled, 1)),
     ]
 
@@ -220,22 +179,3 @@ def _swung(theta: np.ndarray, axes: np.ndarray) -> np.ndarray:
     """theta x each column."""
     spatial = np.concatenate([[0 * theta[0]] * (3 - len(theta)), theta])
     return np.stack([swung(spatial, column) for column in axes.T], axis=1)
-
-
-def invariances(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
-    """Symmetry, momentum, digits."""
-    p = Paths(family)
-    M = k("mass_matrix", s)["M"]
-    yield "M symmetric", relative(M - M.T, M), 8 * EPS
-    least = float(np.linalg.eigvalsh((M + M.T) / 2)[0]) if np.isfinite(M).all() else -np.inf
-    yield "M positive definite (least eigenvalue below zero)", max(-least, 0.0), 0.0
-    axes = k("anchor", s)["axes"]
-    yield "axes' axes = 1", relative(axes.T @ axes - np.eye(len(axes)), 1), 8 * EPS
-    b = np.concatenate([quantised(s["b"][: p.dim]) + FAR, s["b"][p.dim :]])
-    yield "forces: same digits at 10⁴ lengths", max(
-        relative(k(name, s, b=b)["f"] - k(name, s)["f"], 1) for name in ("inertia_force", "mode_force")), 0.0
-    along = vector_product(s["S"], s["g"])
-    weight = k("inertia_force", {**s, "w": 0 * s["w"], "a": 0 * s["a"], "S1": 0 * s["S1"], "S2": 0 * s["S2"],
-                                 "X1": 0 * s["X1"], "X2": 0 * s["X2"], "b": np.eye(len(s["b"]))[p.dim]})["f"]
-    yield "weight is m g, its moment S x g", relative(
-        weight + np.concatenate([s["mass"] * s["g"], along]), weight), 8 * EPS

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...spec import Family
+from ...codegen.family import Family
 from ..methods import Relation
 from ..motion import RIDERS, frame, swung
 from ..references import element as reference
-from .element import unit
+from .paths import unit
 
 
 class Curve:

@@ -11,12 +11,12 @@ from pathlib import Path
 
 import numpy as np
 
-from ..spec import Family
-from ..verify import numbers as verify_numbers
-from ..verify.compiled import compiler
-from ..verify.states import states
-from . import rendering as emit
-from .rendering import Recorded
+from ..codegen import rendering as emit
+from ..codegen.family import Family
+from ..codegen.rendering import Recorded
+from . import numbers as verify_numbers
+from .compiled import compiler
+from .samples import states
 
 PROGRAM = """#define _POSIX_C_SOURCE 199309L
 #include <stdio.h>
