@@ -39,9 +39,9 @@ class LawTraits:
 
 @dataclass(frozen=True)
 class Element:
-    """r(x, y, z) = sum_k N_k d_k (eq 2): monomials, nodes, and which vectors the nodes carry.
+    """r(x, y, z) = sum_k N_k d_k, eq 2: monomials, nodes, and which vectors the nodes carry.
 
-    `director` names the nodal vector from which the tangent frame takes its normal (eq 16); empty where there is
+    `director` names the nodal vector from which the tangent frame takes its normal, eq 16; empty where there is
     none. `laws` are the energies that it comes with: names in laws/, or classes of the same interface.
     """
 
@@ -78,7 +78,7 @@ class Element:
 
     @property
     def n_coordinates(self) -> int:
-        """Length of e (eq 1)."""
+        """Return the length of the nodal coordinates e, the nodal vectors one after the other (eq 1)."""
         return self.dim * self.n_vectors
 
     def nodal_conditions(self, functions) -> sp.Matrix:

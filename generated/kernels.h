@@ -93,7 +93,7 @@ void beam24_continuum_step_stiffness(fu_real l, const fu_real *e, const fu_real 
 void beam24_continuum_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void beam24_continuum_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void beam24_continuum_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
-void beam24_continuum_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
+void beam24_continuum_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *relaxed_strain, fu_real *f, fu_real *dE);
 void beam24_continuum_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* beam24_continuum_curved: elastic law continuum_curved on beam24 */
@@ -125,7 +125,7 @@ void cable12_green_exact_step_stiffness(fu_real l, const fu_real *e, const fu_re
 void cable12_green_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable12_green_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable12_green_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
-void cable12_green_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
+void cable12_green_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *relaxed_strain, fu_real *f, fu_real *dE);
 void cable12_green_exact_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable12_green_linear: elastic law green_linear on cable12 */
@@ -147,7 +147,7 @@ void cable12_engineering_exact_step_stiffness(fu_real l, const fu_real *e, const
 void cable12_engineering_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable12_engineering_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable12_engineering_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
-void cable12_engineering_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
+void cable12_engineering_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *relaxed_strain, fu_real *f, fu_real *dE);
 void cable12_engineering_exact_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable12_engineering_linear: elastic law engineering_linear on cable12 */
@@ -223,7 +223,7 @@ void cable18_green_exact_step_stiffness(fu_real l, const fu_real *e, const fu_re
 void cable18_green_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable18_green_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable18_green_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
-void cable18_green_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
+void cable18_green_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *relaxed_strain, fu_real *f, fu_real *dE);
 void cable18_green_exact_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable18_engineering_exact: elastic law engineering_exact on cable18 */
@@ -236,7 +236,7 @@ void cable18_engineering_exact_step_stiffness(fu_real l, const fu_real *e, const
 void cable18_engineering_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable18_engineering_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable18_engineering_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
-void cable18_engineering_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
+void cable18_engineering_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *relaxed_strain, fu_real *f, fu_real *dE);
 void cable18_engineering_exact_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable18_green_exact_assumed: elastic law green_exact_assumed on cable18 */
@@ -267,7 +267,7 @@ void beam12p_continuum_step_stiffness(fu_real l, const fu_real *e, const fu_real
 void beam12p_continuum_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void beam12p_continuum_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void beam12p_continuum_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
-void beam12p_continuum_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
+void beam12p_continuum_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *relaxed_strain, fu_real *f, fu_real *dE);
 void beam12p_continuum_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* beam12p_continuum_curved: elastic law continuum_curved on beam12p */
@@ -299,7 +299,7 @@ void cable8p_green_exact_step_stiffness(fu_real l, const fu_real *e, const fu_re
 void cable8p_green_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable8p_green_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable8p_green_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
-void cable8p_green_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
+void cable8p_green_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *relaxed_strain, fu_real *f, fu_real *dE);
 void cable8p_green_exact_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable8p_green_linear: elastic law green_linear on cable8p */
@@ -321,7 +321,7 @@ void cable8p_engineering_exact_step_stiffness(fu_real l, const fu_real *e, const
 void cable8p_engineering_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable8p_engineering_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable8p_engineering_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
-void cable8p_engineering_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
+void cable8p_engineering_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *relaxed_strain, fu_real *f, fu_real *dE);
 void cable8p_engineering_exact_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable8p_engineering_linear: elastic law engineering_linear on cable8p */
@@ -614,7 +614,7 @@ typedef struct {
     void (*damping_force)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
     void (*damping_tangent)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
     void (*dissipation)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
-    void (*algorithmic_force)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
+    void (*algorithmic_force)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *relaxed_strain, fu_real *f, fu_real *dE);
 } fu_law_kernels;
 
 /* What the engine needs of a body. */

@@ -307,7 +307,7 @@ def test_nodal_conditions_that_do_not_fix_the_basis_are_refused():
 
 
 def test_beam24_mass_as_published():
-    """CASES E1."""
+    """Case E1 of tests/benchmarks/published."""
     m = kernels.beam24_mass(1.0, 7850.0, section(0.1, 0.1))
     row = [29.1571428571429, 4.11190476190476, 0, 0, 10.0928571428571, -2.42976190476190, 0, 0]
     np.testing.assert_allclose(m[0], row, rtol=2e-14)

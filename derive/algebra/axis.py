@@ -22,7 +22,7 @@ class Axis:
 
     def coordinates(self) -> np.ndarray:
         """Input e."""
-        return self.program.input("e", (self.element.n_vectors, self.element.dim), "m, 1", "nodal vectors (eq 1)")
+        return self.program.input("e", (self.element.n_vectors, self.element.dim), "m, 1", "nodal vectors e, eq 1")
 
     def shape(self, by: str = "") -> np.ndarray:
         """N_k(x, 0, 0), or derivatives there by the coordinates `by`: powers of l times polynomials in x/l."""

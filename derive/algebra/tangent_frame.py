@@ -27,20 +27,21 @@ def spatial(vector: np.ndarray) -> np.ndarray:
 
 
 def tangent_frame(program: Program, tangent: np.ndarray, director: np.ndarray | None) -> np.ndarray:
-    """A_t = [i j k] (eq 18): i along the tangent, k normal to tangent and director.
+    """Return A_t = [i j k], by columns: i along the tangent, k normal to tangent and director.
 
     In the plane [i j], whatever the director; in space without one, [i] is all that the tangent fixes. Eq 16 prints
     k = i x r_y/|r_y|, of unit length only where r_y is perpendicular to i: here the product is normalised. Singular
     where the director is along the tangent.
     """
+    # i = dr/ds (eq 13) with ds = |r_x| dx (eq 14), so that i = r_x/|r_x| (eq 15)
     i = unit(program, "i", tangent)
     if len(tangent) == 2:
         return np.stack([i, cross(np.array([1]), i)], axis=1)
     if director is None:
         return i[:, None]
-    k = unit(program, "k", program.vector("m", cross(i, director)))
-    j = program.vector("j", cross(k, i))
-    return np.stack([i, j, k], axis=1)
+    k = unit(program, "k", program.vector("m", cross(i, director)))  # (eq 16)
+    j = program.vector("j", cross(k, i))  # (eq 17)
+    return np.stack([i, j, k], axis=1)  # (eq 18)
 
 
 def turning(p: Program, A_t: np.ndarray, tangent: np.ndarray, director: np.ndarray | None = None) -> list[np.ndarray]:

@@ -43,7 +43,7 @@ def inertia_force(name: str, frame: Body) -> Program:
 
 
 def mass_matrix(name: str, frame: Body) -> Program:
-    """M_rr, undeformed or not."""
+    """Return the kernel of the frame's block M_rr of the mass matrix (eq 12): (6, 6), in the plane (3, 3)."""
     p = Program(f"{name}_mass_matrix", "M_rr: the frame's part of the mass matrix", "paper eq 12")
     dim = frame.DIM
     b, of = frame.configuration(p), Moments.given(p, dim, rates=1)

@@ -128,7 +128,7 @@ def force(dim: int, name: str) -> Program:
 
 
 def motion(dim: int, name: str) -> Program:
-    """What stays of phi' and phi'' at rest and without accelerations."""
+    """Return the kernel of what stays of phi' at rest, and of phi'' without accelerations: -gamma (eq 10)."""
     p = Program(f"joint_{name}_motion", "derivatives of the equations in time", "eq 33")
     frames = TwoFrames(p, dim)
     phi = _equations(frames, name)

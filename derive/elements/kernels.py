@@ -45,12 +45,12 @@ def _section(program: Program) -> np.ndarray:
     return program.input("section", len(integrals.SECTION), integrals.SECTION_UNITS, integrals.SECTION_DOC)
 
 
-def _coordinates(program: Program, element: Element, name="e", unit="m, 1", doc="nodal vectors (eq 1)"):
+def _coordinates(program: Program, element: Element, name="e", unit="m, 1", doc="nodal vectors e, eq 1"):
     return program.input(name, (element.n_vectors, element.dim), unit, doc)
 
 
 def mass(element: Element, shape) -> Program:
-    """eq 4: M = m (x) I."""
+    """Return the kernel of m (vectors, vectors) in kg, kg m, kg m^2: the mass matrix is M = m (x) I (eq 4)."""
     p = _program(element, "mass", "mass matrix m of M = m (x) I", "eq 4")
     length, density, section = _length(p), p.input("density", (), "kg/m^3", "density"), _section(p)
     p.stage("integrals of N_j N_k")
@@ -93,7 +93,7 @@ def _horner(n: sp.Expr, power: int, xi: sp.Symbol) -> sp.Expr:
 
 
 def position(element: Element) -> Program:
-    """eq 2."""
+    """Return the kernel of the shape functions N (vectors,) and of the position r = S e (eq 2), m."""
     p = _program(element, "position", "shape functions and position of a point", "eq 2")
     length = _length(p)
     at = p.input("at", 3, "m", "local coordinates x, y, z")

@@ -34,7 +34,7 @@ class Form:
 
     @cached_property
     def strain(self) -> dict[tuple[int, int], list]:
-        """E_ij = 1/2 sum_pairs strain[ij][p] (G - G0)_p, in the ring."""
+        """Return the Green strain (eq 6) over Gram pairs: E_ij = 1/2 sum_p strain[ij][p] (G - G0)_p, in the ring."""
         g, d = self.gram.gradient, range(self.gram.element.dim)
         return {(i, j): [g[a][i] * g[b][j] + (g[b][i] * g[a][j] if a != b else 0) for a, b in self.gram.pairs]
                 for i in d for j in d if i <= j}
@@ -124,12 +124,12 @@ class Continuum:
         return section.force(), section.moment(), section.strain()
 
     def energy(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr) -> sp.Expr:
-        """U."""
+        """Return the elastic energy U = 1/2 (G - G0)' A (G - G0) (eq 7), J."""
         G = self._strain(program, A, c)
         return sum(a * b for a, b in zip(self._stress(program, A, G), G, strict=True)) / 2
 
     def forces(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr) -> np.ndarray:
-        """Stages: dU/dc on strain vectors."""
+        """Return the forces dU/dc on the strain vectors c (eq 8): (vectors, dim), N m."""
         u = self._stress(program, A, self._strain(program, A, c))
         program.stage("forces on strain vectors")
         return self.gram.vector_forces(program, c, u)

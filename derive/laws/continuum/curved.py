@@ -1,4 +1,4 @@
-"""St. Venant-Kirchhoff continuum with a curved stress-free shape e0 (eq 5): D = dr/dX with J0 = dr0/dx of e0.
+"""St. Venant-Kirchhoff continuum with a curved stress-free shape e0, eq 5: D = dr/dX with J0 = dr0/dx of e0.
 
 E = J0^-T (F'F - F0'F0)/2 J0^-1 is linear in G - G0 at every point, so the energy is the same quadratic form with a
 dense A and the G0 of e0. J0 is not a polynomial: A is a sum over points of the volume, each by the kernel

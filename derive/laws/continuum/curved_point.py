@@ -39,7 +39,7 @@ def frame(program: Program, F: list[Expansion], director: int) -> np.ndarray:
 
 
 class Metric:
-    """N = (R' J0)^-1 and det J0 from J0 by columns, R the tangent frame of the stress-free axis."""
+    """N = (R' J0)^-1 and det J0 from J0 by columns, R the tangent frame of the stress-free axis: D = F N R' (eq 5)."""
 
     def __init__(self, program: Program, tag: str, R: np.ndarray, J0: list[np.ndarray]):
         self.program, self.dim = program, len(J0)

@@ -41,7 +41,7 @@ class Kernels:
     def _inputs(self, program: Program, *names: str) -> tuple:
         """Inputs l, e, A, or l, e, v, A, tau."""
         shape = (self.element.n_vectors, self.element.dim)
-        about = {"e": ("m, 1", "nodal vectors (eq 1)"), "v": ("m/s, 1/s", "rates of the nodal vectors")}
+        about = {"e": ("m, 1", "nodal vectors e, eq 1"), "v": ("m/s, 1/s", "rates of the nodal vectors")}
         length = program.input("l", (), "m", "length of the element")
         vectors = [program.input(name, shape, *about[name]) for name in names]
         return (length, *vectors, self.law.constants(program))
@@ -129,7 +129,7 @@ class Kernels:
         p = self._program("section_forces", "force and moment resultants of a section")
         length, x = p.input("l", (), "m", "length of the element"), p.input("x", (), "m", "arc-length from its start")
         shape = (self.element.n_vectors, self.element.dim)
-        e, S = p.input("e", shape, "m, 1", "nodal vectors (eq 1)"), self.law.section_stiffness(p)
+        e, S = p.input("e", shape, "m, 1", "nodal vectors e, eq 1"), self.law.section_stiffness(p)
         e0 = stress_free.shape(p, self.element)
         shares = self.law.shares(p, S, length)
         now, before = (self._configuration(p, vectors, length, shares).strains for vectors in (e, e0))
