@@ -57,7 +57,7 @@ class Element:
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """Names of the nodal vectors over all nodes: r_1, r_x1, ... r_2, ..."""
+        """Return the names of the nodal vectors over all nodes: r_1, r_x1, ... r_2, ..."""
         return tuple(f"{v}{'' if '_' in v else '_'}{i + 1}" for i in range(len(self.nodes))
                      for v in self.nodal_vectors)
 
@@ -73,7 +73,7 @@ class Element:
 
     @property
     def n_vectors(self) -> int:
-        """Nodal vectors of the element, over all nodes."""
+        """Return the nodal vectors of the element, over all nodes."""
         return len(self.nodes) * len(self.nodal_vectors)
 
     @property
@@ -82,7 +82,7 @@ class Element:
         return self.dim * self.n_vectors
 
     def nodal_conditions(self, functions) -> sp.Matrix:
-        """Value of each nodal functional (row: r, r_x, ... at a node) on each function (column)."""
+        """Return the value of each nodal functional (row: r, r_x, ... at a node) on each function (column)."""
         rows = []
         for node in self.nodes:
             for vector in self.nodal_vectors:

@@ -16,7 +16,8 @@ SOURCES = [("derive", "*.py"), ("runtime", "*.py"), ("runtime/engine", "*.[ch]")
 SUBJECTS = {
     "derive/spec.py": "nodal coordinates", "derive/elements": "shape functions, mass",
     "runtime/engine": "kinetic energy, equations of motion, accelerations and multipliers",
-    "derive/laws/continuum": "strain, elastic energy and force", "derive/couplings": "joints, and the slide: C, G, H, W",
+    "derive/laws/continuum": "strain, elastic energy and force",
+    "derive/couplings": "joints, and the slide: C, G, H, W",
     "derive/bodies": "modal body on a floating frame", "derive/algebra": "tangent frame"}
 """What the equations of a file or folder are about; a new one needs its entry."""
 

@@ -56,7 +56,7 @@ class DiscreteGradient:
         return now if now == then else (now + then) / 2
 
     def means(self, name: str, vector: np.ndarray) -> np.ndarray:
-        """A vector of mean values."""
+        """Return a vector of mean values."""
         return self.program.vector(name, [self.mean(x) for x in vector])
 
     def gradient(self, expr: sp.Expr, by: Sequence[sp.Symbol], constant: Sequence[sp.Symbol] = ()) -> list[sp.Expr]:
@@ -67,7 +67,7 @@ class DiscreteGradient:
         return [_Along(self, symbol, by, constant)(expr) for symbol in by]
 
     def moves(self, symbol: sp.Symbol) -> sp.Expr | None:
-        """What a symbol differs from by a constant."""
+        """Return what a symbol differs from by a constant."""
         return self._moves.get(symbol)
 
 
@@ -130,8 +130,8 @@ def _root(expr: sp.Expr) -> sp.Expr:
 
 
 def staged(program: Program, vectors: np.ndarray) -> tuple[Program, np.ndarray]:
-    """A program for `DiscreteGradient` with the symbols of `program`, whose one input c has the shape of these vectors;
-    and c.
+    """Return a program for `DiscreteGradient` with the symbols of `program`, whose one input c has the shape of these
+    vectors; and c.
     """
     law = Program("law", "a law at one state", "")
     law.symbols.update(program.symbols)

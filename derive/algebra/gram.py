@@ -70,7 +70,7 @@ class Gram:
         return [int(a == b and self.names[a] in axis) for a, b in self.pairs]
 
     def differences(self, program: Program, e: np.ndarray, w: sp.Expr, tag: str = "") -> np.ndarray:
-        """Stage: nodal vectors e (n, dim) to strain vectors (m, dim), through chords (r_k - r_1) w, w = 1/l."""
+        """Return the strain vectors (m, dim) of nodal vectors e (n, dim), through chords (r_k - r_1) w, w = 1/l."""
         d = [program.vector(f"chord{tag}{k}" if v else "", (e[k] - e[0]) * w) if v else e[k]
              for k, v in enumerate(self.element.is_position)]
         return np.array([
@@ -79,12 +79,12 @@ class Gram:
             for m, name in enumerate(self.names)])
 
     def gram(self, program: Program, c: np.ndarray) -> list[sp.Expr]:
-        """Stage: G - G0 over the pairs."""
+        """Return G - G0 over the pairs."""
         return [program.define(f"G_{self.pair(p)}", c[a].dot(c[b]) - self.reference[p])
                 for p, (a, b) in enumerate(self.pairs)]
 
     def gram_rate(self, program: Program, c: np.ndarray, rate: np.ndarray) -> list[sp.Expr]:
-        """Stage: dG/dt over the pairs."""
+        """Return dG/dt over the pairs."""
         return [program.define(f"dG_{self.pair(p)}", c[a].dot(rate[b]) + rate[a].dot(c[b]))
                 for p, (a, b) in enumerate(self.pairs)]
 
@@ -96,13 +96,13 @@ class Gram:
         return c[b] if a == m else c[a] if b == m else None
 
     def vector_forces(self, program: Program, c: np.ndarray, u: Sequence[sp.Expr]) -> np.ndarray:
-        """Stage: f_m = sum_p u_p dG_p/dc_m."""
+        """Return f_m = sum_p u_p dG_p/dc_m."""
         terms = [[u[p] * g for p in range(len(self.pairs)) if (g := self.by_vector(c, p, m)) is not None]
                  for m in range(len(self.names))]
         return np.array([program.vector(f"f_{name}", sum(t)) for name, t in zip(self.names, terms, strict=True)])
 
     def nodal_forces(self, program: Program, f: np.ndarray, w: sp.Expr) -> np.ndarray:
-        """Stage: forces on strain vectors to forces on nodal vectors, f_d = T' f_c."""
+        """Return the forces on nodal vectors (n, dim) from forces f on strain vectors, f_d = T' f_c, in N and N m."""
         nodal = []
         for k, position in enumerate(self.element.is_position):
             column = sum(self.scaled[m][k] * f[m] for m in range(len(f)) if self.scaled[m][k] != 0)
@@ -118,7 +118,7 @@ class Gram:
                 for m in range(len(self.names))]
 
     def pair(self, p: int) -> str:
-        """Name of a Gram pair."""
+        """Return the name of a Gram pair."""
         a, b = self.pairs[p]
         return self.names[a] + self.names[b]
 

@@ -16,7 +16,7 @@ Moduli = Mapping[tuple[int, int], sp.Expr]
 
 def blocks(gram: Gram, program: Program, c: np.ndarray, b: np.ndarray, moduli: Moduli,
            u: Sequence[sp.Expr]) -> np.ndarray:
-    """Stages: B(c)' A B(b) + u (x) I over strain vectors -> (n, n, dim, dim), B(c) = dG/dc, A by its non-zero entries.
+    """Return B(c)' A B(b) + u (x) I over strain vectors -> (n, n, dim, dim), B(c) = dG/dc, A by its non-zero entries.
 
     With b = c this is the elastic tangent; with b = tau (dc/dt + rate c) that of the damping force.
     """
@@ -59,7 +59,7 @@ def blocks(gram: Gram, program: Program, c: np.ndarray, b: np.ndarray, moduli: M
 
 
 def nodal_tangent(gram: Gram, program: Program, block: np.ndarray, w: sp.Expr, symmetric: bool) -> np.ndarray:
-    """Stages: T' K T over nodal coordinates -> (n, n); the first position is minus the sum of the others.
+    """Return T' K T over nodal coordinates -> (n, n); the first position is minus the sum of the others.
 
     Blocks are over the directions of space, or (1, 1) where all directions have the same.
     """
@@ -88,7 +88,7 @@ def nodal_tangent(gram: Gram, program: Program, block: np.ndarray, w: sp.Expr, s
 
 
 def from_others(element: Element, program: Program, K: np.ndarray, symmetric: bool) -> np.ndarray:
-    """Stage: rows and columns of the first position from the others: blocks (k, k, dim, dim) -> (n, n)."""
+    """Return the tangent (n, n) from blocks (k, k, dim, dim): the first position takes minus the sum of the others."""
     position, count, dim = element.is_position, element.n_vectors, K.shape[-1]
     others = [k for k in range(1, count) if position[k]]
     program.stage("the first position: rigid translation makes no force")

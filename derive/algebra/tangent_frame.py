@@ -9,7 +9,7 @@ from ..codegen.program import Program
 
 
 def unit(program: Program, name: str, vector: np.ndarray) -> np.ndarray:
-    """vector / |vector|."""
+    """Return vector / |vector|, named in the program."""
     inverse = program.define(f"inv_{name}", 1 / program.define(f"len_{name}", sp.sqrt(vector.dot(vector))))
     return program.vector(name, inverse * vector)
 
@@ -22,7 +22,7 @@ def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def spatial(vector: np.ndarray) -> np.ndarray:
-    """In three dimensions."""
+    """Return a vector of the plane or of space with three components."""
     return np.concatenate([vector, np.full(3 - len(vector), sp.S.Zero)])
 
 
@@ -45,7 +45,7 @@ def tangent_frame(program: Program, tangent: np.ndarray, director: np.ndarray | 
 
 
 def turning(p: Program, A_t: np.ndarray, tangent: np.ndarray, director: np.ndarray | None = None) -> list[np.ndarray]:
-    """Rotation rate of the frame for each entry of tangent and director.
+    """Return the rotation rate of the frame for each entry of tangent and director.
 
     Not from derivatives of i: these are what is left of 1 - i_x^2, without digits where i is along an axis.
     """

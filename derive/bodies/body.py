@@ -22,15 +22,15 @@ class Rider(Protocol):
 
     @property
     def DIM(self) -> int:  # noqa: N802
-        """The dimension of space, 2 or 3."""
+        """Return the dimension of space, 2 or 3."""
 
     @property
     def N_CONFIGURATION(self) -> int:  # noqa: N802
-        """The length of b."""
+        """Return the length of b."""
 
     @property
     def N_VELOCITY(self) -> int:  # noqa: N802
-        """The length of w."""
+        """Return the length of w."""
 
     def configuration(self, program: Program) -> np.ndarray:
         """Declare the input b and return it."""
@@ -65,11 +65,11 @@ class Body(Rider, Protocol):
 
     @property
     def DOC(self) -> str:  # noqa: N802
-        """What it is."""
+        """Return what it is."""
 
     @property
     def SOURCE(self) -> str:  # noqa: N802
-        """Where its equations are from."""
+        """Return where its equations are from."""
 
     def turning_inertia(self, J: np.ndarray) -> np.ndarray:
         """Return the part of the inertia J (3, 3) that the rotations of this body meet, kg m^2."""

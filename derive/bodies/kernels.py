@@ -13,13 +13,14 @@ from .body import Body
 
 
 def build(body: Body) -> list[Program]:
-    """Every kernel of a body."""
+    """Return the programs of every kernel of a body."""
     return [point(body), point_force(body), frame(body), inertia_force(body), inertia_tangent(body),
             kinetic_energy(body), discrete_point(body)]
 
 
 def _position(p: Program, body: Body, b: np.ndarray, u: np.ndarray):
-    """Stage: p, with the axes and the derivations by translation and rotation."""
+    """Return A (dim, dim), the position p of the point u (dim,) in m, and the derivatives by translation and rotation.
+    """
     p.stage("position")
     A = body.axes(p, b)
     at = p.vector("p", body.origin(b) + body.arm(p, A, u))
@@ -35,7 +36,7 @@ def _jacobian(p: Program, at: np.ndarray, by: list[DirectionalDerivative]) -> np
 
 
 def point(body: Body) -> Program:
-    """R + A u, along the motion."""
+    """Return the kernel of the position R + A u, its Jacobian, velocity and acceleration bias."""
     p = Program(f"{body.NAME}_point", "position, Jacobian, velocity and acceleration bias of a point", body.SOURCE)
     b, u, w = body.configuration(p), body.attachment(p), body.velocity(p)
     A, at, by = _position(p, body, b, u)
@@ -48,7 +49,7 @@ def point(body: Body) -> Program:
 
 
 def point_force(body: Body) -> Program:
-    """p_q' f and its derivative."""
+    """Return the kernel of the derivative of p_q' f, what a force f on a point puts on the body."""
     p = Program(f"{body.NAME}_point_force", "position and Jacobian of a point, derivative of the force p_q' f",
                 body.SOURCE)
     b, u = body.configuration(p), body.attachment(p)
@@ -63,7 +64,7 @@ def point_force(body: Body) -> Program:
 
 
 def frame(body: Body) -> Program:
-    """The body's axes, and what a moment on them does."""
+    """Return the kernel of the body's axes, their turn, and the derivative of a moment on them."""
     p = Program(f"{body.NAME}_frame", "axes, their turn, and the derivative of a moment on them", body.SOURCE)
     b = body.configuration(p)
     turns = body.N_VELOCITY - body.DIM
@@ -97,7 +98,7 @@ class Step:
 
 
 def discrete_point(body: Body) -> Program:
-    """P."""
+    """Return the kernel of the Jacobian P of a point over a step psi: p_next - p = P psi."""
     p = Program(f"{body.NAME}_discrete_point", "Jacobian of a point over a step psi: p_next - p = P psi",
                 f"{body.SOURCE}; Simo & Wong, Int. J. Numer. Meth. Eng. 31 (1991) 19-52")
     b, u = body.configuration(p), body.attachment(p)
@@ -122,13 +123,13 @@ def _mass_matrix(body: Body, mass, J: np.ndarray) -> np.ndarray:
 
 
 def _gyroscopic(p: Program, body: Body, J: np.ndarray, w: np.ndarray) -> np.ndarray:
-    """Stage: the inertia force at zero accelerations."""
+    """Return the inertia force at zero accelerations (velocities,), N and N m."""
     p.stage("gyroscopic moment")
     return np.concatenate([np.zeros(body.DIM, dtype=int), body.gyroscopic_moment(p, J, w[body.DIM :])])
 
 
 def inertia_force(body: Body) -> Program:
-    """M w' and the gyroscopic moment."""
+    """Return the kernel of the inertia force: m R'' in N, and J omega' + omega x J omega in N m."""
     p = Program(f"{body.NAME}_inertia_force", "m R'' and J omega' + omega x J omega", "M q'' of eq 12")
     mass, J = _inertia(p, body)
     w, a = body.velocity(p), p.input("a", body.N_VELOCITY, "m/s^2, rad/s^2", "accelerations R'', omega'")
@@ -138,7 +139,7 @@ def inertia_force(body: Body) -> Program:
 
 
 def inertia_tangent(body: Body) -> Program:
-    """M, and what the gyroscopic moment adds."""
+    """Return the kernel of the mass matrix M and of the derivative D of the inertia force by the velocity."""
     p = Program(f"{body.NAME}_inertia_tangent", "mass matrix and derivative of the inertia force by velocity",
                 "derivative of M q''")
     mass, J = _inertia(p, body)
@@ -152,7 +153,7 @@ def inertia_tangent(body: Body) -> Program:
 
 
 def kinetic_energy(body: Body) -> Program:
-    """Of translation and rotation."""
+    """Return the kernel of the kinetic energy of translation and rotation, J."""
     p = Program(f"{body.NAME}_kinetic_energy", "kinetic energy", "eq 3 for a rigid body")
     mass, J = _inertia(p, body)
     w = body.velocity(p)

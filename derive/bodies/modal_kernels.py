@@ -25,7 +25,7 @@ from .modal import (
 
 
 def build(name: str, frame: Body) -> list[Program]:
-    """Every kernel of a modal body on a frame."""
+    """Return the programs of every kernel of a modal body on a frame."""
     return [make(name, frame) for make in (
         inertia_force, mass_matrix, inertia_tangent, mode_force_, mode_mass, mode_tangent, pair_tangent,
         kinetic_energy, potential_energy, attachment, attachment_mode, attachment_force, attachment_mode_force,
@@ -33,7 +33,7 @@ def build(name: str, frame: Body) -> list[Program]:
 
 
 def inertia_force(name: str, frame: Body) -> Program:
-    """The frame's rows."""
+    """Return the kernel of the inertia force less weight in the frame's rows."""
     p = Program(f"{name}_inertia_force", "inertia and weight of a modal body: force, moment about its origin",
                 SOURCE)
     motion = Motion(p, frame)
@@ -59,7 +59,7 @@ def mass_matrix(name: str, frame: Body) -> Program:
 
 
 def inertia_tangent(name: str, frame: Body) -> Program:
-    """Their derivatives by the frame."""
+    """Return the kernel of the derivatives of inertia_force by the frame's motion."""
     p = Program(f"{name}_inertia_tangent", "derivatives of inertia_force by the frame's motion", SOURCE)
     motion = Motion(p, frame)
     force = body_force(motion, Moments.given(p, frame.DIM))
@@ -70,7 +70,7 @@ def inertia_tangent(name: str, frame: Body) -> Program:
 
 
 def mode_force_(name: str, frame: Body) -> Program:
-    """The row of a mode."""
+    """Return the kernel of the inertia force less weight in the row of a mode."""
     p = Program(f"{name}_mode_force", "inertia and weight of a mode", SOURCE)
     motion = Motion(p, frame)
     force = mode_force(motion, ModeMoments.given(p, frame.DIM))
@@ -79,7 +79,7 @@ def mode_force_(name: str, frame: Body) -> Program:
 
 
 def mode_mass(name: str, frame: Body) -> Program:
-    """A column of M_rf."""
+    """Return the kernel of a mode's column of M_rf, of eq 12."""
     p = Program(f"{name}_mode_mass", "column of a mode in M_rf: what couples its acceleration with the frame's",
                 "paper eq 12")
     dim = frame.DIM
@@ -91,7 +91,7 @@ def mode_mass(name: str, frame: Body) -> Program:
 
 
 def mode_tangent(name: str, frame: Body) -> Program:
-    """What couples a mode with the frame."""
+    """Return the kernel of the derivatives that couple a mode with the frame."""
     p = Program(f"{name}_mode_tangent", "derivatives of a mode's force by the frame's motion, and the other way round",
                 SOURCE)
     motion = Motion(p, frame)
@@ -106,7 +106,7 @@ def mode_tangent(name: str, frame: Body) -> Program:
 
 
 def pair_tangent(name: str, frame: Body) -> Program:
-    """What couples modes."""
+    """Return the kernel of the derivatives that couple two modes."""
     p = Program(f"{name}_pair_tangent", "derivatives of mode k's force by the motion of mode l", SOURCE)
     motion = Motion(p, frame)
     dim = frame.DIM
@@ -117,7 +117,7 @@ def pair_tangent(name: str, frame: Body) -> Program:
 
 
 def kinetic_energy(name: str, frame: Body) -> Program:
-    """int rho v.v/2, v = A'R' + omega~ u + u'."""
+    """Return the kernel of the kinetic energy int rho v.v/2 in J, with v = A'R' + omega~ u + u'."""
     p = Program(f"{name}_kinetic_energy", "kinetic energy", "eq 3 for a modal body")
     dim = frame.DIM
     b, w = frame.configuration(p), frame.velocity(p)
@@ -135,7 +135,7 @@ def kinetic_energy(name: str, frame: Body) -> Program:
 
 
 def potential_energy(name: str, frame: Body) -> Program:
-    """- g . int rho p."""
+    """Return the kernel of the potential energy of gravity, -g . int rho p, in J."""
     p = Program(f"{name}_potential_energy", "potential energy of gravity", SOURCE)
     dim = frame.DIM
     b = frame.configuration(p)
@@ -166,7 +166,7 @@ class Point:
         self.at = frame.origin(self.b) + frame.arm(p, self.A, self.u)
 
     def section(self) -> np.ndarray:
-        """A C, by columns the axes of the section."""
+        """Return A C, by columns the axes of the section."""
         tilde = skew(self.theta)
         return self.A.dot(np.eye(len(tilde), dtype=int) + self.scale * (tilde + tilde.dot(tilde) / 2))
 
@@ -175,45 +175,45 @@ class Point:
         return self.scale * (rate + (vector_product(self.theta, rate) / 2 if self.turns == 3 else 0))
 
     def turned(self, vector: np.ndarray) -> np.ndarray:
-        """A turn in body axes along global ones."""
+        """Return the components along global axes of a turn given in body axes."""
         return self.A.dot(vector) if self.turns == 3 else vector
 
     def turned_back(self, vector: np.ndarray) -> np.ndarray:
-        """A turn along global axes in body axes."""
+        """Return the components in body axes of a turn given along global axes."""
         return self.A.T.dot(vector) if self.turns == 3 else vector
 
     def mode(self, suffix: str = "") -> tuple[np.ndarray, np.ndarray]:
-        """Inputs phi, psi: a mode at the point."""
+        """Declare phi and psi, a mode at the point, as inputs and return them."""
         p = self.program
         return (p.input(f"phi{suffix}", len(self.u), "1", "displacement there by a unit of the mode, in body axes"),
                 p.input(f"psi{suffix}", self.turns, "rad/m", "turn there by a unit of the mode, in body axes"))
 
     def loads(self) -> tuple[np.ndarray, np.ndarray]:
-        """Inputs f, m."""
+        """Declare f and m, force and moment on the point, as inputs and return them."""
         p = self.program
         return (p.input("f", len(self.u), "N", "force on the point, held fixed"),
                 p.input("m", self.turns, "N m", "moment on it, held fixed"))
 
     def frame_force(self, f: np.ndarray, m: np.ndarray) -> np.ndarray:
-        """Rows of the frame of P' f + T' m."""
+        """Return the rows of the frame of P' f + T' m, N and N m."""
         return np.concatenate([f, vector_product(self.u, self.A.T.dot(f)) + self.turned_back(m)])
 
     def mode_force(self, phi: np.ndarray, psi: np.ndarray, f: np.ndarray, m: np.ndarray):
-        """Row of a mode of P' f + T' m."""
+        """Return the row of a mode of P' f + T' m, N."""
         return phi.dot(self.A.T.dot(f)) + self.relative(psi).dot(self.turned_back(m))
 
     def by_frame(self, values: np.ndarray) -> np.ndarray:
-        """Derivatives by translation and rotation."""
+        """Return the derivatives of values by translation and rotation, along a new last axis."""
         return np.stack([d.array(values) for d in self.frame.tangents(self.program, self.b, self.A)], axis=-1)
 
     def by_mode(self, phi: np.ndarray, psi: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Derivatives by eta of a mode."""
+        """Return the derivatives of values by eta of a mode."""
         along = dict(zip([*self.u, *self.theta], [*phi, *psi], strict=True))
         return DirectionalDerivative(self.program, "d_eta", along).array(values)
 
 
 def attachment(name: str, frame: Body) -> Program:
-    """p, axes; P, T by the frame; velocities and biases."""
+    """Return the kernel of a point and its axes: positions, Jacobians P and T by the frame, velocities and biases."""
     p = Program(f"{name}_attachment", "a point and its axes: dp = P dq, d(axes) = (T dq)~ axes, with rates", SOURCE)
     point = Point(p, frame)
     w = frame.velocity(p)
@@ -239,7 +239,7 @@ def attachment(name: str, frame: Body) -> Program:
 
 
 def attachment_mode(name: str, frame: Body) -> Program:
-    """Columns of P and T."""
+    """Return the kernel of the columns of P and T of a mode."""
     p = Program(f"{name}_attachment_mode", "columns of a mode in P and T", SOURCE)
     point = Point(p, frame)
     phi, psi = point.mode()
@@ -249,7 +249,7 @@ def attachment_mode(name: str, frame: Body) -> Program:
 
 
 def attachment_force(name: str, frame: Body) -> Program:
-    """K of the frame."""
+    """Return the kernel of the derivative of the frame's rows of P' f + T' m by the frame."""
     p = Program(f"{name}_attachment_force", "derivatives of the frame's rows of P' f + T' m by the frame", SOURCE)
     point = Point(p, frame)
     force = point.frame_force(*point.loads())
@@ -259,7 +259,7 @@ def attachment_force(name: str, frame: Body) -> Program:
 
 
 def attachment_mode_force(name: str, frame: Body) -> Program:
-    """K between frame and mode."""
+    """Return the kernel of the derivatives of P' f + T' m that couple the frame and a mode."""
     p = Program(f"{name}_attachment_mode_force",
                 "derivatives of P' f + T' m: the mode's row by the frame, and the reverse", SOURCE)
     point = Point(p, frame)
@@ -273,7 +273,7 @@ def attachment_mode_force(name: str, frame: Body) -> Program:
 
 
 def attachment_pair_force(name: str, frame: Body) -> Program:
-    """K between modes."""
+    """Return the kernel of the derivatives of P' f + T' m that couple two modes."""
     p = Program(f"{name}_attachment_pair_force", "derivative of mode k's row of P' f + T' m by eta of mode l", SOURCE)
     point = Point(p, frame)
     phi, psi = point.mode()

@@ -17,7 +17,7 @@ OPENMP = "-fopenmp"
 
 
 class ParallelBuild(build_ext):
-    """build_ext of pyproject.toml."""
+    """The command build_ext that pyproject.toml names."""
 
     def build_extensions(self) -> None:
         """Build all modules; files in a pool of as many threads as there are cores, each calling the compiler."""
@@ -39,7 +39,7 @@ class ParallelBuild(build_ext):
             super().build_extensions()
 
     def _has_openmp(self) -> bool:
-        """Whether a program with it compiles and links."""
+        """Return whether a program with it compiles and links."""
         with tempfile.TemporaryDirectory() as folder:
             source = Path(folder) / "openmp.c"
             source.write_text("#include <omp.h>\nint main(void) { return omp_get_max_threads() < 1; }\n")

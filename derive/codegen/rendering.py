@@ -197,7 +197,7 @@ def _law(family: Family) -> dict:
 
 
 def signature(program: Program | Recorded) -> str:
-    """C parameters."""
+    """Return the C parameters of a kernel, inputs before outputs."""
     inputs = [f"fu_real {a.name}" if a.shape == () else f"const fu_real *{a.name}" for a in program.inputs]
     return ", ".join([*inputs, *(f"fu_real *{a.name}" for a in program.outputs)])
 

@@ -27,14 +27,14 @@ class TwoFrames:
         self.c = program.input("c", 3, "m or rad, 1, 1", "what drives the joint (else unused), its cosine and sine")
 
     def along(self, tag: str, gap, turn_1, turn_2, more: dict | None = None) -> DirectionalDerivative:
-        """The derivation that moves the gap and turns both frames."""
+        """Return the derivative along a motion that moves the gap and turns both frames."""
         on = dict(zip(self.gap, gap, strict=True)) | (more or {})
         for A, turn in ((self.A1, turn_1), (self.A2, turn_2)):
             on |= dict(zip(A.ravel(), spun(np.array(turn), A).ravel(), strict=True))
         return DirectionalDerivative(self.program, tag, on)
 
     def moves(self) -> list[DirectionalDerivative]:
-        """By the gap, by the turn of the first frame, by that of the second."""
+        """Return the derivatives by the gap, by the turn of the first frame, by that of the second."""
         n = self.dim + 2 * self.turns
         return [self.along(f"d{k}", *np.split(unit, [self.dim, self.dim + self.turns]))
                 for k, unit in enumerate(np.eye(n, dtype=int))]
@@ -45,17 +45,17 @@ def _meet(p: TwoFrames) -> list[sp.Expr]:
 
 
 def _offset(axes: str) -> Callable:
-    """The second point stays at zero along these axes of the first frame."""
+    """Return the equations that keep the second point at zero along these axes of the first frame."""
     return lambda p: [p.gap.dot(p.A1[:, "xyz".index(a)]) for a in axes]
 
 
 def _across(*pairs: str) -> Callable:
-    """An axis of the first frame stays normal to one of the second: "xz" for x of the first and z of the second."""
+    """Return the equations that keep axes of both frames normal: "xz" is x of the first and z of the second."""
     return lambda p: [p.A1[:, "xyz".index(a)].dot(p.A2[:, "xyz".index(b)]) for a, b in pairs]
 
 
 def _moved(axis: str) -> Callable:
-    """The second point is at c along this axis of the first frame."""
+    """Return the equation that keeps the second point at c along this axis of the first frame."""
     return lambda p: [p.gap.dot(p.A1[:, "xyz".index(axis)]) - p.c[0]]
 
 
@@ -94,7 +94,7 @@ JOINTS = {3: {"spherical": [_meet],
 
 
 def rows(dim: int, name: str) -> int:
-    """Number of equations."""
+    """Return the number of equations of a joint."""
     return len(_equations(TwoFrames(Program(name, "", ""), dim), name))
 
 
@@ -105,12 +105,12 @@ def _equations(frames: TwoFrames, name: str) -> np.ndarray:
 
 
 def build(dim: int, name: str) -> list[Program]:
-    """The kernels of a joint."""
+    """Return the kernels of a joint."""
     return [force(dim, name), motion(dim, name)]
 
 
 def force(dim: int, name: str) -> Program:
-    """phi, its Jacobian J, and the derivative of J' f."""
+    """Return the kernel of phi, its Jacobian J, and the derivative of J' f."""
     p = Program(f"joint_{name}_force", "equations, their derivatives, and those of the force J' f", "eq 19, 28")
     frames = TwoFrames(p, dim)
     phi = _equations(frames, name)

@@ -17,12 +17,12 @@ BUFFER = ("stiffness", "damping", "x", "side")
 
 
 def build(dim: int) -> list[Program]:
-    """The kernels in space or in the plane."""
+    """Return the kernels in space or in the plane."""
     return [force(dim)]
 
 
 def force(dim: int) -> Program:
-    """R and its derivatives."""
+    """Return the kernel of R, the generalised force of s in N, and of its derivatives."""
     p = Program(f"{RESISTANCES[dim]}_force", "force along the cable on a slide, and its derivatives", "eq 30")
     t = p.input("t", dim, "1", "r_x at s")
     u = p.input("u", dim, "m/s", "velocity of the rider's point less that of the cable's particle")

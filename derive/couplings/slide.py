@@ -44,7 +44,7 @@ class Slide:
         self.r_p = program.vector("r_p", gap + (self.r - arm))
 
     def _director(self) -> tuple[np.ndarray, list]:
-        """What gives a spatial frame its normal, and its entries that move with e.
+        """Return what gives a spatial frame its normal, and its entries that move with e.
 
         A slope of the element, or a direction from outside, held fixed: only the direction of the two normals hangs
         on it, not the plane that they span. A planar frame needs neither; the input stays, so that all slides are
@@ -73,7 +73,7 @@ class Slide:
         return self.C
 
     def named(self, name: str, values: np.ndarray, suffix: str = "") -> np.ndarray:
-        """Define the entries of something like C."""
+        """Return the entries of something like C, named in the program."""
         return np.array([self.program.define(f"{name}{entry}{suffix}", value)
                          for entry, value in zip(self.entries, values, strict=True)])
 
@@ -90,7 +90,7 @@ class Slide:
 
 
 def build(element: Element, rider: Rider) -> list[Program]:
-    """The kernels of the slide of a rider on a cable of this element."""
+    """Return the kernels of the slide of a rider on a cable of this element."""
     name = f"slide_{element.name}_{rider.NAME}"
     return [kernel(name, element, rider) for kernel in (_constraint, _terms, _residual, _tangent, _discrete_gradient)]
 

@@ -21,13 +21,13 @@ def _ring(expr: sp.Expr):
 
 
 def _integral(p, length, section) -> sp.Expr:
-    """Integral of a ring polynomial over the element, in kernel symbols."""
+    """Return the integral of a ring polynomial over the element, in the kernel's symbols."""
     return sum((sp.Rational(int(c.numerator), int(c.denominator)) * length**power * section[m]
                 for (m, power), c in sorted(integrals.over_element(p).items())), sp.S.Zero)
 
 
 def build(element: Element) -> list[Program]:
-    """Every kernel of an element that no law enters."""
+    """Return the programs of every kernel of an element that no law enters."""
     shape = [_ring(n) for n in element.shape_functions]
     return [mass(element, shape), gravity(element, shape), inertia_force(element, shape), position(element),
             *load_kernels.build(element)]
@@ -65,7 +65,7 @@ def mass(element: Element, shape) -> Program:
 
 
 def gravity(element: Element, shape) -> Program:
-    """Generalised force of a constant gravity field."""
+    """Return the kernel of the generalised force of constant gravity, (vectors, dim), N and N m."""
     p = _program(element, "gravity", "generalised force of constant gravity", "Q_e of eq 9")
     length, density, section = _length(p), p.input("density", (), "kg/m^3", "density"), _section(p)
     g = p.input("g", element.dim, "m/s^2", "gravity")
@@ -77,7 +77,7 @@ def gravity(element: Element, shape) -> Program:
 
 
 def inertia_force(element: Element, shape) -> Program:
-    """M a with M = m (x) I, zeros of m left out."""
+    """Return the kernel of M a with M = m (x) I; it leaves out the zeros of m."""
     p = _program(element, "inertia_force", "M a", "M e'' of eq 9")
     n = element.n_vectors
     m = p.input("m", (n, n), "kg, kg m, kg m^2", f"mass matrix from {element.name}_mass")
@@ -88,7 +88,7 @@ def inertia_force(element: Element, shape) -> Program:
 
 
 def _horner(n: sp.Expr, power: int, xi: sp.Symbol) -> sp.Expr:
-    """A shape function as l^power times a polynomial in xi with whole coefficients: monomials in x cancel."""
+    """Return a shape function as l^power times a polynomial in xi with whole coefficients: monomials in x cancel."""
     return l**power * sp.horner(sp.expand(n.subs(x, xi * l) / l**power), xi)
 
 

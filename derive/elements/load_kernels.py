@@ -11,12 +11,12 @@ from ..spec import Element
 
 
 def build(element: Element) -> list[Program]:
-    """The load kernels of an element."""
+    """Return the load kernels of an element."""
     return [on_axis(element), slopes(element), follower_force(element), moment(element)]
 
 
 def on_axis(element: Element) -> Program:
-    """eq 2 on the centreline."""
+    """Return the kernel of the shape functions and their slopes on the centreline."""
     p = Program(f"{element.name}_on_axis", "shape functions and slopes of a point of the centreline", "eq 2")
     axis = Axis(p, element)
     p.stage("shape functions")
@@ -26,7 +26,7 @@ def on_axis(element: Element) -> Program:
 
 
 def slopes(element: Element) -> Program:
-    """What a frame that goes along the centreline is made of: r_x, r_y, r_z there, and how they change with x."""
+    """Return the kernel of what a frame along the centreline is made of: r_x, r_y, r_z and their derivatives by x."""
     p = Program(f"{element.name}_slopes", "slopes of a point of the centreline, and their derivatives by x", "eq 13-16")
     axis = Axis(p, element)
     p.stage("derivatives of the shape functions")
@@ -36,7 +36,7 @@ def slopes(element: Element) -> Program:
 
 
 def follower_force(element: Element) -> Program:
-    """f = N' A_t c."""
+    """Return the kernel of f = N' A_t c, of a force that turns with the tangent frame, and of its derivative."""
     p = Program(f"{element.name}_follower_force", "generalised force of a force that turns with the tangent frame",
                 "N' A_t c, A_t of eq 18")
     axis = Axis(p, element)
@@ -57,7 +57,9 @@ def follower_force(element: Element) -> Program:
 
 
 def turning_slopes(element: Element) -> list[str]:
-    """The slopes, by x, y, z, that say how a section turns: those across, and the tangent where they are too few."""
+    """Return the slopes, by x, y, z, that say how a section turns: those across, and the tangent where they are too
+    few.
+    """
     across = [c for c in "yz" if f"r_{c}" in element.nodal_vectors]
     return across if len(across) >= element.dim - 1 else ["x", *across]
 

@@ -41,7 +41,7 @@ def _class(law: str | type) -> type | None:
 
 
 def build(element: Element, law: str | type, damping: bool = True) -> list[Program]:
-    """Every kernel of a law on an element; those of damping where it does not take another law's."""
+    """Return every kernel of a law on an element; those of damping where it does not take another law's."""
     left_out = missing(law)
     discrete, damped = ([kernel for kernel in kernels if kernel not in left_out]
                         for kernels in (DISCRETE, (*DAMPING, *ALGORITHMIC) if damping else ()))
@@ -96,20 +96,20 @@ class Kernels:
         return w, A, *given, self.gram.differences(program, e, w), self.gram.differences(program, v, w, "d")
 
     def set_up(self) -> Program:
-        """The law's constants."""
+        """Return the kernel of the law's constants A."""
         p = self._program(self.law.set_up_kernel, "constants of the law from the stiffness of the section", "eq 7")
         self.law.set_up(p)
         return p
 
     def energy(self) -> Program:
-        """eq 7."""
+        """Return the kernel of the elastic energy U of eq 7, J."""
         p = self._program("energy", "elastic energy", "eq 7")
         w, A, c = self._strain(p)
         p.output("U", [self.law.energy(p, A, c, w)], "J", "elastic energy")
         return p
 
     def elastic_force(self) -> Program:
-        """eq 8, as dU/de = -Q_k."""
+        """Return the kernel of the force dU/de, which is -Q_k of eq 8."""
         p = self._program("elastic_force", "dU/de, minus the elastic force Q_k", "eq 8")
         w, A, c = self._strain(p)
         p.output("f", self._nodal(p, self.law.forces(p, A, c, w), w), "N, N m", "dU/de")
@@ -133,7 +133,7 @@ class Kernels:
         return p
 
     def elastic_tangent(self) -> Program:
-        """Second derivative of the energy."""
+        """Return the kernel of the second derivative of the energy, d2U/de2."""
         p = self._program("elastic_tangent", "d2U/de2", "derivative of eq 8")
         w, A, c = self._strain(p)
         K = nodal_tangent(self.gram, p, self.law.tangent(p, A, c, w), w, symmetric=True)
@@ -158,7 +158,7 @@ class Kernels:
         return p
 
     def dissipation(self) -> Program:
-        """Power that the damping force takes out."""
+        """Return the power that the damping force takes out."""
         p = self._program("dissipation", "power dissipated by the damping force", "v . Q_d of eq 9")
         w, A, tau, c, dc = self._rates(p)
         p.output("P", [sp.sympify(self.law.dissipation(p, A, tau, c, dc, w))], "W", "dissipated power, never negative")
@@ -178,7 +178,7 @@ class Kernels:
         return p
 
     def section_forces(self) -> Program:
-        """What passes through the section at x from the side of greater x."""
+        """Return what passes through the section at x from the side of greater x."""
         p = self._program("section_forces", "force and moment resultants of a section", "eq 6-8 at a section")
         length, x = p.input("l", (), "m", "length of the element"), p.input("x", (), "m", "arc-length from its start")
         e, S = self._coordinates(p), self.law.section_stiffness(p)
@@ -198,7 +198,7 @@ class Kernels:
         return p
 
     def _axes(self, program: Program, c: np.ndarray, X: sp.Expr, w: sp.Expr) -> np.ndarray:
-        """Rows t, y, z in space; z is out of the plane of a planar element."""
+        """Return the rows t, y, z in space; z is out of the plane of a planar element."""
         tangent = program.vector("t", axis(self.gram, c, X, w, 1))
         if self.element.dim == 2:
             i = unit(program, "i", tangent)

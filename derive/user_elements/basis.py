@@ -155,7 +155,7 @@ def _laws(element: Element) -> Iterator[tuple[str, str]]:
 
 
 def _functionals(element: Element) -> Iterator[tuple[str, str]]:
-    """Nodal conditions of a class derived from Element: each must be linear in the function."""
+    """Yield the nodal conditions that are not linear in the function, of a class derived from Element."""
     basis = [sp.sympify(f) for f in element.basis]
     for f, g in pairwise(basis):
         alone, both = element.nodal_conditions([f, g]), element.nodal_conditions([2 * f + 3 * g])
@@ -165,7 +165,7 @@ def _functionals(element: Element) -> Iterator[tuple[str, str]]:
 
 
 def _conditions(element: Element) -> Iterator[tuple[str, str]]:
-    """The nodal conditions must fix the basis: which of them depend on others, and what stays undetermined."""
+    """Yield why the nodal conditions do not fix the basis: which of them depend on others, what stays undetermined."""
     basis = [sp.sympify(f) for f in element.basis]
     conditions = element.nodal_conditions(basis)
     rows, columns = conditions.shape
@@ -181,7 +181,7 @@ def _conditions(element: Element) -> Iterator[tuple[str, str]]:
 
 
 def _combination(vector: sp.Matrix, of) -> str:
-    """Sum of a null vector's entries times what they stand for."""
+    """Return the sum of a null vector's entries times what they stand for."""
     terms = [(sp.factor(c), name) for c, name in zip(vector, of, strict=True) if c != 0]
     lead = terms[0][0]
     return str(sp.Add(*(sp.cancel(c / lead) * (name if isinstance(name, sp.Basic) else sp.Symbol(name))

@@ -108,7 +108,7 @@ def _derived(spec: Path, family: Family) -> emit.Derived:
 
 
 def _table(kernels: dict, times: dict[str, list[float]], sizes: dict[str, int], report: Report) -> Table:
-    """Kernels with operations, bytes of code, errors and time."""
+    """Return the kernels with operations, bytes of code, errors and time."""
     table = Table(title="Errors are relative to the output's largest entry; times are of one thread",
                   title_justify="left", box=box.SIMPLE_HEAD)
     for name in ("kernel", "operations", "bytes of code", "rounding", "50 digits", "µs a call"):

@@ -25,7 +25,7 @@ TOLERANCE = 1e-8  # differences at 50 digits keep ten more of a smooth energy, a
 
 
 def check_arithmetic(programs: list[Program], place: str) -> None:
-    """Kernels are sums, products, quotients and square roots: raise SpecError for anything else."""
+    """Raise SpecError for a kernel that has more than sums, products, quotients and square roots."""
     for program in programs:
         exprs = [e for stage in program.stages for _, e in stage.definitions]
         exprs += [e for value in program.values.values() for e in value.ravel()]
@@ -67,7 +67,7 @@ class _Trial:
         raise SpecError(self.place, f"{cause}: kernel {self.family.name}_{kernel}, at {sample}", remedy)
 
     def value(self, kernel: str, output: str, s, **changes) -> np.ndarray | None:
-        """An output, None where it is no finite real number."""
+        """Return an output, None where it is no finite real number."""
         try:
             value = self.k(kernel, s, **changes)[output]
         except (ZeroDivisionError, ValueError):
@@ -139,7 +139,7 @@ class _Trial:
                                    "make it of squares, or round the corner off")
 
     def _one_sided(self, sample: str, s, j: int, name: str) -> list[tuple]:
-        """First and second differences of the energy by coordinate j, before and after the sample."""
+        """Return the first and second differences of the energy by coordinate j, before and after the sample."""
         direction = np.zeros(s["e"].size, dtype=int)
         direction[j] = 1
         U = {}

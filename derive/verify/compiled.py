@@ -25,7 +25,7 @@ class CompilerError(Exception):
 
 
 def compiler() -> list[str]:
-    """The C compiler: $CC, then the one that built this Python, then cc, gcc, clang.
+    """Return the C compiler: $CC, then the one that built this Python, then cc, gcc, clang.
 
     Raises CompilerError where there is none.
     """
@@ -87,7 +87,9 @@ class Library:
         return self
 
     def __call__(self, name: str, inputs: Iterable[np.ndarray]) -> dict[str, np.ndarray]:
-        """Outputs of a kernel by name; every call has fresh arrays, with not-a-number where nothing was written."""
+        """Return the outputs of a kernel by name; every call has fresh arrays, with not-a-number where nothing was
+        written.
+        """
         program = self.programs[name]
         arrays = [np.ascontiguousarray(v, dtype=self.dtype) for v in inputs]
         for argument, array in zip(program.inputs, arrays, strict=True):

@@ -38,12 +38,12 @@ class Input:
     sizes: State
 
     def changed(self, sample: State) -> set[str]:
-        """Names of the values in which it differs from a sample."""
+        """Return the names of the values in which it differs from a sample."""
         return {name for name in self.state if self.state[name] is not sample.get(name)}
 
 
 def inputs(family: Family, samples: list[State]) -> Iterator[tuple[Input, State]]:
-    """Every input with the sample that it was made from."""
+    """Yield every input with the sample that it was made from."""
     for number, sample in enumerate(samples[: len(SEEDS)]):  # the one after these is at rest along the axes
         random = np.random.default_rng(number)
         yield Input("ordinary", sample, sample), sample
@@ -89,7 +89,7 @@ def _turned(family: Family, s: State, random: np.random.Generator) -> dict[str, 
 
 
 def _arc(element: Element, l: float) -> np.ndarray:
-    """The straight element bent to an arc in the plane x y."""
+    """Return the straight element bent to an arc in the plane x y."""
     e, per_node = reference(element, l), len(element.nodal_vectors)
     for k, ratio in enumerate(element.node_ratios):
         angle = BEND * (float(ratio) - 0.5)

@@ -49,7 +49,7 @@ OPERATIONS = 2e7  # of one loop: some milliseconds
 
 def build(families: Iterable[Family], manifest: dict, kernels, units: Iterable[Path], flags: Iterable[str],
           work: Path) -> Path:
-    """A program with a loop for every kernel of the families.
+    """Return a program with a loop for every kernel of the families.
 
     manifest: what it says of them; kernels: their Python face; units: the object files that hold them; flags: of the
     compiler, with the folder of kernels.h; work: the folder for the program.
@@ -68,7 +68,7 @@ def build(families: Iterable[Family], manifest: dict, kernels, units: Iterable[P
 
 
 def times(program: Path, repetitions: int) -> dict[str, list[float]]:
-    """Microseconds a call by kernel; every repetition is a round of all of them."""
+    """Return the microseconds a call by kernel; every repetition is a round of all of them."""
     taken: dict[str, list[float]] = {}
     for _ in range(repetitions):
         for line in _output([program]):
@@ -78,7 +78,7 @@ def times(program: Path, repetitions: int) -> dict[str, list[float]]:
 
 
 def code_sizes(program: Path) -> dict[str, int]:
-    """Bytes of code by function, as nm tells; empty without nm."""
+    """Return the bytes of code by function, as nm tells; empty without nm."""
     try:
         lines = [line.split() for line in _output(["nm", "-S", program])]
     except (OSError, subprocess.CalledProcessError):
@@ -91,7 +91,7 @@ def _output(command: Iterable) -> list[str]:
 
 
 def sample(family: Family, programs: list[Recorded], kernels) -> dict[str, np.ndarray]:
-    """The first state on which the family is verified; its constants from the compiled kernels."""
+    """Return the first state on which the family is verified; its constants from the compiled kernels."""
     outputs = {p.name: [a.name for a in p.outputs] for p in programs}
 
     def call(name, inputs):

@@ -57,26 +57,27 @@ class AssumedCable(Cable):
 
     @property
     def axial_points(self) -> list[Point]:
-        """Those of the exact curvature with it; else exact for the modes of the green strain, degree 3(d - 1)."""
+        """Return those of the exact curvature with it; else exact for the modes of the green strain, degree 3(d - 1).
+        """
         if self.curvature == "exact" or self.strain == "engineering":
             return super().axial_points
         return self.points((3 * self.degree - 1) // 2)
 
     def constants(self, program: Program) -> np.ndarray:
-        """Input A."""
+        """Declare the input A (3,): EA in N, EI in N m^2, EA of the upper modes in N; return it."""
         return program.input("A", 3, "N, N m^2, N", STIFFNESS_DOC)
 
     def section_stiffness(self, program: Program) -> np.ndarray:
-        """Input S."""
+        """Declare the input S (3,): EA in N, EI in N m^2, EA of the upper modes in N; return it."""
         return program.input("S", 3, "N, N m^2, N", STIFFNESS_DOC)
 
     def set_up(self, program: Program) -> None:
-        """Inputs l, S and output A, which is S."""
+        """Declare the inputs l and S, and the output A, which is S."""
         program.input("l", (), "m", "length of the element")
         program.output("A", self.section_stiffness(program), "N, N m^2, N", STIFFNESS_DOC)
 
     def _terms(self, program: Program, A, c, w) -> Iterator[Term]:
-        """Stages: the energy of bending point by point, with strain and stress of the membrane."""
+        """Yield the energy of bending point by point, with strain and stress of the membrane."""
         program.stage("strain at the quadrature points")
         EI = program.define("EI_l", 2 * A[1] * w)
         points, names = self.axial_points, "abc" if self.curvature == "exact" else "a"
@@ -104,13 +105,13 @@ class AssumedCable(Cable):
     # --- the strain by its modes ------------------------------------------------------------------------------
 
     def _stiffnesses(self, program: Program, A, w) -> list[sp.Expr]:
-        """EA_m l/2."""
+        """Return EA_m l/2 of each mode m of the strain, N m."""
         full, upper = (program.define_once(name, value / (2 * w))
                        for name, value in (("EA_l", A[0]), ("EA_up_l", A[2])))
         return [full if m < self.n_full else upper for m in range(self.degree)]
 
     def _modes(self, program: Program, points: Sequence[Point], strains: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """Stage: strain_m from the strain at points, which come in pairs at X and -X."""
+        """Return strain_m from the strain at points, which come in pairs at X and -X."""
         program.stage("strain by its Legendre modes")
         total = [sp.S.Zero] * self.degree
         for here in range((len(points) + 1) // 2):
@@ -124,7 +125,7 @@ class AssumedCable(Cable):
         return [program.define(f"eps_m{m}", value) for m, value in enumerate(total)]
 
     def _stresses(self, program: Program, A, w, points: Sequence[Point], strains: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """Stages: derivatives of twice the membrane energy by the strain at the points."""
+        """Return derivatives of twice the membrane energy by the strain at the points."""
         modes = self._modes(program, points, strains)
         program.stage("normal force at the quadrature points")
         N = [program.define(f"N_m{m}", EA * eps)
@@ -147,7 +148,7 @@ class AssumedCable(Cable):
         return sp.Rational(2 * m + 1, 2) * sp.Rational(int(total.numerator), int(total.denominator))
 
     def _product_at_points(self, m: int, i: int, k: int) -> sp.Expr:
-        """The same by the quadrature of the membrane, which may have too few points."""
+        """Return the same by the quadrature of the membrane, which may have too few points."""
         points = self.axial_points
         if m + i + k < 2 * len(points):
             return self._product(m, i, k)
@@ -159,7 +160,7 @@ class AssumedCable(Cable):
     # --- second derivatives -----------------------------------------------------------------------------------
 
     def tangent(self, program: Program, A, c, w) -> np.ndarray:
-        """Stages: d2U/dc2 over strain vectors: at the points with the stress constant, and what the stress changes."""
+        """Return d2U/dc2 over strain vectors: at the points with the stress constant, and what the stress changes."""
         terms = list(self._terms(program, A, c, w))
         total = np.array(0)
         for names in dict.fromkeys(term.names for term in terms):
@@ -179,7 +180,7 @@ class AssumedCable(Cable):
         return named_blocks(program, self.gram.names, total, symmetric=True)
 
     def _mode_gradients(self, program: Program, c: np.ndarray, terms: list[Term]) -> np.ndarray:
-        """Stage: derivatives of strain_m by the strain vectors, (m, n, dim)."""
+        """Return derivatives of strain_m by the strain vectors, (m, n, dim)."""
         program.stage("derivatives of the strain's modes")
         d = range(self.degree)
         along = [c[m] for m in self.axis_indices]
@@ -215,7 +216,7 @@ class AssumedCable(Cable):
     # --- sections ---------------------------------------------------------------------------------------------
 
     def membrane(self, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, strain: sp.Expr) -> tuple:
-        """Stages: energy per length whose derivative is the membrane's force, what is constant in it, and the strain:
+        """Return energy per length whose derivative is the membrane's force, what is constant in it, and the strain:
         the modes' normal force and strain at X.
         """
         points = self.axial_points

@@ -63,12 +63,12 @@ class Term:
 
     @property
     def varied(self) -> sp.Expr:
-        """What has the derivatives of twice the energy by the invariants, the stress constant."""
+        """Return what has the derivatives of twice the energy by the invariants, the stress constant."""
         return self.twice + self.stress * self.strain
 
     @property
     def constant(self) -> list[sp.Symbol]:
-        """The stress, where there is one."""
+        """Return the stress, where there is one."""
         return [self.stress] if self.stress.is_Symbol else []
 
 
@@ -90,21 +90,21 @@ class Cable(Damping):
 
     @cached_property
     def degree(self) -> int:
-        """Degree of the centreline."""
+        """Return the degree of the centreline in x."""
         return len(self._axis)
 
     @cached_property
     def axis_indices(self) -> list[int]:
-        """The strain vectors along the axis."""
+        """Return the strain vectors along the axis."""
         return [m for m, name in enumerate(self.gram.names) if name.startswith("t")]
 
     @cached_property
     def _axis(self) -> list:
-        """Their polynomials in X."""
+        """Return the polynomials in X of the strain vectors along the axis."""
         return [self.gram.gradient[m][0] for m in self.axis_indices]
 
     def points(self, n: int) -> list[Point]:
-        """Gauss-Legendre."""
+        """Return the n points of the Gauss-Legendre rule."""
         nodes, weights = np.polynomial.legendre.leggauss(n)
         return [Point(_number(w), tuple(_number(_at(p, x)) for p in self._axis),
                       tuple(_number(_at(p.diff(integrals.X), x)) for p in self._axis))
@@ -112,7 +112,9 @@ class Cable(Damping):
 
     @property
     def axial_points(self) -> list[Point]:
-        """Those of the exact curvature with it; else exact for the green strain, whose square has degree 4(d - 1)."""
+        """Return those of the exact curvature with it; else exact for the green strain, whose square has degree 4(d -
+        1).
+        """
         return self.points(2 * self.degree - 1) if self.curvature == "linear" else self.bending_points
 
     @property
@@ -126,20 +128,20 @@ class Cable(Damping):
         return self.points(self.degree - 1 if self.curvature == "linear" else max(5, self.degree))
 
     def constants(self, program: Program) -> np.ndarray:
-        """Input A."""
+        """Declare the input A (2,): EA in N, EI in N m^2; return it."""
         return program.input("A", 2, "N, N m^2", STIFFNESS_DOC)
 
     def section_stiffness(self, program: Program) -> np.ndarray:
-        """Input S."""
+        """Declare the input S (2,): EA in N, EI in N m^2; return it."""
         return program.input("S", 2, "N, N m^2", STIFFNESS_DOC)
 
     def set_up(self, program: Program) -> None:
-        """Inputs l, S and output A, which is S."""
+        """Declare the inputs l and S, and the output A, which is S."""
         program.input("l", (), "m", "length of the element")
         program.output("A", self.section_stiffness(program), "N, N m^2", STIFFNESS_DOC)
 
     def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X, w, c0=None) -> tuple:
-        """Stages: force and moment in space, and strain, at X; c0 of a curved stress-free shape."""
+        """Return force and moment in space, and strain, at X; c0 of a curved stress-free shape."""
         return resultants(self, program, S, c, X, w, c0)
 
     def membrane(self, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, strain: sp.Expr) -> tuple:
@@ -172,7 +174,7 @@ class Cable(Damping):
         return found
 
     def _terms(self, program: Program, A, c, w) -> Iterator[Term]:
-        """Stages: the energy point by point."""
+        """Yield the energy point by point."""
         program.stage("strain at the quadrature points")
         EA, EI = program.define("EA_l", A[0] / (2 * w)), program.define("EI_l", 2 * A[1] * w)
         if self.curvature == "exact":
@@ -212,11 +214,11 @@ class Cable(Damping):
         return strain, program.define(f"cross2{tag}", a * c - b * b) * scale, scale
 
     def energy(self, program: Program, A, c, w) -> sp.Expr:
-        """U."""
+        """Return the elastic energy U, J."""
         return sum(term.share for term in self._terms(program, A, c, w)) / 2
 
     def forces(self, program: Program, A, c, w) -> np.ndarray:
-        """Stages: dU/dc on strain vectors."""
+        """Return dU/dc on strain vectors."""
         f = np.zeros((len(self.gram.names), self.gram.element.dim), dtype=object)
         for names, terms in groupby(list(self._terms(program, A, c, w)), key=lambda term: term.names):
             terms = list(terms)
@@ -227,7 +229,7 @@ class Cable(Damping):
         return self._named(program, f)
 
     def _gathered(self, program: Program, names: str, terms: list[Term], forces: list) -> np.ndarray:
-        """Forces on the strain vectors along the axis from those on the vectors of each point."""
+        """Return the forces on the strain vectors along the axis from those on the vectors of each point."""
         return sum(gathered(program, f"{names}{k + 1}", [term.series[k] for term in terms], [f[k] for f in forces])
                    for k in range(len(terms[0].vectors)))
 
@@ -236,7 +238,7 @@ class Cable(Damping):
         return np.array([program.vector(f"f_{name}", v) for name, v in zip(self.gram.names, f, strict=True)])
 
     def discrete_forces(self, program: Program, A, now, then, w) -> np.ndarray:
-        """Stages: forces f on strain vectors with f . (then - now) = the difference of U, by the mean vectors."""
+        """Return forces f on strain vectors with f . (then - now) = the difference of U, by the mean vectors."""
         law, c = staged(program, now)
         terms = list(self._terms(law, A, c, w))
         inputs = zip(c.ravel(), zip(now.ravel(), then.ravel(), strict=True), strict=True)
@@ -255,8 +257,8 @@ class Cable(Damping):
         return self._named(program, f)
 
     def stress_of_turning(self, program: Program, A, change, w) -> np.ndarray:
-        """Stages: blocks (n, n, 1, 1) over strain vectors that the mean stress of a step has more than the stress of
-        the mean vectors: EA (dr'.dr')/8, for that is what a turn takes off the strain. Of what bends it is none.
+        """Return blocks (n, n, 1, 1) over strain vectors that the mean stress of a step has more than the stress of the
+        mean vectors: EA (dr'.dr')/8, for that is what a turn takes off the strain. Of what bends it is none.
         """
         program.stage("strain of the change at the quadrature points")
         stiffness = program.define("EA_l", A[0] / (2 * w))
@@ -272,7 +274,7 @@ class Cable(Damping):
         return blocks
 
     def tangent(self, program: Program, A, c, w) -> np.ndarray:
-        """Stages: d2U/dc2 over strain vectors."""
+        """Return d2U/dc2 over strain vectors."""
         total = np.array(0)
         for _, terms in groupby(list(self._terms(program, A, c, w)), key=lambda term: term.names):
             total = total + self._second(program, list(terms))
@@ -280,7 +282,7 @@ class Cable(Damping):
         return named_blocks(program, self.gram.names, total, symmetric=True)
 
     def _second(self, program: Program, terms: list[Term]) -> np.ndarray:
-        """Stages: second derivatives of the terms of a rule, over strain vectors."""
+        """Return second derivatives of the terms of a rule, over strain vectors."""
         program.stage("second derivatives at the quadrature points")
         names, at_points = terms[0].names, []
         for g, term in enumerate(terms):
@@ -291,13 +293,13 @@ class Cable(Damping):
 
 
 def _first(program: Program, term: Term) -> list[sp.Expr]:
-    """Derivatives of twice the energy by a term's invariants."""
+    """Return the derivatives of twice the energy by a term's invariants."""
     gradient = jacobian(program, np.array([term.varied]), term.invariants, term.constant)[0]
     return [program.define(f"D_{s.name}", d) for s, d in zip(term.invariants, gradient, strict=True)]
 
 
 def _number(value) -> sp.Expr:
-    """A double as the kernels will hold it; small integers are exact."""
+    """Return a double as the kernels will hold it; small integers are exact."""
     value = float(value)
     return sp.Integer(round(value)) if abs(value - round(value)) < 1e-15 else sp.Float(value)
 

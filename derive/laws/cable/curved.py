@@ -66,11 +66,11 @@ class CurvedCable(Cable):
         return 2 + N_REFERENCE * len(self.bending_points)
 
     def constants(self, program: Program) -> np.ndarray:
-        """Input A."""
+        """Declare the input A: EA, EI, and six numbers of the stress-free shape for each Gauss point; return it."""
         return program.input("A", self._size(), "N, N m^2, 1", "EA, EI, and the stress-free shape at each Gauss point")
 
     def set_up(self, program: Program) -> None:
-        """Inputs l, e0, S and output A."""
+        """Declare the inputs l, e0 and S, and the output A."""
         length = program.input("l", (), "m", "length of the element")
         e0 = stress_free.shape(program, self.gram.element)
         S = self.section_stiffness(program)
@@ -96,7 +96,7 @@ class CurvedCable(Cable):
                          program.define(f"k0_none{tag}", floor**2 * none * kappa))
 
     def _terms(self, program: Program, A, c, w) -> Iterator[Term]:
-        """Stages: the energy point by point."""
+        """Yield the energy point by point."""
         program.stage("strain at the quadrature points")
         EA, EI = program.define("EA_l", A[0] / (2 * w)), program.define("EI_l", 2 * A[1] * w)
         points = self.bending_points

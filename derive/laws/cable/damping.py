@@ -23,7 +23,9 @@ class Damping:
 
     @staticmethod
     def rates(element: Element) -> dict[str, int]:
-        """Number of strain rates that the damping of an element has, and whether a spin about the tangent is one."""
+        """Return the number of strain rates that the damping of an element has, and whether a spin about the tangent is
+        one.
+        """
         degree = sum(sp.sympify(monomial).free_symbols <= {x} for monomial in element.basis) - 1
         return {"rates": degree + (degree - 1) * element.dim, "spins": int(element.dim == 3)}
 
@@ -70,7 +72,7 @@ class Damping:
             yield factors, still, moving, np.array(force)
 
     def damping_forces(self, program, A, tau, c, dc, w) -> np.ndarray:
-        """Forces on strain vectors."""
+        """Return the damping forces on the strain vectors, (vectors, dim), N m."""
         return self._summed(program, list(self._damping_points(program, A, tau, c, dc, w)))
 
     def algorithmic_forces(self, program, A, weight, relaxed_strain, c, dc, w) -> tuple[np.ndarray, Sequence[sp.Expr]]:
@@ -87,7 +89,7 @@ class Damping:
         return self._summed(program, list(self._damping_points(program, A, sp.S.One, c, dc, w, strain))), dE
 
     def _summed(self, program: Program, points: list[tuple]) -> np.ndarray:
-        """Stage: forces on strain vectors from those at the points."""
+        """Return forces on strain vectors from those at the points."""
         dim = self.gram.element.dim
         f = np.zeros((len(self.gram.names), dim), dtype=object)
         for factors, _, _, force in points:
@@ -118,6 +120,6 @@ class Damping:
         return named_blocks(program, self.gram.names, total, symmetric=False)
 
     def dissipation(self, program, A, tau, c, dc, w) -> sp.Expr:
-        """Power."""
+        """Return the dissipated power, W."""
         return sum(viscosity * sum(e * e for e in rates)
                    for _, viscosity, _, _, rates in list(self._rates(program, A, tau, c, dc, w)))

@@ -18,7 +18,7 @@ Series = Sequence[Sequence[sp.Expr]]
 
 
 def values(program: Program, name: str, series: Series, c: Sequence[np.ndarray]) -> list[np.ndarray]:
-    """The vectors at the points: sums of strain vectors c."""
+    """Return the vectors at the points: sums of strain vectors c."""
     found: list = [None] * len(series)
     for here, there in _pairs(series):
         alike = _sum(f * v for f, v, same in zip(series[here], c, _alike(series, here, there), strict=True) if same)
@@ -34,8 +34,8 @@ def values(program: Program, name: str, series: Series, c: Sequence[np.ndarray])
 
 
 def on_vectors(program: Program, tag: str, vectors: Sequence[np.ndarray], D: Sequence[sp.Expr]) -> list[np.ndarray]:
-    """Forces on the vectors of a point from derivatives of twice the energy by their products: r1.r1, or r1.r1, r1.r2,
-    r2.r2.
+    """Return the forces on the vectors of a point from derivatives of twice the energy by their products: r1.r1, or
+    r1.r1, r1.r2, r2.r2.
     """
     if len(vectors) == 1:
         return [program.vector(f"F_{tag}", D[0] * vectors[0])]
@@ -45,7 +45,7 @@ def on_vectors(program: Program, tag: str, vectors: Sequence[np.ndarray], D: Seq
 
 
 def gathered(program: Program, name: str, series: Series, forces: Sequence[np.ndarray]) -> np.ndarray:
-    """Forces on the strain vectors (n, dim) from those on the vectors of the points."""
+    """Return the forces on the strain vectors (n, dim) from those on the vectors of the points."""
     total = np.zeros((len(series[0]), len(forces[0])), dtype=object)
     for here, there in _pairs(series):
         alike, opposite = forces[here], np.array(0)
@@ -59,7 +59,7 @@ def gathered(program: Program, name: str, series: Series, forces: Sequence[np.nd
 
 
 def _pairs(series: Series) -> list[tuple[int, int]]:
-    """Points that mirror each other; the middle one mirrors itself."""
+    """Return the points that mirror each other; the middle one mirrors itself."""
     return [(g, len(series) - 1 - g) for g in range((len(series) + 1) // 2)]
 
 

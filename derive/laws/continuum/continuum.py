@@ -53,7 +53,7 @@ class Form:
 
     @cached_property
     def form(self) -> dict[tuple[int, int], dict]:
-        """A over pairs (p, q): {(elastic constant, section moment, power of l): rational}, zeros left out.
+        """Return A over pairs (p, q): {(elastic constant, section moment, power of l): rational}, zeros left out.
 
         Shear enters as gamma = 2 E, so W = 1/2 sum D E_ii E_jj + 1/2 sum G gamma^2.
         """
@@ -78,12 +78,12 @@ class Form:
 
     @cached_property
     def constants(self) -> list[tuple]:
-        """The different entries of A, in order of first use: the argument A of the kernels."""
+        """Return the different entries of A, in order of first use: the argument A of the kernels."""
         return list(dict.fromkeys(tuple(e.items()) for e in self.form.values()))
 
     @cached_property
     def index(self) -> dict[tuple[int, int], int]:
-        """Index into `constants` of each non-zero entry of A."""
+        """Return the index into `constants` of each non-zero entry of A."""
         place = {c: k for k, c in enumerate(self.constants)}
         return {pq: place[tuple(e.items())] for pq, e in self.form.items()}
 
@@ -97,7 +97,7 @@ class Continuum:
         self.gram, self.form = gram, Form(gram)
 
     def constants(self, program: Program) -> np.ndarray:
-        """Input A."""
+        """Declare the input A, the different non-zero entries of the form in N m, and return it."""
         return program.input("A", len(self.form.constants), "N m",
                              f"elastic constants from {self.gram.element.name}_{NAME}_stiffness")
 
@@ -109,7 +109,9 @@ class Continuum:
                              "z) times 1, y^2, z^2, y^4, y^2 z^2, z^4 (columns)")
 
     def set_up(self, program: Program) -> None:
-        """Inputs l, S and output A, for any doubly symmetric section and any orthotropic law, alike over it or not."""
+        """Declare the inputs l and S, and the output A. The section is any doubly symmetric one, the law any
+        orthotropic one, the same over the section or not.
+        """
         length = program.input("l", (), "m", "length of the element")
         S = self.section_stiffness(program)
         A = [sum(sp.Rational(int(c.numerator), int(c.denominator)) * S[k, m] * length**power
@@ -119,7 +121,7 @@ class Continuum:
                        "different non-zero entries of A")
 
     def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X, w, c0=None) -> tuple:
-        """Stages: force and moment in space, and strain, at X."""
+        """Return force and moment in space, and strain, at X."""
         section = Resultants(self.form, program, S, c, X, w)
         return section.force(), section.moment(), section.strain()
 
@@ -135,8 +137,8 @@ class Continuum:
         return self.gram.vector_forces(program, c, u)
 
     def discrete_forces(self, program: Program, A: np.ndarray, now: np.ndarray, then: np.ndarray, w) -> np.ndarray:
-        """Stages: forces f on strain vectors with f . (then - now) = the difference of U: the stress of the mean
-        strain on the mean vectors (Simo & Tarnow, ZAMP 43 (1992) 757-792).
+        """Return forces f on strain vectors with f . (then - now) = the difference of U: the stress of the mean strain
+        on the mean vectors (Simo & Tarnow, ZAMP 43 (1992) 757-792).
         """
         G = [self._strain(program, A, c) for c in (now, then)]
         program.stage("mean strain and vectors")
@@ -149,8 +151,8 @@ class Continuum:
         return self.gram.vector_forces(program, c, u)
 
     def stress_of_turning(self, program: Program, A: np.ndarray, change: np.ndarray, w: sp.Expr) -> np.ndarray:
-        """Stages: blocks (n, n, 1, 1) over strain vectors that the mean stress of a step has more than the stress of
-        the mean vectors: of A times the Gram products of half the change.
+        """Return blocks (n, n, 1, 1) over strain vectors that the mean stress of a step has more than the stress of the
+        mean vectors: of A times the Gram products of half the change.
         """
         program.stage("Gram products of half the change")
         G = [program.define(f"G_{self.gram.pair(p)}", change[a].dot(change[b]) / 4)
@@ -162,11 +164,11 @@ class Continuum:
         return blocks
 
     def tangent(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr) -> np.ndarray:
-        """Stages: d2U/dc2 over strain vectors."""
+        """Return d2U/dc2 over strain vectors."""
         return blocks(self.gram, program, c, c, self._moduli(A), self._stress(program, A, self._strain(program, A, c)))
 
     def _strain(self, program: Program, A: np.ndarray, c: np.ndarray) -> list[sp.Expr]:
-        """Stage: Gram products, less those of the stress-free shape."""
+        """Return Gram products, less those of the stress-free shape."""
         program.stage("Gram products G - G0")
         return self.gram.gram(program, c)
 
@@ -189,14 +191,16 @@ class Continuum:
         return self._times(program, self._viscous_moduli(A), dG, tau), dG
 
     def damping_forces(self, program, A, tau, c, dc, w) -> np.ndarray:
-        """Forces on strain vectors."""
+        """Return the damping forces on the strain vectors, (vectors, dim), N m."""
         u, _ = self._viscous(program, A, tau, c, dc)
         program.stage("forces on strain vectors")
         return self.gram.vector_forces(program, c, u)
 
     @staticmethod
     def rates(element: Element) -> dict[str, int]:
-        """Number of strain rates that the damping of an element has, and whether a spin about the tangent is one."""
+        """Return the number of strain rates that the damping of an element has, and whether a spin about the tangent is
+        one.
+        """
         return {"rates": element.n_vectors * (element.n_vectors - 1) // 2, "spins": 0}
 
     def algorithmic_forces(self, program, A, weight, relaxed_strain, c, dc, w) -> tuple[np.ndarray, Sequence[sp.Expr]]:
@@ -221,7 +225,7 @@ class Continuum:
         return blocks(self.gram, program, c, b, self._viscous_moduli(A), u)
 
     def dissipation(self, program, A, tau, c, dc, w) -> sp.Expr:
-        """Power."""
+        """Return the dissipated power, W."""
         u, dG = self._viscous(program, A, tau, c, dc)
         return sum(a * b for a, b in zip(u, dG, strict=True))
 

@@ -37,7 +37,7 @@ class DenseForm(Form):
 
     @property
     def index(self) -> dict[tuple[int, int], int]:
-        """Index into A of its entries."""
+        """Return the index into A of its entries."""
         return self.places
 
 
@@ -52,7 +52,7 @@ class CurvedContinuum(Continuum):
         self.form = DenseForm(gram, len(self.straight.constants))
 
     def constants(self, program: Program) -> np.ndarray:
-        """Input A."""
+        """Declare the input A: the straight law's constants, the form over Gram pairs in N m, and its G0; return it."""
         element = self.gram.element.name
         return program.input("A", self.form.stop + len(self.gram.pairs), "N m, 1",
                              f"A of {element}_continuum_stiffness; form over Gram pairs, summed over "
@@ -87,7 +87,7 @@ class CurvedContinuum(Continuum):
                        "1", "Gram products of e0, less those of a straight element")
 
     def _rows(self, program: Program, X, y, z, w) -> list[list[sp.Expr]]:
-        """Coefficients over the pairs of (F'F)_ii/2 and (F'F)_ij, in Voigt's order."""
+        """Return the coefficients over the pairs of (F'F)_ii/2 and (F'F)_ij, in Voigt's order."""
         rows, known = [], {}
         for i, j in voigt(self.gram.element.dim):
             row = []
@@ -102,7 +102,7 @@ class CurvedContinuum(Continuum):
         return rows
 
     def _strain(self, program: Program, A: np.ndarray, c: np.ndarray) -> list[sp.Expr]:
-        """Stages: Gram products, less those of the stress-free shape."""
+        """Return Gram products, less those of the stress-free shape."""
         G = super()._strain(program, A, c)
         program.stage("Gram products less those of e0")
         return [program.define(f"g_{self.gram.pair(p)}", value - A[self.form.stop + p]) for p, value in enumerate(G)]
@@ -111,5 +111,5 @@ class CurvedContinuum(Continuum):
         return {pq: A[k] for pq, k in self.straight.index.items()}
 
     def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X, w, c0=None) -> tuple:
-        """Stages: force and moment in space, and strain, at X."""
+        """Return force and moment in space, and strain, at X."""
         return resultants(self.gram, self.form.elasticity, program, S, c, c0, X, w)

@@ -19,7 +19,7 @@ def voigt(dim: int) -> list[tuple[int, int]]:
 
 
 def columns(gram: Gram, c: np.ndarray, X: sp.Expr, w: sp.Expr) -> list[Expansion]:
-    """Columns of F as polynomials in y and z."""
+    """Return the columns of F as polynomials in y and z."""
     return [expansion([g[i] for g in gram.gradient], c, X, w) for i in range(gram.element.dim)]
 
 
@@ -30,7 +30,7 @@ def at_point(program: Program, name: str, F: list[Expansion], y: sp.Expr, z: sp.
 
 
 def frame(program: Program, F: list[Expansion], director: int) -> np.ndarray:
-    """Tangent frame of the axis, by columns."""
+    """Return the tangent frame of the axis, by columns."""
     tangent = program.vector("t0", F[0][0, 0])
     if len(F) == 2:
         i = unit(program, "i0", tangent)

@@ -36,7 +36,7 @@ class Velocity:
         self.rate = DirectionalDerivative(program, "v", {s: program.define(f"v_{s.name}", r) for s, r in rates.items()})
 
     def strains(self) -> list[sp.Expr]:
-        """Rates of the strains."""
+        """Return the rates of the strains."""
         configuration, program = self.configuration, self.configuration.program
         n = len(configuration.strains) - 2 * len(configuration.law.across)
         found = [self.rate(s) for s in configuration.strains[:n]]
@@ -46,7 +46,9 @@ class Velocity:
 
 
 def across(configuration: Configuration) -> dict[int, list[tuple[int, int, int]]]:
-    """Strains of the section by index: their gradients by director i of a node are its director j, as (node, i, j)."""
+    """Return the strains of the section by index: their gradients by director i of a node are its director j, as (node,
+    i, j).
+    """
     law = configuration.law
     first = len(configuration.strains) - 2 * len(law.across)
     return {first + n * len(law.across) + p: [(n, a - 1, b - 1) for a, b in dict.fromkeys(((i, j), (j, i)))]
@@ -77,7 +79,7 @@ class Forces:
 
     @property
     def held(self) -> dict[sp.Symbol, sp.Expr]:
-        """Resultants, which V does not differentiate."""
+        """Return the resultants, which V does not differentiate."""
         return {r: ZERO for r in self.resultants if r.is_Symbol}
 
     def _by_part(self) -> dict[sp.Symbol, sp.Expr]:
@@ -90,7 +92,7 @@ class Forces:
         return values | {g: by_scalar[g] for g in configuration.gibbs if g.is_Symbol}
 
     def nodal(self) -> np.ndarray:
-        """Stage: forces on the nodal vectors."""
+        """Return forces on the nodal vectors."""
         own = {("x", 0): self.slopes[0], ("x", 1): self.slopes[1], ("x", 2): self.slopes[2]}
         own |= {(name, n): force for n, forces in enumerate(self.directors)
                 for name, force in zip("yz", forces, strict=True)}
@@ -107,7 +109,7 @@ class Forces:
 
     @property
     def slots(self) -> list[list[tuple[Slot, sp.Expr]]]:
-        """What each nodal vector moves: r_x at a place, or a director of a node; and how much."""
+        """Return what each nodal vector moves: r_x at a place, or a director of a node; and how much."""
         found = []
         for k, name in enumerate(self.law.element.names):
             vector, node = name.partition("_")[2][:-1], int(name[-1]) - 1

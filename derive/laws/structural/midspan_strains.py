@@ -44,7 +44,7 @@ class MidspanStrains:
         return np.array(named, dtype=object).reshape(values.shape)
 
     def hessian(self) -> np.ndarray:
-        """Second derivatives of V by the scalars."""
+        """Return the second derivatives of V by the scalars."""
         forces = self._symmetric("F", _columns(self.by_component, self.forces))
         moved = self._named("dF", forces.dot(self.turned))
         for by, rates in zip(self.by_scalar, moved.T, strict=True):
@@ -52,7 +52,7 @@ class MidspanStrains:
         return self._symmetric("V", _columns(self.by_scalar, self.gradient))
 
     def _symmetric(self, name: str, values: np.ndarray) -> np.ndarray:
-        """The upper half, named, on both sides."""
+        """Return the upper half, named, on both sides."""
         upper = self._named(name, np.triu(values))
         return upper + np.triu(upper, 1).T
 

@@ -56,7 +56,7 @@ class Tangent(Forces):
 
     @cached_property
     def _scalars_moved(self) -> list[np.ndarray]:
-        """Rates of the scalars of the middle by motion."""
+        """Return the rates of the scalars of the middle by motion."""
         return [self._moved_by(motion) for motion in self.configuration.motions]
 
     def _moved_by(self, motion: dict[sp.Symbol, sp.Expr]) -> np.ndarray:
@@ -123,7 +123,7 @@ class Tangent(Forces):
                          for rows in zip(K, form, strict=True)])
 
     def _strain_motions(self) -> np.ndarray:
-        """Strains by motions of the parts: (strains, motions); those of the section do not see them."""
+        """Return the strains by motions of the parts: (strains, motions); those of the section do not see them."""
         configuration, n = self.configuration, len(self.law.axes)
         B = np.full((self.law.n_strains, len(configuration.motions)), ZERO, dtype=object)
         for column, motion in enumerate(configuration.motions):
@@ -137,7 +137,7 @@ class Tangent(Forces):
         return B
 
     def nodal(self) -> np.ndarray:
-        """Stages: over directors, then over the nodal vectors -> (n, n)."""
+        """Return the tangent (n, n): over the directors first, then over the nodal vectors."""
         symmetric = self.velocity is None
         self.program.stage("over r_x at the three places and directors")
         places = [("x", place) for place in range(3)]
@@ -151,7 +151,7 @@ class Tangent(Forces):
         return self._over_nodes(K, symmetric)
 
     def _moved(self, slot: Slot, j: int) -> Moved:
-        """When component j of r_x at a place or of a director moves."""
+        """Return what changes when component j of r_x at a place or of a director moves."""
         configuration, program = self.configuration, self.program
         vector, n = slot
         if vector == "x":
@@ -177,7 +177,7 @@ class Tangent(Forces):
         return Moved(changes, by_node)
 
     def _block(self, of: Slot, to: Slot, moved: list[Moved], symmetric: bool) -> np.ndarray:
-        """Derivative of the force on one slot by another, (dim, dim)."""
+        """Return the derivative of the force on one slot by another, (dim, dim)."""
         dim, (vector, n) = self.law.element.dim, of
         name = f"K_{vector}{n + 1}_{to[0]}{to[1] + 1}"
         block = np.full((dim, dim), ZERO, dtype=object)

@@ -13,7 +13,7 @@ from .measures import FAR, Invariance, quantised, relative
 
 
 def body(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
-    """Lengths, power, digits far away."""
+    """Yield lengths, power, and digits far away."""
     rider = RIDERS[family.rider]
     dim, n = rider.dim, rider.n_velocity
     out, force = k("point", s), k("point_force", s)

@@ -15,7 +15,7 @@ from .measures import Invariance, relative
 
 
 def element(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
-    """Partition of unity, totals, loads."""
+    """Yield partition of unity, totals, and what holds of loads."""
     yield from _shape_and_mass(family, k, s)
     yield from load.invariances(family.element, k, s)
 

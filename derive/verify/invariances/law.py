@@ -16,7 +16,7 @@ from .measures import FAR, Invariance, quantised, relative, spins
 
 
 def law(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
-    """Rigid motion in every kernel."""
+    """Yield what rigid motion must not change in any kernel of a law."""
     yield from _rigid_motion(family, k, s)
     yield from _deformed(family, k, s)
     if "discrete_force" not in family.missing:
@@ -84,7 +84,7 @@ def _deformed(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
 
 
 def _step(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
-    """Momenta over a step."""
+    """Yield what holds of forces and moments over a step."""
     spec = family.element
     positions = np.array(spec.is_position, dtype=float)
     e, e_next = quantised(s["e"]), quantised(s["e_next"])
@@ -130,7 +130,9 @@ def _damping(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
 
 
 def _spun(spec: Element, s: State, spin: np.ndarray) -> float:
-    """Power on a bent cable whose sections do not follow its turn about the tangent i: EI tau (w.i)^2 |i x r''|^2."""
+    """Return the power on a bent cable whose sections do not follow its turn about the tangent i: EI tau (w.i)^2 |i x
+    r''|^2.
+    """
     omega = np.array([spin[2, 1], spin[0, 2], spin[1, 0]])
     shape, half, total = Shape(spec, s["l"].item()), float(s["l"]) / 2, 0.0
     for t, weight in zip(*np.polynomial.legendre.leggauss(max(p[0] for p in shape.powers) - 1), strict=True):

@@ -14,7 +14,7 @@ from .measures import FAR, Invariance, quantised, relative, spins
 
 
 def invariances(spec: Element, k: Numbers, s: State) -> Iterator[Invariance]:
-    """Work on rotations, turned frames, digits far away."""
+    """Yield work on rotations, turned frames, and digits far away."""
     positions = np.array(spec.is_position, dtype=float)
     e = quantised(s["e"])
     away = {**s, "e": e + np.outer(positions, np.full(spec.dim, FAR))}

@@ -9,17 +9,17 @@ FAR = 2.0**13  # above 10^4 lengths of the sample element; a power of two, so th
 
 
 def quantised(values: np.ndarray) -> np.ndarray:
-    """Rounded to 2^-20, so that adding FAR is exact."""
+    """Return values rounded to 2^-20, so that adding FAR is exact."""
     return np.round(values * 2.0**20) / 2.0**20
 
 
 def relative(value, scale) -> float:
-    """Largest entry over the scale's largest."""
+    """Return the largest entry over the scale's largest."""
     return float(np.max(np.abs(value)) / np.max(np.abs(scale)))
 
 
 def spins(dim: int) -> list[np.ndarray]:
-    """Infinitesimal rotations in every coordinate plane."""
+    """Return infinitesimal rotations in every coordinate plane."""
     found = []
     for i in range(dim):
         for j in range(i):

@@ -14,7 +14,7 @@ from .measures import FAR, Invariance, quantised, relative
 
 
 def modal(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
-    """Symmetry, momentum, digits."""
+    """Yield symmetry of the mass matrix, weight, and digits far away."""
     dim = RIDERS[family.rider].dim
     M = k("mass_matrix", s)["M"]
     yield "M symmetric", relative(M - M.T, M), 8 * EPS

@@ -15,7 +15,7 @@ _OUTPUTS = ("C", "C_s", "s_rate", "Q_d", "W", "s_bias")
 
 
 def slide(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
-    """Motions that keep the joint; frame; digits; forces."""
+    """Yield motions that keep the joint, turned frames, digits far away, and equilibrium of forces."""
     A = k("constraint", s)["A_t"]
     yield "A_t' A_t = I", relative(A.T @ A - np.eye(len(A)), 1), 8 * EPS
     yield "A_t right-handed", abs(np.linalg.det(A) - 1), 8 * EPS
@@ -54,7 +54,7 @@ def _kept(family: Family, k: Numbers, s: State, n_e: int) -> Iterator[Invariance
 
 
 def _frame(family: Family, k: Numbers, s: State, out: dict, n_e: int) -> Iterator[Invariance]:
-    """The whole scene turned: components in the tangent frame do not see it; moved far away: not one digit."""
+    """Yield what a turn of the whole scene changes, which components in the tangent frame do not see, and a far move."""
     element, rider = family.element, RIDERS[family.rider]
     positions = np.array(element.is_position, dtype=float)
     Q, turn = rider.frame(np.random.default_rng(3))

@@ -55,13 +55,13 @@ def axial_points(element: Element, law: str) -> int:
 
 
 def axial_strain(strain: str, r_x: np.ndarray):
-    """Green or engineering."""
+    """Return the Green or the engineering strain."""
     square = r_x.dot(r_x)
     return (square - 1) / 2 if strain == "green" else mp.sqrt(square) - 1
 
 
 def strain_modes(element: Element, law: str, s) -> list[tuple]:
-    """The Legendre modes of the axial strain that an assumed one has, and the axial stiffness of each.
+    """Return the Legendre modes of the axial strain that an assumed one has, and the axial stiffness of each.
 
     One mode a power of the slope; those beyond what a node has along the cable take the third stiffness.
     """

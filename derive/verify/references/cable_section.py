@@ -36,7 +36,7 @@ def section(element: Element, law: str, s) -> dict[str, np.ndarray]:
         return eps, kappa
 
     def variation(at, by):
-        """W_r' or W_r''."""
+        """Return W_r' or W_r'', the derivative of the energy per length by one of its vectors."""
         def energy(t, axis):
             vectors = derivatives(at)
             vectors[by] = vectors[by] + t * np.eye(3, dtype=int)[axis]

@@ -15,7 +15,7 @@ mp = mpmath.mp
 
 
 def energy(element: Element, law: str, s):
-    """eq 5-7 by quadrature."""
+    """Return the energy of eq 5-7 by quadrature, J."""
     total = mp.mpf(0)
     for N, weight, D in _material_points(element, s):
         F = s["e"].T.dot(N)
@@ -69,5 +69,5 @@ def section(element: Element, law: str, s) -> dict[str, np.ndarray]:
 
 
 def green(F: np.ndarray) -> np.ndarray:
-    """Green's strain."""
+    """Return Green's strain (F'F - I)/2."""
     return (F.T.dot(F) - np.eye(len(F), dtype=int)) / 2

@@ -27,26 +27,26 @@ class Body:
         self.director = "xyz".index(element.director[-1])
 
     def gradient(self, name: str, at) -> np.ndarray:
-        """F of nodal vectors e, e0 or v."""
+        """Return F of the nodal vectors e, e0 or v."""
         return self.s[name].T.dot(self.shape.gradient(at))
 
     def frame(self, x) -> np.ndarray:
-        """Tangent frame of the stress-free axis, by columns."""
+        """Return the tangent frame of the stress-free axis, by columns."""
         F0 = self.gradient("e0", (x, 0, 0))
         return frame(mp, F0[:, 0], F0[:, self.director])
 
     def turned(self, at, change: np.ndarray) -> np.ndarray:
-        """J0^-T change J0^-1 in the tangent frame."""
+        """Return J0^-T change J0^-1 in the tangent frame."""
         inverse = _inverse(self.gradient("e0", at)).dot(self.frame(at[0]))
         return inverse.T.dot(change).dot(inverse)
 
     def strain(self, at) -> np.ndarray:
-        """E in the tangent frame."""
+        """Return the Green strain E in the tangent frame."""
         F, F0 = self.gradient("e", at), self.gradient("e0", at)
         return self.turned(at, (F.T.dot(F) - F0.T.dot(F0)) / 2)
 
     def volume(self, at):
-        """det J0."""
+        """Return det J0, the volume by that of the straight element."""
         return mp.det(mp.matrix(self.gradient("e0", at)))
 
 
@@ -55,7 +55,7 @@ def _inverse(matrix: np.ndarray) -> np.ndarray:
 
 
 def weighted_points(element: Element, s) -> Iterator[tuple]:
-    """Points of the volume and the elastic constants times what each stands for."""
+    """Yield the points of the volume and the elastic constants times what each stands for."""
     half = mp.mpf(s["l"].item()) / 2
     for t, p in gauss(ALONG):
         for y, z, area, D in section_points(s):
@@ -63,7 +63,7 @@ def weighted_points(element: Element, s) -> Iterator[tuple]:
 
 
 def energy(element: Element, law: str, s):
-    """Elastic energy."""
+    """Return the elastic energy by quadrature, J."""
     body = Body(element, s)
     return sum(body.volume(at) * density(D, body.strain(at)) for at, D in weighted_points(element, s))
 
@@ -75,7 +75,9 @@ def density_at(element: Element, s):
 
 
 def section(element: Element, law: str, s) -> dict[str, np.ndarray]:
-    """Resultants of P N dA, N dA = det J0 J0^-T e_x dy dz, and strain on the axis with its changes along y and z."""
+    """Return the resultants of P N dA, N dA = det J0 J0^-T e_x dy dz, and strain on the axis with its changes along y
+    and z.
+    """
     body, x = Body(element, s), s["x"].item()
     R, axis = body.frame(x), body.shape((x, 0, 0)).dot(s["e"])
     force, moment = np.zeros(3, dtype=object), np.zeros(3, dtype=object)

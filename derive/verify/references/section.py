@@ -28,7 +28,7 @@ def resultant(output: str) -> Callable:
 
 
 def axes(element: Element, s) -> np.ndarray:
-    """Rows t, y, z."""
+    """Return the axes of the section by rows t, y, z."""
     shape, at = Shape(element, s["l"].item()), (s["x"].item(), 0, 0)
     r_x = spatial(shape(at, (1, 0, 0)).dot(s["e"]))
     if element.dim == 2:

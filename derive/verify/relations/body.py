@@ -13,7 +13,7 @@ from .paths import entry, from_kernel, unit
 
 
 def body(family: Family) -> list[Relation]:
-    """A body: points along finite motions, and Newton-Euler from momentum."""
+    """Return the relations of a body's kernels: points along finite motions, Newton-Euler from momentum."""
     rider = RIDERS[family.rider]
     n, dim = rider.n_velocity, rider.dim
 
@@ -70,7 +70,7 @@ def _spinning(spread: np.ndarray, omega: np.ndarray):
 
 
 def _frame(rider) -> list[Relation]:
-    """Axes of a body, and moments on them."""
+    """Return the relations of the axes of a body and of moments on them."""
     n, dim = rider.n_velocity, rider.dim
 
     def moved(k, s, t, j):

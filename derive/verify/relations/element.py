@@ -13,7 +13,7 @@ from .paths import root
 
 
 def element(family: Family) -> list[Relation]:
-    """eq 2-4, and loads."""
+    """Return the relations of an element's own kernels, eq 2-4, and of its loads."""
     spec: Element = family.element
 
     def shape(s):

@@ -11,7 +11,7 @@ from ..motion import swung_axes
 
 
 def frame(family: Family) -> list[Relation]:
-    """eq 13-18 for two vectors."""
+    """Return the relations of the kernels of the frame of two vectors, eq 13-18."""
     dim = family.dim
 
     def moved(s, t, j):

@@ -12,7 +12,7 @@ from .paths import from_kernel
 
 
 def joint(family: Family) -> list[Relation]:
-    """The equations of a joint along finite motions of its frames."""
+    """Return the relations of the equations of a joint along finite motions of its frames."""
     dim, turns = family.dim, TURNS[family.dim]
     n = dim + 2 * turns
 

@@ -13,7 +13,7 @@ from .paths import entry, from_kernel, half, root, unit
 
 
 def law(family: Family) -> list[Relation]:
-    """eq 5-9."""
+    """Return the relations of the kernels of a law, eq 5-9."""
     spec: Element = family.element
     n = spec.n_coordinates
 
@@ -92,7 +92,7 @@ def _step_stiffness(family: Family) -> Relation:
 
 
 def _stiffness_at(spec: Element) -> list[Relation]:
-    """A point of the volume, tried by the energy that it adds in many states."""
+    """Return the relations of a point of the volume, tried by the energy that it adds in many states."""
     def shares(k, s):
         point = k("stiffness_at", s)
         A = s["A"].copy()

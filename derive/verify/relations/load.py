@@ -14,7 +14,8 @@ from .paths import entry, from_kernel, root
 
 
 def loads(spec: Element) -> list[Relation]:
-    """Shape functions at 50 digits, forces from their definition with these, K from f."""
+    """Return the relations of the load kernels: shape functions at 50 digits, forces from their definition, K from f.
+    """
     n = spec.n_coordinates
 
     def shape(s, by=""):
@@ -46,7 +47,7 @@ def loads(spec: Element) -> list[Relation]:
 
 
 def turning_rate(slopes: list[np.ndarray], rates: list[np.ndarray]) -> np.ndarray:
-    """The least omega of those with the least sum |a' - omega x a|^2, in mpmath numbers."""
+    """Return the least omega of those with the least sum |a' - omega x a|^2, in mpmath numbers."""
     if len(slopes[0]) == 2:
         return np.array([sum(a[0] * v[1] - a[1] * v[0] for a, v in zip(slopes, rates, strict=True))
                          / sum(a.dot(a) for a in slopes)])

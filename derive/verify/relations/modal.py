@@ -25,12 +25,12 @@ class Paths:
         self.dim, self.n = self.rider.dim, self.rider.n_velocity
 
     def axes(self, b: np.ndarray) -> np.ndarray:
-        """A."""
+        """Return the body's axes A (dim, dim) at b."""
         still = np.concatenate([0 * b[: self.dim], b[self.dim :]])
         return np.stack([self.rider.point(still, e) for e in np.eye(self.dim, dtype=int)], axis=1)
 
     def velocity(self, s: State, u: np.ndarray, u1: np.ndarray) -> np.ndarray:
-        """Of a point."""
+        """Return the velocity of a point u with the rate u1, in body axes."""
         omega = np.concatenate([[0 * u[0]] * (3 - (self.n - self.dim)), s["w"][self.dim :]])
         return s["w"][: self.dim] + self.axes(s["b"]).dot(swung(omega, u) + u1)
 
@@ -67,7 +67,7 @@ class Paths:
 
 
 def modal(family: Family) -> list[Relation]:
-    """Every output of a modal body's kernels."""
+    """Return the relations of every output of a modal body's kernels."""
     p = Paths(family)
     rider, n, zero = p.rider, p.n, np.zeros(MODES, dtype=int)
 

@@ -15,7 +15,7 @@ def unit(like: np.ndarray, j: int) -> np.ndarray:
 
 
 def from_kernel(kernel: str, output: str, **directions: Callable) -> Callable:
-    """A path: the output of a kernel with some inputs moved by t times directions[name](state, j)."""
+    """Return a path: the output of a kernel with some inputs moved by t times directions[name](state, j)."""
     def path(k, s, t, j):
         return k(kernel, s, **{name: s[name] + t * d(s, j) for name, d in directions.items()})[output]
     return path
@@ -27,7 +27,7 @@ def entry(name: str) -> Callable:
 
 
 def root(function: Callable, *about) -> Callable:
-    """A path of order 0: function(*about, state), which shares nothing with the derivation."""
+    """Return a path of order 0: function(*about, state), which shares nothing with the derivation."""
     return lambda k, s, t, j: function(*about, s)
 
 

@@ -10,7 +10,7 @@ from .paths import from_kernel
 
 
 def resistance(family: Family) -> list[Relation]:
-    """What each derivative of R is one of."""
+    """Return the relations of the derivatives of R."""
     dim = family.dim
 
     def moved(name, at=0):

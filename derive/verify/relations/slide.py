@@ -26,7 +26,7 @@ class Curve:
 
 
 def slide(family: Family) -> list[Relation]:
-    """eq 13-38."""
+    """Return the relations of the slide's kernels, eq 13-38."""
     element, rider = family.element, RIDERS[family.rider]
     n_e, n = element.n_coordinates, element.n_coordinates + rider.n_velocity
 

@@ -35,7 +35,7 @@ def straight(element: Element) -> dict[str, np.ndarray]:
 
 
 def element_state(element: Element, random: np.random.Generator) -> dict[str, np.ndarray]:
-    """A bent, stretched, sheared and turned element with its rates, and the data of the section and the law."""
+    """Return a bent, stretched, sheared and turned element with its rates, and the data of the section and the law."""
     dim, n = element.dim, element.n_vectors
     mild = 3 / max(int(sp.degree(b, x)) for b in element.basis)  # curvatures of the same size for any degree
     e = reference(element, LENGTH) @ rotation(random, dim).T
@@ -57,6 +57,6 @@ def element_state(element: Element, random: np.random.Generator) -> dict[str, np
 
 
 def loads(element: Element, random: np.random.Generator) -> dict[str, np.ndarray]:
-    """Components of a follower force and of a moment, as many as the element takes."""
+    """Return the components of a follower force and of a moment, as many as the element takes."""
     local = element.dim if element.dim == 2 or element.director else 1
     return {"c": random.normal(size=local), "M": random.normal(size=1 if element.dim == 2 else 3)}

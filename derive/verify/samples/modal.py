@@ -41,7 +41,7 @@ def _points(random: np.random.Generator, dim: int) -> dict[str, np.ndarray]:
 
 
 def integrals(s: State, **moved: np.ndarray) -> dict[str, np.ndarray]:
-    """What the kernels take at these coordinates, some of them moved."""
+    """Return what the kernels take at these coordinates, some of them moved."""
     s = {**s, **moved}
     rho = s["masses"]
     fields = [s["points"] + np.tensordot(s["eta"], s["modes"], 1),

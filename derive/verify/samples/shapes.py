@@ -12,7 +12,7 @@ LENGTH, HEIGHT, WIDTH = 0.7, 0.31, 0.23
 
 
 def reference(element: Element, l: float) -> np.ndarray:
-    """Nodal vectors of the straight undeformed element along x."""
+    """Return the nodal vectors of the straight undeformed element along x."""
     rows = []
     for ratio in element.node_ratios:
         for vector in element.nodal_vectors:
@@ -27,7 +27,7 @@ def reference(element: Element, l: float) -> np.ndarray:
 
 
 def rotation(random: np.random.Generator, dim: int, angle: float | None = None) -> np.ndarray:
-    """A rotation matrix: by a random vector, or by an angle about a random axis."""
+    """Return a rotation matrix: by a random vector, or by an angle about a random axis."""
     if dim == 2:
         turn = random.normal() if angle is None else angle
         return np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
@@ -39,7 +39,7 @@ def rotation(random: np.random.Generator, dim: int, angle: float | None = None) 
 
 
 def section(height: float = HEIGHT, width: float = WIDTH) -> np.ndarray:
-    """Moments of a rectangle, in the order of the kernels' argument."""
+    """Return the moments of a rectangle, in the order of the kernels' argument."""
     powers = ((0, 0), (2, 0), (0, 2), (4, 0), (2, 2), (0, 4))
     return np.array([height ** (a + 1) / 2**a / (a + 1) * width ** (b + 1) / 2**b / (b + 1) for a, b in powers])
 
@@ -50,7 +50,7 @@ def on_axis(element: Element, state: dict[str, np.ndarray], order: int = 0) -> n
 
 
 def director(element: Element, state: dict[str, np.ndarray], random: np.random.Generator) -> np.ndarray:
-    """A direction off the tangent, neither of unit length nor normal to it."""
+    """Return a direction off the tangent, neither of unit length nor normal to it."""
     tangent = on_axis(element, state, 1)
     tangent /= np.linalg.norm(tangent)
     normal = np.linalg.qr(np.stack([tangent, *random.normal(size=(element.dim - 1, element.dim))], axis=1))[0][:, 1]

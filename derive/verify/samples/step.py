@@ -10,7 +10,7 @@ from .shapes import LENGTH, rotation
 
 
 def following(family: Family, state: dict[str, np.ndarray], random: np.random.Generator) -> dict[str, np.ndarray]:
-    """The end of a step, far enough from its start to tell differences from derivatives."""
+    """Return the end of a step, far enough from its start to tell differences from derivatives."""
     found = {}
     if family.element:
         e = state["e"] @ rotation(random, family.element.dim, angle=0.3).T
