@@ -9,7 +9,7 @@ from functools import partial
 from .bodies import BODIES, RIDERS, Body, Rider, modal, modal_kernels
 from .bodies import kernels as body_kernels
 from .bodies.point import Point
-from .codegen.family import Family
+from .codegen.family import BodyFamily, CouplingFamily, ElementFamily, Family, LawFamily, SlideFamily
 from .couplings import frame, joint, resistance, slide
 from .elements import ELEMENTS
 from .elements import kernels as element_kernels
@@ -22,15 +22,15 @@ from .spec import Element
 _SPACE = {2: "the plane", 3: "space"}
 
 
-def _element(element: Element) -> Family:
-    return Family(element.name, element.doc, partial(element_kernels.build, element),
-                  (f"elements.{element.name}", "elements.kernels"),
-                  role="element",
-                  facts={"nodes": len(element.nodes), "vectors": len(element.nodal_vectors), "dim": element.dim},
-                  element=element)
+def _element(element: Element) -> ElementFamily:
+    return ElementFamily(element.name, element.doc, partial(element_kernels.build, element),
+                         (f"elements.{element.name}", "elements.kernels"),
+                         role="element",
+                         facts={"nodes": len(element.nodes), "vectors": len(element.nodal_vectors), "dim": element.dim},
+                         element=element)
 
 
-def _law(element: Element, law: str | type) -> Family:
+def _law(element: Element, law: str | type) -> LawFamily:
     name, traits = law_name(law), law_traits(law)
     twin = traits.damped_like if isinstance(law, str) else ""  # a law of the user's has a damping of its own
     shared = {kernel: f"{element.name}_{twin}" for kernel in (*law_kernels.DAMPING, *law_kernels.ALGORITHMIC)
@@ -39,54 +39,54 @@ def _law(element: Element, law: str | type) -> Family:
         builder, build = "laws.structural.kernels", partial(structural_kernels.build, element)
     else:
         builder, build = "laws.kernels", partial(law_kernels.build, element, law, damping=not shared)
-    return Family(f"{element.name}_{name}", f"elastic law {name} on {element.name}", build,
-                  (f"elements.{element.name}", builder), role="law",
-                  outside_table=("stiffness", "stiffness_at", "section_forces"), shared=shared,
-                  missing=law_kernels.missing(law), facts=law_kernels.facts(element, law), element=element, law=name,
-                  stiffness_of=stiffness_of(law), traits=traits)
+    return LawFamily(f"{element.name}_{name}", f"elastic law {name} on {element.name}", build,
+                     (f"elements.{element.name}", builder), role="law",
+                     outside_table=("stiffness", "stiffness_at", "section_forces"), shared=shared,
+                     missing=law_kernels.missing(law), facts=law_kernels.facts(element, law), element=element, law=name,
+                     stiffness_of=stiffness_of(law), traits=traits)
 
 
-def _body(body: Body) -> Family:
-    return Family(body.NAME, body.DOC, partial(body_kernels.build, body), (f"bodies.{body.NAME}", "bodies.kernels"),
-                  role="body",
-                  facts={"dim": body.DIM, "configuration": body.N_CONFIGURATION, "velocity": body.N_VELOCITY},
-                  rider=body.NAME)
+def _body(body: Body) -> BodyFamily:
+    return BodyFamily(body.NAME, body.DOC, partial(body_kernels.build, body), (f"bodies.{body.NAME}", "bodies.kernels"),
+                      role="body",
+                      facts={"dim": body.DIM, "configuration": body.N_CONFIGURATION, "velocity": body.N_VELOCITY},
+                      rider=body.NAME)
 
 
-def _modal(name: str, body: Body) -> Family:
-    return Family(name, f"modal body on a {body.NAME} frame", partial(modal_kernels.build, name, body),
-                  ("bodies.modal", f"bodies.{body.NAME}", "bodies.modal_kernels"),
-                  role="modal",
-                  facts={"dim": body.DIM},
-                  rider=body.NAME)
+def _modal(name: str, body: Body) -> BodyFamily:
+    return BodyFamily(name, f"modal body on a {body.NAME} frame", partial(modal_kernels.build, name, body),
+                      ("bodies.modal", f"bodies.{body.NAME}", "bodies.modal_kernels"),
+                      role="modal",
+                      facts={"dim": body.DIM},
+                      rider=body.NAME)
 
 
-def _slide(element: Element, rider: Rider) -> Family:
-    return Family(f"slide_{element.name}_{rider.NAME}",
-                  f"sliding joint of a {rider.NAME} rider on a {element.name} cable",
-                  partial(slide.build, element, rider),
-                  ("couplings.slide", f"elements.{element.name}",
-                   "bodies.point" if isinstance(rider, Point) else f"bodies.{rider.NAME}"),
-                  role="slide",
-                  facts={"coordinates": element.n_coordinates + rider.N_VELOCITY, "dim": element.dim},
-                  element=element, rider=rider.NAME)
+def _slide(element: Element, rider: Rider) -> SlideFamily:
+    return SlideFamily(f"slide_{element.name}_{rider.NAME}",
+                       f"sliding joint of a {rider.NAME} rider on a {element.name} cable",
+                       partial(slide.build, element, rider),
+                       ("couplings.slide", f"elements.{element.name}",
+                        "bodies.point" if isinstance(rider, Point) else f"bodies.{rider.NAME}"),
+                       role="slide",
+                       facts={"coordinates": element.n_coordinates + rider.N_VELOCITY, "dim": element.dim},
+                       element=element, rider=rider.NAME)
 
 
-def _frame(dim: int) -> Family:
-    return Family(frame.FRAMES[dim], f"frame of two vectors in {_SPACE[dim]}", partial(frame.build, dim),
-                  ("couplings.frame",), role="frame", facts={"dim": dim}, dim=dim)
+def _frame(dim: int) -> CouplingFamily:
+    return CouplingFamily(frame.FRAMES[dim], f"frame of two vectors in {_SPACE[dim]}", partial(frame.build, dim),
+                          ("couplings.frame",), role="frame", facts={"dim": dim}, dim=dim)
 
 
-def _resistance(dim: int) -> Family:
-    return Family(resistance.RESISTANCES[dim], f"friction and buffers of slides in {_SPACE[dim]}",
-                  partial(resistance.build, dim),
-                  ("couplings.resistance",), role="resistance", facts={"dim": dim}, dim=dim)
+def _resistance(dim: int) -> CouplingFamily:
+    return CouplingFamily(resistance.RESISTANCES[dim], f"friction and buffers of slides in {_SPACE[dim]}",
+                          partial(resistance.build, dim),
+                          ("couplings.resistance",), role="resistance", facts={"dim": dim}, dim=dim)
 
 
-def _joint(dim: int, name: str) -> Family:
-    return Family(f"joint_{name}", f"{name.replace('_', ' ')} joint between two frames",
-                  partial(joint.build, dim, name), ("couplings.joint",), role="joint",
-                  facts={"dim": dim, "rows": joint.rows(dim, name)}, dim=dim)
+def _joint(dim: int, name: str) -> CouplingFamily:
+    return CouplingFamily(f"joint_{name}", f"{name.replace('_', ' ')} joint between two frames",
+                          partial(joint.build, dim, name), ("couplings.joint",), role="joint",
+                          facts={"dim": dim, "rows": joint.rows(dim, name)}, dim=dim)
 
 
 def of_element(element: Element) -> list[Family]:

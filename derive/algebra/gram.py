@@ -103,7 +103,7 @@ class Gram:
 
     def nodal_forces(self, program: Program, f: np.ndarray, w: sp.Expr) -> np.ndarray:
         """Return the forces on nodal vectors (n, dim) from forces f on strain vectors, f_d = T' f_c, in N and N m."""
-        nodal = []
+        nodal: list = []
         for k, position in enumerate(self.element.is_position):
             column = sum(self.scaled[m][k] * f[m] for m in range(len(f)) if self.scaled[m][k] != 0)
             nodal.append(program.vector(f"f_{self.element.names[k]}", column * w if position else column))

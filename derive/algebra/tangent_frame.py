@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import sympy as sp
 
@@ -21,7 +23,7 @@ def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
-def spatial(vector: np.ndarray) -> np.ndarray:
+def spatial(vector: np.ndarray | Sequence) -> np.ndarray:
     """Return a vector of the plane or of space with three components."""
     return np.concatenate([vector, np.full(3 - len(vector), sp.S.Zero)])
 

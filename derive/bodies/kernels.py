@@ -9,7 +9,7 @@ import numpy as np
 
 from ..algebra.tangent_frame import cross
 from ..codegen.program import DirectionalDerivative, Program
-from .body import Body
+from .body import Body, Rider
 
 
 def build(body: Body) -> list[Program]:
@@ -84,7 +84,7 @@ def frame(body: Body) -> Program:
 class Step:
     """Input b_next and stages: the turn theta of a body over a step, and axes half-way."""
 
-    def __init__(self, p: Program, body: Body, b: np.ndarray):
+    def __init__(self, p: Program, body: Rider, b: np.ndarray):
         self.b_next = p.input("b_next", body.N_CONFIGURATION, "m, 1", "b at the end of the step")
         p.stage("attitudes at both ends of the step")
         self.ends = [body.axes(p, b), body.axes(p, self.b_next)]
@@ -104,7 +104,8 @@ def discrete_point(body: Body) -> Program:
     b, u = body.configuration(p), body.attachment(p)
     step = Step(p, body, b)
     p.stage("mean arm")
-    arm = p.vector("mean_arm", sum(body.arm(p, A, u) for A in step.ends) / 2)
+    first, last = (body.arm(p, A, u) for A in step.ends)
+    arm = p.vector("mean_arm", (first + last) / 2)
     p.output("P", step.jacobian(arm), "1, m",
              "by translation and Cayley vector; P' f is the force f on the point along axes half-way")
     return p

@@ -59,3 +59,41 @@ class Family:
         if suffix in self.missing:
             return "0"
         return f"{self.shared.get(suffix, self.name)}_{suffix}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class ElementFamily(Family):
+    """The kernels of an element that no law enters."""
+
+    element: Element
+
+
+@dataclass(frozen=True, kw_only=True)
+class LawFamily(ElementFamily):
+    """The kernels of a law on an element."""
+
+    law: str
+    stiffness_of: str
+    traits: LawTraits
+
+
+@dataclass(frozen=True, kw_only=True)
+class BodyFamily(Family):
+    """The kernels of a body, rigid or modal."""
+
+    rider: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class SlideFamily(ElementFamily, BodyFamily):
+    """The kernels of the slide of a rider on an element."""
+
+    element: Element
+    rider: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class CouplingFamily(Family):
+    """The kernels of a coupling that knows its attachments by points and axes alone."""
+
+    dim: int

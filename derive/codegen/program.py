@@ -210,7 +210,7 @@ class DirectionalDerivative:
         return np.vectorize(self, otypes=[object])(values)
 
 
-def jacobian(program: Program, values: np.ndarray, wrt: Sequence[sp.Symbol],
+def jacobian(program: Program, values: np.ndarray, wrt: Sequence[sp.Symbol] | np.ndarray,
              constant: Sequence[sp.Symbol] = ()) -> np.ndarray:
     """Partial derivatives of `values` (n,) by the symbols `wrt` (m,) taken as independent -> (n, m).
 

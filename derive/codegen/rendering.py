@@ -185,6 +185,7 @@ def manifest(every: list[Derived], files: dict[str, str], like: dict | None = No
 def _element(family: Family, every: list[Derived]) -> dict:
     """Return what a scene needs to know of an element; `laws`: each with what it is, see `LawTraits`."""
     element = family.element
+    assert element is not None
     laws = {d.family.law: _law(d.family) for d in every if d.family.role == "law" and d.family.element is element}
     return {"nodal_vectors": list(element.nodal_vectors), "dim": element.dim, "director": element.director,
             "laws": laws}
@@ -192,6 +193,7 @@ def _element(family: Family, every: list[Derived]) -> dict:
 
 def _law(family: Family) -> dict:
     """Return what a scene needs to know of a law: its traits, and the law whose section stiffness it takes."""
+    assert family.traits is not None
     return {"stiffness_of": family.stiffness_of, **asdict(family.traits),
             "discrete_gradient": "discrete_force" not in family.missing}
 

@@ -30,7 +30,7 @@ class _Frame:
         self.b = p.input("b", dim, "1", "vector in the plane of i and j; not used in the plane")
         p.stage("frame")
         director = [self.b] if dim == 3 else []
-        self.A = tangent_frame(p, self.a, *(director or [None]))
+        self.A = tangent_frame(p, self.a, director[0] if director else None)
         p.stage("its turn by the vectors")
         T = turning(p, self.A, self.a, *director)
         still = [np.zeros(TURNS[dim], dtype=int)] * (2 * dim - len(T))

@@ -36,8 +36,11 @@ class TwoFrames:
     def moves(self) -> list[DirectionalDerivative]:
         """Return the derivatives by the gap, by the turn of the first frame, by that of the second."""
         n = self.dim + 2 * self.turns
-        return [self.along(f"d{k}", *np.split(unit, [self.dim, self.dim + self.turns]))
-                for k, unit in enumerate(np.eye(n, dtype=int))]
+        found = []
+        for k, unit in enumerate(np.eye(n, dtype=int)):
+            gap, turn_1, turn_2 = np.split(unit, [self.dim, self.dim + self.turns])
+            found.append(self.along(f"d{k}", gap, turn_1, turn_2))
+        return found
 
 
 def _meet(p: TwoFrames) -> list[sp.Expr]:
@@ -51,7 +54,7 @@ def _offset(axes: str) -> Callable:
 
 def _across(*pairs: str) -> Callable:
     """Return the equations that keep axes of both frames normal: "xz" is x of the first and z of the second."""
-    return lambda p: [p.A1[:, "xyz".index(a)].dot(p.A2[:, "xyz".index(b)]) for a, b in pairs]
+    return lambda p: [p.A1[:, "xyz".index(a)].dot(p.A2[:, "xyz".index(b)]) for a, b in map(tuple, pairs)]
 
 
 def _moved(axis: str) -> Callable:
@@ -133,14 +136,15 @@ def motion(dim: int, name: str) -> Program:
     frames = TwoFrames(p, dim)
     phi = _equations(frames, name)
     gap_rate = p.input("gap_rate", dim, "m/s", "rate of the gap")
-    turns = [p.input(f"omega{k}", frames.turns, "rad/s", f"angular velocity of frame {k}, global axes") for k in (1, 2)]
+    turn_1, turn_2 = (p.input(f"omega{k}", frames.turns, "rad/s", f"angular velocity of frame {k}, global axes")
+                      for k in (1, 2))
     c_rate = p.input("c_rate", 2, "m/s or rad/s, and per s", "rate of c and its rate")
     c, rest = frames.c, np.zeros(dim, dtype=int)
     driving = dict(zip(c, c_rate[0] * np.array([1, -c[2], c[1]]), strict=True)) | {c_rate[0]: c_rate[1]}
     p.stage("derivatives in time")
     still = np.zeros(frames.turns, dtype=int)
     driven = frames.along("dc", rest, still, still, driving)
-    moved = frames.along("dt", gap_rate, *turns, driving)
+    moved = frames.along("dt", gap_rate, turn_1, turn_2, driving)
     p.output("phi_t", driven.array(phi), "m/s, 1/s", "rate at rest: what drives the joint")
     p.output("Q_d", moved.array(moved.array(phi)), "m/s^2, 1/s^2", "second rate at zero accelerations")
     return p

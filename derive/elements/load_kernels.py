@@ -47,7 +47,7 @@ def follower_force(element: Element) -> Program:
     shapes = [axis.shape(c) for c in slopes]
     tangent, *director = [axis.vector(f"r{c}", n, e) for c, n in zip(slopes, shapes, strict=True)]
     p.stage("tangent frame (eq 13-18) and force")
-    A_t = tangent_frame(p, tangent, *(director or [None]))
+    A_t = tangent_frame(p, tangent, director[0] if director else None)
     c = p.input("c", A_t.shape[1], "N", f"components along {' '.join('ijk'[: A_t.shape[1]])} of the tangent frame")
     force = p.vector("F", A_t.dot(c))
     p.stage("rotation of the frame by tangent and director, derivatives of the force")

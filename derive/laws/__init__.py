@@ -19,8 +19,9 @@ def _measures(law: str) -> dict[str, str]:
     return {"strain": strain, "curvature": curvature}
 
 
-_CABLES = [(CABLE_LAWS, cable.Cable, cable.traits), (ASSUMED_LAWS, assumed.AssumedCable, assumed.traits),
-           (CURVED_CABLE_LAWS, curved_cable.CurvedCable, curved_cable.traits)]
+_CABLES: list[tuple[tuple[str, ...], Callable, Callable]] = [
+    (CABLE_LAWS, cable.Cable, cable.traits), (ASSUMED_LAWS, assumed.AssumedCable, assumed.traits),
+    (CURVED_CABLE_LAWS, curved_cable.CurvedCable, curved_cable.traits)]
 
 LAWS: dict[str, Callable] = {continuum.NAME: continuum.Continuum,
                              curved_continuum.NAME: curved_continuum.CurvedContinuum}
@@ -37,12 +38,12 @@ for names, law, traits in _CABLES:
 
 def law_name(law: str | type) -> str:
     """Return the name of an entry of an element's `laws`."""
-    return law if isinstance(law, str) else law.name
+    return law if isinstance(law, str) else getattr(law, "name")  # noqa: B009 (a class of the user's has it)
 
 
 def stiffness_of(law: str | type) -> str:
     """Return the law of this package whose section stiffness an entry of an element's `laws` takes."""
-    return law if isinstance(law, str) else law.stiffness_of
+    return law if isinstance(law, str) else getattr(law, "stiffness_of")  # noqa: B009
 
 
 def law_traits(law: str | type) -> LawTraits:

@@ -5,6 +5,8 @@ Signatures are the same for every law; A holds what the law calls its constants.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import sympy as sp
 
@@ -35,8 +37,8 @@ def facts(element: Element, law: str | type) -> dict[str, int]:
     return {"rates": 0, "spins": 0} if missing(law) else _class(law).rates(element)
 
 
-def _class(law: str | type) -> type | None:
-    found = LAWS.get(law) if isinstance(law, str) else law
+def _class(law: str | type) -> Any:
+    found: Any = LAWS.get(law) if isinstance(law, str) else law
     return getattr(found, "func", found)
 
 

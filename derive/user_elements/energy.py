@@ -6,11 +6,13 @@ are those of verification (two bent elements and the straight reference), the la
 
 from __future__ import annotations
 
+from typing import Any
+
 import mpmath
 import numpy as np
 import sympy as sp
 
-from ..codegen.family import Family
+from ..codegen.family import LawFamily
 from ..codegen.program import Program
 from ..verify import numbers as verify_numbers
 from ..verify.exact import DIGITS
@@ -40,7 +42,7 @@ def check_arithmetic(programs: list[Program], place: str) -> None:
                                     "kernels have +, -, *, / and square roots")
 
 
-def check_law(family: Family, programs: list[Program], place: str) -> None:
+def check_law(family: LawFamily, programs: list[Program], place: str) -> None:
     """Raise SpecError for the first property that the law's kernels lack, with kernel and sample."""
     with mpmath.workdps(DIGITS):
         _Trial(family, programs, place).run()
@@ -49,7 +51,7 @@ def check_law(family: Family, programs: list[Program], place: str) -> None:
 class _Trial:
     """The law's kernels at 50 digits over the samples."""
 
-    def __init__(self, family: Family, programs: list[Program], place: str):
+    def __init__(self, family: LawFamily, programs: list[Program], place: str):
         self.family, self.place = family, place
         self.k = verify_numbers.exact(family.name, programs)
         self.states = self._samples()
@@ -66,7 +68,7 @@ class _Trial:
     def _fail(self, kernel: str, sample: str, cause: str, remedy: str = "") -> None:
         raise SpecError(self.place, f"{cause}: kernel {self.family.name}_{kernel}, at {sample}", remedy)
 
-    def value(self, kernel: str, output: str, s, **changes) -> np.ndarray | None:
+    def value(self, kernel: str, output: str, s, **changes) -> Any:
         """Return an output, None where it is no finite real number."""
         try:
             value = self.k(kernel, s, **changes)[output]

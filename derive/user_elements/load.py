@@ -36,7 +36,7 @@ def elements(file: Path) -> list[Element]:
     space = {"__name__": f"funicular_spec_{file.stem}", "__file__": str(file)}
     with blaming(file, str(file)):
         exec(code, space)
-    found = list({id(value): value for value in space.values() if isinstance(value, Element)}.values())
+    found: list[Element] = list({id(value): value for value in space.values() if isinstance(value, Element)}.values())
     if not found:
         raise SpecError(str(file), "defines no element",
                         "write NAME = Element(...) in it, with Element of funicular.derive.spec")

@@ -22,7 +22,6 @@ import mpmath
 import numpy as np
 
 from ..catalogue import families, named
-from ..codegen import rendering as emit
 from ..codegen.drift import folder
 from ..codegen.family import Family
 from ..codegen.program import Program
@@ -57,7 +56,7 @@ class Subject:
 
 def prepare(family: Family, generated: Path, work: Path) -> Subject:
     """Derive a family and start compiling its generated file."""
-    programs = emit.derive(family).programs
+    programs = [program.prune() for program in family.build()]
     libraries = {kind: Library(family.name, programs, generated, work, dtype)
                  for kind, dtype in (("real", float), ("complex", complex))}
     return Subject(family, programs, libraries)
@@ -86,8 +85,9 @@ def verify(subject: Subject) -> Iterator[Item]:
 
 
 def main(names: list[str], generated: Path | None = None) -> int:
-    """Verify the named families, or all, and return the exit code of the command. `generated` is the folder of the C files, this installation's by
-    default.
+    """Verify the named families, or all, and return the exit code of the command.
+
+    `generated` is the folder of the C files, this installation's by default.
     """
     start = time.perf_counter()
     try:

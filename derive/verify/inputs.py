@@ -104,10 +104,10 @@ def _arc(element: Element, l: float) -> np.ndarray:
 def _far(family: Family, s: State, random: np.random.Generator) -> dict[str, np.ndarray]:
     offset = random.normal(size=_dim(family))
     offset *= FAR * float(s.get("l", 1.0)) / np.linalg.norm(offset)
-    changes = {}
+    changes: dict[str, np.ndarray] = {}
     if family.element:
         shift = np.outer(np.array(family.element.is_position, dtype=float), offset)
-        changes = {name: s[name] + shift for name in ("e", "e0", "e_next") if name in s}
+        changes = {str(name): s[name] + shift for name in ("e", "e0", "e_next") if name in s}
     if family.rider:
         rider = RIDERS[family.rider]
         motion = np.zeros(rider.n_velocity)
@@ -117,4 +117,4 @@ def _far(family: Family, s: State, random: np.random.Generator) -> dict[str, np.
 
 
 def _dim(family: Family) -> int:
-    return family.dim or (family.element.dim if family.element else RIDERS[family.rider].dim)
+    return family.dim or (family.element.dim if family.element else RIDERS[family.rider or ""].dim)

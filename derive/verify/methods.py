@@ -57,6 +57,7 @@ class Relation:
 
     def along(self, numbers: Numbers, state: State, t) -> np.ndarray:
         """Return the paths' values at t -> (any, n)."""
+        assert self.path is not None  # it is only where a finding has come from another process
         return np.stack([np.asarray(self.path(numbers, state, t, j)).ravel() for j in range(self.n)], axis=-1)
 
 
@@ -150,7 +151,7 @@ def _central(relation: Relation, numbers: Numbers, values: State) -> tuple[np.nd
     """Return the difference that changes least from its neighbour's step, and that step."""
     s = numbers.state(values)
     weights = _FIRST if relation.order == 1 else _SECOND
-    tried = [sum(w * relation.along(numbers, s, k * h) for k, w in weights).ravel() / h**relation.order
+    tried = [np.asarray(sum(w * relation.along(numbers, s, k * h) for k, w in weights)).ravel() / h**relation.order
              for h in _STEPS]
     best = _least_change(tried)
     return tried[best], _STEPS[best]

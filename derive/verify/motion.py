@@ -5,6 +5,8 @@ A modal rider joins by an entry in RIDERS with the same members.
 
 from __future__ import annotations
 
+from typing import Any, Protocol
+
 import numpy as np
 
 from ..bodies import planar_rigid, rigid
@@ -39,6 +41,46 @@ def exponential(numbers, theta: np.ndarray) -> np.ndarray:
         return np.concatenate([[1 + square], theta / 2])
     half = numbers.sqrt(square)
     return np.concatenate([[numbers.cos(half)], numbers.sin(half) / half * theta / 2])
+
+
+class Motions(Protocol):
+    """Finite motions of a rider with configurations b, whose points are u, along its n_velocity velocities."""
+
+    @property
+    def dim(self) -> int:
+        """Return the dimension of space."""
+
+    @property
+    def n_velocity(self) -> int:
+        """Return the number of velocities, those of translation first."""
+
+    @property
+    def rotations(self) -> slice:
+        """Return where the rotations are among the velocities."""
+
+    def sample(self, random: np.random.Generator, near: np.ndarray) -> dict[str, np.ndarray]:
+        """Return b, u, w, wdot: an attitude, a point not far from `near` and off it, velocities, accelerations."""
+
+    def at_rest(self, point: np.ndarray) -> dict[str, np.ndarray]:
+        """Return b and u with the point here and no rotation."""
+
+    def point(self, b: np.ndarray, u: np.ndarray) -> np.ndarray:
+        """Return the rider's point in global axes."""
+
+    def moved(self, numbers: Any, b: np.ndarray, motion: np.ndarray) -> np.ndarray:
+        """Return the configuration after a finite motion."""
+
+    def step(self, b: np.ndarray, b_next: np.ndarray) -> np.ndarray:
+        """Return translation and Cayley vector from one configuration to another."""
+
+    def turn(self, b: np.ndarray, motion: np.ndarray) -> np.ndarray:
+        """Return the rotation vector of a motion in global axes."""
+
+    def frame(self, random: np.random.Generator) -> tuple:
+        """Return a turn of the global frame: its matrix, and what it makes of a configuration."""
+
+    def bracket(self, g: np.ndarray) -> np.ndarray:
+        """Return K - K' of second derivatives by the rotations of the rider."""
 
 
 class Rigid:
@@ -196,7 +238,8 @@ class Point:
         return np.zeros((0, 0))
 
 
-RIDERS = {rigid.NAME: Rigid, planar_rigid.NAME: PlanarRigid, **{name: Point(p.DIM) for name, p in POINTS.items()}}
+RIDERS: dict[str, Motions] = {rigid.NAME: Rigid, planar_rigid.NAME: PlanarRigid,
+                              **{name: Point(p.DIM) for name, p in POINTS.items()}}
 
 
 def spin(w: np.ndarray, dim: int) -> np.ndarray:

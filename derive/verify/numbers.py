@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -17,13 +18,14 @@ from ..codegen.program import Program
 from .exact import ExactProgram
 
 EPS = float(np.finfo(float).eps)
-State = Mapping[str, np.ndarray]
+State = dict[str, Any]
+"""Values by the kernels' argument names: arrays of floats, of complex numbers, or of mpmath numbers."""
 
 
 class Numbers:
     """Kernels of one family in one kind of number; kernels go by their name without the family's."""
 
-    def __init__(self, family: str, programs: list[Program], call: Callable, functions, convert: Callable,
+    def __init__(self, family: str, programs: Sequence[Any], call: Callable, functions, convert: Callable,
                  eps: float = EPS):
         self.programs = {p.name.removeprefix(f"{family}_"): p for p in programs}
         self._call, self._convert = call, convert
@@ -44,7 +46,7 @@ class Numbers:
         return self._call(program.name, [changes.get(a.name, state.get(a.name)) for a in program.inputs])
 
 
-def real(family: str, programs: list[Program], library) -> Numbers:
+def real(family: str, programs: Sequence[Any], library) -> Numbers:
     """Return the kernels in doubles, from compiled C."""
     return Numbers(family, programs, library, math, lambda v: v.astype(float))
 

@@ -127,8 +127,8 @@ class Report:
             table.add_row(_verdict(ok), kernel, *(entries.get(kind, "-") for kind in KINDS), f"{norm:.2g}",
                           f"{worst.place}, {worst.kind}", style=None if ok else "red")
         table.add_section()
-        worst = [max((r.entry for r in self.roundings if r.kind == kind), default=0.0) for kind in KINDS]
-        table.add_row("", "worst", *(f"{w:.2g}" for w in worst),
+        largest = [max((r.entry for r in self.roundings if r.kind == kind), default=0.0) for kind in KINDS]
+        table.add_row("", "worst", *(f"{w:.2g}" for w in largest),
                       f"{max((r.norm for r in self.roundings), default=0.0):.2g}")
         return table
 

@@ -6,13 +6,14 @@ For `funicular derive --spec` and for tests/benchmarks. Each kernel gets the sam
 from __future__ import annotations
 
 import subprocess
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from ..codegen import rendering as emit
 from ..codegen.family import Family
+from ..codegen.program import Program
 from ..codegen.rendering import Recorded
 from . import numbers as verify_numbers
 from .compiled import compiler
@@ -57,6 +58,7 @@ def build(families: Iterable[Family], manifest: dict, kernels, units: Iterable[P
     loops, names = [], []
     for family in families:
         record = emit.recorded(family, manifest)
+        assert record is not None  # families are those of the manifest
         values = sample(family, record.programs, kernels)
         loops += [_loop(program, values) for program in record.programs]
         names += [program.name for program in record.programs]
@@ -90,7 +92,7 @@ def _output(command: Iterable) -> list[str]:
     return subprocess.run(list(command), capture_output=True, text=True, check=True).stdout.splitlines()
 
 
-def sample(family: Family, programs: list[Recorded], kernels) -> dict[str, np.ndarray]:
+def sample(family: Family, programs: Sequence[Program | Recorded], kernels) -> dict[str, np.ndarray]:
     """Return the first state on which the family is verified; its constants from the compiled kernels."""
     outputs = {p.name: [a.name for a in p.outputs] for p in programs}
 
@@ -101,7 +103,7 @@ def sample(family: Family, programs: list[Recorded], kernels) -> dict[str, np.nd
     return states(family, verify_numbers.real(family.name, programs, call))[0]
 
 
-def _loop(program: Recorded, values: Mapping[str, np.ndarray]) -> str:
+def _loop(program: Program | Recorded, values: Mapping[str, np.ndarray]) -> str:
     arrays, arguments = [], []
     for argument in program.inputs:
         numbers = ", ".join(repr(float(v)) for v in np.ravel(values[argument.name]))

@@ -31,8 +31,8 @@ from ...algebra.gram import Gram
 from ...codegen.program import Program
 from ...spec import LawTraits
 from .blocks import named_blocks
-from .cable import Cable, Point, Term
-from .points import gathered
+from .cable import Cable, Term
+from .points import Point, gathered
 
 STIFFNESS_DOC = "axial and bending stiffness EA, EI, and EA of the strain's upper modes"
 
@@ -89,12 +89,12 @@ class AssumedCable(Cable):
                 bending.append(sp.S.Zero)
                 continue
             stiffness = self._weighted(program, points, g, "EI", EI)
-            strain, k2, _ = self.measures(program, f"_{g}", *invariants, stiffness)
+            strain, k2, _ = self.measures(program, f"_{g}", invariants, stiffness)
             strains.append(strain)
             bending.append(k2)
         stresses = self._stresses(program, A, w, points, strains)
-        for at, k2, strain, stress in zip(every, bending, strains, stresses, strict=True):
-            yield Term(names, k2, *at, strain, stress)
+        for (invariants, vectors, series), k2, strain, stress in zip(every, bending, strains, stresses, strict=True):
+            yield Term(names, k2, invariants, vectors, series, strain, stress)
         if names == "abc":
             return
         program.stage("curvature at the quadrature points")
@@ -192,7 +192,7 @@ class AssumedCable(Cable):
                         for g, term in enumerate(terms)]
             series = [[sp.Rational(2 * m + 1, 2) * point.weight * point.value[m] * point.value[i] for m in d for i in d]
                       for point in self.axial_points]
-            values = gathered(program, "t", series, tangents).reshape(len(d), len(d), -1)
+            values = list(gathered(program, "t", series, tangents).reshape(len(d), len(d), -1))
         return np.array([[program.vector(f"eps_m{m}_{self.gram.names[i]}", value) for i, value in enumerate(row)]
                          for m, row in enumerate(values)])
 

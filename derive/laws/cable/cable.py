@@ -8,7 +8,7 @@ and never through the coordinates.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
@@ -23,20 +23,11 @@ from ...codegen.program import Program, jacobian
 from ...spec import LawTraits
 from .blocks import by_vectors, named_blocks, spread
 from .damping import Damping
-from .points import gathered, on_vectors, values
+from .points import Point, gathered, on_vectors, values
 from .section import resultants
 
 SOURCE = "Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)"
 STIFFNESS_DOC = "axial and bending stiffness EA, EI"
-
-
-@dataclass(frozen=True)
-class Point:
-    """A quadrature point on [-1, 1]: weight, and the Legendre series of r' and (l/2) r'' there."""
-
-    weight: sp.Float
-    value: tuple[sp.Float, ...]
-    slope: tuple[sp.Float, ...]
 
 
 @dataclass(frozen=True)
@@ -181,7 +172,7 @@ class Cable(Damping):
             points = self.bending_points
             for g, (invariants, *at) in enumerate(self._at_points(program, "", "abc", points, c)):
                 axial, bending = (self._weighted(program, points, g, *stiff) for stiff in (("EA", EA), ("EI", EI)))
-                strain, k2, _ = self.measures(program, f"_{g}", *invariants, bending)
+                strain, k2, _ = self.measures(program, f"_{g}", invariants, bending)
                 yield Term("abc", axial * strain**2 + k2, invariants, *at)
             return
         points = self.axial_points
@@ -198,10 +189,11 @@ class Cable(Damping):
         first = min(g, len(points) - 1 - g)
         return program.define_once(f"{name}{len(points)}_{first}", points[first].weight * stiffness)
 
-    def measures(self, program: Program, tag: str, a1, b, c, factor=sp.S.One) -> tuple:
+    def measures(self, program: Program, tag: str, invariants: Sequence[sp.Expr], factor=sp.S.One) -> tuple:
         """Axial strain, factor times the squared curvature, and what leads to that from |r' x r''|^2; None where it is
         |r''|^2.
         """
+        a1, b, c = invariants
         strain = self._axial_strain(program, tag, a1)
         if self.curvature == "linear":
             return strain, factor * c, None
@@ -220,8 +212,8 @@ class Cable(Damping):
     def forces(self, program: Program, A, c, w) -> np.ndarray:
         """Return dU/dc on strain vectors."""
         f = np.zeros((len(self.gram.names), self.gram.element.dim), dtype=object)
-        for names, terms in groupby(list(self._terms(program, A, c, w)), key=lambda term: term.names):
-            terms = list(terms)
+        for names, of_rule in groupby(list(self._terms(program, A, c, w)), key=lambda term: term.names):
+            terms = list(of_rule)
             program.stage("forces at the quadrature points")
             forces = [on_vectors(program, f"{names}{g}", term.vectors, _first(program, term))
                       for g, term in enumerate(terms)]
@@ -230,8 +222,9 @@ class Cable(Damping):
 
     def _gathered(self, program: Program, names: str, terms: list[Term], forces: list) -> np.ndarray:
         """Return the forces on the strain vectors along the axis from those on the vectors of each point."""
-        return sum(gathered(program, f"{names}{k + 1}", [term.series[k] for term in terms], [f[k] for f in forces])
-                   for k in range(len(terms[0].vectors)))
+        return np.asarray(sum(
+            gathered(program, f"{names}{k + 1}", [term.series[k] for term in terms], [f[k] for f in forces])
+            for k in range(len(terms[0].vectors))))
 
     def _named(self, program: Program, f: np.ndarray) -> np.ndarray:
         program.stage("forces on strain vectors")
@@ -244,8 +237,8 @@ class Cable(Damping):
         inputs = zip(c.ravel(), zip(now.ravel(), then.ravel(), strict=True), strict=True)
         discrete = DiscreteGradient(program, law, dict(inputs))
         f = np.zeros((len(self.gram.names), self.gram.element.dim), dtype=object)
-        for names, group in groupby(terms, key=lambda term: term.names):
-            group = list(group)
+        for names, of_rule in groupby(terms, key=lambda term: term.names):
+            group = list(of_rule)
             program.stage("forces at the quadrature points")
             forces = []
             for g, term in enumerate(group):

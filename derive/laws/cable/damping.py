@@ -13,13 +13,32 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 import sympy as sp
 
+from ...algebra.gram import Gram
 from ...codegen.program import DirectionalDerivative, Program, jacobian
 from ...spec import Element, x
 from .blocks import named_blocks, spread
+from .points import Point
 
 
 class Damping:
     """Of a cable with a Green or an engineering strain; any curvature is damped alike."""
+
+    gram: Gram
+    strain: str
+
+    @property
+    def degree(self) -> int:
+        """Return the degree of the centreline in x."""
+        raise NotImplementedError
+
+    @property
+    def axis_indices(self) -> list[int]:
+        """Return the indices of the strain vectors along the axis."""
+        raise NotImplementedError
+
+    def points(self, n: int) -> list[Point]:
+        """Return the n points of the Gauss-Legendre rule."""
+        raise NotImplementedError
 
     @staticmethod
     def rates(element: Element) -> dict[str, int]:
@@ -56,9 +75,10 @@ class Damping:
                    np.concatenate([d1, d2]), list(rate))
 
     def _at_point(self, program: Program, tag: str, order: str, series, c, dc) -> tuple[np.ndarray, np.ndarray]:
-        return tuple(program.vector(f"{name}{order}_{tag}",
-                                    sum(series[k] * v[m] for k, m in enumerate(self.axis_indices)))
-                     for name, v in (("r", c), ("d", dc)))
+        r, d = (program.vector(f"{name}{order}_{tag}",
+                               np.asarray(sum(series[k] * v[m] for k, m in enumerate(self.axis_indices))))
+                for name, v in (("r", c), ("d", dc)))
+        return r, d
 
     def _damping_points(self, program, A, tau, c, dc, w, strain: Callable = list) -> Iterator[tuple]:
         """At every point: factors, positions, rates, forces on r' (and (l/2) r''); strain: of the rates there, what the
@@ -91,7 +111,7 @@ class Damping:
     def _summed(self, program: Program, points: list[tuple]) -> np.ndarray:
         """Return forces on strain vectors from those at the points."""
         dim = self.gram.element.dim
-        f = np.zeros((len(self.gram.names), dim), dtype=object)
+        f: np.ndarray = np.zeros((len(self.gram.names), dim), dtype=object)
         for factors, _, _, force in points:
             for k, m in enumerate(self.axis_indices):
                 f[m] = f[m] + sum(x[k] * force[i * dim:(i + 1) * dim] for i, x in enumerate(factors))

@@ -7,11 +7,22 @@ and differences do the work of both points of a pair.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import sympy as sp
 
 from ...codegen.program import Program
+
+
+@dataclass(frozen=True)
+class Point:
+    """A quadrature point on [-1, 1]: weight, and the Legendre series of r' and (l/2) r'' there."""
+
+    weight: sp.Float
+    value: tuple[sp.Float, ...]
+    slope: tuple[sp.Float, ...]
+
 
 Series = Sequence[Sequence[sp.Expr]]
 """Factors of the strain vectors in a vector, point by point."""

@@ -27,7 +27,7 @@ def resultants(law, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, 
                       (("a1", r[0].dot(r[0]) - 1), ("b", r[0].dot(r[1])), ("c", r[1].dot(r[1]))))
     kappa0 = sp.S.Zero
     if c0 is None:
-        at_point, k2, scale = law.measures(program, "", a1, b, squared)
+        at_point, k2, scale = law.measures(program, "", (a1, b, squared))
         axial, constant, strain = law.membrane(program, S, c, X, at_point)
         density = axial + S[1] * k2 / 2
     else:

@@ -93,6 +93,8 @@ class Continuum:
 
     name, doc, source, set_up_kernel = NAME, DOC, SOURCE, "stiffness"
 
+    form: Form
+
     def __init__(self, gram: Gram):
         self.gram, self.form = gram, Form(gram)
 

@@ -47,6 +47,8 @@ class CurvedContinuum(Continuum):
     set_up_kernel = "stiffness_at"
     name, doc = NAME, "St. Venant-Kirchhoff continuum, orthotropic, its stress-free shape curved"
 
+    form: DenseForm
+
     def __init__(self, gram: Gram):
         self.gram, self.straight = gram, Form(gram)
         self.form = DenseForm(gram, len(self.straight.constants))
@@ -88,7 +90,8 @@ class CurvedContinuum(Continuum):
 
     def _rows(self, program: Program, X, y, z, w) -> list[list[sp.Expr]]:
         """Return the coefficients over the pairs of (F'F)_ii/2 and (F'F)_ij, in Voigt's order."""
-        rows, known = [], {}
+        rows: list = []
+        known: dict = {}
         for i, j in voigt(self.gram.element.dim):
             row = []
             for polynomial in self.form.strain[i, j]:

@@ -56,7 +56,7 @@ def _points(program: Program, S: np.ndarray, dim: int) -> list[tuple]:
     program.stage("points of the section")
     (y, per_y), (z, per_z) = (_place(program, name, S[0, second], S[0, fourth])
                               for name, second, fourth in (("y", 1, 3), ("z", 2, 5)))
-    shares = []
+    shares: list[tuple] = []
     for k, row in enumerate(S):
         of_y = program.define(f"D{k}_y", row[1] * per_y)
         if dim == 2:

@@ -85,7 +85,8 @@ class Forces:
     def _by_part(self) -> dict[sp.Symbol, sp.Expr]:
         """dV by each scalar part."""
         configuration, n = self.configuration, len(self.law.axes)
-        by_scalar, values = dict(zip(self.midspan.scalars, self.midspan.gradient, strict=True)), {}
+        by_scalar = dict(zip(self.midspan.scalars, self.midspan.gradient, strict=True))
+        values: dict[sp.Symbol, sp.Expr] = {}
         for i in self.law.axes:
             values |= {configuration.along[node][i]: self.resultants[2 * n * node + i] for node in range(2)}
             values |= {p[i]: by_scalar[configuration.mean[i]] / 2 for p in configuration.between}

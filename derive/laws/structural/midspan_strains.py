@@ -57,5 +57,5 @@ class MidspanStrains:
         return upper + np.triu(upper, 1).T
 
 
-def _columns(derivations: Sequence[DirectionalDerivative], values: Sequence[sp.Expr]) -> np.ndarray:
+def _columns(derivations: Sequence[DirectionalDerivative], values: Sequence[sp.Expr] | np.ndarray) -> np.ndarray:
     return np.stack([by.array(np.array(values)) for by in derivations], axis=-1)

@@ -52,7 +52,7 @@ class SectionFrame:
         along3 = program.define(f"y3_{tag}", self.inverse_a * moment[0])
         return along1 * t1 + along3 * t3, program.define(f"z1_{tag}", self.inverse_c * moment[1]) * t1
 
-    def rates(self, spin: np.ndarray, dy: np.ndarray, dz: np.ndarray) -> dict[sp.Symbol, sp.Expr]:
+    def rates(self, spin: np.ndarray | list, dy: np.ndarray, dz: np.ndarray) -> dict[sp.Symbol, sp.Expr]:
         """Of everything named here, when the directors move."""
         _, t2, t3 = self.t
         db, dc = dz.dot(t2) + self.c * spin[0], dz.dot(t3) - self.b * spin[0]

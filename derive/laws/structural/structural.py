@@ -134,7 +134,7 @@ class Structural:
                        "S, stiffness that the bubble takes off the shears, shares of stretch in the shears half way, "
                        "reference strains")
 
-    def shares(self, program: Program, S: Sequence[sp.Expr], length: sp.Expr) -> list[sp.Expr]:
+    def shares(self, program: Program, S: Sequence[sp.Expr] | np.ndarray, length: sp.Expr) -> list[sp.Expr]:
         """Return how much of each shear half way is stretch, since the bubble turns the section."""
         program.stage("stretch of the bubble")
         left = [program.define(f"left_{i}", 1 - S[i] * BUBBLE_SQUARED / self._bubble_stiffness(S, i, length))
@@ -142,7 +142,7 @@ class Structural:
         return [program.define(f"share_{i}", sp.sqrt(BUBBLE_AS_STRAIN * (1 - c**2)))
                 for i, c in zip(self.shears, left, strict=True)]
 
-    def bending(self, S: Sequence[sp.Expr], shear: int) -> sp.Expr:
+    def bending(self, S: Sequence[sp.Expr] | np.ndarray, shear: int) -> sp.Expr:
         """Stiffness of the bending that goes with a shear: about z with y, about y with z."""
         return S[len(self.axes) + list(self.spins).index(3 - shear)]
 
@@ -213,7 +213,7 @@ class Structural:
                 turn[3 - i] = program.define(f"turn_{3 - i + 1}", sign * bubble * BUBBLE.subs(X, at) / 2)
         return [program.define(f"at_{'ek'[i // 3]}{i % 3 + 1}", f) for i, f in enumerate(found)], turn
 
-    def spatial_stiffness(self, S: Sequence[sp.Expr]) -> list[sp.Expr]:
+    def spatial_stiffness(self, S: Sequence[sp.Expr] | np.ndarray) -> list[sp.Expr]:
         """EA, GA_y, GA_z, GJ, EI_yy, EI_zz; of a planar element those that it has."""
         return list(S[:6]) if self.element.dim == 3 else [S[0], S[1], *[sp.S.Zero] * 3, S[2]]
 

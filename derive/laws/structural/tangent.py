@@ -52,7 +52,9 @@ class Tangent(Forces):
             for row in range(column + 1):
                 self.parts[row, column] = self.program.define(f"P_{row}_{column}", rate(forces[row]))
         self._mirror()
-        self.velocity, self.late, self.across = None, None, {}
+        self.velocity: Velocity | None = None
+        self.late: np.ndarray | None = None
+        self.across: dict[tuple[Slot, Slot], np.ndarray] = {}
 
     @cached_property
     def _scalars_moved(self) -> list[np.ndarray]:
@@ -163,7 +165,7 @@ class Tangent(Forces):
                              for k, s in enumerate(configuration.frames[n].spin(*pair))])
             columns = np.array([configuration.turn(n, k) for k in self.law.spins])
             changes = self.parts[:, columns].dot(spin[list(self.law.spins)])
-            if self.velocity:
+            if self.velocity and self.late is not None:
                 late = np.array([program.define("dW", self.velocity.rate(spin[k])) for k in self.law.spins])
                 changes = changes + self.late[:, columns - configuration.turn(0, self.law.spins[0])].dot(late)
             rates = configuration.frames[n].rates(spin, *pair)

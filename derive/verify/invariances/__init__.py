@@ -6,13 +6,14 @@ The error is relative to the scale that the text's quantity has in the sample.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from typing import Any
 
 from ...codegen.family import Family
 from ..numbers import Numbers, State
 from . import body, element, frame, joint, law, modal, resistance, slide
 from .measures import Invariance
 
-OF_ROLE: dict[str, Callable[[Family, Numbers, State], Iterator[Invariance]]] = {
+OF_ROLE: dict[str, Callable[[Any, Numbers, State], Iterator[Invariance]]] = {
     "element": element.element, "law": law.law, "slide": slide.slide, "body": body.body, "modal": modal.modal,
     "frame": frame.frame, "joint": joint.joint, "resistance": resistance.resistance}
 

@@ -6,19 +6,19 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...codegen.family import Family
+from ...codegen.family import BodyFamily
 from ..motion import RIDERS
 from ..numbers import EPS, Numbers, State
 from .measures import FAR, Invariance, quantised, relative
 
 
-def body(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
+def body(family: BodyFamily, k: Numbers, s: State) -> Iterator[Invariance]:
     """Yield lengths, power, and digits far away."""
     rider = RIDERS[family.rider]
     dim, n = rider.dim, rider.n_velocity
     out, force = k("point", s), k("point_force", s)
     distance = np.linalg.norm(out["p"] - s["b"][:dim])
-    yield "the point keeps its distance", abs(distance / np.linalg.norm(s["u"]) - 1), 8 * EPS
+    yield "the point keeps its distance", float(abs(distance / np.linalg.norm(s["u"]) - 1)), 8 * EPS
     yield "velocity is p_q w", relative(out["v"] - out["p_q"] @ s["w"], out["v"]), 8 * EPS
     b = np.concatenate([quantised(s["b"][:dim]) + FAR, s["b"][dim:]])
     away = k("point", s, b=b)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...codegen.family import Family
+from ...codegen.family import ElementFamily
 from ...spec import x, y, z
 from ..numbers import EPS, Numbers, State
 from ..samples.shapes import reference
@@ -14,13 +14,13 @@ from . import load
 from .measures import Invariance, relative
 
 
-def element(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
+def element(family: ElementFamily, k: Numbers, s: State) -> Iterator[Invariance]:
     """Yield partition of unity, totals, and what holds of loads."""
     yield from _shape_and_mass(family, k, s)
     yield from load.invariances(family.element, k, s)
 
 
-def _shape_and_mass(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
+def _shape_and_mass(family: ElementFamily, k: Numbers, s: State) -> Iterator[Invariance]:
     spec = family.element
     at_nodes = np.array(spec.is_position, dtype=float)
     e0 = reference(spec, float(s["l"]))

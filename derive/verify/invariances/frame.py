@@ -6,13 +6,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...codegen.family import Family
+from ...codegen.family import CouplingFamily
 from ..motion import swung_axes
 from ..numbers import EPS, Numbers, State
 from .measures import Invariance
 
 
-def frame(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
+def frame(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance]:
     """Orthonormal, right-handed; a turn of both vectors turns the frame; length does not matter."""
     out = k("axes", s)
     A, T = out["A"], out["T"]

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...codegen.family import Family
+from ...codegen.family import CouplingFamily
 from ...couplings.frame import TURNS
 from ..motion import swung_axes, turned_axes
 from ..numbers import EPS, Numbers, State
@@ -20,7 +20,7 @@ FREE = {"spherical": "rx ry rz", "revolute": "rz", "revolute_angle": "", "univer
         "planar_weld": "", "planar_distance": None, "planar_locked": "x y"}
 
 
-def joint(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
+def joint(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance]:
     """Zero where the joint holds, blind to what it lets pass and to nothing else."""
     dim, turns = family.dim, TURNS[family.dim]
     name = family.name.removeprefix("joint_")

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...algebra.gram import Gram
-from ...codegen.family import Family
+from ...codegen.family import LawFamily
 from ...spec import Element
 from ..numbers import EPS, Numbers, State
 from ..references.element import Shape
@@ -15,7 +15,7 @@ from ..samples.shapes import reference, rotation
 from .measures import FAR, Invariance, quantised, relative, spins
 
 
-def law(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
+def law(family: LawFamily, k: Numbers, s: State) -> Iterator[Invariance]:
     """Yield what rigid motion must not change in any kernel of a law."""
     yield from _rigid_motion(family, k, s)
     yield from _deformed(family, k, s)
@@ -25,7 +25,7 @@ def law(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
         yield from _damping(family, k, s)
 
 
-def _rigid_motion(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
+def _rigid_motion(family: LawFamily, k: Numbers, s: State) -> Iterator[Invariance]:
     """Moved without strain: coordinates of size c hold chords, in lengths, to eps (1 + |c|/l)."""
     spec, random = family.element, np.random.default_rng(1)
     stiff = _stiffness(family, s)
@@ -41,7 +41,7 @@ def _rigid_motion(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
             yield f"rigid motion makes no force{where}", relative(f, stiff / s["l"]), 20 * chord
 
 
-def _stiffness(family: Family, s: State) -> float:
+def _stiffness(family: LawFamily, s: State) -> float:
     """Energy of a strain of order one."""
     if family.traits.kind == "continuum" and not family.traits.straight:
         return float(np.max(np.abs(s["A"])))
@@ -61,7 +61,7 @@ def _moment(e: np.ndarray, f: np.ndarray, positions: np.ndarray) -> np.ndarray:
     return product - product.T
 
 
-def _deformed(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
+def _deformed(family: LawFamily, k: Numbers, s: State) -> Iterator[Invariance]:
     spec = family.element
     positions = np.array(spec.is_position, dtype=float)
     e = quantised(s["e"])
@@ -83,7 +83,7 @@ def _deformed(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
         yield "tangent null on translation", relative(K @ shift, K), 8 * EPS
 
 
-def _step(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
+def _step(family: LawFamily, k: Numbers, s: State) -> Iterator[Invariance]:
     """Yield what holds of forces and moments over a step."""
     spec = family.element
     positions = np.array(spec.is_position, dtype=float)
@@ -99,7 +99,7 @@ def _step(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
     yield "step: same digits at 10⁴ lengths", relative(far - f, scale), 0.0
 
 
-def _damping(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
+def _damping(family: LawFamily, k: Numbers, s: State) -> Iterator[Invariance]:
     spec = family.element
     positions = np.array(spec.is_position, dtype=float)
     scale = s["tau"] * _stiffness(family, s) / s["l"]
@@ -124,8 +124,8 @@ def _damping(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
         yield "algorithmic dissipation: no net force", relative(positions @ pull, scale), 64 * EPS
         if not twisted:
             yield "algorithmic dissipation: no net moment", relative(_moment(s["e"], pull, positions), scale), 64 * EPS
-    P = float(k("dissipation", s)["P"][0])
-    mismatch = abs(P - np.sum(s["v"] * f)) / P if P > 0 else np.inf
+    power = float(k("dissipation", s)["P"][0])
+    mismatch = abs(power - float(np.sum(s["v"] * f))) / power if power > 0 else np.inf
     yield "damping takes energy out: P = v . f > 0", mismatch, 32 * EPS
 
 

@@ -25,8 +25,8 @@ def invariances(spec: Element, k: Numbers, s: State) -> Iterator[Invariance]:
             shift = np.outer(positions, axis).ravel()
             yield "loads: K null on translation", relative(out["K"] @ shift, out["K"]), 8 * EPS
     f, K = (k("follower_force", s)[name] for name in "fK")
-    yield "follower force: the net force is as large as c", abs(np.linalg.norm(positions @ f)
-                                                                / np.linalg.norm(s["c"]) - 1), 16 * EPS
+    yield "follower force: the net force is as large as c", float(
+        abs(np.linalg.norm(positions @ f) / np.linalg.norm(s["c"]) - 1)), 16 * EPS
     Q = rotation(np.random.default_rng(4), spec.dim)
     yield "follower force turns with the element", relative(k("follower_force", s, e=s["e"] @ Q.T)["f"] - f @ Q.T, f), (
         64 * EPS)

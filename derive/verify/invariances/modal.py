@@ -7,13 +7,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...bodies.modal import vector_product
-from ...codegen.family import Family
+from ...codegen.family import BodyFamily
 from ..motion import RIDERS
 from ..numbers import EPS, Numbers, State
 from .measures import FAR, Invariance, quantised, relative
 
 
-def modal(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
+def modal(family: BodyFamily, k: Numbers, s: State) -> Iterator[Invariance]:
     """Yield symmetry of the mass matrix, weight, and digits far away."""
     dim = RIDERS[family.rider].dim
     M = k("mass_matrix", s)["M"]

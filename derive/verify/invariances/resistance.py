@@ -6,12 +6,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...codegen.family import Family
+from ...codegen.family import CouplingFamily
 from ..numbers import EPS, Numbers, State
 from .measures import Invariance
 
 
-def resistance(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
+def resistance(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance]:
     """Friction against the motion, as large as the normal force makes it; a buffer of its own."""
     i = s["t"] / np.linalg.norm(s["t"])
     length, v = np.linalg.norm(s["t"]), i @ s["u"]

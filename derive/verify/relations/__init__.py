@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 from ...codegen.family import Family
 from ..methods import Relation
 from . import body, element, frame, joint, law, modal, resistance, slide
 
-OF_ROLE: dict[str, Callable[[Family], list[Relation]]] = {
+OF_ROLE: dict[str, Callable[[Any], list[Relation]]] = {
     "element": element.element, "law": law.law, "slide": slide.slide, "body": body.body, "modal": modal.modal,
     "frame": frame.frame, "joint": joint.joint, "resistance": resistance.resistance}
 

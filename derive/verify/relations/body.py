@@ -6,13 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...codegen.family import Family
+from ...codegen.family import BodyFamily
 from ..methods import Relation
 from ..motion import RIDERS, cross, exponential, spin, swung_axes, turned
 from .paths import entry, from_kernel, unit
 
 
-def body(family: Family) -> list[Relation]:
+def body(family: BodyFamily) -> list[Relation]:
     """Return the relations of a body's kernels: points along finite motions, Newton-Euler from momentum."""
     rider = RIDERS[family.rider]
     n, dim = rider.n_velocity, rider.dim

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...codegen.family import Family
+from ...codegen.family import ElementFamily
 from ...spec import Element
 from ..methods import Relation
 from ..references import element as reference
@@ -12,7 +12,7 @@ from .load import loads
 from .paths import root
 
 
-def element(family: Family) -> list[Relation]:
+def element(family: ElementFamily) -> list[Relation]:
     """Return the relations of an element's own kernels, eq 2-4, and of its loads."""
     spec: Element = family.element
 

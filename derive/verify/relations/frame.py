@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...codegen.family import Family
+from ...codegen.family import CouplingFamily
 from ..methods import Relation
 from ..motion import frame as gram_schmidt
 from ..motion import swung_axes
 
 
-def frame(family: Family) -> list[Relation]:
+def frame(family: CouplingFamily) -> list[Relation]:
     """Return the relations of the kernels of the frame of two vectors, eq 13-18."""
     dim = family.dim
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...codegen.family import Family
+from ...codegen.family import CouplingFamily
 from ...couplings.frame import TURNS
 from ..methods import Relation
 from ..motion import turned_axes
 from .paths import from_kernel
 
 
-def joint(family: Family) -> list[Relation]:
+def joint(family: CouplingFamily) -> list[Relation]:
     """Return the relations of the equations of a joint along finite motions of its frames."""
     dim, turns = family.dim, TURNS[family.dim]
     n = dim + 2 * turns

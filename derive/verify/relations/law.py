@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...codegen.family import Family
+from ...codegen.family import LawFamily
 from ...spec import Element
 from ..methods import Relation
 from ..references import cable, curved_continuum, section
@@ -12,7 +12,7 @@ from ..references import law as reference
 from .paths import entry, from_kernel, half, root, unit
 
 
-def law(family: Family) -> list[Relation]:
+def law(family: LawFamily) -> list[Relation]:
     """Return the relations of the kernels of a law, eq 5-9."""
     spec: Element = family.element
     n = spec.n_coordinates
@@ -69,7 +69,7 @@ def law(family: Family) -> list[Relation]:
     return [relation for relation in every if relation.kernel not in family.not_own]
 
 
-def _step_stiffness(family: Family) -> Relation:
+def _step_stiffness(family: LawFamily) -> Relation:
     """Of a quadratic form the derivative of the discrete force with both ends moved alike is the tangent half-way with
     the mean stress; cables take its axial part alone, at unit stretch.
     """

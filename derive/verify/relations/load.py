@@ -54,6 +54,6 @@ def turning_rate(slopes: list[np.ndarray], rates: list[np.ndarray]) -> np.ndarra
     if len(slopes) == 1:
         return cross(slopes[0], rates[0]) / slopes[0].dot(slopes[0])
     turning = np.concatenate([np.stack([cross(axis, a) for axis in np.eye(3, dtype=int)], axis=1) for a in slopes])
-    rates = np.concatenate(rates)
+    every = np.concatenate(rates)
     # more equations than unknowns: mpmath solves in least squares
-    return np.array(list(mpmath.lu_solve(mpmath.matrix(turning.tolist()), mpmath.matrix(rates.tolist()))))
+    return np.array(list(mpmath.lu_solve(mpmath.matrix(turning.tolist()), mpmath.matrix(every.tolist()))))

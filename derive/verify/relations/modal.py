@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ...bodies.modal import axial
-from ...codegen.family import Family
+from ...codegen.family import BodyFamily
 from ..methods import Relation
 from ..motion import RIDERS, cross, swung
 from ..numbers import Numbers, State
@@ -20,7 +22,7 @@ def unit(n: int, j: int) -> np.ndarray:
 class Paths:
     """Finite motions of a body on a frame."""
 
-    def __init__(self, family: Family):
+    def __init__(self, family: BodyFamily):
         self.rider = RIDERS[family.rider]
         self.dim, self.n = self.rider.dim, self.rider.n_velocity
 
@@ -66,12 +68,12 @@ class Paths:
         return self.rider.point(b, s["place"] + (s["eta"] + eta).dot(s["phis"])), self.axes(b).dot(C)
 
 
-def modal(family: Family) -> list[Relation]:
+def modal(family: BodyFamily) -> list[Relation]:
     """Return the relations of every output of a modal body's kernels."""
     p = Paths(family)
     rider, n, zero = p.rider, p.n, np.zeros(MODES, dtype=int)
 
-    def frame_moved(kernel: str, output: str) -> Relation:
+    def frame_moved(kernel: str, output: str) -> Callable:
         return lambda k, s, t, j: k(kernel, s, b=rider.moved(k, s["b"], t * unit(n, j)))[output]
 
     def along(kernel: str, name: str):

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...codegen.family import Family
+from ...codegen.family import CouplingFamily
 from ..methods import Relation
 from .paths import from_kernel
 
 
-def resistance(family: Family) -> list[Relation]:
+def resistance(family: CouplingFamily) -> list[Relation]:
     """Return the relations of the derivatives of R."""
     dim = family.dim
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...codegen.family import Family
+from ...codegen.family import SlideFamily
 from ..methods import Relation
 from ..motion import RIDERS, frame, swung
 from ..references import element as reference
@@ -25,7 +25,7 @@ class Curve:
         self.director = shape(at, by).dot(s["e"]) if element.director else s["director"]
 
 
-def slide(family: Family) -> list[Relation]:
+def slide(family: SlideFamily) -> list[Relation]:
     """Return the relations of the slide's kernels, eq 13-38."""
     element, rider = family.element, RIDERS[family.rider]
     n_e, n = element.n_coordinates, element.n_coordinates + rider.n_velocity

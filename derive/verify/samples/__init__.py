@@ -6,12 +6,12 @@ Sizes are stout and of order one, so that no term hides below the rounding of an
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...codegen.family import Family
-from ..numbers import Numbers
+from ..numbers import Numbers, State
 from . import body, element, frame, joint, law, modal, resistance, slide
 
 SEEDS = (20050401, 20050705)  # days on which the paper was received and accepted
@@ -22,8 +22,8 @@ class Sampler(NamedTuple):
     another case.
     """
 
-    sample: Callable[[Family, Numbers, np.random.Generator], dict[str, np.ndarray]]
-    at_rest: Callable[[Family, Numbers, dict[str, np.ndarray]], dict[str, np.ndarray]] | None = None
+    sample: Callable[[Any, Numbers, np.random.Generator], State]
+    at_rest: Callable[[Any, Numbers, State], State] | None = None
 
 
 OF_ROLE = {
@@ -33,7 +33,7 @@ OF_ROLE = {
     "resistance": Sampler(resistance.sample)}
 
 
-def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
+def states(family: Family, exact: Numbers) -> list[State]:
     """Return states of a family: values by argument name, with `rectangle` and the second rates that only paths use.
 
     Constants that one kernel makes for another (m, A) come from the 50-digit programs: a fault in the compiled one

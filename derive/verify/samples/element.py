@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import sympy as sp
 
-from ...codegen.family import Family
+from ...codegen.family import ElementFamily
 from ...spec import Element, x
-from ..numbers import Numbers
+from ..numbers import Numbers, State
 from .shapes import HEIGHT, LENGTH, WIDTH, reference, rotation, section
 from .step import following
 
 
-def sample(family: Family, exact: Numbers, random: np.random.Generator) -> dict[str, np.ndarray]:
+def sample(family: ElementFamily, exact: Numbers, random: np.random.Generator) -> State:
     """Return a bent element with accelerations a, its mass matrix m, loads c and M."""
     element = family.element
     state = element_state(element, random)
@@ -24,17 +24,17 @@ def sample(family: Family, exact: Numbers, random: np.random.Generator) -> dict[
     return state | loads(element, random)
 
 
-def at_rest(family: Family, exact: Numbers, first: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+def at_rest(family: ElementFamily, exact: Numbers, first: State) -> State:
     """Return the first sample, straight and undeformed."""
     return first | straight(family.element)
 
 
-def straight(element: Element) -> dict[str, np.ndarray]:
+def straight(element: Element) -> State:
     """Return the nodal vectors e of the straight reference, and its middle x."""
     return {"e": reference(element, LENGTH), "x": np.float64(LENGTH / 2)}
 
 
-def element_state(element: Element, random: np.random.Generator) -> dict[str, np.ndarray]:
+def element_state(element: Element, random: np.random.Generator) -> State:
     """Return a bent, stretched, sheared and turned element with its rates, and the data of the section and the law."""
     dim, n = element.dim, element.n_vectors
     mild = 3 / max(int(sp.degree(b, x)) for b in element.basis)  # curvatures of the same size for any degree
@@ -56,7 +56,7 @@ def element_state(element: Element, random: np.random.Generator) -> dict[str, np
     }
 
 
-def loads(element: Element, random: np.random.Generator) -> dict[str, np.ndarray]:
+def loads(element: Element, random: np.random.Generator) -> State:
     """Return the components of a follower force and of a moment, as many as the element takes."""
     local = element.dim if element.dim == 2 or element.director else 1
     return {"c": random.normal(size=local), "M": random.normal(size=1 if element.dim == 2 else 3)}

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...codegen.family import Family
+from ...codegen.family import CouplingFamily
 from ...couplings.frame import TURNS
-from ..numbers import Numbers
+from ..numbers import Numbers, State
 
 
-def sample(family: Family, exact: Numbers, random: np.random.Generator) -> dict[str, np.ndarray]:
+def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) -> State:
     """Return two vectors with their first and second rates, and a moment."""
     names = ("a", "b", "a_rate", "b_rate", "a_second", "b_second")
     found = {name: random.normal(size=family.dim) for name in names}

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...codegen.family import Family
+from ...codegen.family import CouplingFamily
 from ...couplings.frame import TURNS
 from ..motion import turned_axes
-from ..numbers import Numbers
+from ..numbers import Numbers, State
 
 
-def sample(family: Family, exact: Numbers, random: np.random.Generator) -> dict[str, np.ndarray]:
+def sample(family: CouplingFamily, exact: Numbers, random: np.random.Generator) -> State:
     """Return two frames in any attitude, not on the joint, with velocities, and what drives the joint."""
     dim, turns = family.dim, TURNS[family.dim]
     c = random.uniform(0.3, 1.2)

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...codegen.family import Family
+from ...codegen.family import LawFamily
 from ...laws import kernels as law_kernels
 from ...spec import LawTraits
 from ..exact import ExactProgram
-from ..numbers import Numbers
+from ..numbers import Numbers, State
 from ..references import curved_continuum
 from .element import element_state, straight
 from .step import following
 
 
-def sample(family: Family, exact: Numbers, random: np.random.Generator) -> dict[str, np.ndarray]:
+def sample(family: LawFamily, exact: Numbers, random: np.random.Generator) -> State:
     """Return a bent element with the stiffness S of a section and the law's constants A."""
     element = family.element
     state = element_state(element, random)
@@ -30,7 +30,7 @@ def sample(family: Family, exact: Numbers, random: np.random.Generator) -> dict[
     return state | _constants(family, exact, state)
 
 
-def at_rest(family: Family, exact: Numbers, first: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+def at_rest(family: LawFamily, exact: Numbers, first: State) -> State:
     """Return the first sample, straight and undeformed; a law for curved shapes has a straight one here."""
     rest = first | straight(family.element)
     if family.traits.straight:
@@ -39,7 +39,7 @@ def at_rest(family: Family, exact: Numbers, first: dict[str, np.ndarray]) -> dic
     return rest
 
 
-def _constants(family: Family, exact: Numbers, state: dict) -> dict[str, np.ndarray]:
+def _constants(family: LawFamily, exact: Numbers, state: State) -> State:
     """Return the constants A that other kernels of the law make."""
     s = exact.state(state)
     if "stiffness_at" not in exact.programs:
@@ -51,7 +51,7 @@ def _constants(family: Family, exact: Numbers, state: dict) -> dict[str, np.ndar
 
 
 def section_stiffness(traits: LawTraits, dim: int, moments: np.ndarray,
-                      random: np.random.Generator) -> dict[str, np.ndarray]:
+                      random: np.random.Generator) -> State:
     """Return the argument S of a law; for a continuum also elastic constants, D over the section and D_axis on the axis
     alone.
     """

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...codegen.family import Family
+from ...codegen.family import BodyFamily
 from ..motion import RIDERS
 from ..numbers import Numbers, State
 from . import body
@@ -16,19 +16,19 @@ POINTS, MODES = 4, 2
 RATES = ("eta", "eta1", "eta2")
 
 
-def sample(family: Family, exact: Numbers, random: np.random.Generator) -> dict[str, np.ndarray]:
+def sample(family: BodyFamily, exact: Numbers, random: np.random.Generator) -> State:
     """Return a body with mass points, modes and their coordinates, and the integrals that the kernels take."""
     return body.sample(family, exact, random) | _points(random, RIDERS[family.rider].dim)
 
 
-def at_rest(family: Family, exact: Numbers, first: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+def at_rest(family: BodyFamily, exact: Numbers, first: State) -> State:
     """Return the first sample, not turned and undeformed."""
     rest = body.at_rest(family, exact, first)
     rest |= {name: 0 * rest[name] for name in RATES}
     return rest | integrals(rest)
 
 
-def _points(random: np.random.Generator, dim: int) -> dict[str, np.ndarray]:
+def _points(random: np.random.Generator, dim: int) -> State:
     """Mass points, modes and their coordinates; the modes at one more point, which an attachment takes."""
     turns = 1 if dim == 2 else 3
     made = {"points": random.normal(size=(POINTS, dim)), "modes": random.normal(size=(MODES, POINTS, dim)) / 2,
@@ -40,7 +40,7 @@ def _points(random: np.random.Generator, dim: int) -> dict[str, np.ndarray]:
     return made | integrals(made)
 
 
-def integrals(s: State, **moved: np.ndarray) -> dict[str, np.ndarray]:
+def integrals(s: State, **moved: np.ndarray) -> State:
     """Return what the kernels take at these coordinates, some of them moved."""
     s = {**s, **moved}
     rho = s["masses"]

@@ -6,6 +6,7 @@ import numpy as np
 
 from ...spec import Element
 from ..motion import exponential
+from ..numbers import State
 from ..references.element import Shape
 
 LENGTH, HEIGHT, WIDTH = 0.7, 0.31, 0.23
@@ -44,12 +45,12 @@ def section(height: float = HEIGHT, width: float = WIDTH) -> np.ndarray:
     return np.array([height ** (a + 1) / 2**a / (a + 1) * width ** (b + 1) / 2**b / (b + 1) for a, b in powers])
 
 
-def on_axis(element: Element, state: dict[str, np.ndarray], order: int = 0) -> np.ndarray:
+def on_axis(element: Element, state: State, order: int = 0) -> np.ndarray:
     """Point of the centreline at the state's x, or a derivative there."""
     return Shape(element, state["l"])((state["x"], 0, 0), (order, 0, 0)).astype(float) @ state["e"]
 
 
-def director(element: Element, state: dict[str, np.ndarray], random: np.random.Generator) -> np.ndarray:
+def director(element: Element, state: State, random: np.random.Generator) -> np.ndarray:
     """Return a direction off the tangent, neither of unit length nor normal to it."""
     tangent = on_axis(element, state, 1)
     tangent /= np.linalg.norm(tangent)

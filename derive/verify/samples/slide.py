@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...codegen.family import Family
-from ..numbers import Numbers
+from ...codegen.family import SlideFamily
+from ..numbers import Numbers, State
 from .body import rider_state, unturned
 from .element import element_state, straight
 from .shapes import director, on_axis
 from .step import following
 
 
-def sample(family: Family, exact: Numbers, random: np.random.Generator) -> dict[str, np.ndarray]:
+def sample(family: SlideFamily, exact: Numbers, random: np.random.Generator) -> State:
     """Return a bent element, a rider not far from its point x, and a direction off the tangent there."""
     state = element_state(family.element, random)
     del state["e0"]
@@ -22,7 +22,7 @@ def sample(family: Family, exact: Numbers, random: np.random.Generator) -> dict[
     return state | {"f": random.normal(size=family.element.dim)}
 
 
-def at_rest(family: Family, exact: Numbers, first: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+def at_rest(family: SlideFamily, exact: Numbers, first: State) -> State:
     """Return the first sample, straight, undeformed, on the joint at zero rotation: roots and inverses have their easy
     limits there.
     """

@@ -6,10 +6,11 @@ import numpy as np
 
 from ...codegen.family import Family
 from ..motion import RIDERS
+from ..numbers import State
 from .shapes import LENGTH, rotation
 
 
-def following(family: Family, state: dict[str, np.ndarray], random: np.random.Generator) -> dict[str, np.ndarray]:
+def following(family: Family, state: State, random: np.random.Generator) -> State:
     """Return the end of a step, far enough from its start to tell differences from derivatives."""
     found = {}
     if family.element:
