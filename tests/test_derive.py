@@ -6,7 +6,7 @@ import os
 import subprocess
 import sys
 import time
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import pytest
@@ -17,6 +17,7 @@ from funicular.derive.codegen import rendering as emit
 from funicular.derive.codegen.family import Family, FamilyError
 from funicular.derive.codegen.program import Program
 from funicular.derive.verify.compiled import compiler
+from funicular.kernels.elements import of_manifest
 from operation_ceilings import CEILINGS
 
 
@@ -222,6 +223,18 @@ def test_kernels_of_a_role_that_differ_are_refused_or_declared():
     header = emit.render(apart, [], print)["kernels.h"]
     assert "void square_area(fu_real a, fu_real *A);" in header
     assert "(*area)" not in header
+
+
+def test_a_scene_knows_of_a_law_what_its_spec_says(derived):
+    """The traits of the specs are those of the manifest, and the runtime reads all of them."""
+    elements = json.loads(derived["manifest.json"])["elements"]
+    for family in families().values():
+        if family.role == "law":
+            known = of_manifest({"elements": elements})[family.element.name].laws[family.law]
+            said = asdict(family.traits) | {"stiffness_of": family.stiffness_of,
+                                            "discrete_gradient": "discrete_force" not in family.missing}
+            assert asdict(known) == said
+            assert known.straight in {"", *family.element.laws}
 
 
 def test_the_manifest_holds_the_hashes_of_the_files(derived):

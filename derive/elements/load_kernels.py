@@ -1,4 +1,4 @@
-"""The kernels of loads at a point of an element's centreline: what they hold on to, and how they turn with it."""
+"""The kernels of loads at a point of an element's centreline: where they act, and how they turn with it."""
 
 from __future__ import annotations
 
@@ -117,12 +117,12 @@ def _on_two(p: Program, M: np.ndarray, a: np.ndarray, b: np.ndarray):
     return forces, bent + jacobian(p, np.concatenate(turned), np.concatenate([a, b]))
 
 
-def _generalised(p: Program, element: Element, holds, forces, shapes, by_vectors: np.ndarray) -> None:
-    """Outputs f = holds' forces, and K from the forces' derivatives by the vectors shapes e."""
+def _generalised(p: Program, element: Element, acting, forces, shapes, by_vectors: np.ndarray) -> None:
+    """Output f = acting' forces, and K from the forces' derivatives by the vectors shapes e."""
     p.stage("derivatives of the forces by e")
     force = np.concatenate(forces)
-    holds, shapes = (np.kron(np.array(n), np.eye(element.dim, dtype=int)) for n in (holds, shapes))
+    acting, shapes = (np.kron(np.array(n), np.eye(element.dim, dtype=int)) for n in (acting, shapes))
     by_e = np.array([[p.define(f"d{component}_de{m}", entry) for m, entry in enumerate(row)]
                      for component, row in zip(force, by_vectors.dot(shapes), strict=True)])
-    p.output("f", holds.T.dot(force).reshape(element.n_vectors, element.dim), "N, N m", "generalised force")
-    p.output("K", holds.T.dot(by_e), "N/m, N, N m", "derivatives of f by e, not symmetric")
+    p.output("f", acting.T.dot(force).reshape(element.n_vectors, element.dim), "N, N m", "generalised force")
+    p.output("K", acting.T.dot(by_e), "N/m, N, N m", "derivatives of f by e, not symmetric")

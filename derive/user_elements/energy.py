@@ -106,9 +106,9 @@ class _Trial:
                 moved = self.value("energy", "U", s, e=e)
                 # the matrix of the rotation is orthogonal to 1e-16
                 if moved is None or abs(moved[0] - U[0]) > 1e-12 * self.scale:
-                    told = "not a number" if moved is None else f"{float(moved[0]):.6g} J"
+                    after = "not a number" if moved is None else f"{float(moved[0]):.6g} J"
                     self._fail("energy", sample, f"the energy is not objective: a rigid {motion} changes it from "
-                               f"{float(U[0]):.6g} J to {told}", "make it of the Gram products that a law is given")
+                               f"{float(U[0]):.6g} J to {after}", "make it of the Gram products that a law is given")
 
     def _stress_free(self) -> None:
         e = self.k.array(reference(self.family.element, float(self.states[0]["l"].item())))

@@ -58,7 +58,7 @@ def across(configuration: Configuration) -> dict[int, list[tuple[int, int, int]]
 class Forces:
     """Generalised forces of resultants: on r_x at the three places, moments on the frames, forces on the directors.
 
-    V is the sum of resultants times strains, the resultants held: its derivatives by a motion of the parts are the
+    V is the sum of resultants times strains, the resultants constant: its derivatives by a motion of the parts are the
     forces.
     """
 
@@ -78,7 +78,7 @@ class Forces:
                           for node, frame in enumerate(configuration.frames)]
 
     @property
-    def held(self) -> dict[sp.Symbol, sp.Expr]:
+    def constant_resultants(self) -> dict[sp.Symbol, sp.Expr]:
         """Return the resultants, which V does not differentiate."""
         return {r: ZERO for r in self.resultants if r.is_Symbol}
 

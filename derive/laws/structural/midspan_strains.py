@@ -18,7 +18,7 @@ ZERO = sp.S.Zero
 
 
 class MidspanStrains:
-    """V, the sum of resultants times strains half way, the resultants held, and its derivatives by the scalars.
+    """V, the sum of resultants times strains half way, the resultants constant, and its derivatives by the scalars.
 
     strains (strains, scalars) and gradient (scalars) are named expressions.
     """
@@ -26,9 +26,9 @@ class MidspanStrains:
     def __init__(self, configuration: Configuration, resultants: Sequence[sp.Expr]):
         self.program, self.components = configuration.program, configuration.components
         self.scalars = [s for s in (*configuration.mean, *configuration.gibbs) if s.is_Symbol]
-        held, n = {r: ZERO for r in resultants if r.is_Symbol}, len(self.components)
+        constant, n = {r: ZERO for r in resultants if r.is_Symbol}, len(self.components)
         self.by_component, self.by_scalar = (
-            [DirectionalDerivative(self.program, f"d_{s.name}", held | dict.fromkeys(symbols, ZERO) | {s: sp.S.One})
+            [DirectionalDerivative(self.program, f"d_{s.name}", constant | dict.fromkeys(symbols, ZERO) | {s: sp.S.One})
              for s in symbols] for symbols in (self.components, self.scalars))
         along, curvature = configuration.middle[:n], configuration.middle[n:]
         by_component = self._named("d", _columns(self.by_component, along))

@@ -48,7 +48,7 @@ class Tangent(Forces):
             moved = self._scalars_moved[column]
             by_scalar = {v: self.program.define(f"dV_{s.name}_{column}", row.dot(moved))
                          for v, s, row in zip(self.midspan.gradient, self.midspan.scalars, hessian, strict=True)}
-            rate = DirectionalDerivative(self.program, f"turn{column}", self.held | motion | by_scalar)
+            rate = DirectionalDerivative(self.program, f"turn{column}", self.constant_resultants | motion | by_scalar)
             for row in range(column + 1):
                 self.parts[row, column] = self.program.define(f"P_{row}_{column}", rate(forces[row]))
         self._mirror()
