@@ -221,7 +221,7 @@ def derive(
     if (spec is None) != (out is None) or (spec is not None and (names or check)):
         raise typer.BadParameter("--spec FILE and --out DIR go together, and with nothing else")
     if spec is None:
-        from funicular.derive.codegen.drift import main
+        from funicular.derive.pipeline import main
 
         raise typer.Exit(main(names or [], check))
     from funicular.derive.user_elements.command import main as make_library

@@ -22,7 +22,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from ..errors import FunicularError, SceneError, shown_path
 from . import elements
-from .elements import MANIFEST, ElementKind
+from .elements import MANIFEST, ElementKind, LawTraits
 
 COMMAND = "`funicular derive --spec {spec} --out {out}`"
 
@@ -86,7 +86,7 @@ class _Element(_Described):
     nodal_vectors: list[str]
     dim: Literal[2, 3]
     director: str
-    laws: dict[str, str]
+    laws: dict[str, LawTraits]
 
 
 class _Manifest(_Described):

@@ -16,7 +16,7 @@ from scipy.sparse import csr_array
 
 from ..checks.velocity_jumps import velocity_jumps
 from ..errors import FunicularWarning, SceneError
-from ..kernels.elements import gauge
+from ..kernels.elements import gauge, of_library
 from ..kernels.libraries import kernels_of, tables_of
 from ..parts import Cable, ModalBody, RigidBody, Slide
 from ..parts.end_stops import Buffer, HardStop, Stop
@@ -482,7 +482,7 @@ def _check_conserves(model: Model, scene: Scene, engine, method) -> None:
             raise SceneError(scene.bodies[body.name].where, 'integrator "energy" does not know modal bodies',
                              'take "radau" with a small tol, or "genalpha"')
     for cable in model.cables:
-        if not hasattr(kernels_of(cable.library), f"{cable.element}_{cable.law}_discrete_force"):
+        if not of_library(cable.library)[cable.element].laws[cable.law].discrete_gradient:
             raise SceneError(scene.cables[cable.name].where,
                              f'integrator "energy" has no discrete gradient of the law "{cable.law}"',
                              "take another law, or another integrator")

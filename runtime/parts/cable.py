@@ -10,11 +10,11 @@ import numpy as np
 from pydantic import PlainValidator, ValidationInfo, model_validator
 
 from ..errors import near
-from ..kernels.elements import ElementKind, built_in, of_library
+from ..kernels.elements import ElementKind, LawTraits, built_in, of_library
 from . import curves
 from .material import Material
 from .section import AnySection, Circle, GeneralSection, Tube
-from .section_stiffness import KERNEL_LAWS, kernel_law
+from .section_stiffness import kernel_law, law_of_measures, variants
 from .validation import Count, Name, Part, Vector, one_of, positive, show, shown, xyz
 
 EXACT = 1e-9
@@ -29,8 +29,8 @@ FOLLOWS = 0.5
 
 def possible_laws(kind: ElementKind) -> list[str]:
     """The laws that a cable of such elements can be given."""
-    laws = [law for law in kind.laws if not law.endswith("_curved")]
-    return laws + [law for law, kernels in KERNEL_LAWS.items() if kernels in laws]
+    laws = [law for law, traits in kind.laws.items() if not traits.straight]
+    return laws + [law for law, variant in variants().items() if variant.kernel_law in laws]
 
 
 def _library(value: Any) -> str | None:
@@ -214,8 +214,8 @@ class Cable(Part):
     @model_validator(mode="after")
     def _law_suits(self) -> Cable:
         kind = self.kind_of_element
-        if self.is_curved and self.kernel_law not in kind.laws:
-            curved = {name: [law for law in possible_laws(other) if _kernel_law(law, True) in other.laws]
+        if self.is_curved and kind.law_for_curved_shape(kernel_law(self.law)) is None:
+            curved = {name: [law for law in possible_laws(other) if other.law_for_curved_shape(kernel_law(law))]
                       for name, other in built_in().items()}
             able = [f"{name} ({', '.join(laws)})" for name, laws in curved.items() if laws]
             raise ValueError(f'{self.element} with law "{self.law}" is stress-free only where it is straight, but '
@@ -234,7 +234,7 @@ class Cable(Part):
             if isinstance(section, GeneralSection) and section.has_rotary:
                 raise ValueError(f"section.rotary_moment is given, but {self.element} has no rotary inertia",
                                  "leave it out, or take " + _others(kind.dim, cable=False))
-        elif self.law == "structural":
+        elif self._traits.kind == "structural":
             needed = {"shear_factors"} | ({"torsion_constant"} if kind.dim == 3 else set())
             if isinstance(section, GeneralSection) and (missing := needed - given):
                 raise ValueError(f'law "structural" needs section.{min(missing)}, which a general section does not '
@@ -266,13 +266,19 @@ class Cable(Part):
 
     @property
     def kernel_law(self) -> str:
-        """Name of the law among the element's kernels; those that end in ``_curved``, and structural, take e0."""
-        return _kernel_law(self.law, self.is_curved)
+        """Name of the law among the element's kernels."""
+        law = kernel_law(self.law)
+        return (self.kind_of_element.law_for_curved_shape(law) or law) if self.is_curved else law
+
+    @property
+    def _traits(self) -> LawTraits:
+        return self.kind_of_element.laws[self.kernel_law]
 
     @property
     def stiffness_law(self) -> str:
-        """Name of the law whose stiffness of the section it takes, see `stiffness.section_stiffness`."""
-        return self.kind_of_element.laws.get(self.law, self.law)
+        """Name of the law whose stiffness of the section it takes, see `section_stiffness`."""
+        laws = self.kind_of_element.laws
+        return laws[self.law].stiffness_of if self.law in laws else self.law
 
     @property
     def _way(self) -> tuple[tuple[float, ...], ...]:
@@ -388,7 +394,7 @@ class Cable(Part):
     @property
     def reference(self) -> np.ndarray | None:
         """(elements, 2 vectors, dim): stress-free nodal vectors of each element; None where the law takes none."""
-        if not self.is_curved and self.stiffness_law != "structural":
+        if not self._traits.takes_shape:
             return None
         rest = self.rest_nodal_vectors[..., : self.dim]
         return np.concatenate([rest[:-1], rest[1:]], axis=1)
@@ -434,9 +440,7 @@ def _law(kind: ElementKind, data: dict) -> str:
         if not kind.is_cable:
             raise ValueError(f"strain, curvature and membrane are for cable elements, {element} is a beam",
                              "leave them out, or take " + _others(kind.dim, cable=True))
-        by_measures = f"{strain or 'green'}_{curvature or 'exact'}"
-        if (membrane or MEMBRANES[0]) != "full":
-            by_measures += f"_{membrane or MEMBRANES[0]}"
+        by_measures = law_of_measures(strain or "green", curvature or "exact", membrane or MEMBRANES[0])
         if law not in (None, by_measures):
             raise ValueError(f'law "{law}" disagrees with strain, curvature and membrane', "give the one or the others")
         law = by_measures
@@ -447,11 +451,6 @@ def _law(kind: ElementKind, data: dict) -> str:
             return law
         raise ValueError(f'law "{law}" is not possible for {element}', "possible: " + ", ".join(possible))
     return law
-
-
-def _kernel_law(law: str, curved: bool) -> str:
-    law = kernel_law(law)
-    return f"{law}_curved" if curved and law != "structural" else law
 
 
 def _others(dim: int, *, cable: bool | None = None) -> str:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..parts.section_stiffness import STABILISATION
+from ..parts.section_stiffness import STABILISATION, is_reduced
 
 if TYPE_CHECKING:
     from ..model.build import Model
@@ -20,7 +20,7 @@ def notes(scene: Scene, model: Model, time: np.ndarray, q: np.ndarray) -> list[s
     """
     found = []
     for cable in model.cables:
-        if not len(q) or not scene.cables[cable.name].law.endswith("_reduced"):
+        if not len(q) or not is_reduced(scene.cables[cable.name].law):
             continue
         nodes = q[:, cable.coordinates].reshape(len(q), *cable.shape)[:, :, cable.vectors.index("r")]
         strain = np.linalg.norm(np.diff(nodes, axis=1), axis=-1) / cable.length - 1

@@ -7,7 +7,7 @@
 #define MOST_PROJECTIONS 10
 #define SHORT_STEP 1e-3 /* of the usual step */
 
-/* s of `next` where C_l = 0 (eq 21), from what the last step's slope predicts; 0 when that was found */
+/* s of `next` where C_l = 0, eq 21, from what the last step's slope predicts; 0 when that was found */
 int fu_find_slides(fu_run *run)
 {
     fu_state *next = &run->next;

@@ -77,7 +77,7 @@ static void border(const fu_model *model, const double *q, fu_accelerator *work)
     fu_bodies_mass(model, q, 0, s);
 }
 
-/* Border of [M H'; H 0] at a state whose terms are evaluated. */
+/* Border of [M H'; H 0] (eq 11) at a state whose terms are evaluated. */
 static int factor_border(const fu_model *model, const fu_state *state, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
@@ -265,7 +265,7 @@ int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *
     return info;
 }
 
-/* Eq 38. `joints` may be null, and `reaction`: what supports give to each dof, zero to rounding where it is free. */
+/* Accelerations and multipliers (eq 38). `slides` may be null, and `reaction`: what supports give to each dof, zero to rounding where it is free. */
 int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerator *work, double *acceleration,
                      fu_slide_output *slides, double *reaction)
 {
@@ -275,6 +275,7 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
     const int info = factor_border(model, state, work);
     if (info) return info;
     for (int i = 0; i < model->n_dof; ++i) work->force[i] = prescribed[i] = work->work[i] = 0.0;
+    /* - Q_k - Q_d - Q_e (eq 9) */
     fu_internal_forces(model, state->q, state->v, work->force);
     fu_spring_forces(model, state->q, state->v, work->force);
     fu_external_forces(model, state->t, state->q, work->force);
@@ -312,8 +313,8 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
         }
     if (reaction) {
         fu_mass_times(model, state->q, acceleration, work->work);
-        for (int i = 0; i < model->n_dof; ++i) reaction[i] = work->work[i] + work->force[i];
-        for (int r = 0; r < n_rows(model); ++r) {
+        for (int i = 0; i < model->n_dof; ++i) reaction[i] = work->work[i] + work->force[i]; /* M q'' - Q (eq 26) */
+        for (int r = 0; r < n_rows(model); ++r) { /* + H' lambda (eq 32) */
             const fu_rows *rows = &work->rows[r];
             for (int c = 0; c < rows->rows; ++c)
                 for (int k = 0; k < rows->n; ++k)
@@ -378,7 +379,7 @@ static double evaluate_constraint(const fu_model *model, const fu_state *state, 
     return step;
 }
 
-/* Newton for C_l(s) = 0 (eq 21) on the curve of the element that holds s; 0 when it converged. */
+/* Newton for C_l(s) = 0, see eq 21, on the curve of the element that holds s; 0 when it converged. */
 int fu_find_arc_length(const fu_model *model, const fu_state *state, int j, double *s)
 {
     const double length = model->cables[model->slides[j].cable].length;
