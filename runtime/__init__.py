@@ -17,9 +17,9 @@ from .parts.friction import Friction
 from .parts.material import Material
 from .parts.section import Circle, GeneralSection, Rectangle, Tube
 from .parts.signal import Harmonic, Pulse, Ramp, TableSignal
-from .results.run import Run, load_run
+from .results.run import Run
 from .scene import Scene
-from .scene_file import bundled_scenes, load_scene
+from .scene_file import bundled_scenes, load_run, load_scene
 
 __all__ = [
     "Buffer",

@@ -79,7 +79,7 @@ def run(
     error, 130 after Ctrl-C.
     """
     from .errors import ConvergenceError, EndOfCableError
-    from .results.run import check_writable
+    from .results.files import check_writable
     from .scene_file import load_scene
 
     with _told_without_traceback():
@@ -151,7 +151,7 @@ def bench(
 
     from .bench.bench import bench, grid
     from .bench.report import print_table, save
-    from .results.run import check_writable
+    from .results.files import check_writable
     from .scene_file import load_scene
 
     with _told_without_traceback():

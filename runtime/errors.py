@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from difflib import get_close_matches
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
-    from .results.run import Run
-    from .solve.static import Equilibrium
+from typing import Any
 
 _MOST_SHOWN = 150
 """Characters of a path's start and end in a message."""
@@ -42,8 +38,8 @@ class SceneError(FunicularError, ValueError):
 class _StoppedError(FunicularError):
     """A run that stopped early."""
 
-    def __init__(self, message: str, run: Run):
-        """run: the results up to then."""
+    def __init__(self, message: str, run: Any):
+        """run: the results up to then, a `funicular.Run`."""
         super().__init__(message)
         self.run = run
 
@@ -59,8 +55,8 @@ class ConvergenceError(_StoppedError):
 class EquilibriumError(FunicularError):
     """No static equilibrium was reached; ``state`` holds the last one on the way, at ``load_fraction`` of the loads."""
 
-    def __init__(self, message: str, state: Equilibrium, load_fraction: float):
-        """state: the last equilibrium; load_fraction: the part of the loads that it carries, 0 to 1."""
+    def __init__(self, message: str, state: Any, load_fraction: float):
+        """state: the last `Scene.equilibrium`; load_fraction: the part of the loads that it carries, 0 to 1."""
         super().__init__(message)
         self.state, self.load_fraction = state, load_fraction
 
@@ -71,6 +67,16 @@ class ResultFileError(FunicularError):
 
 class UnknownResultError(FunicularError, KeyError):
     """A run holds no result of that name."""
+
+
+@contextmanager
+def enough_memory() -> Iterator[None]:
+    """Turn a MemoryError of what is inside into a SceneError."""
+    try:
+        yield
+    except MemoryError:
+        raise SceneError("scene", "takes more memory than this machine has",
+                         "take fewer elements, fewer bodies and slides, or a larger output_step") from None
 
 
 def shown_path(path: str | os.PathLike) -> str:

@@ -7,13 +7,14 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rich.console import Console
+
 from ..errors import ResultFileError
 from .bench import COUNTS, Bench, Row
 from .outputs import unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from rich.console import Console
 
 LINES, MARKERS = ("-", "--", ":", "-."), "osD^v"
 

@@ -193,11 +193,16 @@ def load(directory: str | os.PathLike) -> Library:
     return _loaded[str(path)][1]
 
 
+def of_library(library: str | None) -> dict[str, ElementKind]:
+    """The elements of a library by name, of this package for None. Raises LibraryError."""
+    return elements.built_in() if library is None else load(library).elements
+
+
 def kernels_of(library: str | None):
     """Where the kernels of a library are, of this package for None, as attributes by name. Raises LibraryError."""
     if library is not None:
         return load(library).kernels
-    from funicular.generated import kernels
+    from funicular.generated import kernels  # machine code of 2 MB: a scene may be described without it
 
     return kernels
 

@@ -7,13 +7,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..checks.frames import draws_section, has_section, joint_axes, slide_axes
-from ..checks.placement import point_of
 from ..kernels.libraries import kernels_of
 from ..parts.attachment import Attachment
 from ..parts.joint import DRIVEN, Joint
 from ..parts.modal_body import ModalBody
+from ..parts.places import point_of
+from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
-from ..scene import Scene
 
 UP, CARRIED = -1, -2
 """What completes the frame of a tangent, as engine.h has it: a direction of the ground, or the slide's director."""
@@ -77,7 +77,7 @@ class JointModel:
 class AttachmentBuilder:
     """Makes ends of anchors; `cables` and `rigids` are the models, in the scene's order."""
 
-    def __init__(self, scene: Scene, cables: list, rigids: list):
+    def __init__(self, scene: SceneData, cables: list, rigids: list):
         self.scene, self.cables, self.rigids = scene, cables, rigids
         self.cable_index = {name: k for k, name in enumerate(scene.cables)}
         self.body_index = {name: k for k, name in enumerate(scene.bodies)}

@@ -9,8 +9,8 @@ import numpy as np
 from ..checks.placement import placed_attachment
 from ..parts import DistributedForce, Force, Moment
 from ..parts.attachment import Attachment
+from ..parts.scene_data import SceneData
 from ..parts.signal import Constant, value_at
-from ..scene import Scene
 from .attachments import AttachmentBuilder, AttachmentModel
 
 CABLE_FOLLOWER, CABLE_MOMENT, BODY_FORCE, BODY_FOLLOWER, BODY_MOMENT = range(5)
@@ -75,7 +75,7 @@ class SpringModel:
 class Actions:
     """Translates the loads and springs of a scene."""
 
-    def __init__(self, scene: Scene, holder: AttachmentBuilder):
+    def __init__(self, scene: SceneData, holder: AttachmentBuilder):
         self.scene, self.holder, self.cables = scene, holder, holder.cables
         self.cable_index, self.body_index = holder.cable_index, holder.body_index
         self.signals: list[SignalModel] = []

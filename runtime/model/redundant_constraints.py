@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.linalg import solve_triangular
 
 from ..errors import SceneError
-
-if TYPE_CHECKING:
-    from .build import Model
+from .model import Model
 
 SAME, NEARLY = 1e-12, 1e-8
 """Of the compliance of an equation: what is left of it where others hold the same; or nearly, if a run failed."""
