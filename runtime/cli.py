@@ -1,4 +1,4 @@
-"""The command line. Each command imports what it needs itself, so that all of them start at once."""
+"""The command line. What a command needs is imported when it is called, so that all of them start at once."""
 
 from __future__ import annotations
 

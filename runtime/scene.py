@@ -129,14 +129,14 @@ class Scene(SceneMethods):
             raise SceneError("run", f"resume must be true or false, got {shown(resume)}")
         if resume and settings.save is None:
             raise ResultFileError("run: there is nothing to resume without a file of results; name it with save")
-        from .results.streaming import Stream
+        from .results.streaming import Stream  # brings SciPy and the engine
 
         saving = nullcontext() if settings.save is None else Stream(settings.save, self, settings, resume,
                                                                     self.from_toml)
         with saving as stream, one_blas_thread, enough_memory():
             if settings.initial == "equilibrium" and state is None:
                 state = self.equilibrium()
-            from .results.recording import recorded
+            from .results.recording import recorded  # likewise
             from .solve.run import simulate
 
             with progress_bar(settings.duration, progress) as on_progress:
@@ -179,7 +179,7 @@ class Scene(SceneMethods):
         settings = EquilibriumSettings(**self.equilibrium_settings | {k: v for k, v in given.items() if v is not None})
         self.check()
 
-        from .results.equilibrium import Equilibrium
+        from .results.equilibrium import Equilibrium  # brings SciPy
         from .solve.static import equilibrium
 
         with one_blas_thread, enough_memory():
@@ -195,7 +195,7 @@ class Scene(SceneMethods):
         state = None if about is None else _equilibrium_state(self, about)
         self.check()
 
-        from .solve.modes import modes
+        from .solve.modes import modes  # brings SciPy
 
         with one_blas_thread, enough_memory():
             return modes(self, settings.n, state)
@@ -203,13 +203,13 @@ class Scene(SceneMethods):
 
 def _modes_of_mesh(body: ModalBody) -> Shape:
     """Make the modes of a modal body that is described by a beam."""
-    from .solve.body_modes import of_mesh
+    from .solve.body_modes import of_mesh  # brings SciPy
 
     return of_mesh(body)
 
 
 def _equilibrium_state(scene: Scene, state: Equilibrium) -> Equilibrium:
-    from .results.equilibrium import Equilibrium
+    from .results.equilibrium import Equilibrium  # brings SciPy; there is a state only where it is loaded already
 
     if not isinstance(state, Equilibrium):
         raise SceneError("scene", "the state to start from must be one that equilibrium() returned, got "
