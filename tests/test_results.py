@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray
 from fake_recording import fake_recording
-from funicular import ResultFileError, UnknownResultError, load_run, load_scene
+from funicular import ResultFileError, Scene, UnknownResultError, load_run, load_scene
 from funicular.parts.settings import RunSettings
 from funicular.results.netcdf import File
 from funicular.results.run import Run

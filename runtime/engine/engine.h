@@ -159,6 +159,14 @@ typedef struct {
     double amplitude, angular_frequency, phase;
 } fu_signal;
 
+/* An instant at which a signal is not smooth, s, and what jumps there of what it drives: nothing, the acceleration, the
+ * rate (knots.py). */
+enum { FU_HIGHER_JUMPS, FU_ACCELERATION_JUMPS, FU_RATE_JUMPS };
+typedef struct {
+    double t;
+    int jumps;
+} fu_knot;
+
 /* A dof that follows signals: q = base + linear f + cosine cos f + sine sin f */
 typedef struct {
     int dof, signal, first; /* first: of those of its dof, whose work is counted once */
@@ -593,6 +601,8 @@ struct fu_run {
     double (*call)(void *context, int watch, const fu_state *state);
     void *context;
     fu_event event;      /* that the run has stopped at */
+    int n_knots;
+    const fu_knot *knots; /* increasing; steps end there, those of a fixed length where a rate jumps */
     double duration, output_step, fixed_step, tol;
     fu_state now, next;
     fu_system newton;

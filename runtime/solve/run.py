@@ -13,6 +13,7 @@ from ..checks.velocity_jumps import velocity_jumps
 from ..engine import Engine
 from ..errors import FunicularWarning, SceneError
 from ..model.build import build
+from ..model.knots import knots
 from ..model.model import Model
 from ..model.redundant_constraints import settle
 from ..parts.scene_data import SceneData
@@ -93,7 +94,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     if method.name == "energy":
         check_conserves(model, scene, engine, method)
     set_up, cpu = time.perf_counter() - begin, time.process_time()
-    status, changed = _start(scene, settings, engine, method, None if stream is None else pace.capacity)
+    status, changed = _start(scene, settings, model, engine, method, None if stream is None else pace.capacity)
     messages += changed.gaps
     warned = _broken_velocities(model, changed.velocities) + velocity_jumps(scene, settings.duration)
     for message in warned:
@@ -123,7 +124,7 @@ class _Changed:
     velocities: np.ndarray
 
 
-def _start(scene: SceneData, settings: RunSettings, engine: Engine, method: Integrator,
+def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine, method: Integrator,
            capacity: int | None) -> tuple[str | None, _Changed]:
     """Start the engine; returns how the run ended, None where it goes on. Raises SceneError for a singular start."""
     status, change = engine.start(
@@ -133,6 +134,7 @@ def _start(scene: SceneData, settings: RunSettings, engine: Engine, method: Inte
         step=settings.step or 0.0,
         method=method,
         first_step=min(settings.output_step, 1e-3 * settings.duration),
+        knots=knots(model, settings.duration, settings.tol),
         capacity=capacity,
     )
     if status == "singular" and engine.jammed >= 0:
