@@ -11,6 +11,7 @@ from .errors import (
     ResultFileError,
     SceneError,
     UnknownResultError,
+    check_renamed,
 )
 from .parts.end_stops import Buffer, HardStop
 from .parts.friction import Friction
@@ -56,4 +57,5 @@ def __getattr__(name: str) -> Any:
         from importlib.metadata import version
 
         return version("funicular")
+    check_renamed(f"module {__name__!r}", name, __all__)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from ..errors import SceneError
+from ..errors import SceneError, check_renamed
 from .cable import Cable
 from .event import Event
 from .joint import Joint
@@ -53,6 +53,11 @@ class SceneData:
         self.messages: list[str] = []
         self.run_settings: dict[str, Any] = {}
         self.equilibrium_settings: dict[str, Any] = {}
+
+    def __getattr__(self, name: str) -> Any:
+        """Refuse an attribute that there is not; of an older version's, say what it is called now."""
+        check_renamed(f"{type(self).__name__!r} object", name, dir(self))
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
     @property
     def dim(self) -> int:
