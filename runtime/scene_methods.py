@@ -12,6 +12,7 @@ from typing import Any
 
 from .parts.kinds import KINDS
 from .parts.scene_data import SceneData
+from .parts.signal import Constant
 from .parts.validation import Part
 
 
@@ -33,6 +34,7 @@ def signature(kind: type[Part]) -> inspect.Signature:
         field = kind.model_fields[keywords[name]]
         default = (inspect.Parameter.empty if field.is_required()
                    else None if field.default_factory is not None else field.default)
+        default = default.constant if isinstance(default, Constant) else default  # a number may be given for it
         place = (inspect.Parameter.POSITIONAL_OR_KEYWORD if name in kind.positional
                  else inspect.Parameter.KEYWORD_ONLY)
         parameters.append(inspect.Parameter(name, place, default=default))
@@ -46,8 +48,8 @@ def _method(kind: type[Part]) -> Callable[..., Part]:
 
     def method(self: SceneMethods, *given: Any, **keywords: Any) -> Part:
         if len(given) > len(positional):
-            raise TypeError(f"Scene.{kind.kind}() takes {len(positional)} arguments without keyword "
-                            f"({', '.join(positional)}), {len(given)} were given")
+            raise TypeError(f"Scene.{kind.kind}() takes {len(positional)} argument{'s' * (len(positional) > 1)} without "
+                            f"keyword ({', '.join(positional)}), {len(given)} were given")
         for name, value in zip(positional, given, strict=False):
             if name in keywords:
                 raise TypeError(f"Scene.{kind.kind}() got {name} twice")
