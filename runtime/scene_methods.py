@@ -48,8 +48,9 @@ def _method(kind: type[Part]) -> Callable[..., Part]:
 
     def method(self: SceneMethods, *given: Any, **keywords: Any) -> Part:
         if len(given) > len(positional):
-            raise TypeError(f"Scene.{kind.kind}() takes {len(positional)} argument{'s' * (len(positional) > 1)} without "
-                            f"keyword ({', '.join(positional)}), {len(given)} were given")
+            arguments = f"{len(positional)} argument{'s' * (len(positional) > 1)}"
+            raise TypeError(f"Scene.{kind.kind}() takes {arguments} without keyword ({', '.join(positional)}), "
+                            f"{len(given)} were given")
         for name, value in zip(positional, given, strict=False):
             if name in keywords:
                 raise TypeError(f"Scene.{kind.kind}() got {name} twice")

@@ -177,7 +177,8 @@ class GeneralSection(Section):
     shape: ClassVar[str] = "general"
     area_: Annotated[float, positive("m²")] = Field(alias="area")
     about_z: Annotated[float, positive("m⁴")] = Field(alias="second_moment_about_z")
-    about_y: Annotated[float, positive("m⁴")] = Field(default_factory=lambda data: data["about_z"], alias="second_moment_about_y")
+    about_y: Annotated[float, positive("m⁴")] = Field(default_factory=lambda data: data["about_z"],
+                                                      alias="second_moment_about_y")
     rotary_about_z: Annotated[float, positive("m⁴")] | None = Field(None, alias="rotary_moment_about_z")
     rotary_about_y: Annotated[float, positive("m⁴")] | None = Field(None, alias="rotary_moment_about_y")
 
