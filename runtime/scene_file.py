@@ -7,8 +7,6 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from .errors import SceneError, near, shown_path
-from .results.files import open_file
-from .results.opening import opened
 from .results.run import Run
 from .scene import Scene
 
@@ -54,4 +52,7 @@ def load_run(path: str | os.PathLike, libraries: Iterable[str | os.PathLike] = (
     salvage: leave out the rows that are damaged, with a `FunicularWarning`, where the file would be refused otherwise.
     Raises ResultFileError, also for a damaged or foreign file.
     """
+    from .results.files import open_file  # with checkpoints, which scenes and runs in memory do without
+    from .results.opening import opened
+
     return opened(open_file(path), Scene.from_toml, libraries, salvage)

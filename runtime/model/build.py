@@ -6,9 +6,10 @@ import numpy as np
 
 from ..kernels.libraries import tables_of
 from ..parts.scene_data import SceneData
-from .attachments import AttachmentBuilder, JointModel, linked, tied
+from .attachments import AttachmentBuilder
 from .bodies import body_gravity, body_models, body_weights, configuration_of, dofs_of, velocity_of
 from .cables import cable_gravity, cable_model, cable_rates, cable_weights
+from .joints import JointModel, frame_joint_model, joint_model
 from .loads import Actions
 from .model import CableModel, Model, MotionModel, SlideModel
 from .slides import slide_model
@@ -88,9 +89,9 @@ def _joints(scene: SceneData, attachments: AttachmentBuilder, actions: Actions,
     unknown, multiplier = (1 + scene.dim) * len(slides), sum(slide.max_multipliers for slide in slides)
     for number, slide in enumerate(scene.slides.values()):
         if slide.frame != "point":
-            joints.append(tied(attachments, slide, number, unknown, multiplier))
+            joints.append(frame_joint_model(attachments, slide, number, unknown, multiplier))
             unknown, multiplier = unknown + joints[-1].rows, multiplier + joints[-1].rows
     for joint in scene.joints.values():
-        joints.append(linked(attachments, joint, actions.signal, unknown, multiplier))
+        joints.append(joint_model(attachments, joint, actions.signal, unknown, multiplier))
         unknown, multiplier = unknown + joints[-1].rows, multiplier + joints[-1].rows
     return joints

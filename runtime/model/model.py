@@ -15,7 +15,8 @@ from ..kernels.libraries import kernels_of
 from ..parts.body_shape import Shape
 from ..parts.end_stops import Stop
 from ..parts.friction import Friction
-from .attachments import AttachmentModel, JointModel
+from .attachments import AttachmentModel
+from .joints import JointModel
 from .loads import DeadLoad, LoadModel, SignalModel, SpringModel
 from .unknowns import Node
 

@@ -33,7 +33,7 @@ def slide_model(slide: Slide, scene: SceneData, attachments: AttachmentBuilder,
     if node is not None:  # on a node: the element that the rider moves into
         forward = body is None or np.dot(axes[0], body.velocity) >= 0
         at = node if forward else node - 1
-    rider = attachments.end(slide.rider)
+    rider = attachments.model(slide.rider)
     driven, ends, friction = slide.prescribed is not None, (slide.at_start, slide.at_end), slide.friction
     may_be_locked = (driven or (friction is not None and friction.sticks)
                      or any(isinstance(end, HardStop) for end in ends))

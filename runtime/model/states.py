@@ -8,7 +8,7 @@ from ..parts.places import ends_of, joined, node_of
 from ..parts.scene_data import SceneData
 from ..parts.support import Support, Tie
 from ..rotations import rotate
-from .attachments import JointModel
+from .joints import JointModel
 from .model import Model
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .netcdf import Variable
+from .netcdf_header import Variable
 
 _XYZ, _TIME = ("time", "xyz"), ("time",)
 

@@ -17,7 +17,8 @@ from ..parts.scene_data import SceneData
 from ..parts.scene_text import dumps
 from ..parts.settings import RunSettings
 from .files import WITH_CHECKSUMS, check_free, check_writable, create_file, file_text, over_time
-from .netcdf import Stored, Variable
+from .netcdf import Stored
+from .netcdf_header import Variable
 from .quantities import ENERGIES, labelled
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from scipy.sparse import csc_array, diags_array
 from ..engine import Engine
 from ..errors import FunicularWarning, SceneError, UnknownResultError, near
 from ..model.build import build
-from ..model.redundant_constraints import settle
+from ..model.redundant_constraints import drop_redundant_rows
 from ..model.states import body_state, spatial
 from ..parts.scene_data import SceneData
 from ..rotations import rotate
@@ -76,7 +76,7 @@ def modes(scene: SceneData, n: int, about: RestState | None = None) -> Modes:
     """
     model = build(scene)
     engine = Engine(model)
-    settle(model, engine)
+    drop_redundant_rows(model, engine)
     engine.place(0.0, **({} if about is None else about.placed))
     K, constraints = condensed(engine.matrix(0.0, 0.0, 1.0), model)
     size = K.shape[0]

@@ -15,7 +15,7 @@ from ..errors import FunicularWarning, SceneError
 from ..model.build import build
 from ..model.knots import knots
 from ..model.model import Model
-from ..model.redundant_constraints import settle
+from ..model.redundant_constraints import drop_redundant_rows
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
 from . import reduced_strain, straight_struts
@@ -86,7 +86,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     pace = pauses(int(np.ceil(settings.duration / settings.output_step)) + 1, _check_size(model, settings, stream))
     engine, watcher = Engine(model), Watcher(scene, model)
     engine.watch(watcher)
-    messages = settle(model, engine)
+    messages = drop_redundant_rows(model, engine)
     if initial is not None:
         messages += [f"equilibrium to start from: {message}" for message in initial.messages]
     messages += _divided_step(settings) + share_elements(engine, settings.threads)

@@ -14,7 +14,7 @@ from scipy.sparse.linalg import splu
 
 from ..engine import Engine
 from ..model.build import build
-from ..model.redundant_constraints import settle
+from ..model.redundant_constraints import drop_redundant_rows
 from ..model.states import attachment_points
 from ..parts.scene_data import SceneData
 from ..parts.settings import EquilibriumSettings
@@ -33,7 +33,7 @@ class StaticProblem:
         self.scene, self.settings = scene, settings
         self.model = build(scene)
         self.engine = Engine(self.model)
-        settle(self.model, self.engine)
+        drop_redundant_rows(self.model, self.engine)
         self.engine.place(0.0)
         self.load(1.0)
         drawn = self.residual()
