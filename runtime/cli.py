@@ -1,4 +1,4 @@
-"""The command line. Each command imports what it needs itself, so that all of them start at once."""
+"""The command line. What a command needs is imported when it is called, so that all of them start at once."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ def run(
     error, 130 after Ctrl-C.
     """
     from .errors import ConvergenceError, EndOfCableError
-    from .results.run import check_writable
+    from .results.files import check_writable
     from .scene_file import load_scene
 
     with _told_without_traceback():
@@ -174,7 +174,7 @@ def bench(
 
     from .bench.bench import bench, grid
     from .bench.report import print_table, save
-    from .results.run import check_writable
+    from .results.files import check_writable
     from .scene_file import load_scene
 
     with _told_without_traceback():

@@ -12,6 +12,7 @@ from pathlib import Path
 import funicular
 import numpy as np
 import pytest
+from funicular import load_run
 from funicular.cli import app
 from funicular.derive.catalogue import families
 from funicular.derive.elements.cable18 import CABLE18
@@ -22,7 +23,6 @@ from funicular.generated import kernels
 from funicular.kernels.elements import built_in, gauge, manifest
 from funicular.kernels.libraries import LibraryError, manifest_digest
 from funicular.kernels.libraries import load as load_library
-from funicular.results.run import load_run
 from funicular.scene_file import load_scene, loads
 from funicular.view.plot import save_plots
 from pages import page

@@ -82,15 +82,6 @@ def built_in_laws() -> dict[str, LawTraits]:
     return {law: traits for kind in built_in().values() for law, traits in kind.laws.items()}
 
 
-def of_library(library: str | None) -> dict[str, ElementKind]:
-    """The elements of a library by name, of this package for None. Raises LibraryError."""
-    if library is None:
-        return built_in()
-    from .libraries import load
-
-    return load(library).elements
-
-
 def gauge(vectors: tuple[str, ...], length: float, y: float, z: float) -> Iterator[float]:
     """How far, in m, a unit of each nodal vector moves a point of an element of that length.
 

@@ -6,8 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..kernels.elements import of_library
-from ..kernels.libraries import kernels_of
+from ..kernels.libraries import kernels_of, of_library
 from ..parts.cable import Cable
 from ..parts.section_stiffness import section_stiffness
 

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.sparse.linalg import splu
 
-if TYPE_CHECKING:
-    from ..engine import Engine
-    from ..model.build import Model
-    from ..parts.settings import RunSettings
-    from ..parts.slide import Slide
-    from ..scene import Scene
+from ..engine import Engine
+from ..model.model import Model
+from ..parts.scene_data import SceneData
+from ..parts.settings import RunSettings
+from ..parts.slide import Slide
+from .condensation import condensed
 
 STABLE = 4.5
 """Of the explicit method: its step times the highest angular frequency, where step control holds it (its imaginary
@@ -75,7 +75,7 @@ class Explicit:
     name, error_overestimate, retry_factor = "explicit", 1.0, 0.0
 
     def __init__(self) -> None:
-        from scipy.integrate import DOP853
+        from scipy.integrate import DOP853  # 30 ms, for this method alone
 
         self.A, self.b, self.c = np.array(DOP853.A), np.array(DOP853.B), np.array(DOP853.C)
         self.error, self.coarse = np.array(DOP853.E5), np.array(DOP853.E3)
@@ -114,7 +114,7 @@ class Radau:
 Integrator = GeneralisedAlpha | Radau | Explicit | EnergyMomentum
 
 
-def choose(settings: RunSettings, scene: Scene, model: Model,
+def choose(settings: RunSettings, scene: SceneData, model: Model,
            engine: Engine) -> tuple[Integrator, str]:
     """The integrator of a run, and why it is that one. "auto" takes the cheaper by stiffness and tolerance."""
     fixed = GeneralisedAlpha(settings.spectral_radius)
@@ -139,7 +139,7 @@ def choose(settings: RunSettings, scene: Scene, model: Model,
     return (Explicit() if explicit_cost < implicit_cost else Radau()), reason
 
 
-def regularised_decay(scene: Scene, slide: Slide) -> float:
+def regularised_decay(scene: SceneData, slide: Slide) -> float:
     """1/s: how fast a slow rider under its weight comes to the speed at which regularised friction lets it creep."""
     friction = slide.friction
     if friction is None or friction.sticks or slide.prescribed is not None:
@@ -147,7 +147,7 @@ def regularised_decay(scene: Scene, slide: Slide) -> float:
     return friction.sliding * float(np.linalg.norm(scene.gravity)) / friction.velocity
 
 
-def slowest_rate(scene: Scene, model: Model, duration: float) -> float:
+def slowest_rate(scene: SceneData, model: Model, duration: float) -> float:
     """rad/s of the motion as a whole: a pendulum as long as the scene, or what crosses it, or the run."""
     points = [node.vector("r") for nodes in model.nodes.values() for node in nodes]
     points += [model.q[b.configuration : b.configuration + model.dim] for b in model.bodies]
@@ -163,8 +163,6 @@ def fastest_rates(model: Model, engine: Engine) -> tuple[float, float]:
 
     Holding riders on their cables only lowers them.
     """
-    from .modes import condensed
-
     engine.place(0.0)
     n = model.n_band + model.n_border_dof
     if n == 0:
@@ -177,8 +175,6 @@ def fastest_rates(model: Model, engine: Engine) -> tuple[float, float]:
 
 def _largest(matrix, mass) -> float:
     """About the largest eigenvalue of the symmetric part by the mass, in size: power iteration, some per cent low."""
-    from scipy.sparse.linalg import splu
-
     symmetric, factors = (matrix + matrix.T) / 2, splu(mass.tocsc())
     x = np.random.default_rng(0).normal(size=mass.shape[0])
     value = 0.0

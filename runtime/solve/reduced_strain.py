@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from ..model.model import Model
+from ..parts.scene_data import SceneData
 from ..parts.section_stiffness import STABILISATION, is_reduced
 
-if TYPE_CHECKING:
-    from ..model.build import Model
-    from ..scene import Scene
 
-
-def notes(scene: Scene, model: Model, time: np.ndarray, q: np.ndarray) -> list[str]:
+def notes(scene: SceneData, model: Model, time: np.ndarray, q: np.ndarray) -> list[str]:
     """A note for each cable with a reduced axial strain that was compressed too much at one of the times.
 
     time (n,) in s; q (n, coordinates). The strain is that of the chords of elements.
