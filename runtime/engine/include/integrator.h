@@ -24,7 +24,7 @@ typedef struct {
 
 /* A complex matrix laid out as an fu_system; real systems of two steps combine to it. */
 typedef struct {
-    void *K, *B, *C, *D, *X, *x; /* double _Complex; x: right side and solution */
+    void *K, *B, *C, *D, *X, *x; /* fu_complex (complex_number.h); x: right side and solution */
     double *D_real;              /* the real system's border before it was factored */
     int n_columns;
     fu_piece *columns;           /* of X; those of C are the real system's */

@@ -12,11 +12,9 @@
  */
 #include "engine.h"
 
-#include <complex.h>
-#include <string.h>
-#undef I
+#include "complex_number.h"
 
-typedef double _Complex complex_;
+#include <string.h>
 
 #define MOST_ITERATIONS 10
 #define SLOW 0.3          /* contraction above which the matrix is made anew for the next step */
@@ -49,27 +47,28 @@ static workspace space(const fu_run *run)
                        p + 4 * stages + STAGES * (long)run->model->n_q + 2 * STAGES + 1 + run->newton.n + run->newton.m};
 }
 
-static complex_ times_i(double value)
+/* h / L, with the complex eigenvalue L */
+static fu_complex complex_step(const fu_collocation *method, double h)
 {
-    return value * (complex_)_Complex_I;
+    return fu_complex_quotient((fu_complex){h, 0.0}, (fu_complex){method->alpha, method->beta});
 }
 
 /* complex += real factor * system, entry by entry */
-static void accumulate(fu_run *run, complex_ factor)
+static void accumulate(fu_run *run, fu_complex factor)
 {
     const fu_system *s = &run->newton;
     const fu_complex_system *c = &run->complex_newton;
     const long band = (long)(3 * s->width + 1) * s->n, corner = (long)s->m * s->m;
-    complex_ *K = c->K, *D = c->D;
-    for (long i = 0; i < band; ++i) K[i] += factor * s->K[i];
+    fu_complex *K = c->K, *D = c->D;
+    for (long i = 0; i < band; ++i) fu_complex_add(&K[i], factor, s->K[i]);
     for (int k = 0; k < s->m; ++k)
         for (int half = 0; half < 2 * s->n_chains; ++half) {
             const fu_span right = s->span_B[k * 2 * s->n_chains + half], below = s->span_C[k * 2 * s->n_chains + half];
-            complex_ *B = (complex_ *)c->B + (long)k * s->n, *C = (complex_ *)c->C + (long)k * s->n;
-            for (int i = right.first; i < right.end; ++i) B[i] += factor * s->B[(long)k * s->n + i];
-            for (int i = below.first; i < below.end; ++i) C[i] += factor * s->C[(long)k * s->n + i];
+            fu_complex *B = (fu_complex *)c->B + (long)k * s->n, *C = (fu_complex *)c->C + (long)k * s->n;
+            for (int i = right.first; i < right.end; ++i) fu_complex_add(&B[i], factor, s->B[(long)k * s->n + i]);
+            for (int i = below.first; i < below.end; ++i) fu_complex_add(&C[i], factor, s->C[(long)k * s->n + i]);
         }
-    for (long i = 0; i < corner; ++i) D[i] += factor * s->D[i];
+    for (long i = 0; i < corner; ++i) fu_complex_add(&D[i], factor, s->D[i]);
 }
 
 static int is_damped(const fu_model *model)
@@ -86,13 +85,13 @@ static void solve_column(fu_run *run, int k)
     const fu_system *s = &run->newton;
     fu_complex_system *c = &run->complex_newton;
     int n = s->n, width = s->width, rows = 3 * width + 1, one = 1, touched = 0, info;
-    complex_ *x = (complex_ *)c->X + (long)k * n;
+    fu_complex *x = (fu_complex *)c->X + (long)k * n;
     double *size = space(run).unknowns;
     for (int half = 0; half < 2 * s->n_chains; ++half) touched |= s->span_B[k * 2 * s->n_chains + half].end;
     if (!touched) return;
-    memcpy(x, (complex_ *)c->B + (long)k * n, sizeof(complex_) * (size_t)n);
+    memcpy(x, (fu_complex *)c->B + (long)k * n, sizeof(fu_complex) * (size_t)n);
     run->model->lapack->zgbtrs("N", &n, &width, &width, &one, c->K, &rows, c->pivot_band, x, &n, &info);
-    for (int i = 0; i < n; ++i) size[i] = cabs(x[i]);
+    for (int i = 0; i < n; ++i) size[i] = hypot(x[i].re, x[i].im);
     for (int chain = 0; chain < s->n_chains; ++chain)
         c->n_columns += fu_pieces(s, k, chain, size, c->columns + c->n_columns);
 }
@@ -103,7 +102,7 @@ static int factor_complex(fu_run *run)
     fu_complex_system *c = &run->complex_newton;
     const fu_lapack *lapack = run->model->lapack;
     int n = s->n, m = s->m, width = s->width, rows = 3 * width + 1, info = 0;
-    complex_ *C = c->C, *D = c->D, *X = c->X;
+    fu_complex *C = c->C, *D = c->D, *X = c->X;
     if (n) lapack->zgbtrf(&n, &n, &width, &width, c->K, &rows, c->pivot_band, &info);
     if (info || !m) return info;
     c->n_columns = 0;
@@ -112,7 +111,7 @@ static int factor_complex(fu_run *run)
         for (const fu_piece *r = s->rows; r < s->rows + s->n_rows; ++r) {
             const fu_span of = fu_common(p->rows, r->rows);
             for (int i = of.first; i < of.end; ++i)
-                D[(long)p->k * m + r->k] -= C[(long)r->k * n + i] * X[(long)p->k * n + i];
+                fu_complex_subtract_product(&D[(long)p->k * m + r->k], C[(long)r->k * n + i], X[(long)p->k * n + i]);
         }
     lapack->zgetrf(&m, &m, D, &m, c->pivot_border, &info);
     return info;
@@ -124,14 +123,16 @@ static void solve_complex(fu_run *run)
     const fu_complex_system *c = &run->complex_newton;
     const fu_lapack *lapack = run->model->lapack;
     int n = s->n, m = s->m, width = s->width, rows = 3 * width + 1, one = 1, info;
-    complex_ *x = c->x, *y = x + n, *C = c->C, *X = c->X;
+    fu_complex *x = c->x, *y = x + n, *C = c->C, *X = c->X;
     if (n) lapack->zgbtrs("N", &n, &width, &width, &one, c->K, &rows, c->pivot_band, x, &n, &info);
     if (!m) return;
     for (const fu_piece *r = s->rows; r < s->rows + s->n_rows; ++r)
-        for (int i = r->rows.first; i < r->rows.end; ++i) y[r->k] -= C[(long)r->k * n + i] * x[i];
+        for (int i = r->rows.first; i < r->rows.end; ++i)
+            fu_complex_subtract_product(&y[r->k], C[(long)r->k * n + i], x[i]);
     lapack->zgetrs("N", &m, &one, c->D, &m, c->pivot_border, y, &m, &info);
     for (const fu_piece *p = c->columns; p < c->columns + c->n_columns; ++p)
-        for (int i = p->rows.first; i < p->rows.end; ++i) x[i] -= y[p->k] * X[(long)p->k * n + i];
+        for (int i = p->rows.first; i < p->rows.end; ++i)
+            fu_complex_subtract_product(&x[i], y[p->k], X[(long)p->k * n + i]);
 }
 
 /* The real and the complex matrix at `now`. Both are made of M + J, K and D, which systems of other weights differ by. */
@@ -142,21 +143,22 @@ static int factor(fu_run *run, double h)
     const fu_system *s = &run->newton;
     const fu_complex_system *c = &run->complex_newton;
     const double real = h / method->gamma, rate = 1.0 / real;
-    const complex_ other = h / (method->alpha + times_i(method->beta));
-    const complex_ by_stiffness = other * other / (real * real), by_damping = other / real;
+    const fu_complex other = complex_step(method, h), square = fu_complex_product(other, other);
+    const fu_complex by_damping = {other.re / real, other.im / real};
+    const fu_complex by_stiffness = {square.re / (real * real), square.im / (real * real)};
     const int damped = is_damped(run->model);
-    memset(c->K, 0, sizeof(complex_) * (size_t)(3 * s->width + 1) * (size_t)s->n);
-    memset(c->B, 0, sizeof(complex_) * (size_t)s->n * (size_t)s->m);
-    memset(c->C, 0, sizeof(complex_) * (size_t)s->n * (size_t)s->m);
-    memset(c->D, 0, sizeof(complex_) * (size_t)s->m * (size_t)s->m);
+    memset(c->K, 0, sizeof(fu_complex) * (size_t)(3 * s->width + 1) * (size_t)s->n);
+    memset(c->B, 0, sizeof(fu_complex) * (size_t)s->n * (size_t)s->m);
+    memset(c->C, 0, sizeof(fu_complex) * (size_t)s->n * (size_t)s->m);
+    memset(c->D, 0, sizeof(fu_complex) * (size_t)s->m * (size_t)s->m);
     fu_matrix(run, (fu_weights){1.0, 0.0, 2.0 * real * real});
-    accumulate(run, by_stiffness - 1.0);
+    accumulate(run, (fu_complex){by_stiffness.re - 1.0, by_stiffness.im});
     if (damped) {
         fu_matrix(run, (fu_weights){1.0, 0.0, real * real});
-        accumulate(run, 2.0 - by_stiffness - by_damping);
+        accumulate(run, (fu_complex){2.0 - by_stiffness.re - by_damping.re, -by_stiffness.im - by_damping.im});
     }
     fu_matrix(run, (fu_weights){1.0, rate, real * real});
-    accumulate(run, damped ? by_damping : 2.0 - by_stiffness);
+    accumulate(run, damped ? by_damping : (fu_complex){2.0 - by_stiffness.re, -by_stiffness.im});
     memcpy(c->D_real, s->D, sizeof(double) * (size_t)s->m * (size_t)s->m);
     int info = fu_system_factor_band(&run->newton, run->model->lapack);
     if (!info) info = fu_system_factor_border(&run->newton, run->model->lapack);
@@ -301,8 +303,8 @@ static double correct(fu_run *run, workspace w, double h)
     const fu_collocation *method = &run->collocation;
     const int n = model->n_dof, all = run->newton.n + run->newton.m;
     const double real = h / method->gamma;
-    const complex_ eigenvalue = method->alpha + times_i(method->beta), other = h / eigenvalue;
-    complex_ *x = run->complex_newton.x;
+    const fu_complex other = complex_step(method, h), square = fu_complex_product(other, other);
+    fu_complex *x = run->complex_newton.x;
     for (int i = 0; i < n; ++i)
         for (int r = 0; r < STAGES; ++r) {
             const double *row = method->T_inverse + STAGES * r;
@@ -314,14 +316,14 @@ static double correct(fu_run *run, workspace w, double h)
             }
         }
     for (int i = 0; i < n; ++i) {
-        const complex_ r = other * other * (w.w[n + i] + times_i(w.w[2 * n + i]));
+        const fu_complex r = fu_complex_product(square, (fu_complex){w.w[n + i], w.w[2 * n + i]});
         w.w[i] *= real * real;
-        w.w[n + i] = creal(r);
-        w.w[2 * n + i] = cimag(r);
+        w.w[n + i] = r.re;
+        w.w[2 * n + i] = r.im;
     }
     for (int part = 1; part < STAGES; ++part) {
         right_side(run, w.w + (long)part * n, w.unknowns);
-        for (int i = 0; i < all; ++i) x[i] = part == 1 ? run->rhs[i] : x[i] + times_i(run->rhs[i]);
+        for (int i = 0; i < all; ++i) *(part == 1 ? &x[i].re : &x[i].im) = run->rhs[i];
     }
     solve_complex(run);
     right_side(run, w.w, w.unknowns);
@@ -329,7 +331,10 @@ static double correct(fu_run *run, workspace w, double h)
     fu_spread(model, run->rhs, w.w);
     for (int i = 0; i < n; ++i) w.w[i] /= real;
     for (int part = 1; part < STAGES; ++part) {
-        for (int i = 0; i < all; ++i) run->rhs[i] = part == 1 ? creal(x[i] / other) : cimag(x[i] / other);
+        for (int i = 0; i < all; ++i) {
+            const fu_complex change = fu_complex_quotient(x[i], other);
+            run->rhs[i] = part == 1 ? change.re : change.im;
+        }
         fu_spread(model, run->rhs, w.w + (long)part * n);
     }
     for (int i = 0; i < model->n_extra; ++i) run->rhs[model->n_band + model->n_border_dof + i] = 0.0;
