@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..integrators import INTEGRATORS, stable_at
 from ..model.redundant_constraints import redundant
 
 if TYPE_CHECKING:
@@ -58,7 +59,7 @@ def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
             "jam": f"friction jams {where}: the more it holds, the more it is pressed on the cable"}[cause]
     counts = engine.statistics
     gone = f" after {counts['steps']} steps down to {counts['smallest_step_s']:.2g} s" if counts["steps"] else ""
-    if settings.step is not None and engine.integrator == "explicit":
+    if settings.step is not None and INTEGRATORS[engine.integrator].stability is not None:
         remedy = _too_large(engine, settings)
     elif folded:
         remedy = "The cable folds up there: take more elements, or damping_time in the material"
@@ -71,7 +72,9 @@ def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
 def _too_large(engine, settings: RunSettings) -> str:
     size = f"tol {settings.tol:g}" if settings.step is None else f"step {settings.step:g} s"
     others = "" if settings.step is None else ", or none, so that tol chooses it"
-    stable = ', or integrator="genalpha"' if engine.integrator == "explicit" else ""
+    stable = ""
+    if INTEGRATORS[engine.integrator].stability is not None:
+        stable = f', or integrator="{stable_at(settings.step is not None).name}"'
     return f'The {size} is too large for integrator "{engine.integrator}": take a smaller one{others}{stable}'
 
 
@@ -134,7 +137,8 @@ def unexplained(engine, settings: RunSettings) -> list[str]:
     if not off > quiet * max(exchanged, STEADY * in_motion) + rounding:
         return []
     what = ("went that neither damping nor friction nor impacts took", "came that nothing did work for")[grown > lost]
-    damped = ", or a spectral_radius nearer to 1" if lost > grown and settings.spectral_radius < 1 else ""
+    damps = not INTEGRATORS[engine.integrator].dissipation_is_counted and settings.spectral_radius < 1
+    damped = ", or a spectral_radius nearer to 1" if lost > grown and damps else ""
     part = f"{off / exchanged:.2g} of the {exchanged:.3g} J exchanged" if exchanged > off else "all that was exchanged"
     return [f"the energy balance is off by up to {off:.3g} J, {part}: energy {what}. The integration makes this error: "
             f"take a smaller {'step, or none, so that tol chooses it' if fixed else 'tol'}{damped}"]

@@ -8,8 +8,9 @@ from collections import deque
 from typing import TYPE_CHECKING
 
 from ..errors import FunicularWarning
+from ..integrators import INTEGRATORS, stable_at
 from .diagnosis import place
-from .integrators import STABLE, STABLE_DAMPING, fastest_rates
+from .integrator_choice import fastest_rates
 
 if TYPE_CHECKING:
     from ..model.build import Model
@@ -94,10 +95,11 @@ class LongRun:
                     "change within a step, as at contacts and kinks of friction. Take a larger tol, or damping_time in "
                     "the material")
         frequency, decay = self._fastest()
-        if engine.integrator == "explicit" and mean * max(frequency / STABLE, decay / STABLE_DAMPING) > NEAR:
-            return (f"stability asks the explicit method for steps of {mean:.2g} s: the highest frequency is "
-                    f"{frequency:.3g} rad/s, the fastest decay {decay:.3g} 1/s. Take integrator=\"radau\", or fewer, "
-                    "longer elements")
+        stability = INTEGRATORS[engine.integrator].stability
+        if stability is not None and stability.part(mean, frequency, decay) > NEAR:
+            return (f"stability asks the {engine.integrator} method for steps of {mean:.2g} s: the highest frequency "
+                    f"is {frequency:.3g} rad/s, the fastest decay {decay:.3g} 1/s. Take "
+                    f'integrator="{stable_at(fixed_step=False).name}", or fewer, longer elements')
         return (f"tol = {settings.tol:g} asks for steps of {mean:.2g} s, for vibrations of about {1 / mean:.2g} rad/s"
                 f"{where} (the highest frequency is {frequency:.3g} rad/s). Take a larger tol, damping_time in the "
                 "material, or a less stiff part there")

@@ -56,7 +56,7 @@ cdef class Translation(Arrays):
         self._work_space(model)
 
     def _bodies_and_cables(self, model, list tables, blocks):
-        cdef int i, k, memory = 0
+        cdef int i, k, numbers = 0
         for i, cable in enumerate(model.cables):
             c = &self.cables[i]
             c.kernel = <const fu_element_kernels *>_found(tables, "element", cable.element)
@@ -72,7 +72,7 @@ cdef class Translation(Arrays):
             c.A_stride = cable.A.shape[1] if len(cable.A) > 1 else 0
             if c.law.rates > FU_MAX_RATES:
                 raise ValueError(f"{cable.element}: more rates of strain than the engine's {FU_MAX_RATES}")
-            c.memory, memory = memory, memory + c.n_elements * (c.law.rates + 1)
+            c.dissipation_state, numbers = numbers, numbers + c.n_elements * (c.law.rates + 1)
         for i, body in enumerate(model.bodies):
             r = &self.bodies[i]
             r.kernel = <const fu_body_kernels *>_found(tables, "body", body.kernel)
@@ -253,7 +253,7 @@ cdef class Translation(Arrays):
         state.mode = self._ints([FU_LOCKED if j.drive >= 0 else FU_SLIDES for j in model.slides])
         state.slip_direction, state.contact = self._ints(np.zeros(slides)), self._ints(np.zeros(slides))
         state.director = self._doubles([j.director for j in model.slides])
-        state.memory = self._zeros(0)
+        state.dissipation_state = self._zeros(0)
 
     def _work_space(self, model):
         n_slides, n_dof = len(model.slides), model.n_dof

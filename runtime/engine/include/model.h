@@ -24,7 +24,7 @@ struct fu_model {
     const fu_signal *signals;
     int n_q, n_dof, n_band, n_border_dof;
     int n_resistances; /* slides that have one */
-    int n_memory; /* zero without algorithmic dissipation */
+    int n_dissipation_state; /* zero without algorithmic dissipation */
     int n_extra, n_multipliers; /* unknowns of slides, joints and springs in a Newton system, of the former in eq 38 */
     const int *place;
     const int *combination_start, *combination_place; /* combinations, row by row */

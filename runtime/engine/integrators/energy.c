@@ -11,21 +11,36 @@
  *
  * Unknowns as in genalpha.c with sigma = h^2/2. The Newton matrix takes elasticity at the middle, which leaves the
  * change of curvature of the energy over a step out: Newton converges linearly, by a factor that falls as h^2 or faster.
- * Algorithmic dissipation (algorithmic_dissipation.c) stands in it as so much more stiffness, which it is but for turns and tension.
+ * Algorithmic dissipation (algorithmic_dissipation.c) stands in it as so much more stiffness, which it is but for turns
+ * and tension.
  */
 #include "engine.h"
 
+#include "algorithmic_dissipation.h"
+#include "workspace.h"
+
 #include <string.h>
 
-/* Scratch: the middle of the step, and forces. */
+/* In the scratch, behind what algorithmic dissipation keeps there: the middle of the step, and forces. */
 typedef struct {
     double *q, *v, *force;
 } middle_view;
 
 static middle_view middle(const fu_run *run)
 {
-    double *q = run->scratch, *v = q + run->model->n_q;
+    double *q = run->scratch + run->model->n_dissipation_state, *v = q + run->model->n_q;
     return (middle_view){q, v, v + run->model->n_dof};
+}
+
+static long n_parameters(const double *given)
+{
+    (void)given;
+    return FU_DOUBLES(1, fu_algorithmic);
+}
+
+static long n_scratch(const fu_run *run)
+{
+    return run->model->n_dissipation_state + (long)run->model->n_q + 2L * run->model->n_dof;
 }
 
 static double sigma(double h)
@@ -169,7 +184,7 @@ static void matrix(fu_run *run, double h)
     const double rate = 2.0 / h, stiffness = 0.5 * sigma(h); /* the middle moves by half of psi */
     const fu_state state = {.q = m.q, .v = m.v, .spring = run->next.spring};
     fu_system_clear(&run->newton);
-    const double stiffer = 1.0 + 2.0 * run->algorithmic.weight;
+    const double stiffer = 1.0 + 2.0 * fu_algorithmic_of(run)->weight;
     fu_dynamic_matrix(model, m.q, m.v, 1.0, rate / stiffer, stiffness * stiffer, &run->newton);
     fu_bodies_matrix(model, &state, 0, (fu_weights){1.0, rate, stiffness}, &run->newton);
     mean_stress(run, stiffness);
@@ -214,7 +229,7 @@ static double error(fu_run *run, double h)
 }
 
 /* Work of the forces that are not conserved, as the step has it: energy balances to rounding. */
-static void book(fu_run *run, double h)
+static void account(fu_run *run, double h)
 {
     const fu_model *model = run->model;
     const fu_state *now = &run->now, *next = &run->next;
@@ -243,4 +258,13 @@ static void book(fu_run *run, double h)
     }
 }
 
-const fu_integrator fu_energy_method = {"energy", start, step, error, book, 1, 0, &newton};
+const fu_integrator fu_energy = {.name = "energy",
+                                 .n_parameters = n_parameters,
+                                 .n_scratch = n_scratch,
+                                 .n_dissipation_state = fu_algorithmic_state,
+                                 .start = start,
+                                 .step = step,
+                                 .error = error,
+                                 .account = account,
+                                 .keeps_energy = 1,
+                                 .newton = &newton};

@@ -208,7 +208,7 @@ static void accept(fu_run *run, double h, fu_event event)
 {
     const fu_model *model = run->model;
     for (int j = 0; j < model->n_slides; ++j) run->s_slope[j] = (run->next.s[j] - run->now.s[j]) / h;
-    run->integrator->book(run, h);
+    run->integrator->account(run, h);
     if (model->n_resistances) run->dissipated += fu_lost_in_buffers(model, &run->now, &run->next);
     run->statistics.crossings += fu_count_changes(run);
     const fu_state state = run->now;
@@ -264,7 +264,7 @@ static int enter(fu_run *run, int j, int side)
     now->element[j] = element;
     ++run->statistics.crossings;
     fu_watch_now(run, (fu_event){FU_NO_EVENT, 0, 0});
-    return start_scheme(run, !run->integrator->conserves);
+    return start_scheme(run, !run->integrator->keeps_energy);
 }
 
 /* What follows from an event that `now` stands on. */
@@ -287,7 +287,7 @@ static int refresh(fu_run *run, double h)
 {
     run->usual = run->fixed_step > 0.0 ? run->fixed_step : run->h;
     return fu_is_short(run, h)
-               ? start_scheme(run, !run->integrator->conserves) : FU_RUNNING;
+               ? start_scheme(run, !run->integrator->keeps_energy) : FU_RUNNING;
 }
 
 /* The step that ends at the target, or one of equal steps to there, none larger than wanted. */
@@ -347,13 +347,13 @@ static int step_towards(fu_run *run, double target)
     const fu_event none = {FU_NO_EVENT, 0, 0}, late = fu_late_event(run);
     double want = adaptive ? run->h : run->fixed_step;
     if (late.kind) return happened(run, late);
-    run->holds = !adaptive || !run->integrator->straddles || fu_has_stops(model) ||
+    run->keep_elements = !adaptive || !run->integrator->crosses_boundaries || fu_has_stops(model) ||
                  fu_ties_a_frame(model, -1);
     for (;;) {
         const double remaining = target - run->now.t;
         double h = fitted(remaining, want);
         if ((h < smallest && remaining > smallest) || run->net_rejections > MOST_STRUGGLE) return FU_NO_CONVERGENCE;
-        if (run->holds) h = fmin(h, fu_time_to_boundary(run) + BEYOND * h);
+        if (run->keep_elements) h = fmin(h, fu_time_to_boundary(run) + BEYOND * h);
         const double allowed = allow(run, h);
         run->failure.cause = FU_NO_FAILURE;
         run->usual = want;
@@ -379,7 +379,7 @@ static int step_towards(fu_run *run, double target)
             fu_keep_elements(run);
             event = fu_find_event(run, none);
         }
-        const double turn = run->holds ? fu_time_of_turn(run, h) : 0.0;
+        const double turn = run->keep_elements ? fu_time_of_turn(run, h) : 0.0;
         if (turn > smallest && run->turned < MOST_TURNS) {
             want = turn;
             continue;
