@@ -152,20 +152,41 @@ cdef class Engine(Statics):
         run.watched, run.late = self._doubles(np.zeros(run.n_watches)), self._ints(np.zeros(run.n_watches))
         run.watch_work = self._doubles(np.zeros(self.model.n_dof))
 
+    def _knots(self, times, jumps):
+        """Let steps end at these instants."""
+        PyMem_Free(self.knots)
+        self.knots = <fu_knot *>PyMem_Calloc(len(times) + 1, sizeof(fu_knot))
+        if not self.knots:
+            raise MemoryError
+        for i, (time, jump) in enumerate(zip(times, jumps, strict=True)):
+            self.knots[i].t, self.knots[i].jumps = time, jump
+        self.run.n_knots, self.run.knots = len(times), self.knots
+
+    @property
+    def knots_passed(self):
+        """Return at how many knots of signals steps have ended, if they are not of a fixed length."""
+        cdef int k, passed = 0
+        for k in range(self.run.n_knots):
+            passed += self.run.knots[k].t <= self.run.now.t
+        return passed
+
     cdef _snapshot(self, const fu_state *state):
         """t, q, v, s of a state."""
         m = &self.model
         return (state.t, np.array([state.q[i] for i in range(m.n_q)]), np.array([state.v[i] for i in range(m.n_dof)]),
                 np.array([state.s[i] for i in range(m.n_slides)]))
 
-    def start(self, *, duration, output_step, tol, step, method, first_step, capacity=None, rest_start=False):
-        """Allocate output rows, `capacity` of them or all, and compute the consistent start; method: see integrators/.
+    def start(self, *, duration, output_step, tol, step, method, first_step, knots=((), ()), capacity=None,
+              rest_start=False):
+        """Allocate output rows, `capacity` of them or all, and compute the consistent start; method: one of integrators/.
 
+        knots: times at which steps end, increasing, and what jumps there; see model/knots.py.
         Returns a status where that failed, else None, and the change of velocities that the joints asked for.
         """
         run = &self.run
         run.duration, run.output_step, run.tol = duration, output_step, tol
         run.fixed_step, run.h, run.rest_start = step, first_step, rest_start
+        self._knots(*knots)
         self._take_integrator(method)
         rows = int(np.ceil(duration / output_step * (1 - 1e-12))) + 2 if capacity is None else capacity
         m = &self.model

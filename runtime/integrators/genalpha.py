@@ -16,7 +16,7 @@ class GeneralisedAlpha(Integrator):
     spectral_radius: float = 0.9
     name, order, error_overestimate = "genalpha", 2, 2.0
     default_spectral_radius = 0.9
-    dissipation_is_counted = False
+    loses_energy_by_spectral_radius = True
 
     @property
     def parameters(self) -> np.ndarray:

@@ -44,8 +44,8 @@ class Integrator(ABC):
     order: of the error in positions that steps are chosen by; error_overestimate: how much larger the estimate of the
     local error is than that error; retry_factor: what steps stay below for a while after one that failed, as a part of
     that one, 0 where failures are cheap; default_spectral_radius: None where the integrator has none; stability: None
-    where steps of any size are stable; dissipation_is_counted: whether what it takes from vibrations is in the energy
-    balance; the other flags say which scenes it can run.
+    where steps of any size are stable; loses_energy_by_spectral_radius: whether one below 1 takes energy that
+    nothing counts as dissipated; the other flags say which scenes it can run.
     """
 
     name: ClassVar[str]
@@ -54,7 +54,7 @@ class Integrator(ABC):
     retry_factor: ClassVar[float] = 0.0
     default_spectral_radius: ClassVar[float | None] = None
     stability: ClassVar[StabilityLimit | None] = None
-    dissipation_is_counted: ClassVar[bool] = True
+    loses_energy_by_spectral_radius: ClassVar[bool] = False
     takes_modal_bodies: ClassVar[bool] = True
     takes_friction_and_stops: ClassVar[bool] = True
     needs_discrete_gradient: ClassVar[bool] = False

@@ -36,6 +36,7 @@ from ..solve.threads import share_elements
 from .attachments import AttachmentBuilder, AttachmentModel, JointModel, linked, tied
 from .body_modes import Shape
 from .constants import constants
+from .knots import knots
 from .loads import Actions, DeadLoad, LoadModel, SignalModel, SpringModel
 from .redundant_constraints import settle
 from .unknowns import Node, Reduction, supports
@@ -434,6 +435,7 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Meter, initial=No
         step=settings.step or 0.0,
         method=method,
         first_step=min(output_step, 1e-3 * settings.duration),
+        knots=knots(model, settings.duration, settings.tol),
         capacity=None if stream is None else pace.room,
     )
     if status == "singular" and engine.jammed >= 0:

@@ -30,15 +30,15 @@ class RunSettings(Part):
     """How a scene is run.
 
     duration in s; tol: the error aimed at in positions, relative to the largest motion in the scene, by which
-    the step is chosen; step: a fixed step in s instead, divided where need be so that steps end on output times;
-    output_step in s, a hundredth of the duration if not given; integrator: "explicit" (Runge-Kutta of order 8),
-    "radau" (implicit, order 5, for stiff scenes), "genalpha" (implicit, order 2, with control of the dissipation),
-    "energy" (order 2, keeps energy and momenta to rounding), or "auto": the cheaper of the first two for this scene and
-    tol, genalpha where step or spectral_radius is given; spectral_radius of genalpha (0.9 if not given) and energy
-    (1) at infinity: 1 keeps and 0 removes the fastest vibrations, energy's of the cables, counted as dissipated with
-    what their algorithmic stresses hold at the time; initial: "drawn" or "equilibrium" (static, under the loads
-    at t = 0); save: the file to write, or None; threads over the elements of cables, for some thousand of them or more,
-    at most as many as there are processors.
+    the step is chosen; step: a fixed step in s instead, divided where need be so that steps end on output times and
+    where the rate of what is prescribed jumps; output_step in s, a hundredth of the duration if not given;
+    integrator: "explicit" (Runge-Kutta of order 8), "radau" (implicit, order 5, for stiff scenes), "genalpha"
+    (implicit, order 2, with control of the dissipation), "energy" (order 2, keeps energy and momenta to rounding),
+    or "auto": the cheaper of the first two for this scene and tol, genalpha where step or spectral_radius is given;
+    spectral_radius of genalpha (0.9 if not given) and energy (1) at infinity: 1 keeps and 0 removes the fastest
+    vibrations, energy's of the cables, counted as dissipated with what their algorithmic stresses hold at the time;
+    initial: "drawn" or "equilibrium" (static, under the loads at t = 0); save: the file to write, or None; threads
+    over the elements of cables, for some thousand of them or more, at most as many as there are processors.
     """
 
     kind: ClassVar[str] = "run"

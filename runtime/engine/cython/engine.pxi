@@ -121,6 +121,9 @@ cdef extern from "engine.h" nogil:
         const double *breaks
         const double *coefficients
         double amplitude, angular_frequency, phase
+    ctypedef struct fu_knot:
+        double t
+        int jumps
     ctypedef struct fu_motion:
         int dof, signal, first
         double base, linear, cosine, sine
@@ -275,6 +278,8 @@ cdef extern from "engine.h" nogil:
         double (*call)(void *context, int watch, const fu_state *state) noexcept nogil
         void *context
         fu_event event
+        int n_knots
+        const fu_knot *knots
         double duration, output_step, fixed_step, tol
         fu_state now, next
         fu_system newton

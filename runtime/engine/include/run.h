@@ -36,6 +36,8 @@ struct fu_run {
     double (*call)(void *context, int watch, const fu_state *state);
     void *context;
     fu_event event;      /* that the run has stopped at */
+    int n_knots;
+    const fu_knot *knots; /* increasing; steps end there, those of a fixed length where a rate jumps */
     double duration, output_step, fixed_step, tol;
     fu_state now, next;
     fu_system newton;

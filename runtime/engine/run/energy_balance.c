@@ -6,18 +6,6 @@
 #define LEAST_MOTION 1e-10 /* of the largest coordinate: less is what step control and rounding leave of rest */
 #define ROUNDING 1e-14     /* of the energies */
 
-/* R of a slide by the force that a Newton method solves for, 0 where nothing brakes it; t and u as resistances.c has them */
-static double driven_resistance(const fu_model *model, const fu_state *state, int j, double t[3], double u[3])
-{
-    double J[3 * (FU_SLIDE_COORDINATES + 1)], K[(FU_SLIDE_COORDINATES + 1) * (FU_SLIDE_COORDINATES + 1)];
-    fu_resistance resistance;
-    if (!fu_has_resistance(model, state, j)) return 0.0;
-    fu_slide_tangent(model, state, j, state->f + 3 * j, J, K);
-    fu_slide_motion(model, state, j, J, t, u);
-    fu_resistance_at(model, state, j, t, u, state->f + 3 * j, &resistance);
-    return resistance.R;
-}
-
 /* whether anything drives a slide or a joint */
 static int has_drives(const fu_model *model)
 {
@@ -50,9 +38,10 @@ double fu_dissipated_power(const fu_run *run, const fu_state *state)
     if (!model->n_resistances) return power;
     if (!run->integrator->newton) return power + run->accelerator.resistance[model->n_slides];
     for (int j = 0; j < model->n_slides; ++j) {
-        double t[3], u[3];
+        double t[3], u[3], J[3 * (FU_SLIDE_COORDINATES + 1)], K[(FU_SLIDE_COORDINATES + 1) * (FU_SLIDE_COORDINATES + 1)];
         if (!fu_has_resistance(model, state, j)) continue;
-        driven_resistance(model, state, j, t, u);
+        fu_slide_tangent(model, state, j, state->f + 3 * j, J, K);
+        fu_slide_motion(model, state, j, J, t, u);
         power += fu_resistance_power(model, state, j, t, u, state->f + 3 * j);
     }
     return power;

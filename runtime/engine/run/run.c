@@ -10,6 +10,8 @@
 #define SAFETY 0.5          /* what the logarithm costs */
 #define BEYOND 0.1          /* of a step: how far it may go on after a slide should have reached its boundary */
 #define MOST_STRUGGLE 10000 /* steps rejected beyond those taken */
+#define AT_ONCE 1e-12       /* of the duration: instants that are no farther apart are one (knots.py) */
+#define BEFORE 1e-15        /* of a knot: a step ends so much before it, where the signal is still that of the step */
 #define DIVISIONS 8         /* of a fixed step that do not count */
 #define MOST_ACTS 100       /* of slides at one instant: more is no motion */
 #define MOST_TURNS 2        /* of a slide on one boundary before a step is taken all the same: it rests there */
@@ -429,6 +431,53 @@ int fu_stop(fu_run *run)
     return recorded ? recorded : FU_EVENT;
 }
 
+/* The first knot after `now` at which steps end, until `latest`; null where there is none. */
+static const fu_knot *next_knot(const fu_run *run, double latest)
+{
+    const double close = AT_ONCE * run->duration;
+    int low = 0, high = run->n_knots;
+    while (low < high) {
+        const int middle = (low + high) / 2;
+        if (run->knots[middle].t > run->now.t + close) high = middle;
+        else low = middle + 1;
+    }
+    for (; low < run->n_knots && run->knots[low].t <= latest + close; ++low)
+        if (run->fixed_step <= 0.0 || run->knots[low].jumps == FU_RATE_JUMPS) return &run->knots[low];
+    return 0;
+}
+
+/* On from a knot that `now` has reached. What jumps there starts the scheme anew. Where a rate jumps, all that joints tie
+ * to it jumps, too, and what drives it does the work of that; a drive that turned within an instant would lose none. */
+static int pass_knot(fu_run *run, const fu_knot *knot, int event)
+{
+    const fu_model *model = run->model;
+    fu_state *now = &run->now;
+    now->t = knot->t;
+    run->drive_step = fmin(run->drive_step, 0.0); /* powers before do not tell how it changes from here */
+    if (knot->jumps == FU_HIGHER_JUMPS) return FU_RUNNING;
+    if (knot->jumps == FU_RATE_JUMPS) {
+        const double before = fu_kinetic_energy(model, now->q, now->v);
+        fu_prescribe(model, now);
+        if (fu_project_velocities(model, now, &run->accelerator, run->work)) return FU_SINGULAR;
+        for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->work[i];
+        run->external += fu_kinetic_energy(model, now->q, now->v) - before;
+    }
+    fu_prescribe(model, now);
+    if (!event) fu_watch_now(run, (fu_event){FU_NO_EVENT, 0, 0});
+    return start_scheme(run, 0);
+}
+
+/* Steps towards an output time, until the first knot on the way there. */
+static int approach(fu_run *run, double target)
+{
+    const fu_knot *knot = run->n_knots ? next_knot(run, target) : 0;
+    if (!knot) return step_towards(run, target);
+    const int status = step_towards(run, knot->t * (1.0 - BEFORE));
+    if ((status && status != FU_EVENT) || run->now.t < knot->t - AT_ONCE * run->duration) return status;
+    const int passed = pass_knot(run, knot, status == FU_EVENT);
+    return passed ? passed : status;
+}
+
 /* Go on for about so many seconds, or to the pause; the status tells whether there is more to do. */
 int fu_advance(fu_run *run, double seconds)
 {
@@ -443,7 +492,7 @@ int fu_advance(fu_run *run, double seconds)
             if (target == run->duration) return FU_DONE;
             if (run->record.n == run->record.pause || fu_clock() > until) return FU_RUNNING;
         } else {
-            const int status = step_towards(run, target);
+            const int status = approach(run, target);
             if (status == FU_EVENT) return status;
             if (status) {
                 const int stopped = fu_stop(run);
