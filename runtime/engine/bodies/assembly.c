@@ -270,8 +270,7 @@ double fu_potential_energy(const fu_model *model, const double *q)
 double fu_dissipation(const fu_model *model, const fu_state *state, const fu_accelerator *work)
 {
     const double *q = state->q, *v = state->v;
-    double total = fu_coupling_dissipation(model, state, work) + fu_bodies_dissipation(model, q, v);
-    double part[FU_MAX_COORDINATES];
+    double total = fu_bodies_dissipation(model, q, v), part[FU_MAX_COORDINATES];
     for (int c = 0; c < model->n_cables; ++c) {
         const fu_cable *cable = &model->cables[c];
         if (cable->tau <= 0.0 && cable->mass_damping <= 0.0) continue;
@@ -287,7 +286,7 @@ double fu_dissipation(const fu_model *model, const fu_state *state, const fu_acc
             }
         }
     }
-    return total;
+    return total + fu_coupling_dissipation(model, state, work);
 }
 
 double fu_length(const fu_model *model, int slide)
