@@ -196,13 +196,23 @@ cdef class Engine(Statics):
         r.q, r.v = self._named("q", (rows, m.n_q)), self._named("v", (rows, m.n_dof))
         r.acceleration = self._named("acceleration", (rows, m.n_dof))
         r.reaction, r.external = self._named("reaction", (rows, m.n_dof)), self._named("external", rows)
-        r.spring = self._named("spring", (rows, m.n_springs, 3))
-        r.s, r.slide = self._named("s", (rows, m.n_slides)), self._named("slide", (rows, m.n_slides, FU_SLIDE_OUTPUTS))
-        r.joint = self._named("joint", (rows, m.n_joints, FU_JOINT_OUTPUTS))
+        r.s, r.output = self._named("s", (rows, m.n_coordinates)), self._named("output", (rows, m.n_outputs))
+        output = self.arrays.pop("output")
+        for kind in ("slide", "joint", "spring"):
+            self.arrays[kind] = self._outputs(kind, output)
         cdef int status = fu_start(run)
         if status:
             return STATUS[status], np.zeros(m.n_dof)
         return None, np.array([run.before[i] for i in range(m.n_dof)])
+
+    def _outputs(self, str kind, output):
+        """The part of rows of output that couplings of a kind have: a view, (rows, couplings, numbers of one)."""
+        cdef int i, first = 0, width = 0
+        count = self._count(kind)
+        for i in range(self.model.n_couplings - 1, -1, -1):
+            if self.couplings[i].type.name == kind.encode():
+                first, width = self.couplings[i].output, self.couplings[i].type.n_outputs
+        return output[:, first:first + count * width].reshape(len(output), count, width)
 
     def advance(self, on_progress, int every=0, stream=None, double interval=0.05):
         """Run to the end; returns the status, "interrupted" after Ctrl-C.
@@ -271,7 +281,7 @@ cdef class Engine(Statics):
         return self.run.record.n
 
     def slide_row(self, slides):
-        """Split slides' numbers (..., FU_SLIDE_OUTPUTS) by name; see fu_slide_output."""
+        """Split slides' numbers (..., numbers of a slide) by name; see fu_slide_output."""
         sizes = (1, 1, 3, 2, 1, 3)
         ends = np.cumsum(sizes)
         return {name: slides[..., end - size:end] if size > 1 else slides[..., end - 1]
@@ -290,9 +300,10 @@ cdef class Engine(Statics):
 
     def costs(self):
         """(slides + joints,): what each takes of a step, in seconds, timed by itself in less than 1 ms; see run/part_timing.c."""
-        cdef double[::1] seconds = np.zeros(self.model.n_slides + self.model.n_joints + 1)
+        cdef double[::1] seconds = np.zeros(self.model.n_couplings + 1)
+        cdef int first = self._count("load"), n = self._count("slide") + self._count("joint")
         fu_part_timing(&self.run, &seconds[0])
-        return np.asarray(seconds)[:-1]
+        return np.asarray(seconds)[first:first + n]
 
     @property
     def integrator(self):
@@ -371,20 +382,20 @@ cdef class Engine(Statics):
         leave; None where no way leads back onto them. See fu_probe_mechanism.
         """
         cdef double[::1] path = np.ascontiguousarray(along, dtype=float)
-        cdef double[::1] left = np.zeros(6 * self.model.n_joints + 1)
+        cdef double[::1] left = np.zeros(self.model.n_forces + 1)
         if fu_probe_mechanism(&self.run, &path[0], &left[0]):
             return None
-        return np.asarray(left)[:6 * self.model.n_joints].reshape(-1, 6)
+        return self._own("joint", &left[0], 6)
 
     def held(self):
-        """(links, FU_JOINT_OUTPUTS): force and moment of joints on their second ends, and residual, in the static state."""
-        cdef int k, r
-        cdef double[::1] out = np.zeros(FU_JOINT_OUTPUTS * self.model.n_joints + 1)
-        for k in range(self.model.n_joints):
-            for r in range(self.joints[k].kernel.rows):
-                self.run.accelerator.multipliers[self.joints[k].multiplier + r] = self.run.next.multipliers[6 * k + r]
-        fu_joint_outputs(&self.model, &self.run.next, &self.run.accelerator, <fu_joint_output *>&out[0])
-        return np.asarray(out)[:FU_JOINT_OUTPUTS * self.model.n_joints].reshape(-1, FU_JOINT_OUTPUTS)
+        """(joints, 7): force and moment of joints on their second ends, and residual, in the static state."""
+        cdef int k, n = self._count("joint")
+        out = np.zeros((n, fu_joint_type.n_outputs))
+        cdef double[:, ::1] view = out
+        for k in range(n):
+            fu_joint_outputs(&self.model, &self.joints[k], &self.run.next,
+                             self.run.next.forces + self.joints[k].base.force, <fu_joint_output *>&view[k, 0])
+        return out
 
     @property
     def extent(self):

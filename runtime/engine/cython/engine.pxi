@@ -33,7 +33,7 @@ cdef extern from "blocks.h" nogil:
     const fu_law_blocks *fu_blocks_of(const char *law)
 
 cdef extern from "engine.h" nogil:
-    int FU_SLIDE_OUTPUTS, FU_JOINT_OUTPUTS, FU_MAX_COORDINATES, FU_MAX_RATES, FU_ATTACHMENT_COORDINATES, FU_SLIDES, FU_LOCKED, FU_LEFT
+    int FU_MAX_COORDINATES, FU_MAX_RATES, FU_ATTACHMENT_COORDINATES, FU_SLIDES, FU_LOCKED, FU_LEFT
     int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT, FU_UNSTABLE
     int FU_NO_FAILURE, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE, FU_JAM
     int FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_RATE, FU_WATCH_TRACTION, FU_WATCH_CALL
@@ -101,21 +101,30 @@ cdef extern from "engine.h" nogil:
     ctypedef struct fu_end_stop:
         int kind
         double restitution, length, stiffness, damping
+    ctypedef struct fu_coupling_type:
+        const char *name
+        int n_outputs
+    ctypedef struct fu_coupling:
+        const fu_coupling_type *type
+        int index, unknown, n_coordinates, coordinate, n_forces, force, n_multipliers, multiplier, row, output
+        int reacts, is_damped, is_driven
+        double scale[6]
+    const fu_coupling_type fu_slide_type, fu_joint_type, fu_spring_type, fu_load_type
     ctypedef struct fu_slide:
+        fu_coupling base
         const fu_slide_kernels *kernel
-        int cable, rider_is_rigid, unknown, multiplier, max_multipliers, drive, carries_director
+        int cable, rider_is_rigid, drive, carries_director
         fu_attachment rider
-        double mass
         const fu_resistance_kernels *resistance
         int sticks
         double friction, static_friction, viscous, velocity
         fu_end_stop stops[2]
     ctypedef struct fu_joint:
+        fu_coupling base
         const fu_joint_kernels *kernel
         fu_attachment ends[2]
-        int unknown, multiplier, signal, redundant_rows
-        double base
-        double scale[6]
+        int signal, redundant_rows
+        double c0
     ctypedef struct fu_signal:
         int n
         const double *breaks
@@ -130,15 +139,19 @@ cdef extern from "engine.h" nogil:
     ctypedef struct fu_dead_load:
         int signal, first, n
     ctypedef struct fu_load:
+        fu_coupling base
         int kind, signal, on, element
         double x
         double u[3]
         double c[3]
         fu_modal_attachment spot
-    ctypedef struct fu_spring:
+    ctypedef struct fu_point_force:
+        fu_coupling base
         fu_attachment ends[2]
-        int dim, unknown
-        double stiffness, damping, length, mass
+        int dim
+    ctypedef struct fu_spring:
+        fu_point_force between
+        double stiffness, damping, length
     ctypedef struct fu_lapack:
         void *dgbtrf
         void *dgbtrs
@@ -171,17 +184,16 @@ cdef extern from "engine.h" nogil:
         int *pivot_band
         int *pivot_border
     ctypedef struct fu_model:
-        int dim, n_cables, n_bodies, n_slides, n_joints, n_springs, n_motions, n_dead_loads, n_loads
+        int dim, n_cables, n_bodies, n_slides, n_couplings, n_motions, n_dead_loads
         const fu_cable *cables
         const fu_body *bodies
         const fu_slide *slides
-        const fu_joint *joints
-        const fu_spring *springs
+        const fu_coupling *const *couplings
         const fu_motion *motions
         const fu_dead_load *dead_loads
-        const fu_load *loads
         const fu_signal *signals
-        int n_q, n_dof, n_band, n_border_dof, n_resistances, n_dissipation_state, n_extra, n_multipliers
+        int n_q, n_dof, n_band, n_border_dof, n_dissipation_state, n_extra, n_multipliers
+        int n_coordinates, n_forces, n_rows, n_outputs
         const int *place
         const int *combination_start
         const int *combination_place
@@ -201,9 +213,7 @@ cdef extern from "engine.h" nogil:
         double *acceleration
         double *a
         double *s
-        double *f
-        double *spring
-        double *multipliers
+        double *forces
         double *locked_s
         int *element
         int *mode
@@ -225,10 +235,7 @@ cdef extern from "engine.h" nogil:
         double *work
         double *prescribed
         double *multipliers
-        double *resistance
-        double *driven_resistance
         int jammed
-        double *slides
         long evaluated
     ctypedef struct fu_joint_output:
         double residual
@@ -252,14 +259,12 @@ cdef extern from "engine.h" nogil:
         double *acceleration
         double *reaction
         double *s
-        double *slide
-        double *joint
+        double *output
         double *kinetic
         double *elastic
         double *potential
         double *dissipated
         double *external
-        double *spring
     ctypedef struct fu_weights:
         double inertia, rate, stiffness
     ctypedef struct fu_integrator
@@ -310,18 +315,18 @@ cdef extern from "engine.h" nogil:
     void fu_system_solve(const fu_system *system, const fu_lapack *lapack, double *x)
     void fu_static_move(fu_run *run, const double *change)
     void fu_static_residual(fu_run *run)
-    void fu_matrix(fu_run *run, fu_weights weights)
+    void fu_matrix_of_weights(fu_run *run, fu_weights weights)
     void fu_spread(const fu_model *model, const double *x, double *dofs)
     void fu_prescribe(const fu_model *model, fu_state *state)
-    void fu_carry_directors(const fu_model *model, fu_state *state)
-    double fu_elastic_energy(const fu_model *model, const double *q)
-    void fu_touch_buffers(const fu_model *model, fu_state *state)
-    double fu_buffer_energy(const fu_model *model, const fu_state *state)
+    void fu_number_couplings(fu_coupling *const *couplings, int n, fu_model *model)
+    double fu_elastic_energy(const fu_model *model, const fu_state *state)
+    void fu_touch(const fu_model *model, fu_state *state)
     int fu_moves(const fu_run *run)
     int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S)
     int fu_prepare(fu_run *run)
     int fu_probe_mechanism(fu_run *run, const double *along, double *left)
-    void fu_joint_outputs(const fu_model *model, const fu_state *state, const fu_accelerator *work, fu_joint_output *out)
+    void fu_joint_outputs(const fu_model *model, const fu_joint *joint, const fu_state *state, const double *multipliers,
+                          fu_joint_output *out)
     int fu_between_cables(const fu_joint *joint)
     int fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, int *at, double *J, double *K)
     int fu_attachment_coordinates(const fu_model *model, const fu_attachment *end, const fu_state *state, int *at)
@@ -331,4 +336,4 @@ cdef extern from "engine.h" nogil:
     long fu_save(const fu_run *run, char *bytes)
     int fu_restore(fu_run *run, const char *bytes, int rows)
     int fu_stop(fu_run *run)
-    void fu_part_timing(const fu_run *run, double *seconds)
+    void fu_part_timing(fu_run *run, double *seconds)

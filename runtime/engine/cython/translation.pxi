@@ -14,6 +14,7 @@ cdef class Translation(Arrays):
     cdef fu_load *loads
     cdef fu_signal *signals
     cdef fu_knot *knots
+    cdef fu_coupling **couplings
     cdef fu_watch *watches
     cdef fu_model model
     cdef fu_run run
@@ -29,23 +30,27 @@ cdef class Translation(Arrays):
         self.dead_loads = <fu_dead_load *>PyMem_Calloc(len(model.dead_loads) + 1, sizeof(fu_dead_load))
         self.loads = <fu_load *>PyMem_Calloc(len(model.loads) + 1, sizeof(fu_load))
         self.signals = <fu_signal *>PyMem_Calloc(len(model.signals) + 1, sizeof(fu_signal))
+        n_couplings = len(model.loads) + len(model.slides) + len(model.joints) + len(model.springs)
+        self.couplings = <fu_coupling **>PyMem_Calloc(n_couplings + 1, sizeof(fu_coupling *))
         if not (self.cables and self.bodies and self.shapes and self.slides and self.joints and self.springs
-                and self.motions and self.dead_loads and self.loads and self.signals):
+                and self.motions and self.dead_loads and self.loads and self.signals and self.couplings):
             raise MemoryError
 
     def __dealloc__(self):
         for pointer in (<size_t>self.cables, <size_t>self.bodies, <size_t>self.shapes, <size_t>self.slides,
                         <size_t>self.joints, <size_t>self.springs, <size_t>self.motions, <size_t>self.dead_loads,
-                        <size_t>self.loads, <size_t>self.signals, <size_t>self.knots, <size_t>self.watches):
+                        <size_t>self.loads, <size_t>self.signals, <size_t>self.knots, <size_t>self.couplings,
+                        <size_t>self.watches):
             PyMem_Free(<void *><size_t>pointer)
 
     def __init__(self, model, blocks=True):
         tables = [<size_t>TABLES, *model.tables]
         self._bodies_and_cables(model, tables, blocks)
-        self._joints_and_springs(model, tables)
-        self._loads_and_motions(model)
         m = &self.model
         m.dim, m.n_q, m.n_dof = model.dim, model.n_q, model.n_dof
+        self._slides_joints_and_springs(model, tables)
+        self._loads_and_motions(model)
+        self._list_couplings(model)
         m.n_band, m.n_border_dof = model.n_band, model.n_border_dof
         m.n_extra, m.n_multipliers = model.n_extra, model.n_multipliers
         m.place, m.weight, m.lapack = self._ints(model.place), self._doubles(model.weight), &LAPACK
@@ -150,19 +155,44 @@ cdef class Translation(Arrays):
             to.axes[k] = end.axes.flat[k]
         return 0
 
-    def _joints_and_springs(self, model, list tables):
-        cdef int i, k, resistances = 0
+    cdef int _coupling(self, fu_coupling *base, const fu_coupling_type *type, int index, int unknown, scale) except -1:
+        """Fill in what all couplings have; own forces are one a row of `scale`."""
+        cdef int k
+        base.type, base.index, base.unknown, base.n_forces = type, index, unknown, len(scale)
+        for k in range(len(scale)):
+            base.scale[k] = scale[k]
+        return 0
+
+    def _list_couplings(self, model):
+        """The list that the engine loops over: contributions are added up in its order."""
+        cdef int i, n = 0
+        for i in range(len(model.loads)):
+            self.couplings[n], n = &self.loads[i].base, n + 1
+        for i in range(len(model.slides)):
+            self.couplings[n], n = &self.slides[i].base, n + 1
+        for i in range(len(model.joints)):
+            self.couplings[n], n = &self.joints[i].base, n + 1
+        for i in range(len(model.springs)):
+            self.couplings[n], n = &self.springs[i].between.base, n + 1
+        fu_number_couplings(self.couplings, n, &self.model)
+
+    def _slides_joints_and_springs(self, model, list tables):
+        cdef int i, k
         for i, slide in enumerate(model.slides):
             j = &self.slides[i]
             j.kernel = <const fu_slide_kernels *>_found(tables, "slide", slide.kernel)
             if j.kernel.coordinates + 1 > FU_MAX_COORDINATES:
                 raise ValueError(f"{slide.kernel}: more coordinates than the engine's {FU_MAX_COORDINATES}")
-            j.cable, j.rider_is_rigid, j.max_multipliers, j.drive = slide.cable, slide.rider_is_rigid, slide.max_multipliers, slide.drive
-            j.unknown, j.multiplier, j.carries_director = slide.unknown, slide.multiplier, slide.carries_director
-            j.mass = slide.mass
+            self._coupling(&j.base, &fu_slide_type, i, slide.unknown, [slide.mass] * model.dim)
+            j.base.n_coordinates, j.base.multiplier, j.base.n_multipliers = 1, slide.multiplier, slide.max_multipliers
+            for k in range(model.dim, slide.max_multipliers):
+                j.base.scale[k] = slide.mass
+            j.cable, j.rider_is_rigid, j.drive = slide.cable, slide.rider_is_rigid, slide.drive
+            j.carries_director = slide.carries_director
             self._end(&j.rider, slide.rider, tables)
             j.resistance = <const fu_resistance_kernels *>_found(tables, "resistance", slide.resistance) if slide.resistance else NULL
-            resistances += bool(slide.resistance)
+            j.base.reacts = j.base.is_damped = bool(slide.resistance)
+            j.base.is_driven = slide.drive >= 0
             j.velocity = 1.0  # of no friction
             if slide.friction is not None:
                 j.sticks, j.viscous, j.velocity = slide.friction.sticks, slide.friction.viscous, slide.friction.velocity
@@ -177,21 +207,20 @@ cdef class Translation(Arrays):
         for i, joint in enumerate(model.joints):
             l = &self.joints[i]
             l.kernel = <const fu_joint_kernels *>_found(tables, "joint", joint.kernel)
-            l.unknown, l.multiplier, l.signal, l.base = joint.unknown, joint.multiplier, joint.signal, joint.base
-            for k in range(joint.rows):
-                l.scale[k] = joint.scale[k]
+            self._coupling(&l.base, &fu_joint_type, i, joint.unknown, joint.scale)
+            l.base.multiplier, l.base.n_multipliers, l.base.is_driven = joint.multiplier, joint.rows, joint.signal >= 0
+            l.signal, l.c0 = joint.signal, joint.base
             for k in range(2):
                 self._end(&l.ends[k], joint.ends[k], tables)
         for i, spring in enumerate(model.springs):
             p = &self.springs[i]
-            p.dim, p.unknown, p.mass = spring.dim, spring.unknown, spring.mass
+            self._coupling(&p.between.base, &fu_spring_type, i, spring.unknown, [spring.mass] * spring.dim)
+            p.between.base.is_damped = spring.damping > 0
+            p.between.dim = spring.dim
             p.stiffness, p.damping, p.length = spring.stiffness, spring.damping, spring.length
             for k in range(2):
-                self._end(&p.ends[k], spring.ends[k], tables)
-        m = &self.model
-        m.n_slides, m.n_joints, m.n_springs = len(model.slides), len(model.joints), len(model.springs)
-        m.n_resistances = resistances
-        m.slides, m.joints, m.springs = self.slides, self.joints, self.springs
+                self._end(&p.between.ends[k], spring.ends[k], tables)
+        self.model.n_slides, self.model.slides = len(model.slides), self.slides
 
     def _loads_and_motions(self, model):
         cdef int i, k, at = 0
@@ -218,14 +247,15 @@ cdef class Translation(Arrays):
         self.model.dead_dof, self.model.dead_value = self._ints(dofs), self._doubles(values)
         for i, load in enumerate(model.loads):
             n = &self.loads[i]
+            self._coupling(&n.base, &fu_load_type, i, 0, ())
             n.kind, n.signal, n.on, n.element, n.x = load.kind, load.signal, load.on, load.element, load.x
             for k in range(3):
                 n.u[k], n.c[k] = load.u[k], load.c[k]
             if load.spot is not None:
                 self._spot(&n.spot, load.on, load.spot)
         m = &self.model
-        m.n_motions, m.n_dead_loads, m.n_loads = len(model.motions), len(model.dead_loads), len(model.loads)
-        m.motions, m.dead_loads, m.loads, m.signals = self.motions, self.dead_loads, self.loads, self.signals
+        m.n_motions, m.n_dead_loads = len(model.motions), len(model.dead_loads)
+        m.motions, m.dead_loads, m.signals = self.motions, self.dead_loads, self.signals
 
     cdef void _system(self, fu_system *system, model, int width, int m):
         cdef int n = model.n_band, chains = len(model.chains) - 1
@@ -246,9 +276,7 @@ cdef class Translation(Arrays):
         state.q, state.v = self._doubles(model.q), self._doubles(model.v)
         state.acceleration, state.a = self._doubles(np.zeros(model.n_dof)), self._doubles(np.zeros(model.n_dof))
         slides = len(model.slides)
-        state.s, state.f = self._doubles([j.s for j in model.slides]), self._doubles(np.zeros(3 * slides))
-        state.spring, state.t = self._doubles(np.zeros(3 * len(model.springs))), 0.0
-        state.multipliers = self._doubles(np.zeros(6 * len(model.joints)))
+        state.s, state.forces, state.t = self._doubles([j.s for j in model.slides]), self._zeros(self.model.n_forces), 0.0
         state.locked_s = self._doubles(np.zeros(slides))
         state.element = self._ints([j.element for j in model.slides])
         state.mode = self._ints([FU_LOCKED if j.drive >= 0 else FU_SLIDES for j in model.slides])
@@ -271,16 +299,14 @@ cdef class Translation(Arrays):
         run.newton.K = a.mass.K = self._zeros((3.0 * width + 1) * model.n_band)
         a.corner = self._zeros(<double>a.mass.m * a.mass.m)
         a.rhs = self._zeros(unknowns + model.n_multipliers + FU_BAND_BEYOND(width))
-        rows = n_slides + len(model.joints)
-        a.rows = <fu_rows *>self._zeros(rows * sizeof(fu_rows) // sizeof(double) + 1)
+        a.rows = <fu_rows *>self._zeros(self.model.n_rows * sizeof(fu_rows) // sizeof(double) + 1)
         a.slide_states = <fu_slide_state *>self._zeros(n_slides * sizeof(fu_slide_state) // sizeof(double) + 1)
         a.multipliers = self._zeros(model.n_multipliers)
-        a.resistance, a.driven_resistance, a.jammed = self._zeros(3 * n_slides + 1), self._zeros(n_slides), -1
-        a.slides = self._doubles(np.zeros(n_slides * FU_SLIDE_OUTPUTS))
+        a.jammed = -1
         a.force, a.work = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         a.prescribed = self._doubles(np.zeros(n_dof))
         run.rhs = self._zeros(unknowns + model.n_extra + FU_BAND_BEYOND(width))
         run.psi, run.force = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         run.work, run.before = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
-        run.first, run.s_slope = self._doubles(np.zeros(model.n_q)), self._doubles(np.zeros(n_slides))
+        run.first, run.s_slope = self._doubles(np.zeros(model.n_q)), self._zeros(self.model.n_coordinates)
         self._watch([])

@@ -9,10 +9,8 @@ struct fu_state {
     double t;
     double *q, *v, *acceleration;
     double *a;       /* the integrator's auxiliary acceleration */
-    double *s;       /* per slide: arc-length */
-    double *f;       /* per slide: force on the rider, 3 */
-    double *spring;  /* per spring: force on its first end, 3 */
-    double *multipliers; /* per joint: 6 */
+    double *s;       /* couplings' own coordinates: of each slide the arc-length */
+    double *forces;  /* couplings' own forces: on the rider of a slide, multipliers of a joint, on a spring's first end */
     double *locked_s;    /* per slide: s where it is held */
     int *element;    /* per slide: element that holds s */
     int *mode;       /* per slide: FU_SLIDES and so on */

@@ -92,7 +92,7 @@ static int move_to(fu_run *run, const double *row, int n, double t, double h)
     combine(run, row, n, h, next->q, next->v);
     next->t = t;
     if (model->n_motions) fu_prescribe(model, next);
-    return fu_find_slides(run);
+    return fu_find_own(run);
 }
 
 static int start(fu_run *run)
@@ -108,13 +108,13 @@ static int step(fu_run *run, double h)
     const int n = method.stages;
     fu_state *next = &run->next;
     double *reaction = model->n_motions ? run->force : 0;
-    fu_predict_extra(run, h);
+    fu_predict_own(run, h);
     rates(model, &run->now, stage(run, 0));
     powers(run, 0)[0] = run->dissipated_power;
     powers(run, 0)[1] = run->external_power;
     for (int k = 1; k < n; ++k) {
         if (move_to(run, method.A + k * n, k, run->now.t + method.c[k] * h, h)) return 1;
-        if (fu_accelerations(model, next, &run->accelerator, next->acceleration, 0, reaction))
+        if (fu_accelerations(model, next, &run->accelerator, next->acceleration, reaction))
             return fu_fail_eq38(run);
         keep(run, k, next);
     }

@@ -101,8 +101,7 @@ static int is_damped(const fu_model *model)
 {
     int damped = 0;
     for (int c = 0; c < model->n_cables; ++c) damped |= model->cables[c].tau > 0.0 || model->cables[c].mass_damping > 0.0;
-    for (int k = 0; k < model->n_springs; ++k) damped |= model->springs[k].damping > 0.0;
-    return damped || model->n_resistances || model->n_bodies; /* forces of inertia go with the velocity of a body */
+    return damped || model->n_damped || model->n_bodies; /* forces of inertia go with the velocity of a body */
 }
 
 /* The real and the complex matrix at `now`. Both are made of M + J, K and D, which systems of other weights differ by. */
@@ -119,13 +118,14 @@ static int factor(fu_run *run, double h)
     const fu_complex by_stiffness = {square.re / (real * real), square.im / (real * real)};
     const int damped = is_damped(run->model);
     fu_complex_system_clear(c, s);
-    fu_matrix(run, (fu_weights){1.0, 0.0, 2.0 * real * real});
+    fu_matrix_of_weights(run, (fu_weights){1.0, 0.0, 2.0 * real * real});
     fu_complex_system_accumulate(c, s, (fu_complex){by_stiffness.re - 1.0, by_stiffness.im});
     if (damped) {
-        fu_matrix(run, (fu_weights){1.0, 0.0, real * real});
-        fu_complex_system_accumulate(c, s, (fu_complex){2.0 - by_stiffness.re - by_damping.re, -by_stiffness.im - by_damping.im});
+        fu_matrix_of_weights(run, (fu_weights){1.0, 0.0, real * real});
+        const fu_complex rest = {2.0 - by_stiffness.re - by_damping.re, -by_stiffness.im - by_damping.im};
+        fu_complex_system_accumulate(c, s, rest);
     }
-    fu_matrix(run, (fu_weights){1.0, rate, real * real});
+    fu_matrix_of_weights(run, (fu_weights){1.0, rate, real * real});
     fu_complex_system_accumulate(c, s, damped ? by_damping : (fu_complex){2.0 - by_stiffness.re, -by_stiffness.im});
     memcpy(w->D_real, s->D, sizeof(double) * (size_t)s->m * (size_t)s->m);
     int info = fu_system_factor_band(&run->newton, run->model->lapack);
@@ -166,10 +166,10 @@ static void right_side(fu_run *run, const double *r, double *unknowns)
     fu_mass_times(model, run->next.q, run->work, run->psi);
     fu_gather(model, run->psi, run->rhs);
     for (int i = 0; i < model->n_extra; ++i) run->rhs[beyond + i] = 0.0;
-    for (int j = 0; j < model->n_slides; ++j)
-        keep_row(run, model->slides[j].unknown + 1, model->slides[j].kernel->dim, unknowns);
-    for (int k = 0; k < model->n_joints; ++k)
-        keep_row(run, model->joints[k].unknown, model->joints[k].kernel->rows, unknowns);
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->row >= 0) keep_row(run, c->unknown + c->n_coordinates, c->n_forces, unknowns);
+    }
 }
 
 /* Entries of the stages' q that have n dofs for rates, moved by the quadrature of velocities. */
@@ -228,7 +228,7 @@ static int place_stage(fu_run *run, workspace *w, int k, double h)
     for (int i = 0; i < model->n_dof; ++i) next->v[i] = run->now.v[i] + w->Z[(long)k * model->n_dof + i];
     next->t = run->now.t + method_of(run)->c[k] * h;
     if (model->n_motions) fu_prescribe(model, next);
-    return fu_find_slides(run);
+    return fu_find_own(run);
 }
 
 /* The normal forces of the state that accelerations have just been found of, as those of stage k. */
@@ -236,10 +236,10 @@ static void keep_normals(fu_run *run, workspace *w, int k)
 {
     const fu_model *model = run->model;
     double *normal = w->normal + 2L * k * model->n_slides;
-    if (!model->n_resistances) return;
+    if (!model->n_reacting) return;
     for (int j = 0; j < model->n_slides; ++j)
         for (int c = 0; c < 2; ++c)
-            normal[2 * j + c] = c < model->dim - 1 ? run->accelerator.multipliers[model->slides[j].multiplier + c] : 0.0;
+            normal[2 * j + c] = c < model->dim - 1 ? run->accelerator.multipliers[model->slides[j].base.multiplier + c] : 0.0;
 }
 
 /* accelerations of all stages; 0 when they were found */
@@ -252,7 +252,7 @@ static int evaluate(fu_run *run, workspace *w, double h)
     configure(run, w, h);
     for (int k = 0; k < STAGES; ++k) {
         if (place_stage(run, w, k, h)) return 1;
-        if (fu_accelerations(model, next, &run->accelerator, next->acceleration, 0, reaction)) return fu_fail_eq38(run);
+        if (fu_accelerations(model, next, &run->accelerator, next->acceleration, reaction)) return fu_fail_eq38(run);
         memcpy(w->a + (long)k * model->n_dof, next->acceleration, sizeof(double) * (size_t)model->n_dof);
         w->powers[2 * k] = fu_dissipated_power(run, next);
         w->powers[2 * k + 1] = fu_external_power(run, next, reaction);
@@ -387,7 +387,7 @@ static void begin_step(fu_run *run)
 {
     const fu_model *model = run->model;
     const size_t dofs = sizeof(double) * (size_t)model->n_dof;
-    fu_predict_extra(run, 0.0);
+    fu_predict_own(run, 0.0);
     memcpy(run->next.q, run->now.q, sizeof(double) * (size_t)model->n_q);
     memcpy(run->next.v, run->now.v, dofs);
     memcpy(run->next.acceleration, run->now.acceleration, dofs);
@@ -427,8 +427,8 @@ static double kink(fu_run *run, workspace *w, double h)
     const double *c = method_of(run)->c, left = run->duration - run->now.t;
     const double weight[STAGES + 1] = {0.5 * c[0], 0.5 * c[1], 0.5 * (c[2] - c[0]), 0.5 * (c[2] - c[1])};
     double worst = 0.0;
-    if (!model->n_resistances) return 0.0;
-    if (fu_accelerations(model, &run->now, &run->accelerator, run->work, 0, 0)) return INFINITY;
+    if (!model->n_reacting) return 0.0;
+    if (fu_accelerations(model, &run->now, &run->accelerator, run->work, 0)) return INFINITY;
     keep_normals(run, w, 0);
     ++run->statistics.evaluations;
     for (int j = 0; j < model->n_slides; ++j) {
@@ -440,7 +440,7 @@ static double kink(fu_run *run, workspace *w, double h)
             for (int d = 0; d < 2; ++d) mean[d] += weight[k] * N[d];
             all += weight[k] * hypot(N[0], N[1]);
         }
-        worst = fmax(worst, h * left * slide->friction * (all - hypot(mean[0], mean[1])) / slide->mass);
+        worst = fmax(worst, h * left * slide->friction * (all - hypot(mean[0], mean[1])) / slide->base.scale[0]);
     }
     return worst * run->allowed / (KINK * run->tol * fmax(run->motion, run->least_motion));
 }

@@ -34,10 +34,8 @@ static void copy_state(copier *c, const fu_model *model, fu_state *state)
     copy(c, state->v, dofs);
     copy(c, state->acceleration, dofs);
     copy(c, state->a, dofs);
-    copy(c, state->s, sizeof(double) * slides);
-    copy(c, state->f, 3 * sizeof(double) * slides);
-    copy(c, state->spring, 3 * sizeof(double) * (size_t)model->n_springs);
-    copy(c, state->multipliers, 6 * sizeof(double) * (size_t)model->n_joints);
+    copy(c, state->s, sizeof(double) * (size_t)model->n_coordinates);
+    copy(c, state->forces, sizeof(double) * (size_t)model->n_forces);
     copy(c, state->locked_s, sizeof(double) * slides);
     copy(c, state->element, sizeof(int) * slides);
     copy(c, state->mode, sizeof(int) * slides);
@@ -55,7 +53,7 @@ static void copy_all(copier *c, fu_run *run)
     copy_state(c, model, &run->now);
     copy_state(c, model, &run->next);
     copy(c, run->first, sizeof(double) * (size_t)model->n_q);
-    copy(c, run->s_slope, sizeof(double) * (size_t)model->n_slides);
+    copy(c, run->s_slope, sizeof(double) * (size_t)model->n_coordinates);
     copy(c, run->watched, sizeof(double) * (size_t)run->n_watches);
     copy(c, run->late, sizeof(int) * (size_t)run->n_watches);
     copy(c, &run->record.n, sizeof run->record.n);
@@ -92,28 +90,6 @@ static int last_of(int n)
     return n > 0 ? n - 1 : 0;
 }
 
-/* whether a slide can be in its mode: only then is there room for the multiplier that holds it */
-static int possible_mode(const fu_slide *slide, int mode)
-{
-    const fu_end_stop *ends = slide->stops;
-    if (mode == FU_LEFT) return ends[0].kind == FU_END_IS_OPEN || ends[1].kind == FU_END_IS_OPEN;
-    if (slide->drive >= 0) return mode == FU_LOCKED;
-    if (mode == FU_LOCKED) return slide->sticks || ends[0].kind == FU_END_IS_HARD || ends[1].kind == FU_END_IS_HARD;
-    return mode == FU_SLIDES;
-}
-
-/* whether what tells where slides are can be: it leads to places in memory */
-static int possible_places(const fu_model *model, const fu_state *state)
-{
-    for (int j = 0; j < model->n_slides; ++j) {
-        const fu_slide *slide = &model->slides[j];
-        if (!in_range(state->element[j], 0, model->cables[slide->cable].n_elements - 1)) return 0;
-        if (!possible_mode(slide, state->mode[j])) return 0;
-        if (!in_range(state->slip_direction[j], -1, 1) || !in_range(state->contact[j], -1, 1)) return 0;
-    }
-    return 1;
-}
-
 static int slides_on_their_elements(const fu_model *model, const fu_state *state)
 {
     for (int j = 0; j < model->n_slides; ++j) {
@@ -128,8 +104,7 @@ static int finite_state(const fu_model *model, const fu_state *state)
 {
     return fu_all_finite(&state->t, 1) && fu_all_finite(state->q, model->n_q) && fu_all_finite(state->v, model->n_dof) &&
            fu_all_finite(state->acceleration, model->n_dof) && fu_all_finite(state->a, model->n_dof) &&
-           fu_all_finite(state->s, model->n_slides) && fu_all_finite(state->f, 3L * model->n_slides) &&
-           fu_all_finite(state->spring, 3L * model->n_springs) && fu_all_finite(state->multipliers, 6L * model->n_joints) &&
+           fu_all_finite(state->s, model->n_coordinates) && fu_all_finite(state->forces, model->n_forces) &&
            fu_all_finite(state->locked_s, model->n_slides) && fu_all_finite(state->director, 3L * model->n_slides) &&
            fu_all_finite(state->dissipation_state, model->n_dissipation_state);
 }
@@ -161,7 +136,7 @@ static int possible_numbers(const fu_run *run)
     for (int k = 0; k < run->n_watches; ++k)
         if (!in_range(run->late[k], -1, 1)) return 0;
     return fu_all_finite(numbers, sizeof numbers / sizeof *numbers) && fu_all_finite(run->balance.first, FU_ENERGIES) &&
-           fu_all_finite(run->first, model->n_q) && fu_all_finite(run->s_slope, model->n_slides) &&
+           fu_all_finite(run->first, model->n_q) && fu_all_finite(run->s_slope, model->n_coordinates) &&
            run->motion >= 0.0 && run->least_motion >= 0.0 && run->extent >= 0.0 &&
            in_range(run->stopped_joint, 0, last_of(model->n_slides)) &&
            in_range(run->turned, 0, MOST_COUNT) && in_range(run->keep_elements, 0, 1) && in_range(run->rest_start, 0, 1) &&
@@ -177,7 +152,7 @@ int fu_restore(fu_run *run, const char *bytes, int rows)
     copier c = {(char *)bytes, 0, RESTORE};
     copy_all(&c, run);
     run->record.first = run->record.n;
-    return !(is_paused(run, rows) && possible_places(run->model, &run->now) && possible_places(run->model, &run->next) &&
+    return !(is_paused(run, rows) && fu_is_possible(run->model, &run->now) && fu_is_possible(run->model, &run->next) &&
              finite_state(run->model, &run->now) && slides_on_their_elements(run->model, &run->now) &&
              possible_numbers(run));
 }

@@ -87,8 +87,10 @@ double fu_time_of_turn(fu_run *run, double h)
 static double traction(const fu_run *run, const fu_state *state, int slide)
 {
     fu_accelerator *work = (fu_accelerator *)&run->accelerator; /* scratch: a run is never a constant */
-    fu_slide_output *outputs = (fu_slide_output *)work->slides;
-    return fu_accelerations(run->model, state, work, run->watch_work, outputs, 0) ? NAN : outputs[slide].traction;
+    fu_slide_output out;
+    if (fu_accelerations(run->model, state, work, run->watch_work, 0)) return NAN;
+    fu_slide_outputs(run->model, state, slide, run->watch_work, work, &out);
+    return out.traction;
 }
 
 /* what an event of the user's, or of a slide's, watches, positive where it has happened when `side` is 1 */

@@ -83,14 +83,12 @@ int fu_all_finite(const double *numbers, long n)
 
 static int is_finite_row(const fu_model *model, const fu_record *r, long row)
 {
-    const long q = model->n_q, v = model->n_dof, slides = model->n_slides, joints = model->n_joints;
+    const long q = model->n_q, v = model->n_dof, outputs = model->n_outputs, coordinates = model->n_coordinates;
     const double energies[] = {r->kinetic[row], r->elastic[row], r->potential[row], r->dissipated[row], r->external[row]};
     return fu_all_finite(energies, sizeof energies / sizeof *energies) && fu_all_finite(r->q + row * q, q) &&
            fu_all_finite(r->v + row * v, v) && fu_all_finite(r->acceleration + row * v, v) &&
-           fu_all_finite(r->reaction + row * v, v) && fu_all_finite(r->s + row * slides, slides) &&
-           fu_all_finite(r->slide + row * slides * FU_SLIDE_OUTPUTS, slides * FU_SLIDE_OUTPUTS) &&
-           fu_all_finite(r->joint + row * joints * FU_JOINT_OUTPUTS, joints * FU_JOINT_OUTPUTS) &&
-           fu_all_finite(r->spring + 3 * row * model->n_springs, 3L * model->n_springs);
+           fu_all_finite(r->reaction + row * v, v) && fu_all_finite(r->s + row * coordinates, coordinates) &&
+           fu_all_finite(r->output + row * outputs, outputs);
 }
 
 /* FU_SINGULAR, FU_UNSTABLE, FU_NO_CONVERGENCE for a row that is not finite, which does not count, or FU_RUNNING */
@@ -101,21 +99,19 @@ static int record_row(fu_run *run)
     const fu_state *now = &run->now;
     fu_record *r = &run->record;
     const long row = r->n - r->first;
-    fu_slide_output *slides = (fu_slide_output *)(r->slide + row * model->n_slides * FU_SLIDE_OUTPUTS);
+    double *acceleration = r->acceleration + row * model->n_dof;
     r->time[row] = now->t;
     memcpy(r->q + row * model->n_q, now->q, sizeof(double) * (size_t)model->n_q);
     memcpy(r->v + row * model->n_dof, now->v, sizeof(double) * (size_t)model->n_dof);
-    memcpy(r->s + row * model->n_slides, now->s, sizeof(double) * (size_t)model->n_slides);
-    const int info = fu_accelerations(model, now, &run->accelerator, r->acceleration + row * model->n_dof, slides,
+    memcpy(r->s + row * model->n_coordinates, now->s, sizeof(double) * (size_t)model->n_coordinates);
+    const int info = fu_accelerations(model, now, &run->accelerator, acceleration,
                                       r->reaction + row * model->n_dof);
     r->kinetic[row] = fu_kinetic_energy(model, now->q, now->v);
-    r->elastic[row] = fu_elastic_energy(model, now->q);
-    if (model->n_resistances) r->elastic[row] += fu_buffer_energy(model, now);
+    r->elastic[row] = fu_elastic_energy(model, now);
     r->potential[row] = fu_potential_energy(model, now->q);
     r->dissipated[row] = run->dissipated;
     r->external[row] = run->external;
-    fu_spring_forces_of(model, now, r->spring + 3 * row * model->n_springs);
-    fu_joint_outputs(model, now, &run->accelerator, (fu_joint_output *)(r->joint + row * model->n_joints * FU_JOINT_OUTPUTS));
+    fu_coupling_outputs(model, now, acceleration, &run->accelerator, r->output + row * model->n_outputs);
     const double energies[FU_ENERGIES] = {r->kinetic[row], r->elastic[row], r->potential[row], run->dissipated,
                                           -run->external};
     run->statistics.time_output += fu_clock() - begin;
@@ -136,7 +132,6 @@ static int start_scheme(fu_run *run, int project)
 {
     const fu_model *model = run->model;
     fu_state *now = &run->now;
-    fu_slide_output *slides = (fu_slide_output *)run->accelerator.slides;
     if (project) {
         if (fu_project_velocities(model, now, &run->accelerator, run->before)) return FU_SINGULAR;
         for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->before[i];
@@ -145,16 +140,16 @@ static int start_scheme(fu_run *run, int project)
     run->dissipated_power = fu_dissipated_power(run, now);
     run->external_power = fu_external_power(run, now, run->force);
     run->drive_step = -1.0;
-    for (int j = 0; j < model->n_slides; ++j) run->s_slope[j] = slides[j].s_rate;
+    fu_coordinate_rates(model, &run->accelerator, run->s_slope);
     return run->integrator->start(run);
 }
 
 /* whether a start can be off its joints by a small gap: bodies are put on their cables when they are drawn */
 static int closes(const fu_run *run)
 {
-    int held = run->model->n_joints;
-    for (int j = 0; j < run->model->n_slides; ++j) held |= run->now.mode[j] == FU_LOCKED || !run->model->slides[j].rider_is_rigid;
-    return held;
+    int locked = run->model->n_rows > run->model->n_slides;
+    for (int j = 0; j < run->model->n_slides; ++j) locked |= run->now.mode[j] == FU_LOCKED || !run->model->slides[j].rider_is_rigid;
+    return locked;
 }
 
 /* What the first evaluation needs: a state on its cables, the mass matrix. */
@@ -163,9 +158,8 @@ int fu_prepare(fu_run *run)
     const fu_model *model = run->model;
     fu_state *now = &run->now;
     fu_prescribe(model, now);
-    fu_carry_directors(model, now);
-    for (int j = 0; j < model->n_slides; ++j)
-        if (fu_find_arc_length(model, now, j, &now->s[j])) return FU_SINGULAR;
+    fu_carry(model, now);
+    if (fu_follow(model, now)) return FU_SINGULAR;
     if (fu_accelerator_prepare(model, &run->accelerator)) return FU_SINGULAR;
     memset(run->first, 0, sizeof(double) * (size_t)model->n_q);
     run->extent = extent(model, run->first, now->q);
@@ -209,14 +203,14 @@ int fu_start(fu_run *run)
 static void accept(fu_run *run, double h, fu_event event)
 {
     const fu_model *model = run->model;
-    for (int j = 0; j < model->n_slides; ++j) run->s_slope[j] = (run->next.s[j] - run->now.s[j]) / h;
+    for (int i = 0; i < model->n_coordinates; ++i) run->s_slope[i] = (run->next.s[i] - run->now.s[i]) / h;
     run->integrator->account(run, h);
-    if (model->n_resistances) run->dissipated += fu_lost_in_buffers(model, &run->now, &run->next);
+    if (model->n_reacting) run->dissipated += fu_lost_in_step(model, &run->now, &run->next);
     run->statistics.crossings += fu_count_changes(run);
     const fu_state state = run->now;
     run->now = run->next;
     run->next = state;
-    fu_carry_directors(model, &run->now);
+    fu_carry(model, &run->now);
     const double moved = motion(model, run->first, run->now.q);
     if (moved > run->motion) run->motion = moved;
     fu_watch_now(run, event);
