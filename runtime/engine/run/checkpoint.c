@@ -28,21 +28,11 @@ static void copy(copier *c, void *data, size_t size)
 
 static void copy_state(copier *c, const fu_model *model, fu_state *state)
 {
-    const size_t dofs = sizeof(double) * (size_t)model->n_dof, slides = (size_t)model->n_slides;
     copy(c, &state->t, sizeof state->t);
-    copy(c, state->q, sizeof(double) * (size_t)model->n_q);
-    copy(c, state->v, dofs);
-    copy(c, state->acceleration, dofs);
-    copy(c, state->a, dofs);
-    copy(c, state->s, sizeof(double) * (size_t)model->n_coordinates);
-    copy(c, state->forces, sizeof(double) * (size_t)model->n_forces);
-    copy(c, state->locked_s, sizeof(double) * slides);
-    copy(c, state->element, sizeof(int) * slides);
-    copy(c, state->mode, sizeof(int) * slides);
-    copy(c, state->slip_direction, sizeof(int) * slides);
-    copy(c, state->contact, sizeof(int) * slides);
-    copy(c, state->director, 3 * sizeof(double) * slides);
-    copy(c, state->dissipation_state, sizeof(double) * (size_t)model->n_dissipation_state);
+    for (int k = 0; k < FU_N_STATE_ARRAYS; ++k) {
+        const fu_array array = fu_state_array(model, state, k);
+        copy(c, array.data, array.size * (size_t)array.items);
+    }
 }
 
 /* The list of it. Factored matrices are not in it: fu_pause drops the Newton matrix, and fu_start makes that of eq 38. */
@@ -102,11 +92,11 @@ static int slides_on_their_elements(const fu_model *model, const fu_state *state
 
 static int finite_state(const fu_model *model, const fu_state *state)
 {
-    return fu_all_finite(&state->t, 1) && fu_all_finite(state->q, model->n_q) && fu_all_finite(state->v, model->n_dof) &&
-           fu_all_finite(state->acceleration, model->n_dof) && fu_all_finite(state->a, model->n_dof) &&
-           fu_all_finite(state->s, model->n_coordinates) && fu_all_finite(state->forces, model->n_forces) &&
-           fu_all_finite(state->locked_s, model->n_slides) && fu_all_finite(state->director, 3L * model->n_slides) &&
-           fu_all_finite(state->dissipation_state, model->n_dissipation_state);
+    for (int k = 0; k < FU_N_STATE_ARRAYS; ++k) {
+        const fu_array array = fu_state_array(model, state, k);
+        if (array.is_real && !fu_all_finite(array.data, array.items)) return 0;
+    }
+    return fu_all_finite(&state->t, 1);
 }
 
 /* whether a run stands where fu_pause leaves one: at the time of its last row, without a factored matrix */

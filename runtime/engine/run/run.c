@@ -81,16 +81,6 @@ int fu_all_finite(const double *numbers, long n)
     return 1;
 }
 
-static int is_finite_row(const fu_model *model, const fu_record *r, long row)
-{
-    const long q = model->n_q, v = model->n_dof, outputs = model->n_outputs, coordinates = model->n_coordinates;
-    const double energies[] = {r->kinetic[row], r->elastic[row], r->potential[row], r->dissipated[row], r->external[row]};
-    return fu_all_finite(energies, sizeof energies / sizeof *energies) && fu_all_finite(r->q + row * q, q) &&
-           fu_all_finite(r->v + row * v, v) && fu_all_finite(r->acceleration + row * v, v) &&
-           fu_all_finite(r->reaction + row * v, v) && fu_all_finite(r->s + row * coordinates, coordinates) &&
-           fu_all_finite(r->output + row * outputs, outputs);
-}
-
 /* FU_SINGULAR, FU_UNSTABLE, FU_NO_CONVERGENCE for a row that is not finite, which does not count, or FU_RUNNING */
 static int record_row(fu_run *run)
 {
@@ -115,7 +105,7 @@ static int record_row(fu_run *run)
     const double energies[FU_ENERGIES] = {r->kinetic[row], r->elastic[row], r->potential[row], run->dissipated,
                                           -run->external};
     run->statistics.time_output += fu_clock() - begin;
-    if (!is_finite_row(model, r, row)) {
+    if (!fu_record_is_finite(model, r, row)) {
         if (info) return FU_SINGULAR;
         fu_fail(run, FU_NOT_FINITE, now->v, -1);
         return FU_NO_CONVERGENCE;
