@@ -78,53 +78,37 @@ cdef class Engine(Statics):
 
     cdef object watcher, error
 
-    def _algorithmic(self, method):
-        cdef int i
-        a = &self.run.algorithmic
-        a.lag, a.viscosity, a.inertia, a.weight = method.parameters
-        if a.weight:
-            self.model.n_memory = sum([self.cables[i].n_elements * (self.cables[i].law.rates + 1)
-                                       for i in range(self.model.n_cables)])
-        self.run.now.memory, self.run.next.memory = self._zeros(self.model.n_memory), self._zeros(self.model.n_memory)
-        a.expected = self._zeros(self.model.n_memory)
+    def _take_integrator(self, method):
+        """Let the run take an integrator (package integrators): its parameters, its work space, what it keeps."""
+        run = &self.run
+        run.integrator = fu_integrator_of(method.name.encode())
+        if run.integrator == NULL:
+            raise ValueError(f"the engine has no integrator {method.name}")
+        parameters = method.parameters
+        run.parameters = self._doubles(parameters)
+        if run.integrator.n_parameters(run.parameters) != len(parameters):
+            raise ValueError(f"integrator {method.name}: {run.integrator.n_parameters(run.parameters)} parameters, not "
+                             f"{len(parameters)}")
+        run.order, run.error_overestimate, run.retry_factor = method.order, method.error_overestimate, method.retry_factor
+        if run.integrator.n_dissipation_state != NULL:
+            self.model.n_dissipation_state = run.integrator.n_dissipation_state(run)
+        run.now.dissipation_state = self._zeros(self.model.n_dissipation_state)
+        run.next.dissipation_state = self._zeros(self.model.n_dissipation_state)
+        run.scratch = self._zeros(run.integrator.n_scratch(run))
 
-    def held_strains(self):
-        """Per cable (elements, rates + 1): g and the energy of r of algorithmic dissipation (engine/integrators/algorithmic_dissipation.c)."""
-        cdef const double[::1] memory = <double[:max(1, self.model.n_memory)]>self.run.now.memory
+    def relaxed_strains(self):
+        """Return, for each cable, (elements, rates + 1): g and the energy of r of algorithmic dissipation, as in
+        engine/integrators/algorithmic_dissipation.c.
+        """
+        cdef const double[::1] memory = <double[:max(1, self.model.n_dissipation_state)]>self.run.now.dissipation_state
         numbers, ends = np.array(memory), np.cumsum([self.cables[i].n_elements * (self.cables[i].law.rates + 1)
                                                      for i in range(self.model.n_cables)])
         return [part.reshape(self.cables[i].n_elements, -1)
-                for i, part in enumerate(np.split(numbers[:self.model.n_memory], ends[:-1]))]
+                for i, part in enumerate(np.split(numbers[:self.model.n_dissipation_state], ends[:-1]))]
 
     def without_algorithmic_force(self):
         """Numbers of the cables whose law has no kernel for algorithmic dissipation."""
         return [i for i in range(self.model.n_cables) if self.cables[i].law.algorithmic_force == NULL]
-
-    def _tableau(self, method):
-        t = &self.run.tableau
-        t.stages = len(method.b)
-        t.A, t.b, t.c = self._doubles(method.A), self._doubles(method.b), self._doubles(method.c)
-        t.error, t.coarse = self._doubles(method.error), self._doubles(method.coarse)
-        stage = self.model.n_q + self.model.n_dof
-        self.run.scratch = self._zeros((t.stages + 2) * stage + 2 * (t.stages + 1))
-
-    def _collocation(self, method):
-        o, system = &self.run.collocation, &self.run.newton
-        cdef int k
-        for k in range(9):
-            o.A[k], o.A_inverse[k] = method.A.flat[k], method.A_inverse.flat[k]
-            o.T[k], o.T_inverse[k] = method.T.flat[k], method.T_inverse.flat[k]
-        for k in range(3):
-            o.c[k], o.error[k] = method.c[k], method.error[k]
-        o.gamma, o.alpha, o.beta = method.gamma, method.alpha, method.beta
-        n, m, rows = system.n, system.m, 3 * system.width + 1
-        c = &self.run.complex_newton
-        c.K, c.D, c.x = self._zeros(2.0 * rows * n), self._zeros(2.0 * m * m), self._zeros(2.0 * (n + m))
-        c.B, c.C, c.X = self._zeros(2.0 * n * m), self._zeros(2.0 * n * m), self._zeros(2.0 * n * m)
-        c.columns = <fu_piece *>self._ints(np.zeros(3 * 2 * m * system.n_chains))
-        c.D_real, c.pivot_band, c.pivot_border = self._zeros(1.0 * m * m), self._ints(np.zeros(n)), self._ints(np.zeros(m))
-        self.run.scratch = self._zeros(12 * self.model.n_dof + 3 * self.model.n_q + 7 + n + m
-                                        + 8 * self.model.n_slides)
 
     def use_threads(self, int threads):
         """Let so many threads share the elements; whether that is possible: OpenMP was there when this was built."""
@@ -168,34 +152,42 @@ cdef class Engine(Statics):
         run.watched, run.late = self._doubles(np.zeros(run.n_watches)), self._ints(np.zeros(run.n_watches))
         run.watch_work = self._doubles(np.zeros(self.model.n_dof))
 
+    def _knots(self, times, jumps):
+        """Let steps end at these instants."""
+        PyMem_Free(self.knots)
+        self.knots = <fu_knot *>PyMem_Calloc(len(times) + 1, sizeof(fu_knot))
+        if not self.knots:
+            raise MemoryError
+        for i, (time, jump) in enumerate(zip(times, jumps, strict=True)):
+            self.knots[i].t, self.knots[i].jumps = time, jump
+        self.run.n_knots, self.run.knots = len(times), self.knots
+
+    @property
+    def knots_passed(self):
+        """Return at how many knots of signals steps have ended, if they are not of a fixed length."""
+        cdef int k, passed = 0
+        for k in range(self.run.n_knots):
+            passed += self.run.knots[k].t <= self.run.now.t
+        return passed
+
     cdef _snapshot(self, const fu_state *state):
         """t, q, v, s of a state."""
         m = &self.model
         return (state.t, np.array([state.q[i] for i in range(m.n_q)]), np.array([state.v[i] for i in range(m.n_dof)]),
                 np.array([state.s[i] for i in range(m.n_slides)]))
 
-    def start(self, *, duration, output_step, tol, step, method, first_step, capacity=None, rest_start=False):
-        """Allocate output rows, `capacity` of them or all, and compute the consistent start; method: see solve/integrators.py.
+    def start(self, *, duration, output_step, tol, step, method, first_step, knots=((), ()), capacity=None,
+              rest_start=False):
+        """Allocate output rows, `capacity` of them or all, and compute the consistent start; method: one of integrators/.
 
+        knots: times at which steps end, increasing, and what jumps there; see model/knots.py.
         Returns a status where that failed, else None, and the change of velocities that the joints asked for.
         """
         run = &self.run
         run.duration, run.output_step, run.tol = duration, output_step, tol
         run.fixed_step, run.h, run.rest_start = step, first_step, rest_start
-        run.order, run.error_overestimate, run.retry_factor = method.order, method.error_overestimate, method.retry_factor
-        if method.name == "explicit":
-            run.integrator = &fu_explicit_method
-            self._tableau(method)
-        elif method.name == "radau":
-            run.integrator = &fu_radau_method
-            self._collocation(method)
-        elif method.name == "energy":
-            run.integrator = &fu_energy_method
-            run.scratch = self._zeros(self.model.n_q + 2 * self.model.n_dof)
-            self._algorithmic(method)
-        else:
-            run.integrator = &fu_genalpha_method
-            run.scheme.alpha_m, run.scheme.alpha_f, run.scheme.beta, run.scheme.gamma = method.parameters
+        self._knots(*knots)
+        self._take_integrator(method)
         rows = int(np.ceil(duration / output_step * (1 - 1e-12))) + 2 if capacity is None else capacity
         m = &self.model
         r = &run.record

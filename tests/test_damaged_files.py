@@ -222,7 +222,7 @@ sys.path.insert(0, {tests!r})
 warnings.simplefilter("ignore")
 from test_streaming import SETTINGS, short, resumed
 from funicular import FunicularError
-from funicular.checkpoints import Checkpoint
+from funicular.results.checkpoints import Checkpoint
 path, kept = Path("x.nc"), Path("kept")
 state = Path("x.nc.state")
 good = Checkpoint.read(kept / "x.nc.state")

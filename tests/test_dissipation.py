@@ -8,6 +8,7 @@ from funicular import (
     Buffer,
     EndOfCableError,
     Friction,
+    FunicularError,
     FunicularWarning,
     HardStop,
     Material,
@@ -111,8 +112,10 @@ def test_whatever_slides_do_dissipation_never_falls(seeds):
 class Stub:
     """An engine that has counted this."""
 
-    def __init__(self, *books):
-        self.books = books
+    integrator = "genalpha"
+
+    def __init__(self, *balance):
+        self.balance = balance
 
 
 @pytest.mark.parametrize(("grown", "lost", "tol", "says"), [
@@ -122,6 +125,16 @@ class Stub:
 def test_a_hundredth_of_what_is_exchanged_is_told(grown, lost, tol, says):
     notes = unexplained(Stub(grown, lost, 1.0, 1.0, 1e-9), RunSettings(duration=1.0, tol=tol))
     assert (says is None) == (notes == []) and (says is None or says in notes[0])
+
+
+@pytest.mark.parametrize(("off", "exchanged", "in_motion", "rounding", "noted"), [
+    (1e-3, 1e-6, 100.0, 0.0, False), (2e-2, 1e-6, 100.0, 0.0, True),  # a hundredth of a hundredth of what moves
+    (2e-2, 1.0, 1.0, 1e-2, False), (2.1e-2, 1.0, 1.0, 1e-2, True)])
+def test_neither_rounding_nor_little_beside_a_steady_motion_is_told(off, exchanged, in_motion, rounding, noted):
+    """Where bodies turn freely hardly anything is exchanged; far from the origin rounding is beyond a hundredth."""
+    settings = RunSettings(duration=1.0, tol=1e-4)
+    for grown, lost in ((off, 0.0), (0.0, off)):
+        assert bool(unexplained(Stub(grown, lost, exchanged, in_motion, rounding), settings)) == noted
 
 
 def shaken(distance: float, amplitude: float) -> Scene:
@@ -145,6 +158,15 @@ def test_neither_distance_nor_little_motion_hides_what_is_lost(distance):
         warnings.simplefilter("error", FunicularWarning)
         warnings.filterwarnings("ignore", "initial velocities")
         shaken(distance, 0.03).run(0.1, tol=1e-5, progress=False)
+
+
+@pytest.mark.filterwarnings("ignore:initial velocities broke a joint")
+@pytest.mark.parametrize("distance", [0.0, 1e4])
+def test_no_distance_hides_energy_that_comes_from_nowhere(distance):
+    """An explicit step just beyond its limit ends the run before anything has moved by a thousandth of the cable."""
+    with pytest.raises(FunicularError, match="energy came from nowhere") as stopped:
+        shaken(distance, 0.03).run(0.5, integrator="explicit", step=2.8e-4, output_step=2.8e-4, progress=False)
+    assert stopped.value.run.report["largest_motion_m"] < 1e-3
 
 
 def test_what_is_lost_where_a_frame_passes_a_node_is_dissipated():

@@ -11,9 +11,9 @@ from funicular import EquilibriumError, Scene, SceneError, load_scene
 
 @pytest.fixture
 def solvers(monkeypatch):
-    """Stand-ins for funicular.static, funicular.modal and funicular.model, and what they were called with."""
+    """Stand-ins for the modules that search, find modes and run, and what they were called with."""
     calls = SimpleNamespace(static=[], modal=[], model=[])
-    static, modal, model = (ModuleType(f"funicular.{name}") for name in ("static", "modal", "model"))
+    static, modal, model = (ModuleType(f"funicular.{name}") for name in ("solve.static", "solve.modes", "model.build"))
 
     class Equilibrium:
         def check_fits(self, scene):

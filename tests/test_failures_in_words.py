@@ -8,7 +8,7 @@ import pytest
 from funicular.model.build import build
 from funicular.model.redundant_constraints import redundant, settle
 from funicular.parts.settings import RunSettings
-from funicular.solve.diagnosis import stopped
+from funicular.solve.diagnosis import damping, stopped, unexplained
 
 
 def two_hinges() -> fu.Scene:
@@ -20,14 +20,14 @@ def two_hinges() -> fu.Scene:
     return scene
 
 
-def failed(model, S, cause=None, joint=None):
+def failed(model, S, cause=None, joint=None, integrator="genalpha", dof=0):
     """An engine after a failure: with this compliance, or none if it is None."""
     def compliance():
         if S is None:
             raise ArithmeticError("the mass matrix is singular")
         return np.full((model.n_multipliers,) * 2, S)
 
-    return SimpleNamespace(compliance=compliance, failure=(cause, 0, joint), time=0.5, integrator="genalpha",
+    return SimpleNamespace(compliance=compliance, failure=(cause, dof, joint), time=0.5, integrator=integrator,
                            prepare=lambda: True, statistics={"steps": 3, "smallest_step_s": 1e-9},
                            now=lambda: (0.5, model.q, model.v, np.zeros(0)))
 
@@ -55,6 +55,65 @@ def test_a_failure_without_a_cause():
     assert said == ("no step could be made at t = 0.5 s of 1 s: to pass an event there it would have to be shorter "
                     "than 1e-12 of the duration; what was computed up to there is kept. Look at slides, stops and "
                     "events that act at the same instant")
+
+
+def hung(damping_time=0.0) -> fu.Scene:
+    """A cable with a rider, a free rigid and a free modal body."""
+    material = fu.Material(youngs_modulus=1e7, poisson_ratio=0, density=1000, damping_time=damping_time)
+    scene = fu.Scene()
+    scene.cable("wire", start=(0, 0, 0), end=(1, 0, 0), elements=4, element="cable12", section=fu.Circle(radius=0.01),
+                material=material)
+    scene.rigid_body("A", mass=1, inertia=(1, 1, 1), position=(0.5, 0, 0))
+    scene.slide("A", along="wire", s=0.5, name="trolley")
+    scene.modal_body("arm", start=(0, 1, 0), end=(1, 1, 0), section=fu.Circle(radius=0.01), material=material, modes=2)
+    return scene
+
+
+def dof_of(model, body: str) -> int:
+    return next(each.dof for each in model.bodies if each.name == body)
+
+
+def test_damping_is_advised_by_the_name_that_the_part_has_for_it():
+    """A rigid body has no material that could be damped."""
+    for tau, larger in ((0.0, ""), (1e-3, "a larger ")):
+        model = build(hung(tau))
+        assert damping(model, 0) == damping(model, 0, 0) == f", or {larger}damping_time in the material"
+        assert damping(model, dof_of(model, "A")) == ""
+        assert damping(model, dof_of(model, "arm")) == ", or a larger damping_ratio of the body"
+
+
+@pytest.mark.parametrize(("cause", "on", "has", "has_not"), [
+    ("error", "A", "try a smaller tol", "damping_time"),
+    ("matrix", "A", "Look at its mass and inertia, and at its joints", "elements"),
+    ("matrix", "wire", "at up, or take more elements there", "inertia"),
+    ("jam", "trolley", "Take a smaller coefficient", "damping_time"),
+    ("error", "trolley", "damping_time in the material", "coefficient"),
+])
+def test_the_remedy_is_one_for_the_part_that_fails(cause, on, has, has_not):
+    model = build(hung())
+    where = {"dof": dof_of(model, "A")} if on == "A" else {"joint": 0} if on == "trolley" else {}
+    said = stopped(model, failed(model, np.nan, cause, **where), "no_convergence", RunSettings(duration=1))
+    assert has in said and has_not not in said
+
+
+@pytest.mark.parametrize(("integrator", "step", "other"), [
+    ("explicit", None, "radau"), ("explicit", 1e-3, "genalpha"), ("radau", None, None), ("genalpha", 1e-3, None)])
+def test_another_integrator_is_advised_where_the_explicit_one_needs_too_small_steps(integrator, step, other):
+    """By tol the other one is radau: genalpha goes by the error of positions alone."""
+    model = build(two_hinges())
+    engine = failed(model, 1.0, integrator=integrator)
+    engine.balance = (5.0, 0.0, 1.0, 1.0, 0.0)
+    said = stopped(model, engine, "unstable", RunSettings(duration=1, step=step))
+    assert [name for name in ("radau", "genalpha") if f'or integrator="{name}"' in said] == [other] * bool(other)
+
+
+@pytest.mark.parametrize(("integrator", "radius", "advised"), [
+    ("genalpha", 0.9, True), ("genalpha", 1.0, False), ("radau", 0.9, False), ("explicit", 0.9, False),
+    ("energy", 0.9, False)])  # the last counts what it damps as dissipated
+def test_the_spectral_radius_is_advised_where_it_is_what_takes_energy(integrator, radius, advised):
+    engine = SimpleNamespace(balance=(0.0, 0.5, 1.0, 1.0, 0.0), integrator=integrator)
+    (said,) = unexplained(engine, RunSettings(duration=1, spectral_radius=radius))
+    assert ("spectral_radius nearer to 1" in said) == advised and "take a smaller tol" in said
 
 
 def test_the_engine_names_no_slide_before_anything_failed():

@@ -5,7 +5,7 @@ Tolerances without another reason are what the wire's own motion leaves (see wir
 
 import numpy as np
 import pytest
-from funicular import Buffer, Friction, HardStop, Scene, SceneError, TableSignal
+from funicular import Buffer, Friction, HardStop, Material, Ramp, Rectangle, Scene, SceneError, TableSignal
 from funicular.results import streaming
 from funicular.results.run import load_run
 from scenery import add_cable, largest
@@ -183,3 +183,45 @@ def test_a_run_goes_on_exactly_from_a_checkpoint(tmp_path, monkeypatch, integrat
     events = load_run(tmp_path / "whole.nc").events
     assert {event["what"] for event in events} >= {"stuck", "entered the buffer", "left", "struck the end"}
     assert load_run(tmp_path / "x.nc").events == events
+
+
+def on_an_arc(**tied) -> Scene:
+    """A body that sticks on an arc which hangs, beside its middle, under a moment that grows."""
+    def arc(u: float):
+        angle = 0.85 * (2 * u - 1)
+        return 2 * np.sin(angle), -2 * np.cos(angle), 0
+
+    scene = Scene()
+    material = Material(youngs_modulus=2e7, poisson_ratio=0, density=2000, damping_time=2e-3, mass_damping=3)
+    scene.cable("rope", curve=arc, elements=6, element="cable12", section=Rectangle(height=0.02, width=0.02),
+                rest="straight", material=material)
+    for s in (0.0, 3.4):
+        scene.pin("rope", s=s)
+    scene.rigid_body("A", mass=2.0, inertia=(0.02, 0.03, 0.04), position=(0.05, -1.99937, 0))
+    scene.slide("A", along="rope", s=1.75, name="trolley", friction=Friction(coefficient=0.3, model="stick"), **tied)
+    scene.moment("A", value=(0, 0, 1), scale=Ramp(start=0.1, end=2.1, after=40))
+    return scene
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_friction_holds_what_the_moment_on_a_tied_frame_puts_along_the_cable():
+    """On a curve a moment pushes along it; the run was refused, as the multiplier of sticking had no equation yet."""
+    began = []
+    for integrator in ("radau", "genalpha"):
+        run = on_an_arc(frame="tangent").run(0.66, initial="equilibrium", integrator=integrator, tol=1e-5,
+                                             output_step=2e-3, progress=False)
+        began.append(next(event["time"] for event in run.events if event["what"] == "broke loose"))
+        grip = np.abs(run["trolley.traction"]) / np.linalg.norm(run["trolley.multiplier"], axis=1)
+        stuck = run.time < began[-1]
+        assert grip[stuck].max() < 0.3 * (1 + 1e-9) and np.ptp(run["trolley.s"][stuck]) < 1e-9
+        assert np.polyval(np.polyfit(run.time[stuck][-4:] - began[-1], grip[stuck][-4:], 3), 0) == pytest.approx(
+            0.3, rel=1e-3)
+    assert began[0] == pytest.approx(began[1], abs=1e-4)
+
+
+def test_a_slide_that_may_stick_stands_beside_joints():
+    """It was refused as over-constrained with any joint in the scene."""
+    scene = on_an_arc()
+    scene.rigid_body("B", mass=1.0, inertia=(1, 1, 1), position=(0, -5, 0))
+    scene.joint("spherical", (0, -4, 0), ("B", (0, 1, 0)))
+    assert scene.run(1e-3, progress=False).status == "completed"

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from funicular import Circle, Material, Scene
 from funicular.engine import Engine
+from funicular.integrators import GeneralisedAlpha
 from funicular.model import unknowns as reduction
 from funicular.model.build import build
-from funicular.solve.integrators import GeneralisedAlpha
 from linear_cost import SCENES, ladder, scene
 from test_newton_matrix import SCENES as DIFFICULT
 
@@ -66,7 +66,7 @@ def test_joins_leave_the_band_as_narrow_as_one_cable(name, shared):
     """Only positions where more than two elements meet are in the border, and of a ring one."""
     joined, alone = build(scene(name, 120)), build(scene("pendulum", 40))
     assert joined.width == alone.width == 11
-    assert joined.n_border_dof - 6 * len(joined.rigids) == shared
+    assert joined.n_border_dof - 6 * len(joined.bodies) == shared
 
 
 def test_many_joins_widen_the_band_where_that_is_cheaper():

@@ -2,16 +2,19 @@
 
 import sys
 
+import numpy as np
 import pytest
-from funicular import Circle, FunicularWarning, Material, Scene
+from funicular import Circle, FunicularWarning, Material, Scene, TableSignal
+from funicular.solve import long_runs
 
 
-def stiff() -> Scene:
+def stiff(pinned=True) -> Scene:
     """A steel wire that vibrates along itself at up to 4e5 rad/s, let go of a force."""
     scene = Scene()
     scene.cable("wire", start=(0, 0, 0), end=(1, 0, 0), elements=8, element="cable8p", section=Circle(radius=1e-3),
                 material=Material(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7850))
-    scene.pin("wire", s=0.0)
+    if pinned:
+        scene.pin("wire", s=0.0)
     scene.force("wire", s=1.0, value=(10, 0, 0))
     return scene
 
@@ -43,3 +46,14 @@ def test_the_bar_shows_rate_and_end(monkeypatch, capsys):
 
 def test_a_run_of_few_steps_says_nothing():
     assert stiff().run(1e-3, integrator="explicit").report["messages"] == []
+
+
+def test_knots_of_a_table_are_named_as_what_the_steps_are_for(monkeypatch):
+    """The rate of a motion that goes from sample to sample in straight lines jumps at each of them."""
+    monkeypatch.setattr(long_runs, "MANY_STEPS", 500)
+    time = np.linspace(0, 0.1, 1001)
+    scene = stiff(pinned=False)
+    polygon = TableSignal(time=tuple(time), value=tuple(1e-3 * np.cos(90 * time) - 1e-3), interpolation="linear")
+    scene.motion("wire", s=0.0, displacement=(polygon, 0, 0))
+    notes = scene.run(0.1, tol=1e-3, output_step=0.05, integrator="radau").report["messages"]
+    assert any("a step ends at each of the 999 knots of signals so far. Give tables fewer samples" in n for n in notes)

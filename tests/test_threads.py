@@ -40,9 +40,9 @@ def test_there_are_processors():
 FORKED = """
 import os, sys
 sys.path.insert(0, "tests")
-import funicular.threads
+import funicular.solve.threads
 from test_threads import scene
-funicular.threads.available = lambda: 2
+funicular.solve.threads.available = lambda: 2
 before = scene().run(1e-3, step=5e-4, output_step=5e-4, threads={parent})
 child = os.fork()
 if child:
@@ -98,7 +98,7 @@ def test_one_blas_thread_at_rest_and_for_modes(compute, two_blas_threads, monkey
     from funicular.model.redundant_constraints import settle
 
     seen = set()
-    for module in ("static_problem", "modal"):  # what both call at first
+    for module in ("solve.static_problem", "solve.modes"):  # what both call at first
         monkeypatch.setattr(f"funicular.{module}.settle", lambda *a: (seen.update(blas_threads()), settle(*a))[1])
     compute()
     assert seen == {1}

@@ -1,4 +1,4 @@
-"""Velocities that jump as a run starts, in words: motions whose rate is not that of the cable they move."""
+"""Velocities that jump, in words: of motions that start at another rate than their cable, or whose rate jumps later."""
 
 from __future__ import annotations
 
@@ -18,18 +18,35 @@ SAMPLES = 200
 
 
 def velocity_jumps(scene: Scene, duration: float) -> list[str]:
-    """A message for each motion that starts at another velocity than its node; duration of the run in s."""
+    """Return a message for each motion whose velocity jumps as the run starts, or within its duration, s."""
     found = []
     for motion in scene.motions:
         for what, signal, own, unit in _rates(scene, motion):
             rates = np.array([float(signal.value(t, 1)) for t in np.linspace(0, duration, SAMPLES)])
-            given = rates[0]
-            if abs(given - own) > SMALL * max(np.abs(rates).max(), abs(own)):
+            given, least = rates[0], SMALL * max(np.abs(rates).max(), abs(own))
+            if abs(given - own) > least:
                 found.append(
                     f"{motion.where} at s = {show(motion.s, 'm')}: {what} starts at {show(given, unit)}, but its node "
                     f"at {show(own, unit)}; this jump sends a shock along the cable, which depends on the mesh. Let "
                     "the signal start at the node's rate (a Ramp starts at 0), or give the cable that velocity")
+            jumps = [(t, jump) for t, jump in jumps_of_rate(signal) if 0 < t < duration and abs(jump) > least]
+            if jumps:
+                t, jump = jumps[0]
+                times = f", and at {len(jumps) - 1} later times" if len(jumps) > 1 else ""
+                found.append(
+                    f"{motion.where} at s = {show(motion.s, 'm')}: the rate of {what} jumps by {show(jump, unit)} at "
+                    f"t = {show(t, 's')}{times}; each jump sends a shock along the cable, which depends on the mesh. "
+                    "Take a signal of a continuous rate: a Ramp, or between its ends a TableSignal, "
+                    'interpolation="cubic"')
     return found
+
+
+def jumps_of_rate(signal: Signal) -> list[tuple[float, float]]:
+    """Return the times, s, at which pieces of a signal meet, and by how much its rate jumps at each, 1/s."""
+    breaks, coefficients = signal.pieces()
+    powers = np.arange(1, coefficients.shape[1])
+    before = np.sum(powers * coefficients[:-1, 1:] * np.diff(breaks)[:-1, None] ** (powers - 1), axis=1)
+    return list(zip(breaks[1:-1].tolist(), (coefficients[1:, 1] - before).tolist(), strict=True))
 
 
 def _rates(scene: Scene, motion: Motion) -> Iterator[tuple[str, Signal, float, str]]:

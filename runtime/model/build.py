@@ -29,13 +29,14 @@ from ..scene import Scene
 from ..solve import reduced_strain
 from ..solve.diagnosis import notes
 from ..solve.event_watcher import Watcher
-from ..solve.integrators import choose
+from ..solve.integrator_choice import choose
 from ..solve.long_runs import LongRun
 from ..solve.progress import Meter
 from ..solve.threads import share_elements
 from .attachments import AttachmentBuilder, AttachmentModel, JointModel, linked, tied
 from .body_modes import Shape
 from .constants import constants
+from .knots import knots
 from .loads import Actions, DeadLoad, LoadModel, SignalModel, SpringModel
 from .redundant_constraints import settle
 from .unknowns import Node, Reduction, supports
@@ -426,8 +427,6 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Meter, initial=No
             messages.append(f"step {settings.step:.6g} s was made {step:.6g} s, so that steps end on output times")
     messages += share_elements(engine, settings.threads)
     method, reason = choose(settings, scene, model, engine)
-    if method.name == "energy":
-        _check_conserves(model, scene, engine, method)
     set_up, cpu = time.perf_counter() - begin, time.process_time()
     status, change = engine.start(
         duration=settings.duration,
@@ -436,6 +435,7 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Meter, initial=No
         step=settings.step or 0.0,
         method=method,
         first_step=min(output_step, 1e-3 * settings.duration),
+        knots=knots(model, settings.duration, settings.tol),
         capacity=None if stream is None else pace.room,
     )
     if status == "singular" and engine.jammed >= 0:
@@ -471,34 +471,6 @@ def simulate(scene: Scene, settings: RunSettings, on_progress: Meter, initial=No
                          {"set_up": set_up, "total": wall})
     recording.report["time_s"]["solve_cpu"] = cpu  # of the integration alone, whatever else the machine does
     return recording
-
-
-def _check_conserves(model: Model, scene: Scene, engine, method) -> None:
-    """Raise SceneError for what has no discrete gradient, or lacks the algorithmic dissipation that is asked for."""
-    for body in model.bodies:
-        if body.modes:
-            raise SceneError(scene.bodies[body.name].where, 'integrator "energy" does not know modal bodies',
-                             'take "radau" with a small tol, or "genalpha"')
-    for cable in model.cables:
-        if not hasattr(kernels_of(cable.library), f"{cable.element}_{cable.law}_discrete_force"):
-            raise SceneError(scene.cables[cable.name].where,
-                             f'integrator "energy" has no discrete gradient of the law "{cable.law}"',
-                             "take another law, or another integrator")
-    if method.spectral_radius < 1:
-        for cable in [model.cables[i] for i in engine.without_algorithmic_force()]:
-            raise SceneError(scene.cables[cable.name].where,
-                             f'integrator "energy" has no algorithmic dissipation of the law "{cable.law}"',
-                             "take spectral_radius = 1, another law, or another integrator")
-    for slide in scene.slides.values():
-        if slide.friction is not None or (slide.at_start, slide.at_end) != ("error", "error"):
-            raise SceneError(slide.where, 'integrator "energy" knows neither friction nor ends of cables',
-                             "take another integrator: genalpha, radau and explicit do")
-    parts = [*(scene.joints[link.name] for link in model.joints if link.slide is None),
-             *(slide for slide, joint in zip(scene.slides.values(), model.slides, strict=True)
-               if not joint.rider_is_rigid or joint.drive >= 0 or slide.frame != "point")]
-    for part in parts:
-        raise SceneError(part.where, 'integrator "energy" has no discrete gradient of it',
-                         "take another integrator: genalpha and radau know all joints")
 
 
 def _check_size(model: Model, settings: RunSettings, stream: Stream | None) -> float:

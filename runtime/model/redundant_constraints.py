@@ -38,7 +38,8 @@ def settle(model: Model, engine) -> list[str]:
     S, owner = _compliance(engine), _owners(model)
     if S is None:
         return []  # here, too
-    if held := [name for name, own in zip(owner, np.diag(S), strict=True) if own == 0]:
+    spare = _spare(model)
+    if held := [owner[k] for k, own in enumerate(np.diag(S)) if own == 0 and k not in spare]:
         raise SceneError("scene", f"is over-constrained: {_listed(held)} between places that supports hold already",
                          "leave that out, or the supports")
     follows = _following(S)
@@ -145,6 +146,12 @@ def _owners(model: Model) -> list[str]:
         kind = "joint" if link.slide is None else "slide"
         names[link.multiplier : link.multiplier + link.rows] = [f'{kind} "{link.name}"'] * link.rows
     return names
+
+
+def _spare(model: Model) -> set[int]:
+    """Return the multipliers that slides have for when they stick or rest at an end: nothing stands there yet."""
+    return {k for joint in model.slides if joint.drive < 0
+            for k in range(joint.multiplier + model.dim - 1, joint.multiplier + joint.max_multipliers)}
 
 
 def _driven(model: Model) -> set[int]:

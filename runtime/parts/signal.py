@@ -112,7 +112,7 @@ class TableSignal(Signal):
     """Values at given times, in s: a cubic spline through them, or straight lines.
 
     Before the first time and after the last one the value stays; interpolation: "cubic" (twice continuously
-    differentiable, not-a-knot) or "linear".
+    differentiable, not-a-knot) or "linear". What prescribes a motion should be cubic: the rate of straight lines jumps.
     """
 
     form: ClassVar[str] = "table"

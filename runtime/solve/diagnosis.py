@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..integrators import INTEGRATORS, stable_at
 from ..model.redundant_constraints import redundant
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
     cause, dof, joint = engine.failure
     _, q, v, _ = engine.now()
     where, (state, folded) = place(model, dof, joint), condition(model, dof, q, v)
+    of_a_body = joint is None and _node(model, dof) is None
     if status == "unstable":
         grown, _, exchanged, in_motion, _ = engine.balance
         exchanged = max(exchanged, in_motion)
@@ -48,9 +50,11 @@ def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
         return (f"no step converged at {when}: {doubled} hold nearly the same; {KEPT}. "
                 "Leave one of them out, or hold the body at points farther apart")
     if status == "singular" or cause == "matrix":
+        why, remedy = ("", "Look at its mass and inertia, and at its joints") if of_a_body else (
+            ", as where a cable's tangent vanishes or its director lies along it",
+            "Look at the masses and at up, or take more elements there")
         return (f"the equations are singular at {when}, first at {where} ({state}): a joint or the mass matrix is "
-                f"degenerate, as where a cable's tangent vanishes or its director lies along it; {KEPT}. "
-                "Look at the masses and at up, or take more elements there")
+                f"degenerate{why}; {KEPT}. {remedy}")
     what = {"iteration": f"the iteration does not settle, least of all at {where}",
             "error": f"the error stays above what tol allows, most of all at {where}",
             "lost_rider": f"{where} does not find its place on the cable any more",
@@ -58,20 +62,24 @@ def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
             "jam": f"friction jams {where}: the more it holds, the more it is pressed on the cable"}[cause]
     counts = engine.statistics
     gone = f" after {counts['steps']} steps down to {counts['smallest_step_s']:.2g} s" if counts["steps"] else ""
-    if settings.step is not None and engine.integrator == "explicit":
+    if settings.step is not None and INTEGRATORS[engine.integrator].stability is not None:
         remedy = _too_large(engine, settings)
+    elif cause == "jam":
+        remedy = "Take a smaller coefficient, or the rider's point nearer to its centre of mass"
     elif folded:
-        remedy = "The cable folds up there: take more elements, or damping_time in the material"
+        remedy = f"The cable folds up there: take more elements{damping(model, dof)}"
     else:
         remedy = ("Look at loads, masses and stiffnesses there; else try a smaller "
-                  f"{'tol' if settings.step is None else 'step'}, or damping_time in the material")
+                  f"{'tol' if settings.step is None else 'step'}{damping(model, dof, joint)}")
     return f"no step converged at {when}{gone}: {what} ({state}); {KEPT}. {remedy}"
 
 
 def _too_large(engine, settings: RunSettings) -> str:
     size = f"tol {settings.tol:g}" if settings.step is None else f"step {settings.step:g} s"
     others = "" if settings.step is None else ", or none, so that tol chooses it"
-    stable = ', or integrator="genalpha"' if engine.integrator == "explicit" else ""
+    stable = ""
+    if INTEGRATORS[engine.integrator].stability is not None:
+        stable = f', or integrator="{stable_at(settings.step is not None).name}"'
     return f'The {size} is too large for integrator "{engine.integrator}": take a smaller one{others}{stable}'
 
 
@@ -83,6 +91,16 @@ def place(model: Model, dof: int, joint: int | None = None) -> str:
         cable, node = found
         return f'cable "{cable.name}" at s = {node * cable.length:.6g} m'
     return [f'body "{body.name}"' for body in model.bodies if body.dof <= dof][-1]
+
+
+def damping(model: Model, dof: int, joint: int | None = None) -> str:
+    """Return how to damp what a dof is of, or the cable of a slide: the end of a remedy; empty for a rigid body."""
+    found = _node(model, dof)
+    cable = model.cables[model.slides[joint].cable] if joint is not None else found and found[0]
+    if cable:
+        return f", or {'a larger ' if cable.tau else ''}damping_time in the material"
+    bodies = [body for body in model.bodies if body.dof <= dof]
+    return ", or a larger damping_ratio of the body" if bodies and bodies[-1].modes else ""
 
 
 def condition(model: Model, dof: int, q: np.ndarray, v: np.ndarray) -> tuple[str, bool]:
@@ -134,7 +152,8 @@ def unexplained(engine, settings: RunSettings) -> list[str]:
     if not off > quiet * max(exchanged, STEADY * in_motion) + rounding:
         return []
     what = ("went that neither damping nor friction nor impacts took", "came that nothing did work for")[grown > lost]
-    damped = ", or a spectral_radius nearer to 1" if lost > grown and settings.spectral_radius < 1 else ""
+    damps = INTEGRATORS[engine.integrator].loses_energy_by_spectral_radius and settings.spectral_radius < 1
+    damped = ", or a spectral_radius nearer to 1" if lost > grown and damps else ""
     part = f"{off / exchanged:.2g} of the {exchanged:.3g} J exchanged" if exchanged > off else "all that was exchanged"
     return [f"the energy balance is off by up to {off:.3g} J, {part}: energy {what}. The integration makes this error: "
             f"take a smaller {'step, or none, so that tol chooses it' if fixed else 'tol'}{damped}"]

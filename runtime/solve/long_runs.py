@@ -8,8 +8,9 @@ from collections import deque
 from typing import TYPE_CHECKING
 
 from ..errors import FunicularWarning
-from .diagnosis import place
-from .integrators import STABLE, STABLE_DAMPING, fastest_rates
+from ..integrators import INTEGRATORS, stable_at
+from .diagnosis import damping, place
+from .integrator_choice import fastest_rates
 
 if TYPE_CHECKING:
     from ..model.build import Model
@@ -83,24 +84,29 @@ class LongRun:
             return f"the step is fixed at {settings.step:.3g} s. Take a larger one, or none, so that tol chooses it"
         if settings.output_step < 2 * mean:
             return f"a step ends at each output time. Take an output_step larger than {settings.output_step:.3g} s"
+        if self._engine.knots_passed > OFTEN * counts["steps"]:
+            return (f"a step ends at each of the {self._engine.knots_passed} knots of signals so far. Give tables "
+                    'fewer samples, or interpolation="cubic"')
         events = len(self._watcher.happened) + counts["element_crossings"]
         if events > OFTEN * counts["steps"]:
             return (f"there were {events} events and crossings of elements in {counts['steps']} steps, and a step ends "
                     "at each. Look at the slides that stick, strike or cross nodes")
         _, dof, joint = engine.failure  # of the last step that was rejected
         where = f", most of all at {place(self._model, dof, joint)}" if counts["rejected_steps"] else ""
+        damped = damping(self._model, max(dof, 0), joint)
         if counts["rejected_steps"] > REJECTED * counts["steps"]:
             return (f"{counts['rejected_steps']} steps were rejected beside {counts['steps']} taken{where}: forces "
-                    "change within a step, as at contacts and kinks of friction. Take a larger tol, or damping_time in "
-                    "the material")
+                    f"change within a step, as at contacts and kinks of friction. Take a larger tol{damped}")
         frequency, decay = self._fastest()
-        if engine.integrator == "explicit" and mean * max(frequency / STABLE, decay / STABLE_DAMPING) > NEAR:
-            return (f"stability asks the explicit method for steps of {mean:.2g} s: the highest frequency is "
-                    f"{frequency:.3g} rad/s, the fastest decay {decay:.3g} 1/s. Take integrator=\"radau\", or fewer, "
-                    "longer elements")
+        stability = INTEGRATORS[engine.integrator].stability
+        if stability is not None and stability.part(mean, frequency, decay) > NEAR:
+            return (f"stability asks the {engine.integrator} method for steps of {mean:.2g} s: the highest frequency "
+                    f"is {frequency:.3g} rad/s, the fastest decay {decay:.3g} 1/s. Take "
+                    f'integrator="{stable_at(fixed_step=False).name}"'
+                    + ", or fewer, longer elements" * bool(self._model.cables))
         return (f"tol = {settings.tol:g} asks for steps of {mean:.2g} s, for vibrations of about {1 / mean:.2g} rad/s"
-                f"{where} (the highest frequency is {frequency:.3g} rad/s). Take a larger tol, damping_time in the "
-                "material, or a less stiff part there")
+                f"{where} (the highest frequency is {frequency:.3g} rad/s). Take a larger tol{damped}, or a less stiff "
+                "part there")
 
     def _fastest(self) -> tuple[float, float]:
         """rad/s and 1/s, of the state at the start."""

@@ -20,23 +20,26 @@ STRAIGHT = 1e-9
 def notes(scene: Scene, model: Model, engine) -> list[str]:
     """A note for each such strut at the time at which it is compressed most, of those still in memory."""
     rows = engine.rows()
-    end, q, _, s = engine.now()
-    times, states = np.append(rows["time"], end), np.vstack([rows["q"], q])
-    arcs = np.vstack([rows["s"], s])
+    times, states, arcs = rows["time"], rows["q"], rows["s"]
+    if not len(times):  # all are in the file
+        end, q, _, s = engine.now()
+        times, states, arcs = np.array([end]), q[None], s[None]
     told = []
     for cable in model.cables:
         part = scene.cables[cable.name]
         if part.is_curved:
             continue
         r = states[:, cable.coordinates].reshape(-1, *cable.shape)[:, :, cable.vectors.index("r")]
-        shortening = 1 - np.linalg.norm(np.diff(r, axis=1), axis=2) / cable.length
-        force = part.material.youngs_modulus * part.section.moments()[0] * shortening.max(axis=1)
         straight = _straight(r)
-        force[~straight | ~np.append(straight[1:], straight[-2:-1])] = 0.0  # bent an output later: something bends it
-        k = int(np.argmax(force))
+        at = np.flatnonzero(straight & np.append(straight[1:], straight[-1]))  # else something bends it
+        if not len(at):
+            continue
+        shortening = 1 - np.linalg.norm(np.diff(r[at], axis=1), axis=2) / cable.length
+        forces = part.material.youngs_modulus * part.section.moments()[0] * shortening.max(axis=1)
+        k, force = at[np.argmax(forces)], forces.max()
         length = cable.length * cable.n_elements
         weakest = part.material.youngs_modulus * min(part.section.moments()[1:3])
-        if force[k] < weakest / length**2:  # a cantilever, the weakest of struts, buckles at 2.47 times this
+        if force < weakest / length**2:  # a cantilever, the weakest of struts, buckles at 2.47 times this
             continue
         try:
             buckles = _unstable(model, cable, times[k], states[k], arcs[k])
@@ -44,14 +47,24 @@ def notes(scene: Scene, model: Model, engine) -> list[str]:
             continue
         if buckles:
             told.append(f'cable "{part.name}" is perfectly straight at t = {times[k]:.6g} s under a compression of '
-                        f"{force[k]:.4g} N, beyond its buckling load ({buckles} independent direction"
+                        f"{force:.4g} N, beyond its buckling load ({buckles} independent direction"
                         f"{'s lower' if buckles > 1 else ' lowers'} its energy): nothing in the scene bends it. "
                         "Draw it slightly bent, or add a small force across it")
     return told
 
 
 def _straight(r: np.ndarray) -> np.ndarray:
-    """(times,): whether nodes r (times, nodes, dim) lie on a line, one after the other."""
+    """Return (times,): whether nodes r (times, nodes, dim) lie on a line, one after the other.
+
+    The middle node tells of most states that they do not: only of the others all nodes are looked at.
+    """
+    on_line = _on_line(r[:, [0, r.shape[1] // 2, -1]]) if r.shape[1] > 3 else np.ones(len(r), dtype=bool)
+    on_line[on_line] = _on_line(r[on_line])
+    return on_line
+
+
+def _on_line(r: np.ndarray) -> np.ndarray:
+    """Return (times,): whether all nodes r (times, nodes, dim) lie on the line through the first and the last."""
     chord = r[:, -1] - r[:, 0]
     length = np.linalg.norm(chord, axis=1)
     way = r - r[:, :1]

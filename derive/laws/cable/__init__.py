@@ -1,1 +1,5 @@
 """Laws of cables."""
+
+from .cable import Cable
+
+__all__ = ["Cable"]

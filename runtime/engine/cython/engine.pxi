@@ -47,7 +47,7 @@ cdef extern from "engine.h" nogil:
         const fu_element_kernels *kernel
         const fu_law_kernels *law
         const fu_law_blocks *blocks
-        int n_elements, first, coordinates, per_node, A_stride, memory
+        int n_elements, first, coordinates, per_node, A_stride, dissipation_state
         double length, tau, mass_damping
         const double *m
         const double *A
@@ -130,6 +130,9 @@ cdef extern from "engine.h" nogil:
         const double *breaks
         const double *coefficients
         double amplitude, angular_frequency, phase
+    ctypedef struct fu_knot:
+        double t
+        int jumps
     ctypedef struct fu_motion:
         int dof, signal, first
         double base, linear, cosine, sine
@@ -189,7 +192,7 @@ cdef extern from "engine.h" nogil:
         const fu_motion *motions
         const fu_dead_load *dead_loads
         const fu_signal *signals
-        int n_q, n_dof, n_band, n_border_dof, n_memory, n_extra, n_multipliers
+        int n_q, n_dof, n_band, n_border_dof, n_dissipation_state, n_extra, n_multipliers
         int n_coordinates, n_forces, n_rows, n_outputs
         const int *place
         const int *combination_start
@@ -217,7 +220,7 @@ cdef extern from "engine.h" nogil:
         int *slip_direction
         int *contact
         double *director
-        double *memory
+        double *dissipation_state
     ctypedef struct fu_rows:
         int rows
     ctypedef struct fu_slide_state:
@@ -236,37 +239,6 @@ cdef extern from "engine.h" nogil:
         long evaluated
     ctypedef struct fu_joint_output:
         double residual
-    ctypedef struct fu_genalpha:
-        double alpha_m, alpha_f, beta, gamma
-    ctypedef struct fu_algorithmic:
-        double lag, viscosity, inertia, weight
-        double *expected
-    ctypedef struct fu_tableau:
-        int stages
-        const double *A
-        const double *b
-        const double *c
-        const double *error
-        const double *coarse
-    ctypedef struct fu_collocation:
-        double A[9]
-        double A_inverse[9]
-        double c[3]
-        double T[9]
-        double T_inverse[9]
-        double gamma, alpha, beta
-        double error[3]
-    ctypedef struct fu_complex_system:
-        void *K
-        void *B
-        void *C
-        void *D
-        void *X
-        void *x
-        double *D_real
-        fu_piece *columns
-        int *pivot_band
-        int *pivot_border
     ctypedef struct fu_watch:
         int kind, index, direction
         double value
@@ -295,18 +267,12 @@ cdef extern from "engine.h" nogil:
         double *external
     ctypedef struct fu_weights:
         double inertia, rate, stiffness
-    ctypedef struct fu_integrator:
-        const char *name
-    const fu_integrator fu_genalpha_method, fu_explicit_method, fu_energy_method, fu_radau_method
+    ctypedef struct fu_integrator
     ctypedef struct fu_run:
         const fu_model *model
         const fu_integrator *integrator
         int order
-        fu_genalpha scheme
-        fu_algorithmic algorithmic
-        fu_tableau tableau
-        fu_collocation collocation
-        fu_complex_system complex_newton
+        const double *parameters
         double retry_factor, error_overestimate
         double *scratch
         int n_watches
@@ -317,6 +283,8 @@ cdef extern from "engine.h" nogil:
         double (*call)(void *context, int watch, const fu_state *state) noexcept nogil
         void *context
         fu_event event
+        int n_knots
+        const fu_knot *knots
         double duration, output_step, fixed_step, tol
         fu_state now, next
         fu_system newton
@@ -334,6 +302,12 @@ cdef extern from "engine.h" nogil:
         int factored, stopped_joint, rest_start
         fu_failure failure
         fu_energy_balance balance
+    ctypedef struct fu_integrator:
+        const char *name
+        long (*n_parameters)(const double *parameters) noexcept nogil
+        long (*n_scratch)(const fu_run *run) noexcept nogil
+        long (*n_dissipation_state)(const fu_run *run) noexcept nogil
+    const fu_integrator *fu_integrator_of(const char *name)
     int fu_has_threads()
     void fu_linearise(fu_run *run, double h, const double *change)
     int fu_system_factor_band(fu_system *system, const fu_lapack *lapack)

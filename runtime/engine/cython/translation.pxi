@@ -14,6 +14,7 @@ cdef class Translation(Arrays):
     cdef fu_load *loads
     cdef fu_signal *signals
     cdef fu_coupling **couplings
+    cdef fu_knot *knots
     cdef fu_watch *watches
     cdef fu_model model
     cdef fu_run run
@@ -38,7 +39,8 @@ cdef class Translation(Arrays):
     def __dealloc__(self):
         for pointer in (<size_t>self.cables, <size_t>self.bodies, <size_t>self.shapes, <size_t>self.slides,
                         <size_t>self.joints, <size_t>self.springs, <size_t>self.motions, <size_t>self.dead_loads,
-                        <size_t>self.loads, <size_t>self.signals, <size_t>self.couplings, <size_t>self.watches):
+                        <size_t>self.loads, <size_t>self.signals, <size_t>self.couplings,
+                        <size_t>self.knots, <size_t>self.watches):
             PyMem_Free(<void *><size_t>pointer)
 
     def __init__(self, model, blocks=True):
@@ -60,7 +62,7 @@ cdef class Translation(Arrays):
         self._work_space(model)
 
     def _bodies_and_cables(self, model, list tables, blocks):
-        cdef int i, k, memory = 0
+        cdef int i, k, numbers = 0
         for i, cable in enumerate(model.cables):
             c = &self.cables[i]
             c.kernel = <const fu_element_kernels *>_found(tables, "element", cable.element)
@@ -76,7 +78,7 @@ cdef class Translation(Arrays):
             c.A_stride = cable.A.shape[1] if len(cable.A) > 1 else 0
             if c.law.rates > FU_MAX_RATES:
                 raise ValueError(f"{cable.element}: more rates of strain than the engine's {FU_MAX_RATES}")
-            c.memory, memory = memory, memory + c.n_elements * (c.law.rates + 1)
+            c.dissipation_state, numbers = numbers, numbers + c.n_elements * (c.law.rates + 1)
         for i, body in enumerate(model.bodies):
             r = &self.bodies[i]
             r.kernel = <const fu_body_kernels *>_found(tables, "body", body.kernel)
@@ -280,7 +282,7 @@ cdef class Translation(Arrays):
         state.mode = self._ints([FU_LOCKED if j.drive >= 0 else FU_SLIDES for j in model.slides])
         state.slip_direction, state.contact = self._ints(np.zeros(slides)), self._ints(np.zeros(slides))
         state.director = self._doubles([j.director for j in model.slides])
-        state.memory = self._zeros(0)
+        state.dissipation_state = self._zeros(0)
 
     def _work_space(self, model):
         n_slides, n_dof = len(model.slides), model.n_dof

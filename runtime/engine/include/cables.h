@@ -18,7 +18,7 @@ typedef struct {
     const double *m;  /* mass matrix of an element over nodal vectors */
     const double *A;  /* constants of the law, of the first element */
     int A_stride;     /* from one element's to the next's: zero where they are equal */
-    int memory;       /* first number in the memory of algorithmic dissipation: law->rates + 1 an element */
+    int dissipation_state; /* first number in a state's of algorithmic dissipation: law->rates + 1 an element */
 } fu_cable;
 
 int fu_has_threads(void);

@@ -15,7 +15,6 @@
 #define FUNICULAR_ENGINE_H
 
 #include "acceleration.h"
-#include "algorithmic_dissipation.h"
 #include "attachments.h"
 #include "bodies.h"
 #include "cables.h"

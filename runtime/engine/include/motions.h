@@ -13,6 +13,14 @@ typedef struct {
     double amplitude, angular_frequency, phase;
 } fu_signal;
 
+/* An instant at which a signal is not smooth, s, and what jumps there of what it drives: nothing, the acceleration, the
+ * rate (model/knots.py). */
+enum { FU_HIGHER_JUMPS, FU_ACCELERATION_JUMPS, FU_RATE_JUMPS };
+typedef struct {
+    double t;
+    int jumps;
+} fu_knot;
+
 /* A dof that follows signals: q = base + linear f + cosine cos f + sine sin f */
 typedef struct {
     int dof, signal, first; /* first: of those of its dof, whose work is counted once */

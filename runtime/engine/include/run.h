@@ -3,7 +3,6 @@
 #define FUNICULAR_RUN_H
 
 #include "acceleration.h"
-#include "algorithmic_dissipation.h"
 #include "energy_balance.h"
 #include "events.h"
 #include "failure.h"
@@ -25,14 +24,10 @@ struct fu_run {
     const fu_model *model;
     const fu_integrator *integrator;
     int order;           /* of the error in positions as controlled */
-    fu_genalpha scheme;
-    fu_algorithmic algorithmic;
-    fu_tableau tableau;
-    fu_collocation collocation;
-    fu_complex_system complex_newton;
+    const double *parameters; /* of the integrator */
     double retry_factor;      /* of a step that failed: what the next ones stay below, 0 where failures are cheap */
     double error_overestimate;        /* how much larger the estimate of the local error is than that error */
-    double *scratch;     /* of the integrator: checkpoints do not hold it */
+    double *scratch;     /* of the integrator */
     int n_watches;
     const fu_watch *watches;
     double *watched;     /* per watch: its value at `now`, 0 where it has just passed */
@@ -41,6 +36,8 @@ struct fu_run {
     double (*call)(void *context, int watch, const fu_state *state);
     void *context;
     fu_event event;      /* that the run has stopped at */
+    int n_knots;
+    const fu_knot *knots; /* increasing; steps end there, those of a fixed length where a rate jumps */
     double duration, output_step, fixed_step, tol;
     fu_state now, next;
     fu_system newton;
@@ -67,11 +64,10 @@ struct fu_run {
     double newton_tolerance, round_off; /* of increments, m: where Newton may stop, and where it cannot go on */
     double acted; /* s: when a slide has last stuck, broken loose, or come to an end of its cable */
     int factored, stopped_joint, turned, acts;
-    int holds; /* slides keep their elements in a step, which ends where one of these does */
+    int keep_elements; /* slides keep their elements in a step, which ends where one of these does */
     int net_rejections; /* steps rejected of late, less those taken */
     fu_failure failure; /* of the last step that failed */
     fu_energy_balance balance;
-    int predictor; /* the scratch holds a last step's stages */
     int rest_start; /* for order.py only: start the scheme from zero accelerations */
 };
 

@@ -17,7 +17,7 @@ struct fu_state {
     int *slip_direction;        /* per slide: 1 or -1 where friction is against that direction whatever the speed */
     int *contact;    /* per slide: 1 or -1 where it lies against what is at the end or at the start */
     double *director; /* per slide: unit vector across the tangent, carried along with the slide */
-    double *memory;  /* of algorithmic dissipation */
+    double *dissipation_state; /* of algorithmic dissipation (integrators/algorithmic_dissipation.c) */
 };
 
 #endif

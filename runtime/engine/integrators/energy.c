@@ -11,28 +11,43 @@
  *
  * Unknowns as in genalpha.c with sigma = h^2/2. The Newton matrix takes elasticity at the middle, which leaves the
  * change of curvature of the energy over a step out: Newton converges linearly, by a factor that falls as h^2 or faster.
- * Algorithmic dissipation (algorithmic_dissipation.c) stands in it as so much more stiffness, which it is but for turns and tension.
+ * Algorithmic dissipation (algorithmic_dissipation.c) stands in it as so much more stiffness, which it is but for turns
+ * and tension.
  */
 #include "engine.h"
 
+#include "algorithmic_dissipation.h"
+#include "workspace.h"
+
 #include <string.h>
 
-/* Scratch: the middle of the step, and forces. */
+/* In the scratch, behind what algorithmic dissipation keeps there: the middle of the step, and forces. */
 typedef struct {
     double *q, *v, *force;
 } middle_view;
 
 static middle_view middle(const fu_run *run)
 {
-    double *q = run->scratch, *v = q + run->model->n_q;
+    double *q = run->scratch + run->model->n_dissipation_state, *v = q + run->model->n_q;
     return (middle_view){q, v, v + run->model->n_dof};
 }
 
-/* The same as a state; its couplings' unknowns are those of `next`. */
-static fu_state middle_of(const fu_run *run, double h)
+/* The same as a state; what couplings have of their own is that of `next`. */
+static fu_state middle_state(const fu_run *run, double h)
 {
     const middle_view m = middle(run);
     return (fu_state){.t = run->now.t + 0.5 * h, .q = m.q, .v = m.v};
+}
+
+static long n_parameters(const double *given)
+{
+    (void)given;
+    return FU_DOUBLES(1, fu_algorithmic);
+}
+
+static long n_scratch(const fu_run *run)
+{
+    return run->model->n_dissipation_state + (long)run->model->n_q + 2L * run->model->n_dof;
 }
 
 static double sigma(double h)
@@ -70,24 +85,22 @@ static void kinematics(fu_run *run, double h)
 }
 
 /* The equations over a step. */
-static fu_equations equations(const fu_run *run, const fu_state *middle_state, double h)
+static fu_equations equations(const fu_run *run, const fu_state *half_way, double h)
 {
-    return (fu_equations){&run->now, &run->next, middle_state, run->psi, h, {1.0, 2.0 / h, sigma(h)}};
+    return (fu_equations){&run->now, &run->next, half_way, run->psi, h, {1.0, 2.0 / h, sigma(h)}};
 }
 
 static void residual(fu_run *run, double h)
 {
     const double begin = fu_clock();
     const fu_model *model = run->model;
-    const fu_state *now = &run->now, *next = &run->next;
-    const middle_view m = middle(run);
-    const fu_state middle_state = middle_of(run, h);
-    const fu_equations at = equations(run, &middle_state, h);
+    const fu_state *now = &run->now, *next = &run->next, m = middle_state(run, h);
+    const fu_equations at = equations(run, &m, h);
     fu_mass_times(model, m.q, next->acceleration, run->force);
     fu_discrete_forces(model, now->q, next->q, run->force);
     fu_algorithmic_forces(run, m.q, run->force);
     fu_rate_forces(model, m.q, m.v, run->force);
-    fu_external_forces(model, middle_state.t, m.q, run->force);
+    fu_external_forces(model, m.t, m.q, run->force);
     fu_coupling_step_residuals(model, &at, run->force, fu_own(run));
     fu_scale_residual(run, at.weights.stiffness);
     run->statistics.time_residual += fu_clock() - begin;
@@ -115,8 +128,8 @@ static void mean_stress(fu_run *run, double stiffness)
 static void matrix(fu_run *run, double h)
 {
     const fu_model *model = run->model;
-    const fu_state m = middle_of(run, h);
-    const double stiffer = 1.0 + 2.0 * run->algorithmic.weight;
+    const fu_state m = middle_state(run, h);
+    const double stiffer = 1.0 + 2.0 * fu_algorithmic_of(run)->weight;
     fu_equations at = equations(run, &m, h);
     fu_weights *w = &at.weights;
     w->stiffness *= 0.5; /* the middle moves by half of psi */
@@ -162,7 +175,7 @@ static double error(fu_run *run, double h)
 }
 
 /* Work of the forces that are not conserved, as the step has it: energy balances to rounding. */
-static void book(fu_run *run, double h)
+static void account(fu_run *run, double h)
 {
     const fu_model *model = run->model;
     const fu_state *now = &run->now, *next = &run->next;
@@ -193,4 +206,13 @@ static void book(fu_run *run, double h)
     }
 }
 
-const fu_integrator fu_energy_method = {"energy", start, step, error, book, 1, 0, &newton};
+const fu_integrator fu_energy = {.name = "energy",
+                                 .n_parameters = n_parameters,
+                                 .n_scratch = n_scratch,
+                                 .n_dissipation_state = fu_algorithmic_state,
+                                 .start = start,
+                                 .step = step,
+                                 .error = error,
+                                 .account = account,
+                                 .keeps_energy = 1,
+                                 .newton = &newton};

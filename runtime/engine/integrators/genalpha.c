@@ -12,11 +12,34 @@
  */
 #include "engine.h"
 
+#include "workspace.h"
+
 #include <string.h>
 
 #define JUMP 0.25 /* of a step: from its middle to the instant of a jump, on average */
 
-static double sigma(const fu_genalpha *g, double h)
+typedef struct {
+    double alpha_m, alpha_f, beta, gamma;
+} parameters;
+
+static const parameters *scheme_of(const fu_run *run)
+{
+    return (const parameters *)run->parameters;
+}
+
+static long n_parameters(const double *given)
+{
+    (void)given;
+    return FU_DOUBLES(1, parameters);
+}
+
+static long n_scratch(const fu_run *run)
+{
+    (void)run;
+    return 0;
+}
+
+static double sigma(const parameters *g, double h)
 {
     return g->beta * h * h * (1.0 - g->alpha_f) / (1.0 - g->alpha_m);
 }
@@ -25,7 +48,7 @@ static double sigma(const fu_genalpha *g, double h)
 static void kinematics(fu_run *run, double h)
 {
     const fu_model *model = run->model;
-    const fu_genalpha *g = &run->scheme;
+    const parameters *g = scheme_of(run);
     const fu_state *now = &run->now;
     fu_state *next = &run->next;
     const double over = 1.0 / (1.0 - g->alpha_f), slope = over * (1.0 - g->alpha_m);
@@ -47,8 +70,14 @@ static void kinematics(fu_run *run, double h)
 /* The equations at the end of a step. */
 static fu_equations equations(const fu_run *run, double h)
 {
-    const fu_genalpha *g = &run->scheme;
+    const parameters *g = scheme_of(run);
     return (fu_equations){&run->now, &run->next, 0, run->psi, h, {1.0, g->gamma / (g->beta * h), sigma(g, h)}};
+}
+
+static void residual(fu_run *run, double h)
+{
+    const fu_equations at = equations(run, h);
+    fu_residual(run, &at);
 }
 
 static void matrix(fu_run *run, double h)
@@ -60,9 +89,9 @@ static void matrix(fu_run *run, double h)
 /* the solution in run->rhs, applied to `next`; returns its size as a length */
 static double apply(fu_run *run, double h)
 {
-    const double per_psi = 1.0 / (run->scheme.beta * h * h), size = fu_spread_size(run);
+    const double per_psi = 1.0 / (scheme_of(run)->beta * h * h), size = fu_spread_size(run);
     for (int i = 0; i < run->model->n_dof; ++i) run->next.a[i] += per_psi * run->work[i];
-    fu_add_solution(run, 1.0, sigma(&run->scheme, h));
+    fu_add_solution(run, 1.0, sigma(scheme_of(run), h));
     fu_seat_slides(run);
     return size;
 }
@@ -70,16 +99,10 @@ static double apply(fu_run *run, double h)
 /* psi = h v: accelerations hold vibrations that the step does not resolve, and do not predict where they lead. */
 static void predict(fu_run *run, double h)
 {
-    const double held = 1.0 - 0.5 / run->scheme.beta;
+    const double held = 1.0 - 0.5 / scheme_of(run)->beta;
     for (int i = 0; i < run->model->n_dof; ++i) run->next.a[i] = held * run->now.a[i];
     fu_predict_own(run, h);
     fu_seat_slides(run);
-}
-
-static void residual(fu_run *run, double h)
-{
-    const fu_equations at = equations(run, h);
-    fu_residual(run, &at);
 }
 
 static const fu_newton newton = {predict, kinematics, residual, matrix, apply, 12, 0};
@@ -94,7 +117,7 @@ static int step(fu_run *run, double h)
  * between it and the middle, times the jump. That counts as over one step: what is allowed is h/t of the whole. */
 static double error(fu_run *run, double h)
 {
-    const fu_genalpha *g = &run->scheme;
+    const parameters *g = scheme_of(run);
     const double smooth = fabs(g->beta + 0.5 * (g->alpha_m - g->alpha_f) - 1.0 / 6.0);
     const double factor = h * h * (fu_count_changes(run) ? JUMP : smooth);
     for (int i = 0; i < run->model->n_dof; ++i)
@@ -109,4 +132,12 @@ static int start(fu_run *run)
     return FU_RUNNING;
 }
 
-const fu_integrator fu_genalpha_method = {"genalpha", start, step, error, fu_account_trapezoid, 0, 1, &newton};
+const fu_integrator fu_genalpha = {.name = "genalpha",
+                                   .n_parameters = n_parameters,
+                                   .n_scratch = n_scratch,
+                                   .start = start,
+                                   .step = step,
+                                   .error = error,
+                                   .account = fu_account_trapezoid,
+                                   .crosses_boundaries = 1,
+                                   .newton = &newton};

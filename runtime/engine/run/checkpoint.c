@@ -42,7 +42,7 @@ static void copy_state(copier *c, const fu_model *model, fu_state *state)
     copy(c, state->slip_direction, sizeof(int) * slides);
     copy(c, state->contact, sizeof(int) * slides);
     copy(c, state->director, 3 * sizeof(double) * slides);
-    copy(c, state->memory, sizeof(double) * (size_t)model->n_memory);
+    copy(c, state->dissipation_state, sizeof(double) * (size_t)model->n_dissipation_state);
 }
 
 /* The list of it. Factored matrices are not in it: fu_pause drops the Newton matrix, and fu_start makes that of eq 38. */
@@ -66,8 +66,9 @@ static void copy_all(copier *c, fu_run *run)
  * not depend on it. */
 void fu_pause(fu_run *run)
 {
-    run->factored = run->predictor = 0;
+    run->factored = 0;
     run->h_factored = 0.0;
+    if (run->integrator->forget) run->integrator->forget(run);
 }
 
 /* Copy it to `bytes`, null to learn the number of them, which is returned. */
@@ -105,14 +106,14 @@ static int finite_state(const fu_model *model, const fu_state *state)
            fu_all_finite(state->acceleration, model->n_dof) && fu_all_finite(state->a, model->n_dof) &&
            fu_all_finite(state->s, model->n_coordinates) && fu_all_finite(state->forces, model->n_forces) &&
            fu_all_finite(state->locked_s, model->n_slides) && fu_all_finite(state->director, 3L * model->n_slides) &&
-           fu_all_finite(state->memory, model->n_memory);
+           fu_all_finite(state->dissipation_state, model->n_dissipation_state);
 }
 
 /* whether a run stands where fu_pause leaves one: at the time of its last row, without a factored matrix */
 static int is_paused(const fu_run *run, int rows)
 {
     return run->record.n == rows && run->now.t == (rows - 1) * run->output_step && run->now.t < run->duration &&
-           run->recorded == run->now.t && !run->factored && !run->predictor && run->h_factored == 0.0;
+           run->recorded == run->now.t && !run->factored && run->h_factored == 0.0;
 }
 
 /* whether the numbers that lead the steps to come, and those that messages tell, can be */
@@ -138,7 +139,7 @@ static int possible_numbers(const fu_run *run)
            fu_all_finite(run->first, model->n_q) && fu_all_finite(run->s_slope, model->n_coordinates) &&
            run->motion >= 0.0 && run->least_motion >= 0.0 && run->extent >= 0.0 &&
            in_range(run->stopped_joint, 0, last_of(model->n_slides)) &&
-           in_range(run->turned, 0, MOST_COUNT) && in_range(run->holds, 0, 1) && in_range(run->rest_start, 0, 1) &&
+           in_range(run->turned, 0, MOST_COUNT) && in_range(run->keep_elements, 0, 1) && in_range(run->rest_start, 0, 1) &&
            in_range(run->net_rejections, -MOST_COUNT, MOST_COUNT) && in_range(run->failure.cause, FU_NO_FAILURE, FU_JAM) &&
            in_range(run->failure.dof, 0, last_of(model->n_dof)) &&
            in_range(run->failure.slide, -1, last_of(model->n_slides));

@@ -28,7 +28,7 @@ static double outside(const fu_run *run, const fu_state *state, int j, int *side
  * elements that it was made with. */
 void fu_seat_slides(fu_run *run)
 {
-    if (run->holds) return;
+    if (run->keep_elements) return;
     for (int j = 0; j < run->model->n_slides; ++j) {
         const fu_cable *cable = &run->model->cables[run->model->slides[j].cable];
         int side, *element = &run->next.element[j];
@@ -230,11 +230,11 @@ static double locate(fu_run *run, fu_event event, double h)
 /* The same, with slides that keep their elements until one of them leaves it. */
 double fu_locate(fu_run *run, fu_event event, double h)
 {
-    const int holds = run->holds;
-    run->holds |= event.kind == FU_CROSSING;
+    const int holds = run->keep_elements;
+    run->keep_elements |= event.kind == FU_CROSSING;
     run->newton_tolerance *= 1e-2; /* lest its noise rule where the event is */
     const double found = locate(run, event, h);
-    run->holds = holds;
+    run->keep_elements = holds;
     return found;
 }
 

@@ -10,6 +10,8 @@
 #define SAFETY 0.5          /* what the logarithm costs */
 #define BEYOND 0.1          /* of a step: how far it may go on after a slide should have reached its boundary */
 #define MOST_STRUGGLE 10000 /* steps rejected beyond those taken */
+#define AT_ONCE 1e-12       /* of the duration: instants that are no farther apart are one (knots.py) */
+#define BEFORE 1e-15        /* of a knot: a step ends so much before it, where the signal is still that of the step */
 #define DIVISIONS 8         /* of a fixed step that do not count */
 #define MOST_ACTS 100       /* of slides at one instant: more is no motion */
 #define MOST_TURNS 2        /* of a slide on one boundary before a step is taken all the same: it rests there */
@@ -109,7 +111,7 @@ static int record_row(fu_run *run)
     r->potential[row] = fu_potential_energy(model, now->q);
     r->dissipated[row] = run->dissipated;
     r->external[row] = run->external;
-    fu_coupling_outputs(model, now, acceleration, &run->accelerator, r->output + row * model->n_outputs);
+    if (!info) fu_coupling_outputs(model, now, acceleration, &run->accelerator, r->output + row * model->n_outputs);
     const double energies[FU_ENERGIES] = {r->kinetic[row], r->elastic[row], r->potential[row], run->dissipated,
                                           -run->external};
     run->statistics.time_output += fu_clock() - begin;
@@ -202,7 +204,7 @@ static void accept(fu_run *run, double h, fu_event event)
 {
     const fu_model *model = run->model;
     for (int i = 0; i < model->n_coordinates; ++i) run->s_slope[i] = (run->next.s[i] - run->now.s[i]) / h;
-    run->integrator->book(run, h);
+    run->integrator->account(run, h);
     if (model->n_reacting) run->dissipated += fu_lost_in_step(model, &run->now, &run->next);
     run->statistics.crossings += fu_count_changes(run);
     const fu_state state = run->now;
@@ -258,7 +260,7 @@ static int enter(fu_run *run, int j, int side)
     now->element[j] = element;
     ++run->statistics.crossings;
     fu_watch_now(run, (fu_event){FU_NO_EVENT, 0, 0});
-    return start_scheme(run, !run->integrator->conserves);
+    return start_scheme(run, !run->integrator->keeps_energy);
 }
 
 /* What follows from an event that `now` stands on. */
@@ -281,7 +283,7 @@ static int refresh(fu_run *run, double h)
 {
     run->usual = run->fixed_step > 0.0 ? run->fixed_step : run->h;
     return fu_is_short(run, h)
-               ? start_scheme(run, !run->integrator->conserves) : FU_RUNNING;
+               ? start_scheme(run, !run->integrator->keeps_energy) : FU_RUNNING;
 }
 
 /* The step that ends at the target, or one of equal steps to there, none larger than wanted. */
@@ -341,13 +343,13 @@ static int step_towards(fu_run *run, double target)
     const fu_event none = {FU_NO_EVENT, 0, 0}, late = fu_late_event(run);
     double want = adaptive ? run->h : run->fixed_step;
     if (late.kind) return happened(run, late);
-    run->holds = !adaptive || !run->integrator->straddles || fu_has_stops(model) ||
+    run->keep_elements = !adaptive || !run->integrator->crosses_boundaries || fu_has_stops(model) ||
                  fu_ties_a_frame(model, -1);
     for (;;) {
         const double remaining = target - run->now.t;
         double h = fitted(remaining, want);
         if ((h < smallest && remaining > smallest) || run->net_rejections > MOST_STRUGGLE) return FU_NO_CONVERGENCE;
-        if (run->holds) h = fmin(h, fu_time_to_boundary(run) + BEYOND * h);
+        if (run->keep_elements) h = fmin(h, fu_time_to_boundary(run) + BEYOND * h);
         const double allowed = allow(run, h);
         run->failure.cause = FU_NO_FAILURE;
         run->usual = want;
@@ -373,7 +375,7 @@ static int step_towards(fu_run *run, double target)
             fu_keep_elements(run);
             event = fu_find_event(run, none);
         }
-        const double turn = run->holds ? fu_time_of_turn(run, h) : 0.0;
+        const double turn = run->keep_elements ? fu_time_of_turn(run, h) : 0.0;
         if (turn > smallest && run->turned < MOST_TURNS) {
             want = turn;
             continue;
@@ -423,6 +425,53 @@ int fu_stop(fu_run *run)
     return recorded ? recorded : FU_EVENT;
 }
 
+/* The first knot after `now` at which steps end, until `latest`; null where there is none. */
+static const fu_knot *next_knot(const fu_run *run, double latest)
+{
+    const double close = AT_ONCE * run->duration;
+    int low = 0, high = run->n_knots;
+    while (low < high) {
+        const int middle = (low + high) / 2;
+        if (run->knots[middle].t > run->now.t + close) high = middle;
+        else low = middle + 1;
+    }
+    for (; low < run->n_knots && run->knots[low].t <= latest + close; ++low)
+        if (run->fixed_step <= 0.0 || run->knots[low].jumps == FU_RATE_JUMPS) return &run->knots[low];
+    return 0;
+}
+
+/* On from a knot that `now` has reached. What jumps there starts the scheme anew. Where a rate jumps, all that joints tie
+ * to it jumps, too, and what drives it does the work of that; a drive that turned within an instant would lose none. */
+static int pass_knot(fu_run *run, const fu_knot *knot, int event)
+{
+    const fu_model *model = run->model;
+    fu_state *now = &run->now;
+    now->t = knot->t;
+    run->drive_step = fmin(run->drive_step, 0.0); /* powers before do not tell how it changes from here */
+    if (knot->jumps == FU_HIGHER_JUMPS) return FU_RUNNING;
+    if (knot->jumps == FU_RATE_JUMPS) {
+        const double before = fu_kinetic_energy(model, now->q, now->v);
+        fu_prescribe(model, now);
+        if (fu_project_velocities(model, now, &run->accelerator, run->work)) return FU_SINGULAR;
+        for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->work[i];
+        run->external += fu_kinetic_energy(model, now->q, now->v) - before;
+    }
+    fu_prescribe(model, now);
+    if (!event) fu_watch_now(run, (fu_event){FU_NO_EVENT, 0, 0});
+    return start_scheme(run, 0);
+}
+
+/* Steps towards an output time, until the first knot on the way there. */
+static int approach(fu_run *run, double target)
+{
+    const fu_knot *knot = run->n_knots ? next_knot(run, target) : 0;
+    if (!knot) return step_towards(run, target);
+    const int status = step_towards(run, knot->t * (1.0 - BEFORE));
+    if ((status && status != FU_EVENT) || run->now.t < knot->t - AT_ONCE * run->duration) return status;
+    const int passed = pass_knot(run, knot, status == FU_EVENT);
+    return passed ? passed : status;
+}
+
 /* Go on for about so many seconds, or to the pause; the status tells whether there is more to do. */
 int fu_advance(fu_run *run, double seconds)
 {
@@ -437,7 +486,7 @@ int fu_advance(fu_run *run, double seconds)
             if (target == run->duration) return FU_DONE;
             if (run->record.n == run->record.pause || fu_clock() > until) return FU_RUNNING;
         } else {
-            const int status = step_towards(run, target);
+            const int status = approach(run, target);
             if (status == FU_EVENT) return status;
             if (status) {
                 const int stopped = fu_stop(run);

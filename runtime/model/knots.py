@@ -1,0 +1,82 @@
+"""Knots of signals: the instants at which one is not smooth, where integration steps end.
+
+A piecewise polynomial has a knot where two pieces meet. A step over a knot sees one function where there are two:
+neither its result nor its estimate of the error is of the method's order, and a pulse shorter than the step is not seen
+at all. Knots that do not matter are left out, so that a table of many samples of a smooth function does not rule the
+steps. Steps of a fixed length keep their grid, but for knots where the rate of a prescribed motion jumps.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from .build import Model
+    from .loads import SignalModel
+
+HIGHER, ACCELERATION, RATE = range(3)
+"""What jumps: nothing that the motion follows at once, the acceleration of what a signal drives, its rate; the order of
+engine.h."""
+
+ROUNDING = 1e-14
+"""Of a signal's largest value: a smaller difference of two pieces is rounding."""
+TINY = 1e-300
+"""Of no signal: what a constant is compared with."""
+ONE_INSTANT = 1e-12
+"""Of the duration: knots that are no farther apart are one (engine/run.c)."""
+
+
+def knots(model: Model, duration: float, tol: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the times of the knots that count, in s, increasing, and what jumps at each."""
+    driving = driving_signals(model)
+    found = [each for number, signal in enumerate(model.signals)
+             for each in _of_signal(signal, number in driving, tol)
+             if ONE_INSTANT * duration < each[0] < (1 - ONE_INSTANT) * duration]
+    times, jumps = [], []
+    for time, jump in sorted(found):
+        if times and time - times[-1] <= ONE_INSTANT * duration:
+            times[-1], jumps[-1] = time, max(jump, jumps[-1])
+        else:
+            times.append(time)
+            jumps.append(jump)
+    return np.array(times), np.array(jumps, dtype=int)
+
+
+def driving_signals(model: Model) -> set[int]:
+    """Return the numbers of the signals that prescribe a motion; the others scale loads."""
+    return ({motion.signal for motion in model.motions} | {slide.drive for slide in model.slides}
+            | {joint.signal for joint in model.joints})
+
+
+def _of_signal(signal: SignalModel, drives: bool, tol: float) -> list[tuple[float, int]]:
+    """Return time and jump of each knot of a signal that counts.
+
+    A knot counts where the piece before it, continued over the shorter one of the two that meet there, parts from the
+    one after it by more than tol of the signal; of a signal that prescribes a motion, also where their rates do. No
+    step sees a jump of the rate, and what is lost at several adds up: all that are left out may be tol of the rate.
+    """
+    breaks, coefficients = signal.breaks, signal.coefficients
+    if len(coefficients) < 2:
+        return []
+    length = np.diff(breaks)[:, None]
+    powers = np.arange(coefficients.shape[1])
+    at_end = np.array([[math.comb(n, k) for k in powers] for n in powers])  # 0 where k > n
+    ends = (coefficients * length**powers) @ at_end / length**powers  # of each piece about its end
+    jumps = np.abs(coefficients[1:] - ends[:-1])
+    over = np.minimum(length[:-1], length[1:])
+    values = coefficients[1:, 0]
+    parting = jumps * over**powers / (tol * np.ptp(values) + ROUNDING * np.abs(values).max() + TINY)
+    kinds = np.full(len(parting), HIGHER)
+    counts = parting.sum(axis=1) > 1
+    if drives:
+        rates = np.abs([coefficients[:-1, 1], ends[:-1, 1], np.diff(coefficients[:, 0]) / length[:-1, 0]])
+        of_rates = powers * jumps * over ** (powers - 1.0) / (tol * rates.max() + TINY)
+        rounding = ROUNDING * np.abs(values).max() / over[:, 0]
+        leaps = jumps[:, 1] > tol / len(jumps) * rates.max() + rounding + TINY
+        kinds[np.maximum(parting, of_rates)[:, 2] > 1] = ACCELERATION
+        kinds[leaps] = RATE
+        counts |= (of_rates.sum(axis=1) > 1) | leaps
+    return list(zip(breaks[1:-1][counts].tolist(), kinds[counts].tolist(), strict=True))
