@@ -13,8 +13,8 @@ cdef class Translation(Arrays):
     cdef fu_dead_load *dead_loads
     cdef fu_load *loads
     cdef fu_signal *signals
-    cdef fu_coupling **couplings
     cdef fu_knot *knots
+    cdef fu_coupling **couplings
     cdef fu_watch *watches
     cdef fu_model model
     cdef fu_run run
@@ -39,8 +39,8 @@ cdef class Translation(Arrays):
     def __dealloc__(self):
         for pointer in (<size_t>self.cables, <size_t>self.bodies, <size_t>self.shapes, <size_t>self.slides,
                         <size_t>self.joints, <size_t>self.springs, <size_t>self.motions, <size_t>self.dead_loads,
-                        <size_t>self.loads, <size_t>self.signals, <size_t>self.couplings,
-                        <size_t>self.knots, <size_t>self.watches):
+                        <size_t>self.loads, <size_t>self.signals, <size_t>self.knots, <size_t>self.couplings,
+                        <size_t>self.watches):
             PyMem_Free(<void *><size_t>pointer)
 
     def __init__(self, model, blocks=True):

@@ -32,13 +32,6 @@ static middle_view middle(const fu_run *run)
     return (middle_view){q, v, v + run->model->n_dof};
 }
 
-/* The same as a state; what couplings have of their own is that of `next`. */
-static fu_state middle_state(const fu_run *run, double h)
-{
-    const middle_view m = middle(run);
-    return (fu_state){.t = run->now.t + 0.5 * h, .q = m.q, .v = m.v};
-}
-
 static long n_parameters(const double *given)
 {
     (void)given;
@@ -48,6 +41,13 @@ static long n_parameters(const double *given)
 static long n_scratch(const fu_run *run)
 {
     return run->model->n_dissipation_state + (long)run->model->n_q + 2L * run->model->n_dof;
+}
+
+/* The same as a state; its couplings' unknowns are those of `next`. */
+static fu_state middle_of(const fu_run *run, double h)
+{
+    const middle_view m = middle(run);
+    return (fu_state){.t = run->now.t + 0.5 * h, .q = m.q, .v = m.v};
 }
 
 static double sigma(double h)
@@ -128,7 +128,7 @@ static void mean_stress(fu_run *run, double stiffness)
 static void matrix(fu_run *run, double h)
 {
     const fu_model *model = run->model;
-    const fu_state m = middle_state(run, h);
+    const fu_state m = middle_of(run, h);
     const double stiffer = 1.0 + 2.0 * fu_algorithmic_of(run)->weight;
     fu_equations at = equations(run, &m, h);
     fu_weights *w = &at.weights;

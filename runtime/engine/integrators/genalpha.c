@@ -105,6 +105,12 @@ static void predict(fu_run *run, double h)
     fu_seat_slides(run);
 }
 
+static void residual(fu_run *run, double h)
+{
+    const fu_equations at = equations(run, h);
+    fu_residual(run, &at);
+}
+
 static const fu_newton newton = {predict, kinematics, residual, matrix, apply, 12, 0};
 
 static int step(fu_run *run, double h)

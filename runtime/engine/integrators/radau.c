@@ -122,7 +122,8 @@ static int factor(fu_run *run, double h)
     fu_complex_system_accumulate(c, s, (fu_complex){by_stiffness.re - 1.0, by_stiffness.im});
     if (damped) {
         fu_matrix_of_weights(run, (fu_weights){1.0, 0.0, real * real});
-        fu_complex_system_accumulate(c, s, (fu_complex){2.0 - by_stiffness.re - by_damping.re, -by_stiffness.im - by_damping.im});
+        const fu_complex rest = {2.0 - by_stiffness.re - by_damping.re, -by_stiffness.im - by_damping.im};
+        fu_complex_system_accumulate(c, s, rest);
     }
     fu_matrix_of_weights(run, (fu_weights){1.0, rate, real * real});
     fu_complex_system_accumulate(c, s, damped ? by_damping : (fu_complex){2.0 - by_stiffness.re, -by_stiffness.im});
