@@ -85,22 +85,24 @@ static void kinematics(fu_run *run, double h)
 }
 
 /* The equations over a step. */
-static fu_equations equations(const fu_run *run, const fu_state *half_way, double h)
+static fu_equations equations(const fu_run *run, const fu_state *middle_state, double h)
 {
-    return (fu_equations){&run->now, &run->next, half_way, run->psi, h, {1.0, 2.0 / h, sigma(h)}};
+    return (fu_equations){&run->now, &run->next, middle_state, run->psi, h, {1.0, 2.0 / h, sigma(h)}};
 }
 
 static void residual(fu_run *run, double h)
 {
     const double begin = fu_clock();
     const fu_model *model = run->model;
-    const fu_state *now = &run->now, *next = &run->next, m = middle_state(run, h);
-    const fu_equations at = equations(run, &m, h);
+    const fu_state *now = &run->now, *next = &run->next;
+    const middle_view m = middle(run);
+    const fu_state middle_state = middle_of(run, h);
+    const fu_equations at = equations(run, &middle_state, h);
     fu_mass_times(model, m.q, next->acceleration, run->force);
     fu_discrete_forces(model, now->q, next->q, run->force);
     fu_algorithmic_forces(run, m.q, run->force);
     fu_rate_forces(model, m.q, m.v, run->force);
-    fu_external_forces(model, m.t, m.q, run->force);
+    fu_external_forces(model, middle_state.t, m.q, run->force);
     fu_coupling_step_residuals(model, &at, run->force, fu_own(run));
     fu_scale_residual(run, at.weights.stiffness);
     run->statistics.time_residual += fu_clock() - begin;

@@ -74,12 +74,6 @@ static fu_equations equations(const fu_run *run, double h)
     return (fu_equations){&run->now, &run->next, 0, run->psi, h, {1.0, g->gamma / (g->beta * h), sigma(g, h)}};
 }
 
-static void residual(fu_run *run, double h)
-{
-    const fu_equations at = equations(run, h);
-    fu_residual(run, &at);
-}
-
 static void matrix(fu_run *run, double h)
 {
     const fu_equations at = equations(run, h);
