@@ -390,7 +390,7 @@ cdef class Engine(Statics):
     def held(self):
         """(joints, 7): force and moment of joints on their second ends, and residual, in the static state."""
         cdef int k, n = self._count("joint")
-        out = np.zeros((n, fu_joint_type.n_outputs))
+        out = np.zeros((n, fu_coupling_type_of(b"joint").n_outputs))
         cdef double[:, ::1] view = out
         for k in range(n):
             fu_joint_outputs(&self.model, &self.joints[k], &self.run.next,

@@ -3,12 +3,28 @@
  */
 #include "engine.h"
 
+/* Parameters of the law: N/m, N s/m, m. */
+typedef struct {
+    double stiffness, damping, length;
+} fu_spring;
+_Static_assert(sizeof(fu_spring) <= FU_MAX_PARAMETERS * sizeof(double), "a spring's parameters are those of a point force");
+
+static const fu_spring *spring_of(const fu_coupling *coupling)
+{
+    return (const fu_spring *)((const fu_point_force *)coupling)->parameters;
+}
+
+static int dim_of(const fu_coupling *coupling)
+{
+    return ((const fu_point_force *)coupling)->dim;
+}
+
 /* Force on the first point, and its derivatives by the gap p_2 - p_1 and the gap's rate (dim x dim). */
 static void force_of(const fu_coupling *coupling, const double *gap, const double *rate, double *force, double *by_gap,
                      double *by_rate)
 {
-    const fu_spring *spring = (const fu_spring *)coupling;
-    const int dim = spring->between.dim;
+    const fu_spring *spring = spring_of(coupling);
+    const int dim = dim_of(coupling);
     const double k = spring->stiffness, c = spring->damping;
     if (spring->length == 0.0) {
         for (int i = 0; i < dim; ++i) {
@@ -40,8 +56,8 @@ static void force_of(const fu_coupling *coupling, const double *gap, const doubl
  * dissipates; returns the latter's power. L_next - L is n . (gap_next - gap), n = (gap + gap_next)/(L + L_next). */
 static double step_force(const fu_coupling *coupling, const double *gap, const double *gap_next, double h, double *force)
 {
-    const fu_spring *spring = (const fu_spring *)coupling;
-    const int dim = spring->between.dim;
+    const fu_spring *spring = spring_of(coupling);
+    const int dim = dim_of(coupling);
     double square = 0.0, square_next = 0.0, closing = 0.0, power = 0.0;
     if (spring->length == 0.0) {
         for (int d = 0; d < dim; ++d) {
@@ -64,7 +80,7 @@ static double step_force(const fu_coupling *coupling, const double *gap, const d
 
 static double energy(const fu_coupling *coupling, const double *gap)
 {
-    const fu_spring *spring = (const fu_spring *)coupling;
+    const fu_spring *spring = spring_of(coupling);
     const double length = sqrt(gap[0] * gap[0] + gap[1] * gap[1] + gap[2] * gap[2]) - spring->length;
     return 0.5 * spring->stiffness * length * length;
 }
@@ -72,7 +88,7 @@ static double energy(const fu_coupling *coupling, const double *gap)
 /* power taken out by the damper */
 static double dissipation(const fu_coupling *coupling, const double *gap, const double *rate)
 {
-    const fu_spring *spring = (const fu_spring *)coupling;
+    const fu_spring *spring = spring_of(coupling);
     double square = 0.0, along = 0.0, speed = 0.0;
     for (int d = 0; d < 3; ++d) {
         square += gap[d] * gap[d];

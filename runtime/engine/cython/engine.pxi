@@ -33,7 +33,7 @@ cdef extern from "blocks.h" nogil:
     const fu_law_blocks *fu_blocks_of(const char *law)
 
 cdef extern from "engine.h" nogil:
-    int FU_MAX_COORDINATES, FU_MAX_RATES, FU_ATTACHMENT_COORDINATES, FU_SLIDES, FU_LOCKED, FU_LEFT
+    int FU_MAX_COORDINATES, FU_MAX_PARAMETERS, FU_MAX_RATES, FU_ATTACHMENT_COORDINATES, FU_SLIDES, FU_LOCKED, FU_LEFT
     int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT, FU_UNSTABLE
     int FU_NO_FAILURE, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE, FU_JAM
     int FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_RATE, FU_WATCH_TRACTION, FU_WATCH_CALL
@@ -109,7 +109,7 @@ cdef extern from "engine.h" nogil:
         int index, unknown, n_coordinates, coordinate, n_forces, force, n_multipliers, multiplier, row, output
         int reacts, is_damped, is_driven
         double scale[6]
-    const fu_coupling_type fu_slide_type, fu_joint_type, fu_spring_type, fu_load_type
+    const fu_coupling_type *fu_coupling_type_of(const char *name)
     ctypedef struct fu_slide:
         fu_coupling base
         const fu_slide_kernels *kernel
@@ -149,9 +149,7 @@ cdef extern from "engine.h" nogil:
         fu_coupling base
         fu_attachment ends[2]
         int dim
-    ctypedef struct fu_spring:
-        fu_point_force between
-        double stiffness, damping, length
+        double parameters[8]
     ctypedef struct fu_lapack:
         void *dgbtrf
         void *dgbtrs

@@ -8,7 +8,7 @@ cdef class Translation(Arrays):
     cdef fu_shape *shapes
     cdef fu_slide *slides
     cdef fu_joint *joints
-    cdef fu_spring *springs
+    cdef fu_point_force *point_forces
     cdef fu_motion *motions
     cdef fu_dead_load *dead_loads
     cdef fu_load *loads
@@ -25,20 +25,20 @@ cdef class Translation(Arrays):
         self.shapes = <fu_shape *>PyMem_Calloc(len(model.bodies) + 1, sizeof(fu_shape))
         self.slides = <fu_slide *>PyMem_Calloc(len(model.slides) + 1, sizeof(fu_slide))
         self.joints = <fu_joint *>PyMem_Calloc(len(model.joints) + 1, sizeof(fu_joint))
-        self.springs = <fu_spring *>PyMem_Calloc(len(model.springs) + 1, sizeof(fu_spring))
+        self.point_forces = <fu_point_force *>PyMem_Calloc(len(model.springs) + 1, sizeof(fu_point_force))
         self.motions = <fu_motion *>PyMem_Calloc(len(model.motions) + 1, sizeof(fu_motion))
         self.dead_loads = <fu_dead_load *>PyMem_Calloc(len(model.dead_loads) + 1, sizeof(fu_dead_load))
         self.loads = <fu_load *>PyMem_Calloc(len(model.loads) + 1, sizeof(fu_load))
         self.signals = <fu_signal *>PyMem_Calloc(len(model.signals) + 1, sizeof(fu_signal))
         n_couplings = len(model.loads) + len(model.slides) + len(model.joints) + len(model.springs)
         self.couplings = <fu_coupling **>PyMem_Calloc(n_couplings + 1, sizeof(fu_coupling *))
-        if not (self.cables and self.bodies and self.shapes and self.slides and self.joints and self.springs
+        if not (self.cables and self.bodies and self.shapes and self.slides and self.joints and self.point_forces
                 and self.motions and self.dead_loads and self.loads and self.signals and self.couplings):
             raise MemoryError
 
     def __dealloc__(self):
         for pointer in (<size_t>self.cables, <size_t>self.bodies, <size_t>self.shapes, <size_t>self.slides,
-                        <size_t>self.joints, <size_t>self.springs, <size_t>self.motions, <size_t>self.dead_loads,
+                        <size_t>self.joints, <size_t>self.point_forces, <size_t>self.motions, <size_t>self.dead_loads,
                         <size_t>self.loads, <size_t>self.signals, <size_t>self.knots, <size_t>self.couplings,
                         <size_t>self.watches):
             PyMem_Free(<void *><size_t>pointer)
@@ -48,7 +48,7 @@ cdef class Translation(Arrays):
         self._bodies_and_cables(model, tables, blocks)
         m = &self.model
         m.dim, m.n_q, m.n_dof = model.dim, model.n_q, model.n_dof
-        self._slides_joints_and_springs(model, tables)
+        self._slides_joints_and_point_forces(model, tables)
         self._loads_and_motions(model)
         self._list_couplings(model)
         m.n_band, m.n_border_dof = model.n_band, model.n_border_dof
@@ -155,10 +155,13 @@ cdef class Translation(Arrays):
             to.axes[k] = end.axes.flat[k]
         return 0
 
-    cdef int _coupling(self, fu_coupling *base, const fu_coupling_type *type, int index, int unknown, scale) except -1:
+    cdef int _coupling(self, fu_coupling *base, str type, int index, int unknown, scale) except -1:
         """Fill in what all couplings have; own forces are one a row of `scale`."""
         cdef int k
-        base.type, base.index, base.unknown, base.n_forces = type, index, unknown, len(scale)
+        base.type = fu_coupling_type_of(type.encode())
+        if base.type == NULL:
+            raise ValueError(f"the engine has no coupling {type!r}")
+        base.index, base.unknown, base.n_forces = index, unknown, len(scale)
         for k in range(len(scale)):
             base.scale[k] = scale[k]
         return 0
@@ -173,17 +176,17 @@ cdef class Translation(Arrays):
         for i in range(len(model.joints)):
             self.couplings[n], n = &self.joints[i].base, n + 1
         for i in range(len(model.springs)):
-            self.couplings[n], n = &self.springs[i].between.base, n + 1
+            self.couplings[n], n = &self.point_forces[i].base, n + 1
         fu_number_couplings(self.couplings, n, &self.model)
 
-    def _slides_joints_and_springs(self, model, list tables):
+    def _slides_joints_and_point_forces(self, model, list tables):
         cdef int i, k
         for i, slide in enumerate(model.slides):
             j = &self.slides[i]
             j.kernel = <const fu_slide_kernels *>_found(tables, "slide", slide.kernel)
             if j.kernel.coordinates + 1 > FU_MAX_COORDINATES:
                 raise ValueError(f"{slide.kernel}: more coordinates than the engine's {FU_MAX_COORDINATES}")
-            self._coupling(&j.base, &fu_slide_type, i, slide.unknown, [slide.mass] * model.dim)
+            self._coupling(&j.base, "slide", i, slide.unknown, [slide.mass] * model.dim)
             j.base.n_coordinates, j.base.multiplier, j.base.n_multipliers = 1, slide.multiplier, slide.max_multipliers
             for k in range(model.dim, slide.max_multipliers):
                 j.base.scale[k] = slide.mass
@@ -207,19 +210,23 @@ cdef class Translation(Arrays):
         for i, joint in enumerate(model.joints):
             l = &self.joints[i]
             l.kernel = <const fu_joint_kernels *>_found(tables, "joint", joint.kernel)
-            self._coupling(&l.base, &fu_joint_type, i, joint.unknown, joint.scale)
+            self._coupling(&l.base, "joint", i, joint.unknown, joint.scale)
             l.base.multiplier, l.base.n_multipliers, l.base.is_driven = joint.multiplier, joint.rows, joint.signal >= 0
             l.signal, l.c0 = joint.signal, joint.base
             for k in range(2):
                 self._end(&l.ends[k], joint.ends[k], tables)
-        for i, spring in enumerate(model.springs):
-            p = &self.springs[i]
-            self._coupling(&p.between.base, &fu_spring_type, i, spring.unknown, [spring.mass] * spring.dim)
-            p.between.base.is_damped = spring.damping > 0
-            p.between.dim = spring.dim
-            p.stiffness, p.damping, p.length = spring.stiffness, spring.damping, spring.length
+        numbers = {}
+        for i, force in enumerate(model.springs):
+            p = &self.point_forces[i]
+            numbers[force.type] = numbers.get(force.type, -1) + 1
+            self._coupling(&p.base, force.type, numbers[force.type], force.unknown, [force.mass] * force.dim)
+            p.base.is_damped, p.dim = force.damping > 0, force.dim
+            if len(force.parameters) > FU_MAX_PARAMETERS:
+                raise ValueError(f"{force.type}: more parameters than the engine's {FU_MAX_PARAMETERS}")
+            for k in range(len(force.parameters)):
+                p.parameters[k] = force.parameters[k]
             for k in range(2):
-                self._end(&p.between.ends[k], spring.ends[k], tables)
+                self._end(&p.ends[k], force.ends[k], tables)
         self.model.n_slides, self.model.slides = len(model.slides), self.slides
 
     def _loads_and_motions(self, model):
@@ -247,7 +254,7 @@ cdef class Translation(Arrays):
         self.model.dead_dof, self.model.dead_value = self._ints(dofs), self._doubles(values)
         for i, load in enumerate(model.loads):
             n = &self.loads[i]
-            self._coupling(&n.base, &fu_load_type, i, 0, ())
+            self._coupling(&n.base, "load", i, 0, ())
             n.kind, n.signal, n.on, n.element, n.x = load.kind, load.signal, load.on, load.element, load.x
             for k in range(3):
                 n.u[k], n.c[k] = load.u[k], load.c[k]

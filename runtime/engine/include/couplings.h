@@ -9,6 +9,9 @@
 /* Number the couplings of model->couplings: `index` and `unknown` and the like are given, offsets follow; sums go to model. */
 void fu_number_couplings(fu_coupling *const *couplings, int n, fu_model *model);
 
+/* The type of this name, null where there is none. */
+const fu_coupling_type *fu_coupling_type_of(const char *name);
+
 void fu_coupling_residuals(const fu_model *model, const fu_equations *at, double *f, double *own);
 void fu_coupling_tangents(const fu_model *model, const fu_equations *at, fu_system *system);
 void fu_coupling_step_residuals(const fu_model *model, const fu_equations *at, double *f, double *own);

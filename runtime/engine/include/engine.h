@@ -43,7 +43,6 @@
 #include "rotation.h"
 #include "run.h"
 #include "slides.h"
-#include "springs.h"
 #include "state.h"
 #include "unknowns.h"
 

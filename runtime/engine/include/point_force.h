@@ -5,11 +5,14 @@
 #include "attachments.h"
 #include "coupling.h"
 
-/* A force along the gap between the points of two attachments, by the law of its type. */
+#define FU_MAX_PARAMETERS 8 /* of the law of one; cython/translation.pxi checks */
+
+/* A force along the gap between the points of two attachments, by the law of its type and the parameters of that. */
 typedef struct {
     fu_coupling base;
     fu_attachment ends[2];
     int dim;
+    double parameters[FU_MAX_PARAMETERS];
 } fu_point_force;
 
 void fu_point_force_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,

@@ -41,7 +41,7 @@ static int record_row(fu_run *run)
     r->potential[row] = fu_potential_energy(model, now->q);
     r->dissipated[row] = run->dissipated;
     r->external[row] = run->external;
-    fu_coupling_outputs(model, now, acceleration, &run->accelerator, r->output + row * model->n_outputs);
+    if (!info) fu_coupling_outputs(model, now, acceleration, &run->accelerator, r->output + row * model->n_outputs);
     const double energies[FU_ENERGIES] = {r->kinetic[row], r->elastic[row], r->potential[row], run->dissipated,
                                           -run->external};
     run->statistics.time_output += fu_clock() - begin;
