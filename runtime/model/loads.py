@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -60,8 +61,12 @@ class LoadModel:
 
 @dataclass
 class SpringModel:
-    """Two ends and what is between them; unknown: the place of its force."""
+    """A force between two points; unknown: the place of its force.
 
+    type: the engine's type of coupling; parameters: those of its law, in the order that the engine has them.
+    """
+
+    type: ClassVar[str] = "spring"
     name: str
     ends: list[AttachmentModel]
     dim: int
@@ -70,6 +75,11 @@ class SpringModel:
     damping: float
     length: float
     mass: float
+
+    @property
+    def parameters(self) -> tuple[float, ...]:
+        """Stiffness, N/m, damping, N s/m, and length, m."""
+        return self.stiffness, self.damping, self.length
 
 
 class Actions:

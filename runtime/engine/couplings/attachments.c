@@ -87,7 +87,7 @@ int fu_attachment_coordinates(const fu_model *model, const fu_attachment *end, c
     const int element = end->slide >= 0 ? state->element[end->slide] : end->element, n = cable->coordinates;
     for (int i = 0; i < n; ++i) at[i] = cable->first + element * cable->per_node + i;
     if (end->slide < 0) return n;
-    at[n] = fu_extra(model, model->slides[end->slide].unknown);
+    at[n] = fu_extra(model, model->slides[end->slide].base.unknown);
     return n + 1;
 }
 
@@ -223,4 +223,12 @@ void fu_geometric_stiffness(const fu_model *model, const fu_attachment *end, con
                 K[s * n + s] += pull * S_xx[i] * (e[i * dim + d] - (i % cable->kernel->vectors == 0 ? e[d] : 0.0));
             }
         }
+}
+
+void fu_turn_attachment(const fu_model *model, const fu_attachment *on, const double *psi, double *rows, int n_rows,
+                        int n_columns, int first)
+{
+    if (!psi || on->body < 0) return;
+    const fu_body *body = &model->bodies[on->body];
+    fu_turn_columns(body->kernel, rows, n_rows, n_columns, first, psi + body->dof);
 }

@@ -7,6 +7,10 @@
  */
 #include "engine.h"
 
+#include <string.h>
+
+#define TRIAL 0.1          /* of the change that the law asks for: the first step, lest it turn the normal force round */
+#define STEEP 0.1          /* slopes below have no secant that is worth it */
 #define LEAST_NORMAL 1e-30 /* N: of a normal force of zero there is no direction */
 
 /* whether R acts on a slide as it is */
@@ -85,33 +89,26 @@ static double spring_energy(const fu_model *model, const fu_state *state, int j,
     return energy;
 }
 
-/* J in the springs of the buffers */
-double fu_buffer_energy(const fu_model *model, const fu_state *state)
+double fu_buffer_energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
-    double energy = 0.0;
-    for (int j = 0; j < model->n_slides; ++j) energy += spring_energy(model, state, j, 1);
-    return energy;
+    return spring_energy(model, state, coupling->index, 1);
 }
 
-/* J that dampers of buffers have taken in a step: a slide that a damper would hold back is let go, and the spring, which
- * follows it to the buffer's beginning, gives the damper what it gives up. */
-double fu_lost_in_buffers(const fu_model *model, const fu_state *from, const fu_state *to)
+double fu_lost_in_buffers(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to)
 {
-    double lost = 0.0;
-    for (int j = 0; j < model->n_slides; ++j)
-        if (model->slides[j].resistance) lost += spring_energy(model, from, j, 0) - spring_energy(model, to, j, 0);
-    return lost;
+    const int j = coupling->index;
+    if (!model->slides[j].resistance) return 0.0;
+    return spring_energy(model, from, j, 0) - spring_energy(model, to, j, 0);
 }
 
-/* Statics: the buffers that slides are in. */
-void fu_touch_buffers(const fu_model *model, fu_state *state)
+void fu_touch_buffers(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
-    for (int j = 0; j < model->n_slides; ++j) {
-        state->contact[j] = 0;
-        for (int side = -1; side <= 1; side += 2)
-            if (model->slides[j].stops[side > 0].kind == FU_END_IS_BUFFERED && fu_compression(model, state, j, side) > 0.0)
-                state->contact[j] = side;
-    }
+    const int j = coupling->index;
+    if (!model->slides[j].resistance) return;
+    state->contact[j] = 0;
+    for (int side = -1; side <= 1; side += 2)
+        if (model->slides[j].stops[side > 0].kind == FU_END_IS_BUFFERED && fu_compression(model, state, j, side) > 0.0)
+            state->contact[j] = side;
 }
 
 /* t and u from the derivatives of phi = r - p by the slide's coordinates and s */
@@ -144,4 +141,87 @@ void fu_resistance_rows(const fu_model *model, const fu_state *state, int j, con
     }
     by_place[s] += resistance->by_s;
     by_rate[s] = 0.0;
+}
+
+/* In eq 38 */
+
+/* r_x, and the velocity along it, of a slide on its cable */
+static void along(const fu_model *model, const fu_slide_state *slide_state, double *t, double *u)
+{
+    const int dim = model->dim;
+    const double *G = slide_state->by_point + (dim - 1) * dim;
+    double square = 0.0;
+    for (int d = 0; d < dim; ++d) square += G[d] * G[d];
+    for (int d = 0; d < dim; ++d) {
+        t[d] = G[d] / square;
+        u[d] = t[d] * slide_state->s_rate;
+    }
+}
+
+/* By how much R should change where its law asks for `change`: by the secant of the last sweep, as what friction presses on
+ * the cable or takes off it depends on R almost linearly. */
+static double secant_step(fu_slide_state *last, double change)
+{
+    const double slope = last->step != 0.0 ? (last->change - change) / last->step : 0.0;
+    last->step = last->step == 0.0 ? TRIAL * change : slope > STEEP ? change / slope : change;
+    last->change = change;
+    return last->step;
+}
+
+double fu_resistance_react(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
+                           fu_accelerator *work)
+{
+    const int j = coupling->index, dim = model->dim;
+    fu_slide_state *slide_state = &work->slide_states[j];
+    fu_rows *rows = &work->rows[coupling->row];
+    double t[3], u[3], f[3], size = 0.0;
+    fu_resistance resistance;
+    slide_state->power = 0.0;
+    if (!lambda) slide_state->R = slide_state->step = 0.0;
+    if (!model->slides[j].resistance || state->mode[j] != FU_SLIDES) return 0.0;
+    along(model, slide_state, t, u);
+    if (lambda) fu_slide_force(model, work, j, lambda, f);
+    else memcpy(f, state->forces + coupling->force, sizeof(double) * (size_t)dim);
+    fu_resistance_at(model, state, j, t, u, f, &resistance);
+    slide_state->power = fu_resistance_power(model, state, j, t, u, f);
+    const double change = resistance.R - slide_state->R, step = lambda ? secant_step(slide_state, change) : change;
+    for (int d = 0; d < dim; ++d) size = fmax(size, fabs(f[d]));
+    size = fmax(size, fabs(resistance.R));
+    slide_state->R += step;
+    rows->by_push = slide_state->G;
+    rows->push = slide_state->R;
+    for (int k = 0; k < rows->n; ++k) work->work[rows->at[k]] += slide_state->G[k] * step;
+    return change != 0.0 ? fabs(change) / size : 0.0;
+}
+
+/* Of a slide that is driven: of the force along the cable, the part that its drive does not give; and what it takes. */
+void fu_resistance_reacted(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
+                           fu_accelerator *work)
+{
+    const int j = coupling->index;
+    fu_slide_state *slide_state = &work->slide_states[j];
+    double t[3], u[3], f[3];
+    fu_resistance resistance;
+    slide_state->driven_R = 0.0;
+    if (model->slides[j].drive < 0 || !fu_has_resistance(model, state, j)) return;
+    along(model, slide_state, t, u);
+    fu_slide_force(model, work, j, lambda, f);
+    fu_resistance_at(model, state, j, t, u, f, &resistance);
+    slide_state->driven_R = resistance.R;
+    slide_state->power = fu_resistance_power(model, state, j, t, u, f);
+    work->rows[coupling->row].opposed = resistance.R * slide_state->s_rate;
+}
+
+double fu_resistance_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                                 const fu_accelerator *work)
+{
+    const int j = coupling->index;
+    const double *f = state->forces + coupling->force;
+    double J[3 * (FU_SLIDE_COORDINATES + 1)], K[(FU_SLIDE_COORDINATES + 1) * (FU_SLIDE_COORDINATES + 1)], t[3], u[3];
+    if (!model->slides[j].resistance) return 0.0;
+    if (work) return work->slide_states[j].power;
+    if (!fu_has_resistance(model, state, j)) return 0.0;
+    fu_slide_tangent(model, state, j, f, J, K);
+    fu_slide_motion(model, state, j, J, t, u);
+    return fu_resistance_power(model, state, j, t, u, f);
 }

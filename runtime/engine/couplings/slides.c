@@ -65,7 +65,7 @@ int fu_slide_coordinates(const fu_model *model, const fu_state *state, int j, in
     const int n = cable->coordinates;
     for (int i = 0; i < n; ++i) at[i] = cable->first + state->element[j] * cable->per_node + i;
     const int all = n + fu_attachment_coordinates(model, &slide->rider, state, at + n);
-    at[all] = fu_extra(model, slide->unknown);
+    at[all] = fu_extra(model, slide->base.unknown);
     return all;
 }
 
@@ -76,7 +76,7 @@ void fu_slide_residual(const fu_model *model, const fu_state *state, int j, doub
     double of_point[FU_MAX_COORDINATES];
     slide_view v;
     look(model, state, j, &v);
-    slide->kernel->residual(v.length, v.x, v.e, v.b, v.u, state->f + 3 * j, phi, slide->rider_is_rigid ? g : of_point);
+    slide->kernel->residual(v.length, v.x, v.e, v.b, v.u, state->forces + slide->base.force, phi, slide->rider_is_rigid ? g : of_point);
     if (!slide->rider_is_rigid) expand(slide, &v, 1, model->cables[slide->cable].coordinates, 1, of_point, g);
 }
 

@@ -33,5 +33,9 @@ void fu_attachment_at(const fu_model *model, const fu_attachment *end, const fu_
                   fu_attachment_state *place);
 void fu_geometric_stiffness(const fu_model *model, const fu_attachment *end, const fu_state *state, const double *f, const double *m,
                       int n, double *K);
+/* Derivatives by an attachment's coordinates, the first of them in column `first`, made those by psi that moves the bodies;
+ * psi null: they are. */
+void fu_turn_attachment(const fu_model *model, const fu_attachment *on, const double *psi, double *rows, int n_rows,
+                        int n_columns, int first);
 
 #endif
