@@ -80,6 +80,7 @@ cdef class Engine(Statics):
 
     def _take_integrator(self, method):
         """Let the run take an integrator (package integrators): its parameters, its work space, what it keeps."""
+        cdef int k
         run = &self.run
         run.integrator = fu_integrator_of(method.name.encode())
         if run.integrator == NULL:
@@ -92,19 +93,20 @@ cdef class Engine(Statics):
         run.order, run.error_overestimate, run.retry_factor = method.order, method.error_overestimate, method.retry_factor
         if run.integrator.n_dissipation_state != NULL:
             self.model.n_dissipation_state = run.integrator.n_dissipation_state(run)
-        run.now.dissipation_state = self._zeros(self.model.n_dissipation_state)
-        run.next.dissipation_state = self._zeros(self.model.n_dissipation_state)
+            for k in range(FU_N_STATE_ARRAYS):
+                if fu_state_array(&self.model, &run.now, k).name == b"dissipation_state":
+                    self._attach(&run.now, k)
+                    self._attach(&run.next, k)
         run.scratch = self._zeros(run.integrator.n_scratch(run))
 
     def relaxed_strains(self):
         """Return, for each cable, (elements, rates + 1): g and the energy of r of algorithmic dissipation, as in
         engine/integrators/algorithmic_dissipation.c.
         """
-        cdef const double[::1] memory = <double[:max(1, self.model.n_dissipation_state)]>self.run.now.dissipation_state
-        numbers, ends = np.array(memory), np.cumsum([self.cables[i].n_elements * (self.cables[i].law.rates + 1)
+        numbers, ends = self._view(&self.run.now, "dissipation_state").copy(), np.cumsum([self.cables[i].n_elements * (self.cables[i].law.rates + 1)
                                                      for i in range(self.model.n_cables)])
         return [part.reshape(self.cables[i].n_elements, -1)
-                for i, part in enumerate(np.split(numbers[:self.model.n_dissipation_state], ends[:-1]))]
+                for i, part in enumerate(np.split(numbers, ends[:-1]))]
 
     def without_algorithmic_force(self):
         """Numbers of the cables whose law has no kernel for algorithmic dissipation."""
@@ -172,9 +174,7 @@ cdef class Engine(Statics):
 
     cdef _snapshot(self, const fu_state *state):
         """t, q, v, s of a state."""
-        m = &self.model
-        return (state.t, np.array([state.q[i] for i in range(m.n_q)]), np.array([state.v[i] for i in range(m.n_dof)]),
-                np.array([state.s[i] for i in range(m.n_slides)]))
+        return state.t, *(self._view(state, name).copy() for name in ("q", "v", "s"))
 
     def start(self, *, duration, output_step, tol, step, method, first_step, knots=((), ()), capacity=None,
               rest_start=False):
@@ -183,6 +183,8 @@ cdef class Engine(Statics):
         knots: times at which steps end, increasing, and what jumps there; see model/knots.py.
         Returns a status where that failed, else None, and the change of velocities that the joints asked for.
         """
+        cdef int k
+        cdef fu_array array
         run = &self.run
         run.duration, run.output_step, run.tol = duration, output_step, tol
         run.fixed_step, run.h, run.rest_start = step, first_step, rest_start
@@ -190,13 +192,10 @@ cdef class Engine(Statics):
         self._take_integrator(method)
         rows = int(np.ceil(duration / output_step * (1 - 1e-12))) + 2 if capacity is None else capacity
         m = &self.model
-        r = &run.record
-        r.time, r.kinetic, r.elastic = self._named("time", rows), self._named("kinetic", rows), self._named("elastic", rows)
-        r.potential, r.dissipated = self._named("potential", rows), self._named("dissipated", rows)
-        r.q, r.v = self._named("q", (rows, m.n_q)), self._named("v", (rows, m.n_dof))
-        r.acceleration = self._named("acceleration", (rows, m.n_dof))
-        r.reaction, r.external = self._named("reaction", (rows, m.n_dof)), self._named("external", rows)
-        r.s, r.output = self._named("s", (rows, m.n_coordinates)), self._named("output", (rows, m.n_outputs))
+        for k in range(FU_N_RECORD_ARRAYS):
+            array = fu_record_array(&self.model, &run.record, k)
+            shape = (rows, array.items) if array.axes == 2 else rows
+            fu_record_attach(&run.record, k, self._named(array.name.decode(), shape))
         output = self.arrays.pop("output")
         for kind in ("slide", "joint", "spring"):
             self.arrays[kind] = self._outputs(kind, output)
@@ -238,7 +237,8 @@ cdef class Engine(Statics):
                 PyErr_CheckSignals()
                 if status == FU_EVENT and run.event.kind == FU_ACTED:
                     if self.watcher is not None:
-                        self.watcher.acts(run.event.which, ACTIONS[run.event.side], run.now.t, run.now.s[run.event.which])
+                        self.watcher.acts(run.event.which, ACTIONS[run.event.side], run.now.t,
+                                          self._view(&run.now, "s")[run.event.which])
                     status = FU_RUNNING
                 if status == FU_EVENT:
                     if not self.watcher.happens(run.event.which, *self._snapshot(&run.now)):
@@ -385,7 +385,7 @@ cdef class Engine(Statics):
         cdef double[::1] left = np.zeros(self.model.n_forces + 1)
         if fu_probe_mechanism(&self.run, &path[0], &left[0]):
             return None
-        return self._own("joint", &left[0], 6)
+        return self._own("joint", left, 6)
 
     def held(self):
         """(joints, 7): force and moment of joints on their second ends, and residual, in the static state."""
@@ -419,4 +419,4 @@ cdef class Engine(Statics):
     @property
     def stopped_s(self):
         """Arc-length of that slide, m."""
-        return self.run.now.s[self.run.stopped_joint]
+        return self._view(&self.run.now, "s")[self.run.stopped_joint]

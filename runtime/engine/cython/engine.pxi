@@ -204,21 +204,18 @@ cdef extern from "engine.h" nogil:
         const fu_lapack *lapack
         int threads
         double *parts
+    ctypedef struct fu_array:
+        const char *name
+        void *data
+        long items
+        size_t size
+        int is_real, axes
+    int FU_N_STATE_ARRAYS, FU_N_RECORD_ARRAYS
     ctypedef struct fu_state:
         double t
-        double *q
-        double *v
-        double *acceleration
-        double *a
-        double *s
         double *forces
-        double *locked_s
-        int *element
-        int *mode
-        int *slip_direction
-        int *contact
-        double *director
-        double *dissipation_state
+    fu_array fu_state_array(const fu_model *model, const fu_state *state, int k)
+    void fu_state_attach(fu_state *state, int k, void *data)
     ctypedef struct fu_rows:
         int rows
     ctypedef struct fu_slide_state:
@@ -251,18 +248,8 @@ cdef extern from "engine.h" nogil:
         double h_min, h_max, error_sum, time_factor, time_solve, time_residual, time_output
     ctypedef struct fu_record:
         int n, first, pause
-        double *time
-        double *q
-        double *v
-        double *acceleration
-        double *reaction
-        double *s
-        double *output
-        double *kinetic
-        double *elastic
-        double *potential
-        double *dissipated
-        double *external
+    fu_array fu_record_array(const fu_model *model, const fu_record *record, int k)
+    void fu_record_attach(fu_record *record, int k, double *data)
     ctypedef struct fu_weights:
         double inertia, rate, stiffness
     ctypedef struct fu_integrator

@@ -68,36 +68,38 @@ cdef class Statics(Translation):
         cdef fu_state *state = &self.run.next
         cdef int i
         state.t = t
-        for i in range(self.model.n_dof):
-            state.v[i] = state.acceleration[i] = 0.0
-        for i in range(self.model.n_q):
-            state.q[i] = self.run.now.q[i] if q is None else q[i]
+        self._view(state, "q")[:] = self._view(&self.run.now, "q") if q is None else q
+        self._rest(state)
         fu_prescribe(&self.model, state)
-        for i in range(self.model.n_dof):
-            state.v[i] = state.acceleration[i] = 0.0
+        self._rest(state)
+        self._view(state, "s")[:] = self._view(&self.run.now, "s") if s is None else s
+        arc_length, element = self._view(state, "s"), self._view(state, "element")
         for i in range(self.model.n_slides):
-            state.s[i] = self.run.now.s[i] if s is None else s[i]
             n, length = self.cables[self.slides[i].cable].n_elements, self.cables[self.slides[i].cable].length
-            if not length * state.element[i] <= state.s[i] <= length * (state.element[i] + 1):
-                state.element[i] = min(max(int(state.s[i] // length), 0), n - 1)
+            if not length * element[i] <= arc_length[i] <= length * (element[i] + 1):
+                element[i] = min(max(int(arc_length[i] // length), 0), n - 1)
         fu_touch(&self.model, state)
+        forces = self._view(state, "forces")
         given = {"slide": force, "joint": multipliers, "spring": spring}
         for i in range(self.model.n_couplings):
             c = self.couplings[i]
             values = given.get(c.type.name.decode())
             for k in range(c.n_forces):
-                state.forces[c.force + k] = 0.0 if values is None else values[c.index][k]
+                forces[c.force + k] = 0.0 if values is None else values[c.index][k]
+
+    cdef _rest(self, fu_state *state):
+        self._view(state, "v")[:] = 0.0
+        self._view(state, "acceleration")[:] = 0.0
 
     def placed(self):
         """The static state as the arguments of `place` (but t)."""
         cdef fu_state *state = &self.run.next
-        cdef int i
-        return {"q": np.array([state.q[i] for i in range(self.model.n_q)]),
-                "s": np.array([state.s[i] for i in range(self.model.n_coordinates)]),
-                "force": self._own("slide", state.forces, 3), "multipliers": self._own("joint", state.forces, 6),
-                "spring": self._own("spring", state.forces, 3)}
+        forces = self._view(state, "forces")
+        return {"q": self._view(state, "q").copy(), "s": self._view(state, "s").copy(),
+                "force": self._own("slide", forces, 3), "multipliers": self._own("joint", forces, 6),
+                "spring": self._own("spring", forces, 3)}
 
-    cdef _own(self, str kind, const double *forces, int width):
+    cdef _own(self, str kind, forces, int width):
         """(couplings of a kind, width): entries of `forces`, zeros after those that one has."""
         cdef int i, k
         found = []
@@ -206,7 +208,8 @@ cdef class Statics(Translation):
         return self.spreads.T @ stiffness @ self.spreads
 
     def _is_held(self, int extra):
-        return any([self.slides[j].base.unknown == extra and self.run.next.mode[j] != FU_SLIDES
+        mode = self._view(&self.run.next, "mode")
+        return any([self.slides[j].base.unknown == extra and mode[j] != FU_SLIDES
                     for j in range(self.model.n_slides)])
 
     def elastic_energy(self):

@@ -279,17 +279,40 @@ cdef class Translation(Arrays):
         system.rows = <fu_piece *>self._ints(np.zeros(3 * 2 * m * chains))
         system.pivot_band, system.pivot_border = self._ints(np.zeros(n)), self._ints(np.zeros(m))
 
-    cdef void _state(self, fu_state *state, model):
-        state.q, state.v = self._doubles(model.q), self._doubles(model.v)
-        state.acceleration, state.a = self._doubles(np.zeros(model.n_dof)), self._doubles(np.zeros(model.n_dof))
-        slides = len(model.slides)
-        state.s, state.forces, state.t = self._doubles([j.s for j in model.slides]), self._zeros(self.model.n_forces), 0.0
-        state.locked_s = self._doubles(np.zeros(slides))
-        state.element = self._ints([j.element for j in model.slides])
-        state.mode = self._ints([FU_LOCKED if j.drive >= 0 else FU_SLIDES for j in model.slides])
-        state.slip_direction, state.contact = self._ints(np.zeros(slides)), self._ints(np.zeros(slides))
-        state.director = self._doubles([j.director for j in model.slides])
-        state.dissipation_state = self._zeros(0)
+    cdef _state(self, fu_state *state, model):
+        """Give a state its arrays (state.h), and in them the model as it is drawn."""
+        drawn = {"q": model.q, "v": model.v, "s": [slide.s for slide in model.slides],
+                 "element": [slide.element for slide in model.slides],
+                 "mode": [FU_LOCKED if slide.drive >= 0 else FU_SLIDES for slide in model.slides],
+                 "director": np.ravel([slide.director for slide in model.slides])}
+        cdef int k
+        for k in range(FU_N_STATE_ARRAYS):
+            self._attach(state, k)
+        for name, values in drawn.items():
+            self._view(state, name)[:] = values
+
+    cdef int _attach(self, fu_state *state, int k) except -1:
+        """Give a state its k-th array, of zeros."""
+        cdef fu_array array = fu_state_array(&self.model, state, k)
+        if array.is_real:
+            fu_state_attach(state, k, self._zeros(array.items))
+        else:
+            fu_state_attach(state, k, self._ints(np.zeros(array.items)))
+        return 0
+
+    cdef _view(self, const fu_state *state, str name):
+        """Return an array of a state by its name in state.h; what is written to it is written to the state."""
+        cdef int k
+        cdef fu_array array
+        for k in range(FU_N_STATE_ARRAYS):
+            array = fu_state_array(&self.model, state, k)
+            if array.name == name.encode():
+                if array.items == 0:
+                    return np.zeros(0)
+                if array.is_real:
+                    return np.asarray(<double[:array.items]><double *>array.data)
+                return np.asarray(<int[:array.items]><int *>array.data)
+        raise KeyError(name)
 
     def _work_space(self, model):
         n_slides, n_dof = len(model.slides), model.n_dof

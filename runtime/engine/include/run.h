@@ -71,7 +71,19 @@ struct fu_run {
     int rest_start; /* for order.py only: start the scheme from zero accelerations */
 };
 
-/* The time loop */
+/* run/scene_size.c */
+double fu_largest_motion(const fu_model *model, const double *from, const double *to);
+double fu_extent(const fu_model *model, const double *origin, const double *q);
+double fu_scene_size(const fu_model *model, const double *origin, const double *q);
+
+/* run/step_control.c */
+double fu_fit_step(double remaining, double want);
+double fu_allow(fu_run *run, double h);
+void fu_adapt_step(fu_run *run, double h, double ratio);
+double fu_shrink_step(fu_run *run, double h, double ratio);
+double fu_retry_step(fu_run *run, double h);
+
+/* run/run.c: the time loop */
 int fu_all_finite(const double *numbers, long n);
 int fu_prepare(fu_run *run);
 int fu_start(fu_run *run);

@@ -58,18 +58,9 @@ void fu_add_solution(fu_run *run, double inertia, double scale)
 void fu_predict_own(fu_run *run, double h)
 {
     const fu_model *model = run->model;
-    const size_t real = sizeof(double);
     run->next.t = run->now.t + h;
-    memcpy(run->next.forces, run->now.forces, real * (size_t)model->n_forces);
-    memcpy(run->next.director, run->now.director, 3 * real * (size_t)model->n_slides);
+    fu_state_take_couplings(model, &run->next, &run->now);
     for (int i = 0; i < model->n_coordinates; ++i) run->next.s[i] = run->now.s[i] + h * run->s_slope[i];
-    for (int j = 0; j < model->n_slides; ++j) {
-        run->next.element[j] = run->now.element[j];
-        run->next.mode[j] = run->now.mode[j];
-        run->next.locked_s[j] = run->now.locked_s[j];
-        run->next.slip_direction[j] = run->now.slip_direction[j];
-        run->next.contact[j] = run->now.contact[j];
-    }
 }
 
 /* The iteration has failed where its last correction, in run->rhs and run->work, is largest; returns 1. */
