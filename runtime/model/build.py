@@ -37,7 +37,7 @@ from .attachments import AttachmentBuilder, AttachmentModel, JointModel, linked,
 from .body_modes import Shape
 from .constants import constants
 from .knots import knots
-from .loads import Actions, DeadLoad, LoadModel, SignalModel, SpringModel
+from .loads import Actions, DeadLoad, LoadModel, PointForceModel, SignalModel
 from .redundant_constraints import settle
 from .unknowns import Node, Reduction, supports
 
@@ -153,7 +153,7 @@ class Model:
     bodies: list[BodyModel]
     slides: list[SlideModel]
     joints: list[JointModel]
-    springs: list[SpringModel]
+    springs: list[PointForceModel]
     signals: list[SignalModel]
     motions: list[MotionModel]
     dead_loads: list[DeadLoad]
@@ -238,7 +238,7 @@ def build(scene: Scene) -> Model:
         else:
             links.append(tied(holder, part, k, used, held))
         used, held = used + links[-1].rows, held + links[-1].rows
-    springs = [actions.spring(spring, used + dim * k) for k, spring in enumerate(scene.springs.values())]
+    springs = [actions.point_force(spring, used + dim * k) for k, spring in enumerate(scene.springs.values())]
     gravity = np.array(scene.gravity)[:dim]
     n_of_bodies = sum(_dofs(body, dim) for body in rigids)
     return Model(

@@ -115,7 +115,8 @@ static void point_of(const fu_model *model, const fu_attachment *on, const fu_st
     }
 }
 
-static void axes_of(const fu_model *model, const fu_attachment *on, const fu_state *state, double s_rate, fu_attachment_state *out)
+static void axes_of(const fu_model *model, const fu_attachment *on, const fu_state *state, double s_rate,
+                    fu_attachment_state *out)
 {
     const int dim = model->dim, n = out->n, turns = dim == 3 ? 3 : 1;
     double A[9];
@@ -173,34 +174,59 @@ void fu_attachment_at(const fu_model *model, const fu_attachment *on, const fu_s
     if (what & FU_AXES) axes_of(model, on, state, s_rate, out);
 }
 
-/* K (n x n) += derivative by the attachment's coordinates of P' f + T' m at a fixed force f and moment m; either may be null */
-void fu_geometric_stiffness(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *f, const double *m,
-                      int n, double *K)
+/* Of an attachment to a body: as fu_geometric_stiffness. */
+static void add_stiffness_of_body(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *f,
+                                  const double *m, int n, double *K)
+{
+    const fu_body *body = &model->bodies[on->body];
+    const double *b = state->q + body->configuration, none[3] = {0.0};
+    double p[3], A[9], P[18], part[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
+    if (body->modes) {
+        fu_modal_attachment_force(body, &on->spot, b, f ? f : none, m ? m : none, part);
+        for (int i = 0; i < n * n; ++i) K[i] += part[i];
+        return;
+    }
+    if (f) {
+        body->kernel->point_force(b, on->u, f, p, P, part);
+        for (int i = 0; i < n * n; ++i) K[i] += part[i];
+    }
+    if (m) {
+        body->kernel->frame(b, m, A, P, part);
+        for (int i = 0; i < n * n; ++i) K[i] += part[i];
+    }
+}
+
+/* What depends on s of the frame where a slide is; g: derivatives of the moment's work by the frame's two vectors. */
+static void add_stiffness_of_s(const fu_model *model, const fu_attachment *on, const fu_state *state,
+                               const frame_vectors *w, const double *g, int n, double *K)
+{
+    const fu_cable *cable = &model->cables[on->cable];
+    const int dim = model->dim, vectors = cable->coordinates / dim, s = n - 1;
+    const double *e = state->q + cable->first + state->element[on->slide] * cable->per_node;
+    for (int k = 0; k < 2; ++k)
+        for (int d = 0; d < dim; ++d) {
+            const double pull = g[k * dim + d], *S_x = w->S[k] + vectors, *S_xx = w->S[k] + 2 * vectors;
+            for (int i = 0; i < vectors; ++i) {
+                K[(i * dim + d) * n + s] += pull * S_x[i];
+                K[s * n + i * dim + d] += pull * S_x[i];
+                K[s * n + s] += pull * S_xx[i] * (e[i * dim + d] - (i % cable->kernel->vectors == 0 ? e[d] : 0.0));
+            }
+        }
+}
+
+/* K (n x n) += derivative by the attachment's coordinates of P' f + T' m at a fixed force f and moment m; either may be
+ * null */
+void fu_geometric_stiffness(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *f,
+                            const double *m, int n, double *K)
 {
     const int dim = model->dim;
+    frame_vectors w;
+    double g[6], of_frame[36], half[6 * FU_ATTACHMENT_COORDINATES];
     if (on->body >= 0) {
-        const fu_body *body = &model->bodies[on->body];
-        const double *b = state->q + body->configuration;
-        double p[3], A[9], P[18], part[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
-        if (body->modes) {
-            const double none[3] = {0.0};
-            fu_modal_attachment_force(body, &on->spot, b, f ? f : none, m ? m : none, part);
-            for (int i = 0; i < n * n; ++i) K[i] += part[i];
-            return;
-        }
-        if (f) {
-            body->kernel->point_force(b, on->u, f, p, P, part);
-            for (int i = 0; i < n * n; ++i) K[i] += part[i];
-        }
-        if (m) {
-            body->kernel->frame(b, m, A, P, part);
-            for (int i = 0; i < n * n; ++i) K[i] += part[i];
-        }
+        add_stiffness_of_body(model, on, state, f, m, n, K);
         return;
     }
     if (!m || !on->frame) return;
-    frame_vectors w;
-    double g[6], of_frame[36], half[6 * FU_ATTACHMENT_COORDINATES];
     vectors_of(model, on, state, 0.0, n, &w);
     on->frame->moment(w.value[0], w.value[1], m, g, of_frame);
     multiply(2 * dim, 2 * dim, n, of_frame, w.rows, half);
@@ -210,19 +236,7 @@ void fu_geometric_stiffness(const fu_model *model, const fu_attachment *on, cons
             for (int l = 0; l < 2 * dim; ++l) sum += w.rows[l * n + i] * half[l * n + j];
             K[i * n + j] += sum;
         }
-    if (on->slide < 0) return;
-    const fu_cable *cable = &model->cables[on->cable];
-    const int element = state->element[on->slide], vectors = cable->coordinates / dim, s = n - 1;
-    const double *e = state->q + cable->first + element * cable->per_node;
-    for (int k = 0; k < 2; ++k)
-        for (int d = 0; d < dim; ++d) {
-            const double pull = g[k * dim + d], *S_x = w.S[k] + vectors, *S_xx = w.S[k] + 2 * vectors;
-            for (int i = 0; i < vectors; ++i) {
-                K[(i * dim + d) * n + s] += pull * S_x[i];
-                K[s * n + i * dim + d] += pull * S_x[i];
-                K[s * n + s] += pull * S_xx[i] * (e[i * dim + d] - (i % cable->kernel->vectors == 0 ? e[d] : 0.0));
-            }
-        }
+    if (on->slide >= 0) add_stiffness_of_s(model, on, state, &w, g, n, K);
 }
 
 void fu_turn_attachment(const fu_model *model, const fu_attachment *on, const double *psi, double *rows, int n_rows,

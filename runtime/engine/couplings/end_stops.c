@@ -122,7 +122,8 @@ static void find_slip_directions(fu_run *run)
     fu_state *now = &run->now;
     for (int j = 0; j < run->model->n_slides; ++j) {
         const double rate = fu_slide_rate(run->model, now, j);
-        if (run->model->slides[j].sticks && now->mode[j] == FU_SLIDES && rate != 0.0) now->slip_direction[j] = rate > 0.0 ? 1 : -1;
+        if (run->model->slides[j].sticks && now->mode[j] == FU_SLIDES && rate != 0.0)
+            now->slip_direction[j] = rate > 0.0 ? 1 : -1;
     }
 }
 
@@ -134,7 +135,8 @@ int fu_begin_stops(fu_run *run)
     for (int j = 0; j < model->n_slides; ++j) {
         if (model->slides[j].drive >= 0) continue;
         for (int side = -1; side <= 1; side += 2)
-            if (model->slides[j].stops[side > 0].kind == FU_END_IS_BUFFERED && fu_buffer_margin(run, &run->now, j, side) > 0.0)
+            if (model->slides[j].stops[side > 0].kind == FU_END_IS_BUFFERED &&
+                fu_buffer_margin(run, &run->now, j, side) > 0.0)
                 run->now.contact[j] = side;
         if (model->slides[j].sticks && is_at_rest(run, j) && try_to_stick(run, j)) return FU_SINGULAR;
     }

@@ -1,5 +1,5 @@
-/* Joints between two attachments: equations phi of the gap between their points and of their axes (derive/couplings/joint.py),
- * made equations over the coordinates of what carries them. Of an attachment on a slide s is one of them.
+/* Joints between two attachments: equations phi of the gap between their points and of their axes (derive/couplings/
+ * joint.py), made equations over the coordinates of what carries them. Of an attachment on a slide s is one of them.
  */
 #include "engine.h"
 
@@ -83,7 +83,8 @@ int fu_joint_residual(const fu_model *model, const fu_joint *joint, const fu_sta
     return coordinates(&view, at);
 }
 
-/* whether a slide, or any where `which` is -1, ties its rider's axes to the cable: their turn jumps where its curvature does */
+/* whether a slide, or any where `which` is -1, ties its rider's axes to the cable: their turn jumps where its curvature
+ * does */
 int fu_ties_a_frame(const fu_model *model, int which)
 {
     for (int k = 0; k < model->n_couplings; ++k) {
@@ -218,7 +219,7 @@ static void constraint_rows(const fu_model *model, const fu_coupling *coupling, 
         }
 }
 
-/* Whether an unknown that the joint touches moves: all do but s of a slide that does not slide, whose row is that it stays. */
+/* Whether an unknown that the joint touches moves: all do but s of a slide that does not slide, whose row says so. */
 static int moves(const fu_model *model, const fu_joint *joint, const fu_state *state, int at)
 {
     for (int e = 0; e < 2 && at >= model->n_dof; ++e) {
@@ -228,7 +229,8 @@ static int moves(const fu_model *model, const fu_joint *joint, const fu_state *s
     return 1;
 }
 
-static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, double *f, double *own)
+static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, double *f,
+                     double *own)
 {
     const fu_joint *joint = (const fu_joint *)coupling;
     const fu_state *next = equations->next;

@@ -55,7 +55,8 @@ void fu_resistance_at(const fu_model *model, const fu_state *state, int j, const
     const double buffer[4] = {stop ? stop->stiffness : 0.0, stop ? stop->damping : 0.0,
                               stop ? fu_compression(model, state, j, side) : 0.0, side};
     double by_x;
-    slide->resistance->force(t, u, f, friction, buffer, &resistance->R, resistance->by_t, resistance->by_u, resistance->by_f, &by_x);
+    slide->resistance->force(t, u, f, friction, buffer, &resistance->R, resistance->by_t, resistance->by_u, resistance->by_f,
+                             &by_x);
     resistance->by_s = side * by_x;
 }
 

@@ -23,7 +23,8 @@ static double resisted(const fu_model *model, const fu_state *state, int j)
     return resistance.R;
 }
 
-static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, double *f, double *own)
+static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, double *f,
+                     double *own)
 {
     const fu_slide *slide = (const fu_slide *)coupling;
     const fu_state *next = equations->next;
@@ -109,7 +110,8 @@ static void discrete_gradient(const fu_model *model, const fu_coupling *coupling
                                      rider_at(model, next, slide), G);
 }
 
-static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *step, double *f, double *own)
+static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *step, double *f,
+                          double *own)
 {
     const fu_slide *slide = (const fu_slide *)coupling;
     const fu_state *next = step->next;

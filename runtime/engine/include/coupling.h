@@ -17,7 +17,7 @@ typedef struct fu_accelerator fu_accelerator;
  * coordinates (s of a slide), then its forces (multipliers are forces). fu_list_couplings numbers them. */
 typedef struct {
     const fu_coupling_type *type;
-    int index;                     /* among the couplings of its type */
+    int index;                     /* among the couplings of its structure */
     int unknown;                   /* the first of its unknowns, counted beyond the dofs */
     int n_coordinates, coordinate; /* its own coordinates, and the first of them in state->s */
     int n_forces, force;           /* its own forces, and the first of them in state->forces */
