@@ -208,7 +208,7 @@ cdef class Engine(Statics):
         cdef int i, first = 0, width = 0
         count = self._count(kind)
         for i in range(self.model.n_couplings - 1, -1, -1):
-            if self.couplings[i].type.name == kind.encode():
+            if self._kind(self.couplings[i]) == kind:
                 first, width = self.couplings[i].output, self.couplings[i].type.n_outputs
         return output[:, first:first + count * width].reshape(len(output), count, width)
 

@@ -161,6 +161,16 @@ const fu_coupling *fu_follow(const fu_model *model, fu_state *state)
     return 0;
 }
 
+int fu_may_start_open(const fu_model *model, const fu_state *state)
+{
+    int open = 0;
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->type->may_start_open) open |= c->type->may_start_open(c, state);
+    }
+    return open;
+}
+
 int fu_is_possible(const fu_model *model, const fu_state *state)
 {
     for (int k = 0; k < model->n_couplings; ++k) {

@@ -1,14 +1,14 @@
-/* Slides that stick, break loose, or come to what waits at an end of their cable: events that change what holds s.
+/* Slides that stick, break loose, or come to what waits at an end of their cable: events that change what locks s.
  *
- * mode is FU_SLIDES, FU_LOCKED (where it stands: by friction that sticks, or against a hard stop, contact then tells which),
- * FU_LEFT. way is the direction of sliding where friction sticks at rest: known then, as a change of it is an event.
+ * mode is FU_SLIDES, FU_LOCKED (where it is: by friction that sticks, or against a hard stop, contact then tells which) or
+ * FU_LEFT. slip_direction is that of sliding where friction sticks at rest: known then, as a change of it is an event.
  */
 #include "engine.h"
 
 #include <string.h>
 
 #define AT_REST 1e-12 /* of the cable over the duration: speeds below are none */
-#define BOUNCE 1e-6   /* of the cable: a stop holds what would come no farther back */
+#define BOUNCE 1e-6   /* of the cable: what would come no farther back stays at the stop */
 
 static int is_hard(const fu_model *model, int j, int side)
 {
@@ -41,7 +41,7 @@ static int locked_force(const fu_run *run, const fu_state *state, int j, double 
     return 1;
 }
 
-/* Force along the cable that must be held where a slide is held, and how much of it friction and a hard stop do not. */
+/* Force along the cable on a locked slide, and how much of it neither friction nor a hard stop can take. */
 static double excess(const fu_run *run, const fu_state *state, int j, double *pull)
 {
     const fu_model *model = run->model;
@@ -58,16 +58,16 @@ static double excess(const fu_run *run, const fu_state *state, int j, double *pu
         const double across = f[d] - along * G[d] / sqrt(square);
         normal += across * across;
     }
-    /* what moments put along the cable is not held by friction */
+    /* friction does not take what moments put along the cable */
     if (by_eq38 && fu_ties_a_frame(model, j)) along = traction;
-    const double grip = slide->static_friction * sqrt(normal);
+    const double most = slide->static_friction * sqrt(normal);
     if (side && !is_hard(model, j, side)) /* the buffer's part */
         along += side * slide->stops[side > 0].stiffness * fu_compression(model, state, j, side) * sqrt(square);
     *pull = along;
-    return (is_hard(model, j, side) ? side * along : fabs(along)) - grip;
+    return (is_hard(model, j, side) ? side * along : fabs(along)) - most;
 }
 
-/* What is watched: negative as long as a slide stays held, or goes on its way. */
+/* What is watched: negative as long as a slide stays locked, or slides on in its direction. */
 double fu_stick_margin(const fu_run *run, const fu_state *state, int j)
 {
     const fu_slide *slide = &run->model->slides[j];
@@ -87,7 +87,7 @@ double fu_buffer_margin(const fu_run *run, const fu_state *state, int j, int sid
     return fmin(x, force);
 }
 
-/* Let go of a slide that is held, against which `pull` was needed. */
+/* Unlock a slide, on which there was the force `pull` along the cable. */
 static void release(fu_run *run, int j, double pull)
 {
     fu_state *now = &run->now;
@@ -97,7 +97,7 @@ static void release(fu_run *run, int j, double pull)
     if (hard) now->contact[j] = 0;
 }
 
-/* Hold a slide that stands still, if what holds it is enough, else let it go on; the status. */
+/* Lock a slide that is at rest, if friction or its stop can take the force on it, else let it slide on; the status. */
 static int try_to_stick(fu_run *run, int j)
 {
     fu_state *now = &run->now;
@@ -116,13 +116,14 @@ static int is_at_rest(const fu_run *run, int j)
     return fabs(fu_slide_rate(run->model, &run->now, j)) * run->duration <= AT_REST * fu_length(run->model, j);
 }
 
-/* the way that each slide goes whose friction needs it */
-static void find_ways(fu_run *run)
+/* the direction of sliding of each slide whose friction needs it */
+static void find_slip_directions(fu_run *run)
 {
     fu_state *now = &run->now;
     for (int j = 0; j < run->model->n_slides; ++j) {
         const double rate = fu_slide_rate(run->model, now, j);
-        if (run->model->slides[j].sticks && now->mode[j] == FU_SLIDES && rate != 0.0) now->slip_direction[j] = rate > 0.0 ? 1 : -1;
+        if (run->model->slides[j].sticks && now->mode[j] == FU_SLIDES && rate != 0.0)
+            now->slip_direction[j] = rate > 0.0 ? 1 : -1;
     }
 }
 
@@ -130,11 +131,12 @@ static void find_ways(fu_run *run)
 int fu_begin_stops(fu_run *run)
 {
     const fu_model *model = run->model;
-    find_ways(run);
+    find_slip_directions(run);
     for (int j = 0; j < model->n_slides; ++j) {
         if (model->slides[j].drive >= 0) continue;
         for (int side = -1; side <= 1; side += 2)
-            if (model->slides[j].stops[side > 0].kind == FU_END_IS_BUFFERED && fu_buffer_margin(run, &run->now, j, side) > 0.0)
+            if (model->slides[j].stops[side > 0].kind == FU_END_IS_BUFFERED &&
+                fu_buffer_margin(run, &run->now, j, side) > 0.0)
                 run->now.contact[j] = side;
         if (model->slides[j].sticks && is_at_rest(run, j) && try_to_stick(run, j)) return FU_SINGULAR;
     }
@@ -166,7 +168,7 @@ static int strike(fu_run *run, int j, int side)
         now->contact[j] = side;
         if (try_to_stick(run, j)) return FU_SINGULAR;
     }
-    find_ways(run);
+    find_slip_directions(run);
     return FU_RUNNING;
 }
 

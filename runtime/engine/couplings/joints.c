@@ -1,17 +1,17 @@
-/* Joints between two ends: equations phi of the gap between their points and of their axes (derive/couplings/joint.py), made
- * equations over the coordinates of what carries the ends. Of an end on a slide s is one of them.
+/* Joints between two attachments: equations phi of the gap between their points and of their axes (derive/couplings/
+ * joint.py), made equations over the coordinates of what carries them. Of an attachment on a slide s is one of them.
  */
 #include "engine.h"
 
 #include <string.h>
 
-enum { MOVES = 9 }; /* gap, turn of the first end, turn of the second: as many in space, fewer in the plane */
+enum { MOVES = 9 }; /* gap, turn of the first attachment, turn of the second: as many in space, fewer in the plane */
 
-/* A joint where its state stands. */
+/* A joint at a state. */
 typedef struct {
-    fu_attachment_state place[2];
+    fu_attachment_state at[2];
     double gap[3], c[3], rate, second;
-    double B[MOVES * 2 * FU_ATTACHMENT_COORDINATES]; /* derivatives of gap and turns by the coordinates of both ends */
+    double B[MOVES * 2 * FU_ATTACHMENT_COORDINATES]; /* derivatives of gap and turns by the coordinates of both */
     int moves, n;
 } joint_view;
 
@@ -20,8 +20,8 @@ static void look(const fu_model *model, const fu_joint *joint, const fu_state *s
 {
     const int dim = model->dim, turns = dim == 3 ? 3 : 1;
     for (int e = 0; e < 2; ++e)
-        fu_attachment_at(model, &joint->ends[e], state, s_rate ? s_rate[e] : 0.0, FU_POINT | FU_AXES, &view->place[e]);
-    const fu_attachment_state *one = &view->place[0], *two = &view->place[1];
+        fu_attachment_at(model, &joint->ends[e], state, s_rate ? s_rate[e] : 0.0, FU_POINT | FU_AXES, &view->at[e]);
+    const fu_attachment_state *one = &view->at[0], *two = &view->at[1];
     const int n1 = one->n, n2 = two->n, n = n1 + n2;
     view->n = n;
     view->moves = dim + 2 * turns;
@@ -58,12 +58,12 @@ static void over_coordinates(const joint_view *view, int rows, const double *by_
 
 static int coordinates(const joint_view *view, int *at)
 {
-    memcpy(at, view->place[0].at, sizeof(int) * (size_t)view->place[0].n);
-    memcpy(at + view->place[0].n, view->place[1].at, sizeof(int) * (size_t)view->place[1].n);
+    memcpy(at, view->at[0].at, sizeof(int) * (size_t)view->at[0].n);
+    memcpy(at + view->at[0].n, view->at[1].at, sizeof(int) * (size_t)view->at[1].n);
     return view->n;
 }
 
-/* whether the slide that it stands beside has left its cable */
+/* whether the slide that it is on has left its cable */
 int fu_joint_is_inactive(const fu_joint *joint, const fu_state *state)
 {
     for (int e = 0; e < 2; ++e)
@@ -78,12 +78,13 @@ int fu_joint_residual(const fu_model *model, const fu_joint *joint, const fu_sta
     const double *multipliers = state->forces + joint->base.force;
     joint_view view;
     look(model, joint, state, 0, &view);
-    joint->kernel->force(view.gap, view.place[0].A, view.place[1].A, view.c, multipliers, phi, by_moves, K);
+    joint->kernel->force(view.gap, view.at[0].A, view.at[1].A, view.c, multipliers, phi, by_moves, K);
     over_coordinates(&view, joint->kernel->rows, by_moves, J);
     return coordinates(&view, at);
 }
 
-/* whether a slide, or any where `which` is -1, ties its rider's axes to the cable: their turn jumps where its curvature does */
+/* whether a slide, or any where `which` is -1, ties its rider's axes to the cable: their turn jumps where its curvature
+ * does */
 int fu_ties_a_frame(const fu_model *model, int which)
 {
     for (int k = 0; k < model->n_couplings; ++k) {
@@ -111,8 +112,8 @@ int fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_stat
     const double *multipliers = state->forces + joint->base.force;
     joint_view view;
     look(model, joint, state, 0, &view);
-    const int n = coordinates(&view, at), n1 = view.place[0].n;
-    joint->kernel->force(view.gap, view.place[0].A, view.place[1].A, view.c, multipliers, phi, by_moves, of_moves);
+    const int n = coordinates(&view, at), n1 = view.at[0].n;
+    joint->kernel->force(view.gap, view.at[0].A, view.at[1].A, view.c, multipliers, phi, by_moves, of_moves);
     over_coordinates(&view, rows, by_moves, J);
     over_coordinates(&view, view.moves, of_moves, half);
     for (int r = 0; r < rows; ++r)
@@ -124,7 +125,7 @@ int fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_stat
         }
     for (int e = 0; e < 2; ++e) {
         double pull[3], part[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
-        const int m = view.place[e].n, from = e ? n1 : 0;
+        const int m = view.at[e].n, from = e ? n1 : 0;
         for (int d = 0; d < dim; ++d) pull[d] = e ? g[d] : -g[d];
         memset(part, 0, sizeof(double) * (size_t)(m * m));
         fu_geometric_stiffness(model, &joint->ends[e], state, pull, g + dim + e * turns, m, part);
@@ -139,7 +140,7 @@ static const fu_rows *rows_of_slide(const fu_model *model, const fu_joint *joint
     return &work->rows[model->slides[joint->ends[e].slide].base.row];
 }
 
-/* H and W over the joint's coordinates made those over the dofs: where an end is on a slide its s follows (eq 24, 31, 37). */
+/* H and W over the joint's coordinates made those over the dofs: s of an attachment on a slide follows (eq 24, 31, 37). */
 static void replace_s(const fu_model *model, const fu_joint *joint, const joint_view *view, const double *J,
                       const fu_accelerator *work, fu_rows *rows)
 {
@@ -161,7 +162,7 @@ static void replace_s(const fu_model *model, const fu_joint *joint, const joint_
         if (slide < 0) continue;
         const fu_rows *of = rows_of_slide(model, joint, e, work);
         const fu_slide_state *slide_state = &work->slide_states[slide];
-        const int s = (e ? view->n : view->place[0].n) - 1;
+        const int s = (e ? view->n : view->at[0].n) - 1;
         rows->slide = slide;
         memcpy(rows->at + to, of->at, sizeof(int) * (size_t)of->n);
         for (int r = 0; r < m; ++r) {
@@ -174,7 +175,7 @@ static void replace_s(const fu_model *model, const fu_joint *joint, const joint_
     }
 }
 
-/* H q'' = W, what is left of phi, and its rate at rest; where an end is on a slide its s follows (eq 24, 31, 37):
+/* H q'' = W, what is left of phi, and its rate at rest; s of an attachment on a slide follows (eq 24, 31, 37):
  * H = C_q + C_s G, W = -Q_d - C_s (s'' - G q''). The rows of that slide are there. */
 static void constraint_rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work)
 {
@@ -190,7 +191,7 @@ static void constraint_rows(const fu_model *model, const fu_coupling *coupling, 
     }
     for (int e = 0; e < 2; ++e) s_rate[e] = joint->ends[e].slide >= 0 ? slide_states[joint->ends[e].slide].s_rate : 0.0;
     look(model, joint, state, s_rate, &view);
-    const fu_attachment_state *one = &view.place[0], *two = &view.place[1];
+    const fu_attachment_state *one = &view.at[0], *two = &view.at[1];
     joint->kernel->force(view.gap, one->A, two->A, view.c, state->forces + joint->base.force, rows->C,
                         by_moves, K);
     over_coordinates(&view, m, by_moves, J);
@@ -218,7 +219,7 @@ static void constraint_rows(const fu_model *model, const fu_coupling *coupling, 
         }
 }
 
-/* Whether an unknown that the joint touches moves: all do but s of a slide that does not slide, whose row is that it stays. */
+/* Whether an unknown that the joint touches moves: all do but s of a slide that does not slide, whose row says so. */
 static int moves(const fu_model *model, const fu_joint *joint, const fu_state *state, int at)
 {
     for (int e = 0; e < 2 && at >= model->n_dof; ++e) {
@@ -228,7 +229,8 @@ static int moves(const fu_model *model, const fu_joint *joint, const fu_state *s
     return 1;
 }
 
-static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, double *f, double *own)
+static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, double *f,
+                     double *own)
 {
     const fu_joint *joint = (const fu_joint *)coupling;
     const fu_state *next = equations->next;
@@ -259,7 +261,7 @@ static void unit_rows(const fu_model *model, const fu_joint *joint, int which, d
         if (which >> r & 1) fu_add(model, system, first + r, first + r, fu_row_unit(inertia, joint->base.scale[r]));
 }
 
-/* Derivatives by the coordinates of the ends' bodies, made those by psi. */
+/* Derivatives by the coordinates of both attachments, made those by psi. */
 static void turn_ends(const fu_model *model, const fu_joint *joint, const double *psi, double *rows, int n_rows, int n,
                       int n_first)
 {
@@ -308,6 +310,12 @@ static void gaps(const fu_model *model, const fu_coupling *coupling, const fu_st
     fu_joint_residual(model, (const fu_joint *)coupling, state, phi, at, J);
 }
 
+static int may_start_open(const fu_coupling *coupling, const fu_state *state)
+{
+    (void)coupling, (void)state;
+    return 1;
+}
+
 static void take_forces(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state)
 {
     (void)model;
@@ -315,7 +323,7 @@ static void take_forces(const fu_model *model, const fu_coupling *coupling, cons
            sizeof(double) * (size_t)coupling->n_forces);
 }
 
-/* What the joint puts on its second end by these multipliers. */
+/* Force and moment of the joint on its second attachment by these multipliers. */
 void fu_joint_outputs(const fu_model *model, const fu_joint *joint, const fu_state *state, const double *multipliers,
                       fu_joint_output *out)
 {
@@ -325,7 +333,7 @@ void fu_joint_outputs(const fu_model *model, const fu_joint *joint, const fu_sta
     *out = (fu_joint_output){0};
     if (fu_joint_is_inactive(joint, state)) return;
     look(model, joint, state, 0, &view);
-    joint->kernel->force(view.gap, view.place[0].A, view.place[1].A, view.c, multipliers, phi, by_moves, K);
+    joint->kernel->force(view.gap, view.at[0].A, view.at[1].A, view.c, multipliers, phi, by_moves, K);
     for (int r = 0; r < joint->kernel->rows; ++r) {
         const double *J = by_moves + r * view.moves;
         out->residual = fmax(out->residual, fabs(phi[r]));
@@ -351,4 +359,5 @@ const fu_coupling_type fu_joint_type = {
     .take_forces = take_forces,
     .outputs = outputs,
     .gaps = gaps,
+    .may_start_open = may_start_open,
 };

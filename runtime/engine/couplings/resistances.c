@@ -1,9 +1,9 @@
 /* Friction of a slide that slides, and the buffer that it has run into: R, the force along the cable on the rider times
  * r_x, from the tangent t = r_x, the velocity u of the rider's point over the cable's particle and the whole force f.
  *
- * R stands in the row of s, f . r_x = R (eq 30 has zero there), and in eq 38 as G' R. A slide that is held needs none: the
- * force along the cable is then what holding takes. Of a slide that is driven it is a part of that: the drive gives the
- * rest, and R counts for its power and for what goes to heat alone.
+ * R stands in the row of s, f . r_x = R (eq 30 has zero there), and in eq 38 as G' R. A locked slide needs none: the
+ * force along the cable is then that of the lock. Of a slide that is driven R is a part of that force: the drive gives the
+ * rest, and R counts for the drive's power and for the energy dissipated.
  */
 #include "engine.h"
 
@@ -20,12 +20,12 @@ int fu_has_resistance(const fu_model *model, const fu_state *state, int j)
     return slide->resistance && (state->mode[j] == FU_SLIDES || (state->mode[j] == FU_LOCKED && slide->drive >= 0));
 }
 
-/* direction that friction is against, 0 where it goes smoothly with the speed; a drive that stands needs none of it */
-static double way_of(const fu_model *model, const fu_state *state, int j)
+/* direction that friction is against, 0 where it rises smoothly with the speed, and of a drive at rest */
+static double direction_of(const fu_model *model, const fu_state *state, int j)
 {
     double rate, second;
     if (model->slides[j].drive < 0) return state->slip_direction[j];
-    fu_slide_held(model, state, j, &rate, &second);
+    fu_slide_locked_s(model, state, j, &rate, &second);
     return model->slides[j].sticks ? (rate > 0.0) - (rate < 0.0) : 0.0;
 }
 
@@ -50,12 +50,13 @@ void fu_resistance_at(const fu_model *model, const fu_state *state, int j, const
     const fu_slide *slide = &model->slides[j];
     const fu_end_stop *stop = pressed(model, state, j);
     const int side = state->contact[j];
-    const double friction[5] = {slide->friction, slide->viscous, slide->velocity, way_of(model, state, j),
+    const double friction[5] = {slide->friction, slide->viscous, slide->velocity, direction_of(model, state, j),
                                 LEAST_NORMAL};
     const double buffer[4] = {stop ? stop->stiffness : 0.0, stop ? stop->damping : 0.0,
                               stop ? fu_compression(model, state, j, side) : 0.0, side};
     double by_x;
-    slide->resistance->force(t, u, f, friction, buffer, &resistance->R, resistance->by_t, resistance->by_u, resistance->by_f, &by_x);
+    slide->resistance->force(t, u, f, friction, buffer, &resistance->R, resistance->by_t, resistance->by_u, resistance->by_f,
+                             &by_x);
     resistance->by_s = side * by_x;
 }
 
@@ -224,4 +225,22 @@ double fu_resistance_dissipation(const fu_model *model, const fu_coupling *coupl
     fu_slide_tangent(model, state, j, f, J, K);
     fu_slide_motion(model, state, j, J, t, u);
     return fu_resistance_power(model, state, j, t, u, f);
+}
+
+/* Where the normal force turns round within a step, friction has a kink, and no quadrature over the step is right: the
+ * friction of the mean normal force differs from the mean friction, by at least the error made. The rider's speed stays
+ * wrong, and its position is off by that times the time that is left. */
+double fu_resistance_kink(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int n,
+                          const double *weights, const double *multipliers, double square)
+{
+    const fu_slide *slide = (const fu_slide *)coupling;
+    double mean[2] = {0.0, 0.0}, all = 0.0;
+    if (!slide->resistance || state->mode[coupling->index] != FU_SLIDES) return 0.0;
+    for (int k = 0; k < n; ++k) {
+        const double *N = multipliers + (long)k * model->n_multipliers + coupling->multiplier;
+        const double normal[2] = {N[0], model->dim == 3 ? N[1] : 0.0};
+        for (int d = 0; d < 2; ++d) mean[d] += weights[k] * normal[d];
+        all += weights[k] * hypot(normal[0], normal[1]);
+    }
+    return square * slide->friction * (all - hypot(mean[0], mean[1])) / coupling->scale[0];
 }

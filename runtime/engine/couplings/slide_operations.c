@@ -23,7 +23,8 @@ static double resisted(const fu_model *model, const fu_state *state, int j)
     return resistance.R;
 }
 
-static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, double *f, double *own)
+static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, double *f,
+                     double *own)
 {
     const fu_slide *slide = (const fu_slide *)coupling;
     const fu_state *next = equations->next;
@@ -36,7 +37,7 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
     fu_slide_residual(model, next, j, phi, g);
     for (int i = 0; i < s; ++i) f[at[i]] += g[i];
     own[0] = mode == FU_SLIDES ? -scale * g[s]
-        : -unit * (next->s[j] - (mode == FU_LOCKED ? fu_slide_held(model, next, j, &rate, &second) : equations->now->s[j]));
+        : -unit * (next->s[j] - (mode == FU_LOCKED ? fu_slide_locked_s(model, next, j, &rate, &second) : equations->now->s[j]));
     if (slide->resistance && mode == FU_SLIDES) own[0] += scale * resisted(model, next, j);
     for (int d = 0; d < slide->kernel->dim; ++d)
         own[1 + d] = mode == FU_LEFT ? -scale * next->forces[coupling->force + d] : -unit * phi[d];
@@ -109,7 +110,8 @@ static void discrete_gradient(const fu_model *model, const fu_coupling *coupling
                                      rider_at(model, next, slide), G);
 }
 
-static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *step, double *f, double *own)
+static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *step, double *f,
+                          double *own)
 {
     const fu_slide *slide = (const fu_slide *)coupling;
     const fu_state *next = step->next;
@@ -245,6 +247,12 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
     fu_slide_outputs(model, state, coupling->index, acceleration, work, (fu_slide_output *)out);
 }
 
+/* A rigid body is put on its cable when it is drawn; s of one that is not locked follows. */
+static int may_start_open(const fu_coupling *coupling, const fu_state *state)
+{
+    return state->mode[coupling->index] == FU_LOCKED || !((const fu_slide *)coupling)->rider_is_rigid;
+}
+
 /* s where C_l = 0 (eq 21) */
 static int follow(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
@@ -285,6 +293,7 @@ const fu_coupling_type fu_slide_type = {
     .step_tangent = step_tangent,
     .rows = rows,
     .react = fu_resistance_react,
+    .kink = fu_resistance_kink,
     .reacted = fu_resistance_reacted,
     .take_forces = take_forces,
     .outputs = outputs,
@@ -292,6 +301,7 @@ const fu_coupling_type fu_slide_type = {
     .energy = fu_buffer_energy,
     .dissipation = fu_resistance_dissipation,
     .lost_in_step = fu_lost_in_buffers,
+    .may_start_open = may_start_open,
     .follow = follow,
     .carry = fu_carry_director,
     .touch = fu_touch_buffers,

@@ -104,6 +104,7 @@ cdef extern from "engine.h" nogil:
     ctypedef struct fu_coupling_type:
         const char *name
         int n_outputs
+        const void *law
     ctypedef struct fu_coupling:
         const fu_coupling_type *type
         int index, unknown, n_coordinates, coordinate, n_forces, force, n_multipliers, multiplier, row, output

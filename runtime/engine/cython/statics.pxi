@@ -83,7 +83,7 @@ cdef class Statics(Translation):
         given = {"slide": force, "joint": multipliers, "spring": spring}
         for i in range(self.model.n_couplings):
             c = self.couplings[i]
-            values = given.get(c.type.name.decode())
+            values = given.get(self._kind(c))
             for k in range(c.n_forces):
                 forces[c.force + k] = 0.0 if values is None else values[c.index][k]
 
@@ -105,14 +105,18 @@ cdef class Statics(Translation):
         found = []
         for i in range(self.model.n_couplings):
             c = self.couplings[i]
-            if c.type.name == kind.encode():
+            if self._kind(c) == kind:
                 found.append([forces[c.force + k] if k < c.n_forces else 0.0 for k in range(width)])
         return np.array(found).reshape(-1, width)
+
+    cdef str _kind(self, const fu_coupling *coupling):
+        """"load", "slide", "joint", or "spring" for all forces between two points."""
+        return "spring" if coupling.type.law != NULL else coupling.type.name.decode()
 
     cdef int _count(self, str kind):
         """Number of couplings of a kind."""
         cdef int i
-        return sum([self.couplings[i].type.name == kind.encode() for i in range(self.model.n_couplings)])
+        return sum([self._kind(self.couplings[i]) == kind for i in range(self.model.n_couplings)])
 
     def load(self, double fraction, gravity=True):
         """Apply this fraction of all loads at `place`d states; gravity: of the weight, too, which else stays whole.

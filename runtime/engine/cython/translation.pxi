@@ -215,12 +215,10 @@ cdef class Translation(Arrays):
             l.signal, l.c0 = joint.signal, joint.base
             for k in range(2):
                 self._end(&l.ends[k], joint.ends[k], tables)
-        numbers = {}
         for i, force in enumerate(model.springs):
             p = &self.point_forces[i]
-            numbers[force.type] = numbers.get(force.type, -1) + 1
-            self._coupling(&p.base, force.type, numbers[force.type], force.unknown, [force.mass] * force.dim)
-            p.base.is_damped, p.dim = force.damping > 0, force.dim
+            self._coupling(&p.base, force.type, i, force.unknown, [force.mass] * force.dim)
+            p.base.is_damped, p.dim = force.is_damped, force.dim
             if len(force.parameters) > FU_MAX_PARAMETERS:
                 raise ValueError(f"{force.type}: more parameters than the engine's {FU_MAX_PARAMETERS}")
             for k in range(len(force.parameters)):

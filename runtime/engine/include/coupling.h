@@ -17,7 +17,7 @@ typedef struct fu_accelerator fu_accelerator;
  * coordinates (s of a slide), then its forces (multipliers are forces). fu_list_couplings numbers them. */
 typedef struct {
     const fu_coupling_type *type;
-    int index;                     /* among the couplings of its type */
+    int index;                     /* among the couplings of its structure */
     int unknown;                   /* the first of its unknowns, counted beyond the dofs */
     int n_coordinates, coordinate; /* its own coordinates, and the first of them in state->s */
     int n_forces, force;           /* its own forces, and the first of them in state->forces */
@@ -77,6 +77,10 @@ struct fu_coupling_type {
                     fu_accelerator *work);
     void (*reacted)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
                     fu_accelerator *work);
+    /* Error that a kink of the force within a step may make, m: from n states of it, their weights in the mean, and the
+     * multipliers there (n x model->n_multipliers); square: the step times the time that is left, s^2. */
+    double (*kink)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int n, const double *weights,
+                   const double *multipliers, double square);
     /* After eq 38: the state's own forces; numbers of a row of output. */
     void (*take_forces)(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state);
     void (*outputs)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
@@ -95,6 +99,8 @@ struct fu_coupling_type {
     /* Energy that a step from one state to another dissipates beside that power, J. */
     double (*lost_in_step)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to);
 
+    /* Whether a start may be off the constraints by a small gap. */
+    int (*may_start_open)(const fu_coupling *coupling, const fu_state *state);
     /* Own coordinates that follow from the others: not zero where none is found. */
     int (*follow)(const fu_model *model, const fu_coupling *coupling, fu_state *state);
     /* State that goes along with an accepted step. */

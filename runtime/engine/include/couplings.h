@@ -26,6 +26,7 @@ void fu_coupling_outputs(const fu_model *model, const fu_state *state, const dou
                          const fu_accelerator *work, double *out);
 void fu_gaps(const fu_model *model, const fu_state *state, double *gaps);
 void fu_coordinate_rates(const fu_model *model, const fu_accelerator *work, double *rates);
+int fu_may_start_open(const fu_model *model, const fu_state *state);
 const fu_coupling *fu_follow(const fu_model *model, fu_state *state);
 void fu_carry(const fu_model *model, fu_state *state);
 void fu_touch(const fu_model *model, fu_state *state);

@@ -18,7 +18,7 @@ extern const fu_coupling_type fu_joint_type;
 
 /* A joint's numbers in a row of output. */
 typedef struct {
-    double force[3], moment[3], residual; /* on what carries the second end, at its point; the largest of phi */
+    double force[3], moment[3], residual; /* on the second attachment, at its point; the largest of phi */
 } fu_joint_output;
 
 int fu_joint_is_inactive(const fu_joint *joint, const fu_state *state);

@@ -24,6 +24,8 @@ double fu_resistance_react(const fu_model *model, const fu_coupling *coupling, c
                            fu_accelerator *work);
 void fu_resistance_reacted(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
                            fu_accelerator *work);
+double fu_resistance_kink(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int n,
+                          const double *weights, const double *multipliers, double square);
 double fu_resistance_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                                  const fu_accelerator *work);
 double fu_buffer_energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state);

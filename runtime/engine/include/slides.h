@@ -40,7 +40,7 @@ typedef struct {
 } fu_slide_output;
 
 int fu_slide_coordinates(const fu_model *model, const fu_state *state, int j, int *at);
-double fu_slide_held(const fu_model *model, const fu_state *state, int j, double *rate, double *second);
+double fu_slide_locked_s(const fu_model *model, const fu_state *state, int j, double *rate, double *second);
 void fu_slide_residual(const fu_model *model, const fu_state *state, int j, double *phi, double *g);
 void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, const double *f, double *J, double *K);
 void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows *rows, fu_slide_state *slide_state);

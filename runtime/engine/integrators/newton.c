@@ -70,13 +70,15 @@ static int blame(fu_run *run)
     const double *own = fu_own(run);
     double largest = fu_size(model, run->work);
     int slide = -1;
-    for (int j = 0; j < model->n_slides; ++j)
-        for (int d = 0; d <= model->slides[j].kernel->dim; ++d) {
-            const double size = fabs(own[model->slides[j].base.unknown + d]);
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        for (int i = 0; c->n_coordinates && i < c->n_coordinates + c->n_forces; ++i) {
+            const double size = fabs(own[c->unknown + i]);
             if (!(size > largest)) continue;
             largest = size;
-            slide = j;
+            slide = c->index;
         }
+    }
     return fu_fail(run, FU_ITERATION, run->work, slide);
 }
 

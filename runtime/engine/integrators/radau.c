@@ -53,7 +53,7 @@ typedef struct {
     double *w;        /* their transforms: likewise */
     double *q;        /* configurations, n_q each */
     double *powers;   /* dissipated and external, of each stage */
-    double *normal;   /* normal forces of the slides, 2 each, at the start and at each stage */
+    double *multipliers; /* of eq 38 at the start and at each stage, where forces depend on them */
     double *unknowns; /* of a Newton system */
     double *D_real;   /* the real system's border before it was factored */
     double *last;     /* the last step's Z */
@@ -78,7 +78,7 @@ static long lay_out(const fu_run *run, double *scratch)
     w->w = fu_take(scratch, &taken, STAGES * n);
     w->q = fu_take(scratch, &taken, STAGES * (long)model->n_q);
     w->powers = fu_take(scratch, &taken, 2 * STAGES);
-    w->normal = fu_take(scratch, &taken, 2 * (STAGES + 1) * (long)model->n_slides);
+    w->multipliers = fu_take(scratch, &taken, (STAGES + 1) * (long)model->n_multipliers);
     w->unknowns = fu_take(scratch, &taken, run->newton.n + m);
     w->D_real = fu_take(scratch, &taken, m * m);
     w->last = fu_take(scratch, &taken, STAGES * n);
@@ -231,15 +231,11 @@ static int place_stage(fu_run *run, workspace *w, int k, double h)
     return fu_find_own(run);
 }
 
-/* The normal forces of the state that accelerations have just been found of, as those of stage k. */
-static void keep_normals(fu_run *run, workspace *w, int k)
+/* The multipliers of the state that accelerations have just been found of, as those of stage k. */
+static void keep_multipliers(fu_run *run, workspace *w, int k)
 {
-    const fu_model *model = run->model;
-    double *normal = w->normal + 2L * k * model->n_slides;
-    if (!model->n_reacting) return;
-    for (int j = 0; j < model->n_slides; ++j)
-        for (int c = 0; c < 2; ++c)
-            normal[2 * j + c] = c < model->dim - 1 ? run->accelerator.multipliers[model->slides[j].base.multiplier + c] : 0.0;
+    const long n = run->model->n_multipliers;
+    if (run->model->n_reacting) memcpy(w->multipliers + k * n, run->accelerator.multipliers, sizeof(double) * (size_t)n);
 }
 
 /* accelerations of all stages; 0 when they were found */
@@ -256,7 +252,7 @@ static int evaluate(fu_run *run, workspace *w, double h)
         memcpy(w->a + (long)k * model->n_dof, next->acceleration, sizeof(double) * (size_t)model->n_dof);
         w->powers[2 * k] = fu_dissipated_power(run, next);
         w->powers[2 * k + 1] = fu_external_power(run, next, reaction);
-        keep_normals(run, w, k + 1);
+        keep_multipliers(run, w, k + 1);
     }
     run->statistics.evaluations += STAGES;
     run->statistics.time_residual += fu_clock() - begin;
@@ -417,10 +413,8 @@ static int step(fu_run *run, double h)
     return fu_complete(run, &run->next) ? fu_fail_eq38(run) : 0;
 }
 
-/* Where the normal force of a slide turns round within a step, friction has a kink, and no quadrature over the step is
- * right: the friction of the mean normal force differs from the mean friction, by at least the error made. The rider's
- * speed stays wrong, and its position is off by that times the time that is left. Kinks are single events, so that one may
- * cost a part of tol, however short its step. Returns the error as a part of what is allowed, m. */
+/* Kinks of forces within a step are single events, so that one may cost a part of tol, however short its step. Returns the
+ * largest error that one may make as a part of what is allowed, m. */
 static double kink(fu_run *run, workspace *w, double h)
 {
     const fu_model *model = run->model;
@@ -429,18 +423,12 @@ static double kink(fu_run *run, workspace *w, double h)
     double worst = 0.0;
     if (!model->n_reacting) return 0.0;
     if (fu_accelerations(model, &run->now, &run->accelerator, run->work, 0)) return INFINITY;
-    keep_normals(run, w, 0);
+    keep_multipliers(run, w, 0);
     ++run->statistics.evaluations;
-    for (int j = 0; j < model->n_slides; ++j) {
-        const fu_slide *slide = &model->slides[j];
-        double mean[2] = {0.0, 0.0}, all = 0.0;
-        if (!slide->resistance || run->next.mode[j] != FU_SLIDES) continue;
-        for (int k = 0; k <= STAGES; ++k) {
-            const double *N = w->normal + 2L * (k * model->n_slides + j);
-            for (int d = 0; d < 2; ++d) mean[d] += weight[k] * N[d];
-            all += weight[k] * hypot(N[0], N[1]);
-        }
-        worst = fmax(worst, h * left * slide->friction * (all - hypot(mean[0], mean[1])) / slide->base.scale[0]);
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *coupling = model->couplings[k];
+        if (!coupling->type->kink) continue;
+        worst = fmax(worst, coupling->type->kink(model, coupling, &run->next, STAGES + 1, weight, w->multipliers, h * left));
     }
     return worst * run->allowed / (KINK * run->tol * fmax(run->motion, run->least_motion));
 }

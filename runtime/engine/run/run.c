@@ -74,14 +74,6 @@ static int start_scheme(fu_run *run, int project)
     return run->integrator->start(run);
 }
 
-/* whether a start can be off its joints by a small gap: bodies are put on their cables when they are drawn */
-static int closes(const fu_run *run)
-{
-    int locked = run->model->n_rows > run->model->n_slides;
-    for (int j = 0; j < run->model->n_slides; ++j) locked |= run->now.mode[j] == FU_LOCKED || !run->model->slides[j].rider_is_rigid;
-    return locked;
-}
-
 /* What the first evaluation needs: a state on its cables, the mass matrix. */
 int fu_prepare(fu_run *run)
 {
@@ -103,7 +95,7 @@ int fu_start(fu_run *run)
     fu_state *now = &run->now;
     run->ceiling = run->duration;
     if (fu_prepare(run)) return FU_SINGULAR;
-    if (closes(run) && fu_close(run)) return FU_SINGULAR;
+    if (fu_may_start_open(model, now) && fu_close(run)) return FU_SINGULAR;
     memcpy(run->first, now->q, sizeof(double) * (size_t)model->n_q);
     if (start_scheme(run, 1)) return FU_SINGULAR;
     if (fu_has_stops(model)) {
