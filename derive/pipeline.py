@@ -16,6 +16,7 @@ from __future__ import annotations
 from rich.console import Console
 from rich.progress import Progress
 
+from .algebra import section_points
 from .catalogue import families, named
 from .codegen import drift
 from .codegen import rendering as emit
@@ -44,7 +45,8 @@ def generate(names: list[str] | None = None, show: bool = False) -> dict[str, st
         progress.update(task, description="print")
         files = emit.render(known, wanted, lambda _: progress.advance(task))
     kept = {f"{d.family.name}.c": drift.current(f"{d.family.name}.c") for d in known if d.family.name not in wanted}
-    files[drift.MANIFEST] = emit.manifest(known, {n: text for n, text in kept.items() if text is not None} | files)
+    files[drift.MANIFEST] = emit.manifest(known, {n: text for n, text in kept.items() if text is not None} | files,
+                                          more={"section_points": section_points.table()})
     return files
 
 
