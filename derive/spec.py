@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import sympy as sp
 
@@ -81,7 +82,7 @@ class Element:
         """Return the length of the nodal coordinates e, the nodal vectors one after the other (eq 1)."""
         return self.dim * self.n_vectors
 
-    def nodal_conditions(self, functions) -> sp.Matrix:
+    def nodal_conditions(self, functions: Any) -> sp.Matrix:
         """Return the value of each nodal functional (row: r, r_x, ... at a node) on each function (column)."""
         rows = []
         for node in self.nodes:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -33,7 +34,7 @@ def axis(gram: Gram, c: np.ndarray, X: sp.Expr, w: sp.Expr, order: int) -> np.nd
     return expansion(polynomials, c, X, w).get((0, 0), zero)
 
 
-def by_section(p, X: sp.Expr, w: sp.Expr) -> dict[tuple[int, int], sp.Expr]:
+def by_section(p: Any, X: sp.Expr, w: sp.Expr) -> dict[tuple[int, int], sp.Expr]:
     """Return the factors, Horner's way in X and with one power of w = 1/l each, by the powers of y and z."""
     series: dict[tuple[int, int], dict[int, sp.Expr]] = {}
     for (x, y, z, l, u), c in p.terms():

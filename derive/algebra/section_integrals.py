@@ -7,6 +7,8 @@ integrated or simplified as a SymPy expression.
 
 from __future__ import annotations
 
+from typing import Any
+
 import sympy as sp
 from sympy.polys.rings import ring
 
@@ -18,18 +20,18 @@ SECTION_UNITS = "m^2, m^4, m^4, m^6, m^6, m^6"
 SECTION_DOC = "section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z^4"
 
 
-def legendre(n: int):
+def legendre(n: int) -> Any:
     """Legendre polynomial P_n(X) in the ring."""
     p = sp.Poly(sp.legendre(n, sp.Symbol("X")), sp.Symbol("X"))
     return sum((RING(sp.QQ.from_sympy(c)) * X**k for (k,), c in p.terms()), RING(0))
 
 
-def d_dx(p):
+def d_dx(p: Any) -> Any:
     """Derivative by x = l (1 + X)/2."""
     return 2 * W * p.diff(X)
 
 
-def over_element(p) -> dict[tuple[int, int], sp.QQ]:
+def over_element(p: Any) -> dict[tuple[int, int], sp.QQ]:
     """Integral over the volume: {(section moment, power of l): rational}."""
     total: dict[tuple[int, int], sp.QQ] = {}
     for (ex, ey, ez, el, ew), c in p.terms():

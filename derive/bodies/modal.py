@@ -18,6 +18,7 @@ s = int rho phi and Y, Y1, Y2 = int rho phi u^T, phi u'^T, phi u''^T.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -48,7 +49,7 @@ def axial(M: np.ndarray) -> np.ndarray:
     return np.array([M[i, j] - M[j, i] for i, j in pairs])
 
 
-def contraction(a: np.ndarray, b: np.ndarray):
+def contraction(a: np.ndarray, b: np.ndarray) -> Any:
     """Return the sum over i, j of a_ij b_ij."""
     return a.ravel().dot(b.ravel())
 
@@ -131,7 +132,7 @@ def body_force(motion: Motion, of: Moments) -> np.ndarray:
     return np.concatenate([of.mass * motion.falling + motion.A.dot(force), moment])
 
 
-def mode_force(motion: Motion, of: ModeMoments):
+def mode_force(motion: Motion, of: ModeMoments) -> Any:
     """Return the row of a mode, N."""
     Y, Y1, Y2 = of.second
     return (of.first.dot(motion.origin) + contraction(motion.W, Y) + 2 * contraction(motion.spin, Y1) + Y2.trace())

@@ -6,6 +6,8 @@ kernels of a mode for each, those of a pair for each pair.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ..codegen.program import DirectionalDerivative, Program
@@ -198,7 +200,7 @@ class Point:
         """Return the rows of the frame of P' f + T' m, N and N m."""
         return np.concatenate([f, vector_product(self.u, self.A.T.dot(f)) + self.turned_back(m)])
 
-    def mode_force(self, phi: np.ndarray, psi: np.ndarray, f: np.ndarray, m: np.ndarray):
+    def mode_force(self, phi: np.ndarray, psi: np.ndarray, f: np.ndarray, m: np.ndarray) -> Any:
         """Return the row of a mode of P' f + T' m, N."""
         return phi.dot(self.A.T.dot(f)) + self.relative(psi).dot(self.turned_back(m))
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -98,7 +99,7 @@ class Program:
         """Define a vector component by component: name_x, name_y, name_z."""
         return np.array([self.define(f"{name}_{axis}", c) for axis, c in zip(AXES, components, strict=False)])
 
-    def output(self, name: str, value, unit: str, doc: str) -> None:
+    def output(self, name: str, value: Any, unit: str, doc: str) -> None:
         """Declare an output and its expressions (array_like; a scalar becomes shape (1,))."""
         if name in self._taken:
             raise ValueError(f"{self.name}: the output name {name} is taken by an input or a definition")

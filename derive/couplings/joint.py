@@ -26,7 +26,8 @@ class TwoFrames:
         self.A2 = program.input("A2", (dim, dim), "1", "axes of the second frame, by columns")
         self.c = program.input("c", 3, "m or rad, 1, 1", "what drives the joint (else unused), its cosine and sine")
 
-    def along(self, tag: str, gap, turn_1, turn_2, more: dict | None = None) -> DirectionalDerivative:
+    def along(self, tag: str, gap: np.ndarray, turn_1: np.ndarray, turn_2: np.ndarray,
+              more: dict | None = None) -> DirectionalDerivative:
         """Return the derivative along a motion that moves the gap and turns both frames."""
         on = dict(zip(self.gap, gap, strict=True)) | (more or {})
         for A, turn in ((self.A1, turn_1), (self.A2, turn_2)):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import sympy as sp
 
@@ -49,7 +51,7 @@ def _coordinates(program: Program, element: Element, name="e", unit="m, 1", doc=
     return program.input(name, (element.n_vectors, element.dim), unit, doc)
 
 
-def mass(element: Element, shape) -> Program:
+def mass(element: Element, shape: Any) -> Program:
     """Return the kernel of m (vectors, vectors) in kg, kg m, kg m^2: the mass matrix is M = m (x) I (eq 4)."""
     p = _program(element, "mass", "mass matrix m of M = m (x) I", "eq 4")
     length, density, section = _length(p), p.input("density", (), "kg/m^3", "density"), _section(p)
@@ -64,7 +66,7 @@ def mass(element: Element, shape) -> Program:
     return p
 
 
-def gravity(element: Element, shape) -> Program:
+def gravity(element: Element, shape: Any) -> Program:
     """Return the kernel of the generalised force of constant gravity, (vectors, dim), N and N m."""
     p = _program(element, "gravity", "generalised force of constant gravity", "Q_e of eq 9")
     length, density, section = _length(p), p.input("density", (), "kg/m^3", "density"), _section(p)
@@ -76,7 +78,7 @@ def gravity(element: Element, shape) -> Program:
     return p
 
 
-def inertia_force(element: Element, shape) -> Program:
+def inertia_force(element: Element, shape: Any) -> Program:
     """Return the kernel of M a with M = m (x) I; it leaves out the zeros of m."""
     p = _program(element, "inertia_force", "M a", "M e'' of eq 9")
     n = element.n_vectors

@@ -68,7 +68,7 @@ class _Trial:
     def _fail(self, kernel: str, sample: str, cause: str, remedy: str = "") -> None:
         raise SpecError(self.place, f"{cause}: kernel {self.family.name}_{kernel}, at {sample}", remedy)
 
-    def value(self, kernel: str, output: str, s, **changes) -> Any:
+    def value(self, kernel: str, output: str, s: Any, **changes) -> Any:
         """Return an output, None where it is no finite real number."""
         try:
             value = self.k(kernel, s, **changes)[output]

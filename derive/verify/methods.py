@@ -13,6 +13,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -55,7 +56,7 @@ class Relation:
         value = self.of(numbers, state) if self.of else numbers(self.kernel, state)[self.output]
         return np.asarray(value).ravel()
 
-    def along(self, numbers: Numbers, state: State, t) -> np.ndarray:
+    def along(self, numbers: Numbers, state: State, t: Any) -> np.ndarray:
         """Return the paths' values at t -> (any, n)."""
         assert self.path is not None  # it is only where a finding has come from another process
         return np.stack([np.asarray(self.path(numbers, state, t, j)).ravel() for j in range(self.n)], axis=-1)

@@ -34,7 +34,7 @@ def turned(q: np.ndarray, vector: np.ndarray) -> np.ndarray:
     return quaternion_product(quaternion_product(q, np.concatenate([[0 * q[0]], vector])), conjugate)[1:]
 
 
-def exponential(numbers, theta: np.ndarray) -> np.ndarray:
+def exponential(numbers: Any, theta: np.ndarray) -> np.ndarray:
     """Return the quaternion of the finite rotation vector theta."""
     square = theta.dot(theta) / 4
     if square == 0:
@@ -110,7 +110,7 @@ class Rigid:
         return b[:3] + turned(b[3:], u)
 
     @staticmethod
-    def moved(numbers, b: np.ndarray, motion: np.ndarray) -> np.ndarray:
+    def moved(numbers: Any, b: np.ndarray, motion: np.ndarray) -> np.ndarray:
         """Return the configuration after the translation motion[:3] and the rotation vector motion[3:] in body axes."""
         return np.concatenate([b[:3] + motion[:3], quaternion_product(b[3:], exponential(numbers, motion[3:]))])
 
@@ -165,7 +165,7 @@ class PlanarRigid:
         return b[:2] + complex_product(b[2:], u)
 
     @staticmethod
-    def moved(numbers, b: np.ndarray, motion: np.ndarray) -> np.ndarray:
+    def moved(numbers: Any, b: np.ndarray, motion: np.ndarray) -> np.ndarray:
         """Return the configuration after the translation motion[:2] and the rotation by the angle motion[2]."""
         turn = np.array([numbers.cos(motion[2]), numbers.sin(motion[2])])
         return np.concatenate([b[:2] + motion[:2], complex_product(b[2:], turn)])
@@ -216,7 +216,7 @@ class Point:
         """Return the rider's point in global axes."""
         return b + u
 
-    def moved(self, numbers, b: np.ndarray, motion: np.ndarray) -> np.ndarray:
+    def moved(self, numbers: Any, b: np.ndarray, motion: np.ndarray) -> np.ndarray:
         """Return the origin after a translation."""
         return b + motion
 
@@ -252,7 +252,7 @@ def swung(theta: np.ndarray, vector: np.ndarray) -> np.ndarray:
     return cross(theta, np.concatenate([vector, vector[:1] * 0])[:3])[: len(vector)]
 
 
-def frame(numbers, tangent: np.ndarray, director: np.ndarray | None) -> np.ndarray:
+def frame(numbers: Any, tangent: np.ndarray, director: np.ndarray | None) -> np.ndarray:
     """Return the tangent frame by Gram-Schmidt: i along the tangent, j in the plane of tangent and director, k = i x j.
 
     In the plane i and j; in space without a director i alone.
@@ -274,7 +274,7 @@ def spatial(vector: np.ndarray) -> np.ndarray:
             3: lambda: vector}[len(vector)]()
 
 
-def turned_axes(numbers, theta: np.ndarray, A: np.ndarray) -> np.ndarray:
+def turned_axes(numbers: Any, theta: np.ndarray, A: np.ndarray) -> np.ndarray:
     """Return the axes after a finite rotation about global axes."""
     q = exponential(numbers, spatial(theta))
     return np.stack([turned(q, spatial(column))[: len(column)] for column in A.T], axis=1)

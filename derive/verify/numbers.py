@@ -25,7 +25,7 @@ State = dict[str, Any]
 class Numbers:
     """Kernels of one family in one kind of number; kernels go by their name without the family's."""
 
-    def __init__(self, family: str, programs: Sequence[Any], call: Callable, functions, convert: Callable,
+    def __init__(self, family: str, programs: Sequence[Any], call: Callable, functions: Any, convert: Callable,
                  eps: float = EPS):
         self.programs = {p.name.removeprefix(f"{family}_"): p for p in programs}
         self._call, self._convert = call, convert
@@ -36,7 +36,7 @@ class Numbers:
         """Return a state of floats in this kind of number."""
         return {name: self.array(v) for name, v in values.items()}
 
-    def array(self, values) -> np.ndarray:
+    def array(self, values: np.ndarray) -> np.ndarray:
         """Return an array of floats in this kind of number, exactly."""
         return self._convert(np.asarray(values))
 
@@ -46,12 +46,12 @@ class Numbers:
         return self._call(program.name, [changes.get(a.name, state.get(a.name)) for a in program.inputs])
 
 
-def real(family: str, programs: Sequence[Any], library) -> Numbers:
+def real(family: str, programs: Sequence[Any], library: Any) -> Numbers:
     """Return the kernels in doubles, from compiled C."""
     return Numbers(family, programs, library, math, lambda v: v.astype(float))
 
 
-def complex_(family: str, programs: list[Program], library) -> Numbers:
+def complex_(family: str, programs: list[Program], library: Any) -> Numbers:
     """Return the kernels in complex doubles, from compiled C."""
     return Numbers(family, programs, library, cmath, lambda v: v.astype(complex))
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import subprocess
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -48,7 +49,7 @@ LOOP = """static void loop_@NAME@(void)
 OPERATIONS = 2e7  # of one loop: some milliseconds
 
 
-def build(families: Iterable[Family], manifest: dict, kernels, units: Iterable[Path], flags: Iterable[str],
+def build(families: Iterable[Family], manifest: dict, kernels: Any, units: Iterable[Path], flags: Iterable[str],
           work: Path) -> Path:
     """Return a program with a loop for every kernel of the families.
 
@@ -92,7 +93,7 @@ def _output(command: Iterable) -> list[str]:
     return subprocess.run(list(command), capture_output=True, text=True, check=True).stdout.splitlines()
 
 
-def sample(family: Family, programs: Sequence[Program | Recorded], kernels) -> dict[str, np.ndarray]:
+def sample(family: Family, programs: Sequence[Program | Recorded], kernels: Any) -> dict[str, np.ndarray]:
     """Return the first state on which the family is verified; its constants from the compiled kernels."""
     outputs = {p.name: [a.name for a in p.outputs] for p in programs}
 

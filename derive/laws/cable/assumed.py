@@ -159,7 +159,7 @@ class AssumedCable(Cable):
 
     # --- second derivatives -----------------------------------------------------------------------------------
 
-    def tangent(self, program: Program, A, c, w) -> np.ndarray:
+    def tangent(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr) -> np.ndarray:
         """Return d2U/dc2 over strain vectors: at the points with the stress constant, and what the stress changes."""
         terms = list(self._terms(program, A, c, w))
         total = np.array(0)
@@ -196,7 +196,7 @@ class AssumedCable(Cable):
         return np.array([[program.vector(f"eps_m{m}_{self.gram.names[i]}", value) for i, value in enumerate(row)]
                          for m, row in enumerate(values)])
 
-    def stress_of_turning(self, program: Program, A, change, w) -> np.ndarray:
+    def stress_of_turning(self, program: Program, A: np.ndarray, change: np.ndarray, w: sp.Expr) -> np.ndarray:
         """See `Cable`: |dr'|^2/8 by its modes."""
         program.stage("strain of the change by its Legendre modes")
         d = range(self.degree)

@@ -18,7 +18,8 @@ PointBlocks = Mapping[tuple[int, int], np.ndarray]
 """Derivatives of the forces on a point's vectors i by its vectors k; (i, k) stands for its transpose (k, i) too."""
 
 
-def by_vectors(program: Program, tag: str, names: str, vectors: Sequence[np.ndarray], D: Sequence, H) -> PointBlocks:
+def by_vectors(program: Program, tag: str, names: str, vectors: Sequence[np.ndarray], D: Sequence,
+               H: np.ndarray) -> PointBlocks:
     """From derivatives of twice the energy by invariants, D and H, to those of the energy by the vectors that they are
     products of.
 

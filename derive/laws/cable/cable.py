@@ -131,7 +131,8 @@ class Cable(Damping):
         program.input("l", (), "m", "length of the element")
         program.output("A", self.section_stiffness(program), "N, N m^2", STIFFNESS_DOC)
 
-    def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X, w, c0=None) -> tuple:
+    def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, w: sp.Expr,
+                       c0: np.ndarray | None = None) -> tuple:
         """Return force and moment in space, and strain, at X; c0 of a curved stress-free shape."""
         return resultants(self, program, S, c, X, w, c0)
 
@@ -189,7 +190,7 @@ class Cable(Damping):
         first = min(g, len(points) - 1 - g)
         return program.define_once(f"{name}{len(points)}_{first}", points[first].weight * stiffness)
 
-    def measures(self, program: Program, tag: str, invariants: Sequence[sp.Expr], factor=sp.S.One) -> tuple:
+    def measures(self, program: Program, tag: str, invariants: Sequence[sp.Expr], factor: sp.Expr = sp.S.One) -> tuple:
         """Axial strain, factor times the squared curvature, and what leads to that from |r' x r''|^2; None where it is
         |r''|^2.
         """
@@ -205,11 +206,11 @@ class Cable(Damping):
         scale = program.define(f"scale{tag}", factor * inverse ** (3 if self.strain == "green" else 2))
         return strain, program.define(f"cross2{tag}", a * c - b * b) * scale, scale
 
-    def energy(self, program: Program, A, c, w) -> sp.Expr:
+    def energy(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr) -> sp.Expr:
         """Return the elastic energy U, J."""
         return sum(term.share for term in self._terms(program, A, c, w)) / 2
 
-    def forces(self, program: Program, A, c, w) -> np.ndarray:
+    def forces(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr) -> np.ndarray:
         """Return dU/dc on strain vectors."""
         f = np.zeros((len(self.gram.names), self.gram.element.dim), dtype=object)
         for names, of_rule in groupby(list(self._terms(program, A, c, w)), key=lambda term: term.names):
@@ -230,7 +231,8 @@ class Cable(Damping):
         program.stage("forces on strain vectors")
         return np.array([program.vector(f"f_{name}", v) for name, v in zip(self.gram.names, f, strict=True)])
 
-    def discrete_forces(self, program: Program, A, now, then, w) -> np.ndarray:
+    def discrete_forces(self, program: Program, A: np.ndarray, now: np.ndarray, then: np.ndarray,
+                        w: sp.Expr) -> np.ndarray:
         """Return forces f on strain vectors with f . (then - now) = the difference of U, by the mean vectors."""
         law, c = staged(program, now)
         terms = list(self._terms(law, A, c, w))
@@ -249,7 +251,7 @@ class Cable(Damping):
             f[self.axis_indices] += self._gathered(program, names, group, forces)
         return self._named(program, f)
 
-    def stress_of_turning(self, program: Program, A, change, w) -> np.ndarray:
+    def stress_of_turning(self, program: Program, A: np.ndarray, change: np.ndarray, w: sp.Expr) -> np.ndarray:
         """Return blocks (n, n, 1, 1) over strain vectors that the mean stress of a step has more than the stress of the
         mean vectors: EA (dr'.dr')/8, for that is what a turn takes off the strain. Of what bends it is none.
         """
@@ -266,7 +268,7 @@ class Cable(Damping):
                     blocks[m, n] += u * point.value[i] * point.value[k]
         return blocks
 
-    def tangent(self, program: Program, A, c, w) -> np.ndarray:
+    def tangent(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr) -> np.ndarray:
         """Return d2U/dc2 over strain vectors."""
         total = np.array(0)
         for _, terms in groupby(list(self._terms(program, A, c, w)), key=lambda term: term.names):

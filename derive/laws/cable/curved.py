@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import astuple, dataclass
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -57,7 +58,7 @@ class CurvedCable(Cable):
 
     floor = FLOOR
 
-    def __init__(self, gram, strain: str, curvature: str):
+    def __init__(self, gram: Any, strain: str, curvature: str):
         super().__init__(gram, strain, curvature)
         self.name += "_curved"
         self.doc += ", its stress-free shape curved"
@@ -105,7 +106,8 @@ class CurvedCable(Cable):
             density, _, _ = self.curved_density(program, f"_{g}", EA, EI, invariants, at)
             yield Term("abc", 2 * points[g].weight * density, invariants, *vectors)
 
-    def curved_density(self, program: Program, tag: str, EA, EI, invariants, at: Reference) -> tuple:
+    def curved_density(self, program: Program, tag: str, EA: sp.Expr, EI: sp.Expr, invariants: Any,
+                       at: Reference) -> tuple:
         """Energy per x, axial strain, and what leads from |r' x r''|^2 to the squared curvature."""
         a1, b, c = invariants
         relative = program.define(f"a1r{tag}", a1 * at.inverse + (at.inverse - 1))  # r'.r' / r0'.r0' - 1

@@ -91,11 +91,13 @@ class Damping:
                      for s, column in zip(moving, by_rate.T, strict=True)]
             yield factors, still, moving, np.array(force)
 
-    def damping_forces(self, program, A, tau, c, dc, w) -> np.ndarray:
+    def damping_forces(self, program: Program, A: np.ndarray, tau: sp.Expr, c: np.ndarray, dc: np.ndarray,
+                       w: sp.Expr) -> np.ndarray:
         """Return the damping forces on the strain vectors, (vectors, dim), N m."""
         return self._summed(program, list(self._damping_points(program, A, tau, c, dc, w)))
 
-    def algorithmic_forces(self, program, A, weight, relaxed_strain, c, dc, w) -> tuple[np.ndarray, Sequence[sp.Expr]]:
+    def algorithmic_forces(self, program: Program, A: np.ndarray, weight: sp.Expr, relaxed_strain: np.ndarray,
+                           c: np.ndarray, dc: np.ndarray, w: sp.Expr) -> tuple[np.ndarray, Sequence[sp.Expr]]:
         """Return the forces on strain vectors of the stiffnesses times weight dE - relaxed_strain, and dE, the rates
         that dc makes.
         """
@@ -118,7 +120,8 @@ class Damping:
         program.stage("forces on strain vectors")
         return np.array([program.vector(f"f_{name}", v) for name, v in zip(self.gram.names, f, strict=True)])
 
-    def damping_blocks(self, program, A, tau, c, dc, rate, w) -> np.ndarray:
+    def damping_blocks(self, program: Program, A: np.ndarray, tau: sp.Expr, c: np.ndarray, dc: np.ndarray,
+                       rate: sp.Expr, w: sp.Expr) -> np.ndarray:
         """df/dc + rate df/d(dc) over strain vectors."""
         dim = self.gram.element.dim
         rules: dict[int, tuple[list, list]] = {}
@@ -139,7 +142,8 @@ class Damping:
         program.stage("blocks over strain vectors")
         return named_blocks(program, self.gram.names, total, symmetric=False)
 
-    def dissipation(self, program, A, tau, c, dc, w) -> sp.Expr:
+    def dissipation(self, program: Program, A: np.ndarray, tau: sp.Expr, c: np.ndarray, dc: np.ndarray,
+                    w: sp.Expr) -> sp.Expr:
         """Return the dissipated power, W."""
         return sum(viscosity * sum(e * e for e in rates)
                    for _, viscosity, _, _, rates in list(self._rates(program, A, tau, c, dc, w)))

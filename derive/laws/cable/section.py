@@ -8,6 +8,7 @@ linear curvature W_r'' also has a part along the tangent, which no moment stands
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import sympy as sp
@@ -17,7 +18,8 @@ from ...algebra.tangent_frame import cross, spatial
 from ...codegen.program import DirectionalDerivative, Program, jacobian
 
 
-def resultants(law, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, w: sp.Expr, c0=None) -> tuple:
+def resultants(law: Any, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, w: sp.Expr,
+               c0: np.ndarray | None = None) -> tuple:
     """Return force and moment in space, and strain; c0 of the stress-free shape where it is curved."""
     program.stage("derivatives of the axis by x")
     r = [program.vector(f"r{order}", axis(law.gram, c, X, w, order)) for order in (1, 2, 3)]

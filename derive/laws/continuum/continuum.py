@@ -122,7 +122,8 @@ class Continuum:
         program.output("A", [program.define(f"A_{i}", a) for i, a in enumerate(A)], "N m",
                        "different non-zero entries of A")
 
-    def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X, w, c0=None) -> tuple:
+    def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, w: sp.Expr,
+                       c0: np.ndarray | None = None) -> tuple:
         """Return force and moment in space, and strain, at X."""
         section = Resultants(self.form, program, S, c, X, w)
         return section.force(), section.moment(), section.strain()
@@ -138,7 +139,8 @@ class Continuum:
         program.stage("forces on strain vectors")
         return self.gram.vector_forces(program, c, u)
 
-    def discrete_forces(self, program: Program, A: np.ndarray, now: np.ndarray, then: np.ndarray, w) -> np.ndarray:
+    def discrete_forces(self, program: Program, A: np.ndarray, now: np.ndarray, then: np.ndarray,
+                        w: sp.Expr) -> np.ndarray:
         """Return forces f on strain vectors with f . (then - now) = the difference of U: the stress of the mean strain
         on the mean vectors (Simo & Tarnow, ZAMP 43 (1992) 757-792).
         """
@@ -192,7 +194,8 @@ class Continuum:
         program.stage("u = tau A dG/dt")
         return self._times(program, self._viscous_moduli(A), dG, tau), dG
 
-    def damping_forces(self, program, A, tau, c, dc, w) -> np.ndarray:
+    def damping_forces(self, program: Program, A: np.ndarray, tau: sp.Expr, c: np.ndarray, dc: np.ndarray,
+                       w: sp.Expr) -> np.ndarray:
         """Return the damping forces on the strain vectors, (vectors, dim), N m."""
         u, _ = self._viscous(program, A, tau, c, dc)
         program.stage("forces on strain vectors")
@@ -205,7 +208,8 @@ class Continuum:
         """
         return {"rates": element.n_vectors * (element.n_vectors - 1) // 2, "spins": 0}
 
-    def algorithmic_forces(self, program, A, weight, relaxed_strain, c, dc, w) -> tuple[np.ndarray, Sequence[sp.Expr]]:
+    def algorithmic_forces(self, program: Program, A: np.ndarray, weight: sp.Expr, relaxed_strain: np.ndarray,
+                           c: np.ndarray, dc: np.ndarray, w: sp.Expr) -> tuple[np.ndarray, Sequence[sp.Expr]]:
         """Return the forces on strain vectors of the stiffnesses times weight dE - relaxed_strain, and dE, the rates
         that dc makes.
         """
@@ -218,7 +222,8 @@ class Continuum:
         program.stage("forces on strain vectors")
         return self.gram.vector_forces(program, c, u), dG
 
-    def damping_blocks(self, program, A, tau, c, dc, rate, w) -> np.ndarray:
+    def damping_blocks(self, program: Program, A: np.ndarray, tau: sp.Expr, c: np.ndarray, dc: np.ndarray,
+                       rate: sp.Expr, w: sp.Expr) -> np.ndarray:
         """df/dc + rate df/d(dc) over strain vectors."""
         u, _ = self._viscous(program, A, tau, c, dc)
         program.stage("b = tau (dc/dt + rate c)")
@@ -226,7 +231,8 @@ class Continuum:
                       for m, name in enumerate(self.gram.names)])
         return blocks(self.gram, program, c, b, self._viscous_moduli(A), u)
 
-    def dissipation(self, program, A, tau, c, dc, w) -> sp.Expr:
+    def dissipation(self, program: Program, A: np.ndarray, tau: sp.Expr, c: np.ndarray, dc: np.ndarray,
+                    w: sp.Expr) -> sp.Expr:
         """Return the dissipated power, W."""
         u, dG = self._viscous(program, A, tau, c, dc)
         return sum(a * b for a, b in zip(u, dG, strict=True))

@@ -113,6 +113,8 @@ class CurvedContinuum(Continuum):
     def _viscous_moduli(self, A: np.ndarray) -> dict:
         return {pq: A[k] for pq, k in self.straight.index.items()}
 
-    def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X, w, c0=None) -> tuple:
+    def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, w: sp.Expr,
+                       c0: np.ndarray | None = None) -> tuple:
         """Return force and moment in space, and strain, at X."""
+        assert c0 is not None  # the kernel has the stress-free shape
         return resultants(self.gram, self.form.elasticity, program, S, c, c0, X, w)

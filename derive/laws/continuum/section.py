@@ -6,6 +6,8 @@ Strain and F are polynomials in y and z there; what is left are section moments 
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import sympy as sp
 
@@ -18,7 +20,7 @@ from ...codegen.program import Program
 class Resultants:
     """Of a law D E with the section stiffness S, at X."""
 
-    def __init__(self, form, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, w: sp.Expr):
+    def __init__(self, form: Any, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, w: sp.Expr):
         self.form, self.program, self.S = form, program, S
         gram = form.gram
         self.dim = gram.element.dim

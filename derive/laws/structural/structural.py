@@ -153,7 +153,7 @@ class Structural:
         """Of the amplitude beta, over l."""
         return S[shear] * BUBBLE_SQUARED + self.bending(S, shear) * BUBBLE_CURVATURE / length**2
 
-    def bubble(self, S, shear: int, length: sp.Expr, strain: Sequence[sp.Expr]) -> sp.Expr:
+    def bubble(self, S: np.ndarray, shear: int, length: sp.Expr, strain: Sequence[sp.Expr]) -> sp.Expr:
         """Amplitude beta that makes the energy least, for the shear strains at the three places."""
         return S[shear] * _times(BUBBLE_WITH_STRAIN, strain) / self._bubble_stiffness(S, shear, length)
 
@@ -192,7 +192,7 @@ class Structural:
                 found[3 * n + m + node * len(self.across) + p] = stiffness[n + m + p] * _times(LINEAR.row(node), at)
         return found
 
-    def at(self, program: Program, S, length: sp.Expr, at: sp.Expr,
+    def at(self, program: Program, S: np.ndarray, length: sp.Expr, at: sp.Expr,
            strains: Sequence[sp.Expr]) -> tuple[list[sp.Expr], np.ndarray]:
         """Axial strain, shears, twist, curvatures at X, the bubble's among them, and its turn, a Gibbs vector in the
         section's frame; zero out of the plane.

@@ -79,7 +79,8 @@ class Tangent(Forces):
                     sign = 1 if k < 2 else -1
                     self.parts[column, row] = self.parts[row, column] + sign * moment[(k + 2) % 3]
 
-    def add_material(self, stiffness: Sequence[sp.Expr], velocity: Velocity | None = None, rate=None) -> None:
+    def add_material(self, stiffness: Sequence[sp.Expr], velocity: Velocity | None = None,
+                     rate: sp.Expr = None) -> None:
         """Stages: what the resultants change by, for the elastic law, or the viscous one at a velocity."""
         self.program.stage("strains by motions of the parts")
         B = self._strain_motions()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 Invariance = tuple[str, float, float]
@@ -13,7 +15,7 @@ def quantised(values: np.ndarray) -> np.ndarray:
     return np.round(values * 2.0**20) / 2.0**20
 
 
-def relative(value, scale) -> float:
+def relative(value: Any, scale: Any) -> float:
     """Return the largest entry over the scale's largest."""
     return float(np.max(np.abs(value)) / np.max(np.abs(scale)))
 

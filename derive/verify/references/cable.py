@@ -8,6 +8,7 @@ Gram products or invariants. Where a law is a polynomial, its kernels claim the 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -22,7 +23,7 @@ from .element import Shape, gauss, spatial
 mp = mpmath.mp
 
 
-def energy(element: Element, law: str, s):
+def energy(element: Element, law: str, s: Any) -> Any:
     """1/2 EA strain^2 + 1/2 EI curvature^2 along the axis; strain and curvature from the stress-free shape's."""
     traits, kernels = TRAITS[law], LAWS[law](Gram(element))
     strain, curvature = traits.strain, traits.curvature
@@ -54,13 +55,13 @@ def axial_points(element: Element, law: str) -> int:
     return n + 2 * (traits.strain == "green" and n >= exact)
 
 
-def axial_strain(strain: str, r_x: np.ndarray):
+def axial_strain(strain: str, r_x: np.ndarray) -> Any:
     """Return the Green or the engineering strain."""
     square = r_x.dot(r_x)
     return (square - 1) / 2 if strain == "green" else mp.sqrt(square) - 1
 
 
-def strain_modes(element: Element, law: str, s) -> list[tuple]:
+def strain_modes(element: Element, law: str, s: Any) -> list[tuple]:
     """Return the Legendre modes of the axial strain that an assumed one has, and the axial stiffness of each.
 
     One mode a power of the slope; those beyond what a node has along the cable take the third stiffness.
@@ -76,7 +77,7 @@ def strain_modes(element: Element, law: str, s) -> list[tuple]:
     return [(mode, full if m < (n + 1) // nodes else upper) for m, mode in enumerate(found)]
 
 
-def dissipation(element: Element, law: str, s):
+def dissipation(element: Element, law: str, s: Any) -> Any:
     """EA tau strain'^2 + EI tau |D_t r''|^2, D_t the rate as seen from a frame that turns with the tangent."""
     strain = TRAITS[law].strain
     EA, EI = s["S"][:2]
@@ -91,7 +92,7 @@ def dissipation(element: Element, law: str, s):
     return s["tau"].item() * total
 
 
-def turning(element: Element, law: str, s):
+def turning(element: Element, law: str, s: Any) -> Any:
     """EA |dr'|^2/8 over N' N'; of an assumed strain by its modes."""
     shape, half = Shape(element, s["l"].item()), s["l"].item() / 2
     degree = max(p[0] for p in shape.powers)

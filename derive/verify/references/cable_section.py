@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import mpmath
 import numpy as np
 
@@ -15,7 +17,7 @@ mp = mpmath.mp
 STEP = mpmath.mpf(10) ** -12  # of differences of second order: errors 1e-24, rounding 1e-26
 
 
-def section(element: Element, law: str, s) -> dict[str, np.ndarray]:
+def section(element: Element, law: str, s: Any) -> dict[str, np.ndarray]:
     """Return force (3,) in N, moment (3,) in N m and strain (6,) at x, see TEXTS of references/section.py."""
     traits = TRAITS[law]
     strain, curvature, curved, assumed = (traits.strain, traits.curvature, bool(traits.straight),

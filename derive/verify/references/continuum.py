@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -14,7 +15,7 @@ from .element import Shape, density, gauss, section_points, spatial, stress
 mp = mpmath.mp
 
 
-def energy(element: Element, law: str, s):
+def energy(element: Element, law: str, s: Any) -> Any:
     """Return the energy of eq 5-7 by quadrature, J."""
     total = mp.mpf(0)
     for N, weight, D in _material_points(element, s):
@@ -23,7 +24,7 @@ def energy(element: Element, law: str, s):
     return total
 
 
-def dissipation(element: Element, law: str, s):
+def dissipation(element: Element, law: str, s: Any) -> Any:
     """Power of the viscous stress tau D dE/dt by quadrature."""
     total = mp.mpf(0)
     for N, weight, D in _material_points(element, s):
@@ -42,7 +43,7 @@ def _material_points(element: Element, s) -> Iterator[tuple]:
         yield shape.gradient((shape.l / 2 * (1 + t), 0, 0)), weight * shape.l / 2 * height * width, s["D_axis"]
 
 
-def section(element: Element, law: str, s) -> dict[str, np.ndarray]:
+def section(element: Element, law: str, s: Any) -> dict[str, np.ndarray]:
     """Return force (3,) in N, moment (3,) in N m and strain (6,) at x, see TEXTS of references/section.py."""
     shape, dim, x = Shape(element, s["l"].item()), element.dim, s["x"].item()
     force, moment = np.zeros(3, dtype=object), np.zeros(3, dtype=object)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import mpmath
 
 from ...spec import Element
@@ -11,7 +13,7 @@ from .element import Shape, gauss, spatial
 mp = mpmath.mp
 
 
-def measures(strain: str, r, r0) -> tuple:
+def measures(strain: str, r: Any, r0: Any) -> tuple:
     """Strain, and what the curvature has more than the stress-free one, both by the stress-free arc-length."""
     stretch = mp.sqrt(r[0].dot(r[0]) / r0[0].dot(r0[0]))
     change = _curvature(strain, r, r0) - _curvature("", r0, r0)
@@ -24,7 +26,7 @@ def _curvature(strain: str, r, r0):
     return mp.sqrt(normal.dot(normal)) / by
 
 
-def density(strain: str, r, r0, EA, EI, l):
+def density(strain: str, r: Any, r0: Any, EA: Any, EI: Any, l: Any) -> Any:
     """Energy per x; kappa and kappa0 are rounded to sqrt(kappa^2 + 1e-6 kappa0^2 + floor), floor = (2e-6/l)^2, and a
     kappa0^2 below the floor is none.
     """
@@ -37,7 +39,7 @@ def density(strain: str, r, r0, EA, EI, l):
     return mp.sqrt(r0[0].dot(r0[0])) * (EA * eps**2 / 2 + EI * bending)
 
 
-def energy(element: Element, strain: str, s, n: int):
+def energy(element: Element, strain: str, s: Any, n: int) -> Any:
     """By n Gauss points."""
     shape, half, total = Shape(element, s["l"].item()), mp.mpf(s["l"].item()) / 2, mp.mpf(0)
     EA, EI = s["S"]

@@ -7,6 +7,7 @@ the straight one.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -22,30 +23,30 @@ ALONG = 5  # Gauss points of the sample's A: whatever their number, A is their s
 class Body:
     """An element in space with its stress-free shape."""
 
-    def __init__(self, element: Element, s):
+    def __init__(self, element: Element, s: Any):
         self.shape, self.s, self.dim = Shape(element, s["l"].item()), s, element.dim
         self.director = "xyz".index(element.director[-1])
 
-    def gradient(self, name: str, at) -> np.ndarray:
+    def gradient(self, name: str, at: Any) -> np.ndarray:
         """Return F of the nodal vectors e, e0 or v."""
         return self.s[name].T.dot(self.shape.gradient(at))
 
-    def frame(self, x) -> np.ndarray:
+    def frame(self, x: Any) -> np.ndarray:
         """Return the tangent frame of the stress-free axis, by columns."""
         F0 = self.gradient("e0", (x, 0, 0))
         return frame(mp, F0[:, 0], F0[:, self.director])
 
-    def turned(self, at, change: np.ndarray) -> np.ndarray:
+    def turned(self, at: Any, change: np.ndarray) -> np.ndarray:
         """Return J0^-T change J0^-1 in the tangent frame."""
         inverse = _inverse(self.gradient("e0", at)).dot(self.frame(at[0]))
         return inverse.T.dot(change).dot(inverse)
 
-    def strain(self, at) -> np.ndarray:
+    def strain(self, at: Any) -> np.ndarray:
         """Return the Green strain E in the tangent frame."""
         F, F0 = self.gradient("e", at), self.gradient("e0", at)
         return self.turned(at, (F.T.dot(F) - F0.T.dot(F0)) / 2)
 
-    def volume(self, at):
+    def volume(self, at: Any) -> Any:
         """Return det J0, the volume by that of the straight element."""
         return mp.det(mp.matrix(self.gradient("e0", at)))
 
@@ -54,7 +55,7 @@ def _inverse(matrix: np.ndarray) -> np.ndarray:
     return np.array(mp.inverse(mp.matrix(matrix)).tolist(), dtype=object)
 
 
-def weighted_points(element: Element, s) -> Iterator[tuple]:
+def weighted_points(element: Element, s: Any) -> Iterator[tuple]:
     """Yield the points of the volume and the elastic constants times what each stands for."""
     half = mp.mpf(s["l"].item()) / 2
     for t, p in gauss(ALONG):
@@ -62,19 +63,19 @@ def weighted_points(element: Element, s) -> Iterator[tuple]:
             yield np.array([half * (1 + t), y, z]), half * p * area * D
 
 
-def energy(element: Element, law: str, s):
+def energy(element: Element, law: str, s: Any) -> Any:
     """Return the elastic energy by quadrature, J."""
     body = Body(element, s)
     return sum(body.volume(at) * density(D, body.strain(at)) for at, D in weighted_points(element, s))
 
 
-def density_at(element: Element, s):
+def density_at(element: Element, s: Any) -> Any:
     """Energy that the point `at` adds with the elastic constants D."""
     body = Body(element, s)
     return body.volume(s["at"]) * density(s["D"], body.strain(s["at"]))
 
 
-def section(element: Element, law: str, s) -> dict[str, np.ndarray]:
+def section(element: Element, law: str, s: Any) -> dict[str, np.ndarray]:
     """Return the resultants of P N dA, N dA = det J0 J0^-T e_x dy dz, and strain on the axis with its changes along y
     and z.
     """

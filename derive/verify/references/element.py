@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import lru_cache
 from itertools import product
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -40,7 +41,7 @@ def gauss(n: int) -> tuple[tuple, ...]:
 class Shape:
     """N_k(x, y, z) of an element of length l, from a numerical solve of its nodal conditions."""
 
-    def __init__(self, element: Element, l):
+    def __init__(self, element: Element, l: Any):
         self.element, self.l = element, mp.mpf(l)
         self.powers = [sp.Poly(b, x, y, z).monoms()[0] for b in element.basis]
         conditions = mp.matrix([[_monomial(p, by, (node, 0, 0)) for p in self.powers]
@@ -53,16 +54,16 @@ class Shape:
                 by = tuple(vector.partition("_")[2].count(c) for c in "xyz")
                 yield self.l * int(ratio.p) / int(ratio.q), by
 
-    def __call__(self, at, by: tuple[int, int, int] = (0, 0, 0)) -> np.ndarray:
+    def __call__(self, at: Any, by: tuple[int, int, int] = (0, 0, 0)) -> np.ndarray:
         """N at a point, or the derivative `by` times in x, y, z."""
         basis = mp.matrix([[_monomial(p, by, at) for p in self.powers]])
         return np.array(list(basis * self._coefficients), dtype=object)
 
-    def gradient(self, at) -> np.ndarray:
+    def gradient(self, at: Any) -> np.ndarray:
         """dN_k/dx_i -> (vectors, dim)."""
         return np.stack([self(at, by) for by in np.eye(3, dtype=int)[: self.element.dim].tolist()], axis=1)
 
-    def points(self, height, width) -> list[tuple[tuple, object]]:
+    def points(self, height: Any, width: Any) -> list[tuple[tuple, object]]:
         """Return the points and weights of a rectangle times the length, exact for the energy and for the kinetic
         energy.
         """
@@ -85,21 +86,21 @@ def _monomial(powers, by, at):
     return value
 
 
-def mass(element: Element, s) -> np.ndarray:
+def mass(element: Element, s: Any) -> np.ndarray:
     """Return the mass matrix m of eq 4 by quadrature."""
     shape = Shape(element, s["l"].item())
     return s["density"].item() * sum(weight * np.outer(N := shape(at), N) for at, weight in
                                      shape.points(*s["rectangle"]))
 
 
-def gravity(element: Element, s) -> np.ndarray:
+def gravity(element: Element, s: Any) -> np.ndarray:
     """Return the generalised force of gravity by quadrature."""
     shape = Shape(element, s["l"].item())
     weights = sum(weight * shape(at) for at, weight in shape.points(*s["rectangle"]))
     return np.outer(s["density"].item() * weights, s["g"])
 
 
-def density(D, E: np.ndarray):
+def density(D: np.ndarray, E: np.ndarray) -> Any:
     """Strain energy density of the orthotropic law: 1/2 sum D_ij E_ii E_jj + 1/2 sum G (2 E_ij)^2."""
     dim = len(E)
     off = [(i, j) for i in range(dim) for j in range(i + 1, dim)]
@@ -109,7 +110,7 @@ def density(D, E: np.ndarray):
     return total + 2 * sum(g * E[i, j] ** 2 for g, (i, j) in zip(shear, off, strict=True))
 
 
-def stress(D, E: np.ndarray) -> np.ndarray:
+def stress(D: np.ndarray, E: np.ndarray) -> np.ndarray:
     """Return the second Piola-Kirchhoff stress of the orthotropic law."""
     dim = len(E)
     off = [(i, j) for i in range(dim) for j in range(i + 1, dim)]
@@ -124,7 +125,7 @@ def stress(D, E: np.ndarray) -> np.ndarray:
     return found
 
 
-def section_points(s) -> Iterator[tuple]:
+def section_points(s: Any) -> Iterator[tuple]:
     """y, z, area and elastic constants of the sample's section: D all over it, D_axis on the axis alone."""
     height, width = (mp.mpf(v) for v in s["rectangle"])
     for (a, p), (b, q) in product(gauss(3), gauss(3)):

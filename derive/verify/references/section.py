@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -27,7 +28,7 @@ def resultant(output: str) -> Callable:
     return value
 
 
-def axes(element: Element, s) -> np.ndarray:
+def axes(element: Element, s: Any) -> np.ndarray:
     """Return the axes of the section by rows t, y, z."""
     shape, at = Shape(element, s["l"].item()), (s["x"].item(), 0, 0)
     r_x = spatial(shape(at, (1, 0, 0)).dot(s["e"]))

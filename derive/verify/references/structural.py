@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -21,13 +22,13 @@ mp = mpmath.mp
 STEP = mpmath.mpf(10) ** -16
 
 
-def energy(element: Element, law: str, s):
+def energy(element: Element, law: str, s: Any) -> Any:
     """Return the elastic energy from the strains, J."""
     now, before = (_strains(element, s["S"], s["l"].item(), s[name]) for name in ("e", "e0"))
     return _form(s["S"], s["l"].item(), {name: now[name] - before[name] for name in now}) / 2
 
 
-def dissipation(element: Element, law: str, s):
+def dissipation(element: Element, law: str, s: Any) -> Any:
     """Power: the law on the rates of strain, times tau."""
     strains = partial(_strains, element, s["S"], s["l"].item())
     after, before = strains(s["e"] + STEP * s["v"]), strains(s["e"] - STEP * s["v"])
@@ -35,7 +36,7 @@ def dissipation(element: Element, law: str, s):
     return s["tau"].item() * _form(s["S"], s["l"].item(), rates)
 
 
-def section(element: Element, law: str, s) -> dict[str, np.ndarray]:
+def section(element: Element, law: str, s: Any) -> dict[str, np.ndarray]:
     """Return the resultants, axes and strains of the section at x."""
     l, at = s["l"].item(), 2 * s["x"].item() / s["l"].item() - 1
     now, before = (_strains(element, s["S"], l, s[name]) for name in ("e", "e0"))

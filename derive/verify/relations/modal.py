@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -36,21 +37,21 @@ class Paths:
         omega = np.concatenate([[0 * u[0]] * (3 - (self.n - self.dim)), s["w"][self.dim :]])
         return s["w"][: self.dim] + self.axes(s["b"]).dot(swung(omega, u) + u1)
 
-    def falling(self, k: Numbers, s: State, t, j=0) -> np.ndarray:
+    def falling(self, k: Numbers, s: State, t: Any, j: int = 0) -> np.ndarray:
         """Mass points along the motion with all accelerations, seen from the falling ground."""
         b = self.rider.moved(k, s["b"], t * s["w"] + t * t * s["a"] / 2)
         eta = s["eta"] + t * s["eta1"] + t * t * s["eta2"] / 2
         at = s["points"] + np.tensordot(eta, s["modes"], 1)
         return np.array([self.rider.point(b, u) for u in at]) - t * t * s["g"] / 2
 
-    def work(self, k: Numbers, s: State, t, j=0) -> np.ndarray:
+    def work(self, k: Numbers, s: State, t: Any, j: int = 0) -> np.ndarray:
         """Masses times the places, along what the frame's coordinates move."""
         moved, A = self.falling(k, s, t), self.axes(s["b"])
         at = s["points"] + np.tensordot(s["eta"], s["modes"], 1)
         rho = s["masses"]
         return np.concatenate([rho.dot(moved), axial((rho[:, None] * at).T.dot(moved.dot(A)))])
 
-    def work_of_mode(self, k: Numbers, s: State, t, j=0):
+    def work_of_mode(self, k: Numbers, s: State, t: Any, j: int = 0) -> Any:
         """The same along a mode."""
         return (s["masses"][:, None] * s["modes"][0].dot(self.axes(s["b"]).T) * self.falling(k, s, t)).sum()
 
@@ -87,19 +88,19 @@ class Paths:
 
     # --- energies -------------------------------------------------------------------------------------------------
 
-    def energy(self, k: Numbers, s: State, t, j=0):
+    def energy(self, k: Numbers, s: State, t: Any, j: int = 0) -> Any:
         """Return the kinetic energy along the motion with all accelerations, of the kernel."""
         b = self.rider.moved(k, s["b"], t * s["w"] + t * t * s["a"] / 2)
         moved = integrals(s, eta=s["eta"] + t * s["eta1"], eta1=s["eta1"] + t * s["eta2"])
         return k("kinetic_energy", s, b=b, w=s["w"] + t * s["a"], **moved)["T"]
 
-    def kinetic(self, k: Numbers, s: State, t, j=0):
+    def kinetic(self, k: Numbers, s: State, t: Any, j: int = 0) -> Any:
         """Return the kinetic energy of the mass points."""
         at, rate = (x + np.tensordot(s[name], s["modes"], 1) for x, name in ((s["points"], "eta"), (0, "eta1")))
         speeds = [self.velocity(s, u, u1) for u, u1 in zip(at, rate, strict=True)]
         return sum(m * v.dot(v) / 2 for m, v in zip(s["masses"], speeds, strict=True))
 
-    def potential(self, k: Numbers, s: State, t, j=0):
+    def potential(self, k: Numbers, s: State, t: Any, j: int = 0) -> Any:
         """Return the potential energy of the mass points."""
         at = s["points"] + np.tensordot(s["eta"], s["modes"], 1)
         return -sum(m * s["g"].dot(self.rider.point(s["b"], u)) for m, u in zip(s["masses"], at, strict=True))
@@ -123,7 +124,7 @@ def by_mode(pull: Callable, mode: int) -> Callable:
     return path
 
 
-def power(k: Numbers, s: State):
+def power(k: Numbers, s: State) -> Any:
     """Return f . w + sum f_k eta_k' without weight."""
     still = {**s, "g": 0 * s["g"]}
     other = integrals({**still, "modes": s["modes"][::-1], **{name: s[name][::-1] for name in RATES}})

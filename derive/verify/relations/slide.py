@@ -22,7 +22,7 @@ from .paths import unit
 class Curve:
     """Centreline of an element at arc-length x, from the reference shape functions (50 digits)."""
 
-    def __init__(self, element, s):
+    def __init__(self, element: Any, s: Any):
         shape, at = reference.Shape(element, s["l"].item()), (s["x"].item(), 0, 0)
         self.point, self.tangent = (shape(at, d).dot(s["e"]) for d in ((0, 0, 0), (1, 0, 0)))
         by = tuple(element.director.partition("_")[2].count(c) for c in "xyz")
