@@ -53,7 +53,8 @@ def drop_redundant_rows(model: Model, engine) -> list[str]:
         own = range(joint.multiplier, joint.multiplier + joint.rows)
         names = _listed([owner[other] for row in own for other in follows.get(row, ()) if other not in own])
         messages.append(f"over-constrained: {len(joint.redundant_rows)} of the {joint.rows} equations of "
-                        f"{owner[own[0]]} follow from those of {names} and are left out, without force or moment of their own")
+                        f"{owner[own[0]]} follow from those of {names} and are left out, without force or moment of "
+                        "their own")
     return messages
 
 
