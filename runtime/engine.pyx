@@ -5,8 +5,6 @@ The engine is C and not Cython because `cimport` does not work across the mapped
 generated kernels and the engine is a C header.
 """
 
-import os
-
 import numpy as np
 
 from cpython.exc cimport PyErr_CheckSignals
@@ -15,8 +13,9 @@ from cpython.pycapsule cimport PyCapsule_GetPointer
 from scipy.linalg cimport cython_lapack
 
 from funicular.generated import kernels
+from funicular.operating_system import machine_memory
 
-include "engine/engine.pxi"
+include "engine/cython/engine.pxi"
 
 cdef const fu_tables *TABLES = <const fu_tables *>PyCapsule_GetPointer(kernels.tables,
                                                                       "funicular.generated.kernels.tables")
@@ -65,9 +64,9 @@ cdef double _call(void *context, int which, const fu_state *state) noexcept with
         return 0.0
 
 
-include "engine/arrays.pxi"
-include "engine/translation.pxi"
-include "engine/statics.pxi"
+include "engine/cython/arrays.pxi"
+include "engine/cython/translation.pxi"
+include "engine/cython/statics.pxi"
 
 
 cdef class Engine(Statics):
@@ -89,7 +88,7 @@ cdef class Engine(Statics):
         a.expected = self._zeros(self.model.n_memory)
 
     def held_strains(self):
-        """Per cable (elements, rates + 1): g and the energy of r of algorithmic dissipation (engine/algorithmic.c)."""
+        """Per cable (elements, rates + 1): g and the energy of r of algorithmic dissipation (engine/integrators/algorithmic_dissipation.c)."""
         cdef const double[::1] memory = <double[:max(1, self.model.n_memory)]>self.run.now.memory
         numbers, ends = np.array(memory), np.cumsum([self.cables[i].n_elements * (self.cables[i].law.rates + 1)
                                                      for i in range(self.model.n_cables)])
@@ -319,7 +318,7 @@ cdef class Engine(Statics):
                            "output": s.time_output}}
 
     def costs(self):
-        """(slides + joints,): what each takes of a step, in seconds, timed by itself in less than 1 ms; see costs.c."""
+        """(slides + joints,): what each takes of a step, in seconds, timed by itself in less than 1 ms; see run/part_timing.c."""
         cdef double[::1] seconds = np.zeros(self.model.n_slides + self.model.n_joints + 1)
         fu_part_timing(&self.run, &seconds[0])
         return np.asarray(seconds)[:-1]

@@ -3,6 +3,7 @@
 import re
 import sys
 import warnings
+from importlib.metadata import version
 from types import ModuleType
 
 import pytest
@@ -213,3 +214,23 @@ def test_messages_of_scene_and_engine_are_kept(engine):
     scene.messages.append("moved")
     with warnings.catch_warnings(action="error"):
         assert scene.run().report["messages"] == ["moved", "the start was made consistent"]
+
+
+def test_version():
+    result = funicular("--version")
+    assert (result.exit_code, result.stdout) == (0, f"funicular {version('funicular')}\n")
+
+
+@pytest.mark.parametrize(("words", "offered"), [
+    ("ru", ["run"]),
+    ("run paper52_m", ["paper52_modal"]),
+    ("run mine", []),  # the shell then completes paths
+    ("run --to", ["--tol"]),
+])
+def test_completion(words, offered):
+    """What a shell gets that asks for the end of the last word."""
+    asked = {"_FUNICULAR_COMPLETE": "complete_bash", "COMP_WORDS": f"funicular {words}",
+             "COMP_CWORD": str(len(words.split()))}
+    result = CliRunner().invoke(app, env=asked, prog_name="funicular")
+    assert result.exit_code == 0
+    assert result.stdout.split() == offered

@@ -45,13 +45,13 @@ MINE = Element(
 '''
 LAW = '''
 import sympy as sp
-from funicular.derive.laws.cable import Cable
+from funicular.derive.laws.cable.cable import Cable
 
 
 class Own(Cable):
     """A cable with the green strain and the linear curvature, but for what stands below."""
 
-    name, like = "own", "green_linear"
+    name, stiffness_of = "own", "green_linear"
 
     def __init__(self, gram):
         super().__init__(gram, "green", "linear")
@@ -239,7 +239,8 @@ def test_a_law_that_cannot_be_is_told_its_property(tmp_path, law, told, capsys):
 
 def test_a_law_without_a_name(tmp_path):
     file = spec(tmp_path, law="    pass\n")
-    file.write_text(file.read_text().replace('name, like = "own", "green_linear"', 'like = "green_linear"'))
+    text = file.read_text()
+    file.write_text(text.replace('name, stiffness_of = "own", "green_linear"', 'stiffness_of = "green_linear"'))
     assert "law Own has no class attribute name" in refused(file, tmp_path / "library")
 
 

@@ -1,4 +1,4 @@
-"""D7 of CASES.md: a modal body against the published numbers of a flexible slider-crank, by kernels and by a scene."""
+"""A modal body against the published numbers of a flexible slider-crank, by kernels and by a scene."""
 
 import numpy as np
 import pytest

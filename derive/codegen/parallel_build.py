@@ -1,5 +1,6 @@
-"""Build of the extension modules: their C files side by side, since setuptools compiles those of one module in turn;
-OpenMP for those that take it, where the compiler has it.
+"""Build of the extension modules: their C files are found and compiled side by side, since setuptools compiles those
+of one module in turn; OpenMP for those that take it, where the compiler has it. MSVC has options of its own for the
+same.
 """
 
 from __future__ import annotations
@@ -14,18 +15,50 @@ from setuptools.errors import CompileError, LinkError
 
 THREADED = ("funicular.engine",)
 OPENMP = "-fopenmp"
+MSVC, MSVC_OPENMP = ["/std:c11", "/O2"], "/openmp"
+SOURCES = {"funicular.generated.kernels": ["generated/*.c"],
+           "funicular.engine": ["runtime/engine/**/*.c", "generated/blocks.c"]}
+"""Patterns of the C files of a module; blocks.c is compiled into the engine, with the options of its hot loops."""
+NOT_OF_KERNELS = ("generated/blocks.c", "generated/kernels.c")
+"""C files in generated/ of another module, and Cython's own."""
+DEPENDENCIES = {"funicular.generated.kernels": ["generated/kernels.h"],
+                "funicular.engine": ["generated/*.h", "runtime/engine/**/*.h", "runtime/engine/**/*.pxi"]}
+"""Patterns of the files whose change has a module built anew."""
+
+
+def found(patterns: list[str]) -> list[str]:
+    """Return the files below the working folder that match one of the patterns, sorted by pattern and name."""
+    return [path.as_posix() for pattern in patterns for path in sorted(Path().glob(pattern))]
+
+
+def c_files(module: str) -> list[str]:
+    """Return the C files of an extension module, without those that Cython writes."""
+    return [path for path in found(SOURCES[module])
+            if module != "funicular.generated.kernels" or path not in NOT_OF_KERNELS]
 
 
 class ParallelBuild(build_ext):
-    """build_ext of pyproject.toml."""
+    """The command build_ext that pyproject.toml names."""
+
+    def finalize_options(self) -> None:
+        """Add to each module the C files that are there."""
+        super().finalize_options()
+        for module in self.extensions:
+            module.sources += [path for path in c_files(module.name) if path not in module.sources]
+            module.depends += found(DEPENDENCIES[module.name])
 
     def build_extensions(self) -> None:
         """Build all modules; files in a pool of as many threads as there are cores, each calling the compiler."""
-        if self._has_openmp():
+        openmp = OPENMP
+        if self.compiler.compiler_type == "msvc":
+            openmp = MSVC_OPENMP
+            for module in self.extensions:
+                module.extra_compile_args = [*MSVC]
+        if self._has_openmp(openmp):
             for module in self.extensions:
                 if module.name in THREADED:
-                    module.extra_compile_args.append(OPENMP)
-                    module.extra_link_args.append(OPENMP)
+                    module.extra_compile_args.append(openmp)
+                    module.extra_link_args.append(openmp)
         compile_in_turn = self.compiler.compile
         with ThreadPoolExecutor(os.cpu_count()) as pool:
 
@@ -38,14 +71,14 @@ class ParallelBuild(build_ext):
             self.compiler.compile = compile_side_by_side
             super().build_extensions()
 
-    def _has_openmp(self) -> bool:
-        """Whether a program with it compiles and links."""
+    def _has_openmp(self, option: str) -> bool:
+        """Return whether a program with it compiles and links."""
         with tempfile.TemporaryDirectory() as folder:
             source = Path(folder) / "openmp.c"
             source.write_text("#include <omp.h>\nint main(void) { return omp_get_max_threads() < 1; }\n")
             try:
-                objects = self.compiler.compile([str(source)], output_dir=folder, extra_postargs=[OPENMP])
-                self.compiler.link_executable(objects, str(Path(folder) / "openmp"), extra_postargs=[OPENMP])
+                objects = self.compiler.compile([str(source)], output_dir=folder, extra_postargs=[option])
+                self.compiler.link_executable(objects, str(Path(folder) / "openmp"), extra_postargs=[option])
             except (CompileError, LinkError):
                 return False
         return True

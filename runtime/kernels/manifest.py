@@ -6,6 +6,8 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict
 
+from .elements import LawTraits
+
 
 class _Described(BaseModel):
     model_config = ConfigDict(strict=True, defer_build=True)
@@ -34,7 +36,7 @@ class _Element(_Described):
     nodal_vectors: list[str]
     dim: Literal[2, 3]
     director: str
-    laws: dict[str, str]
+    laws: dict[str, LawTraits]
 
 
 class Manifest(_Described):

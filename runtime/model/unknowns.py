@@ -295,7 +295,7 @@ def _strung(touches: csr_array) -> tuple[np.ndarray, int]:
 
 
 def _counted(touches: csr_array, number: np.ndarray, n_band: int) -> Numbering:
-    """A numbering's band, and the operations of a factorisation and its solves as linear.c does them."""
+    """A numbering's band, and the operations of its factorisation and solves (engine/linear/bordered.c)."""
     entry = touches.tocoo()
     element, at = entry.row, number[entry.col]
     inside = at < n_band

@@ -11,11 +11,12 @@ from pydantic import PlainValidator, ValidationInfo, model_validator
 
 from ..errors import near
 from ..kernels.element_line import ElementLine
-from ..kernels.elements import ElementKind
+from ..kernels.elements import ElementKind, LawTraits
 from ..kernels.libraries import of_library, resolved
 from . import cable_laws, curves
 from .material import Material
 from .section import AnySection, Circle, Tube
+from .section_stiffness import kernel_law
 from .validation import EXACT, Count, Name, Part, Vector, one_of, positive, show, shown, xyz
 
 FOLLOWS = 0.5
@@ -217,13 +218,20 @@ class Cable(Part):
 
     @property
     def kernel_law(self) -> str:
-        """Name of the law among the element's kernels; those that end in ``_curved``, and structural, take e0."""
-        return cable_laws.name_of_kernels(self.law, self.is_curved)
+        """Name of the law among the element's kernels."""
+        law = kernel_law(self.law)
+        return (self.kind_of_element.law_for_curved_shape(law) or law) if self.is_curved else law
+
+    @property
+    def traits(self) -> LawTraits:
+        """What the law of its kernels is."""
+        return self.kind_of_element.laws[self.kernel_law]
 
     @property
     def stiffness_law(self) -> str:
-        """Name of the law whose stiffness of the section it takes, see `stiffness.section_stiffness`."""
-        return self.kind_of_element.laws.get(self.law, self.law)
+        """Name of the law whose stiffness of the section it takes, see `section_stiffness`."""
+        laws = self.kind_of_element.laws
+        return laws[self.law].stiffness_of if self.law in laws else self.law
 
     @property
     def _way(self) -> tuple[tuple[float, ...], ...]:
@@ -326,7 +334,7 @@ class Cable(Part):
     @property
     def reference(self) -> np.ndarray | None:
         """(elements, 2 vectors, dim): stress-free nodal vectors of each element; None where the law takes none."""
-        if not self.is_curved and self.stiffness_law != "structural":
+        if not self.traits.takes_shape:
             return None
         rest = self.rest_nodal_vectors[..., : self.dim]
         return np.concatenate([rest[:-1], rest[1:]], axis=1)

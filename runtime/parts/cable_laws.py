@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from ..kernels.elements import ElementKind, built_in
+from ..kernels.elements import ElementKind, LawTraits, built_in
 from .material import Material
 from .section import GeneralSection, Section
-from .section_stiffness import KERNEL_LAWS, kernel_law
+from .section_stiffness import kernel_law, law_of_measures, variants
 from .validation import EXACT, show, shown
 
 MEMBRANES = ("full", "assumed", "reduced")
@@ -22,7 +22,7 @@ class Described(Protocol):
     section: Section
     material: Material
     is_curved: bool
-    kernel_law: str
+    traits: LawTraits
     stiffness_law: str
     kind_of_element: ElementKind
     dim: int
@@ -30,8 +30,8 @@ class Described(Protocol):
 
 def possible_laws(kind: ElementKind) -> list[str]:
     """The laws that a cable of such elements can be given."""
-    laws = [law for law in kind.laws if not law.endswith("_curved")]
-    return laws + [law for law, kernels in KERNEL_LAWS.items() if kernels in laws]
+    laws = [law for law, traits in kind.laws.items() if not traits.straight]
+    return laws + [law for law, variant in variants().items() if variant.kernel_law in laws]
 
 
 def chosen(kind: ElementKind, data: dict) -> str:
@@ -49,9 +49,7 @@ def chosen(kind: ElementKind, data: dict) -> str:
         if not kind.is_cable:
             raise ValueError(f"strain, curvature and membrane are for cable elements, {element} is a beam",
                              "leave them out, or take " + others(kind.dim, cable=True))
-        by_measures = f"{strain or 'green'}_{curvature or 'exact'}"
-        if (membrane or MEMBRANES[0]) != "full":
-            by_measures += f"_{membrane or MEMBRANES[0]}"
+        by_measures = law_of_measures(strain or "green", curvature or "exact", membrane or MEMBRANES[0])
         if law not in (None, by_measures):
             raise ValueError(f'law "{law}" disagrees with strain, curvature and membrane', "give the one or the others")
         law = by_measures
@@ -64,17 +62,11 @@ def chosen(kind: ElementKind, data: dict) -> str:
     return law
 
 
-def name_of_kernels(law: str, curved: bool) -> str:
-    """The name of a law among an element's kernels, of a cable whose stress-free shape is curved or straight."""
-    law = kernel_law(law)
-    return f"{law}_curved" if curved and law != "structural" else law
-
-
 def check(cable: Described) -> None:
     """Raise ValueError(cause, remedy) where the law of a cable does not suit its shape, its section or its material."""
     kind = cable.kind_of_element
-    if cable.is_curved and cable.kernel_law not in kind.laws:
-        curved = {name: [law for law in possible_laws(other) if name_of_kernels(law, True) in other.laws]
+    if cable.is_curved and kind.law_for_curved_shape(kernel_law(cable.law)) is None:
+        curved = {name: [law for law in possible_laws(other) if other.law_for_curved_shape(kernel_law(law))]
                   for name, other in built_in().items()}
         able = [f"{name} ({', '.join(laws)})" for name, laws in curved.items() if laws]
         raise ValueError(f'{cable.element} with law "{cable.law}" is stress-free only where it is straight, but '
@@ -93,7 +85,7 @@ def check(cable: Described) -> None:
         if isinstance(section, GeneralSection) and section.has_rotary:
             raise ValueError(f"section.rotary_moment is given, but {cable.element} has no rotary inertia",
                              "leave it out, or take " + others(kind.dim, cable=False))
-    elif cable.law == "structural":
+    elif cable.traits.kind == "structural":
         needed = {"shear_factors"} | ({"torsion_constant"} if kind.dim == 3 else set())
         if isinstance(section, GeneralSection) and (missing := needed - given):
             raise ValueError(f'law "structural" needs section.{min(missing)}, which a general section does not '

@@ -12,7 +12,7 @@ from .validation import Count, Flag, Part, one_of, positive, within
 INTEGRATORS = ("auto", "genalpha", "explicit", "radau", "energy")
 
 SMALLEST_STEP = 1e-12
-"""Of the duration, as in engine/run.c."""
+"""Of the duration, as in engine/run/run.c."""
 
 Duration = Annotated[float, positive("s")]
 

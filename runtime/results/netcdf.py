@@ -15,6 +15,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from ..operating_system import BYTES, read_at, read_into, write_at
 from .checksums import row_checksums
 from .locks import created
 from .netcdf_header import (
@@ -47,7 +48,7 @@ class File:
         self.path = os.fspath(path)
         self.descriptor = descriptor
         if descriptor is None:
-            self.descriptor = os.open(path, (os.O_RDWR if writable else os.O_RDONLY) | os.O_CLOEXEC)
+            self.descriptor = os.open(path, (os.O_RDWR if writable else os.O_RDONLY) | BYTES)
         self.close = weakref.finalize(self, os.close, self.descriptor)
         size = os.fstat(self.descriptor).st_size
         self.rows, self.attributes, places, self.entries = self._head(size)
@@ -65,7 +66,7 @@ class File:
         self.left_out = np.zeros(0, int)
         self.has_checksums = ROW_CHECKSUM in records and HEADER_CHECKSUM in places
         if HEADER_CHECKSUM in places:
-            head = os.pread(self.descriptor, min(first, MOST_HEADER), 0)
+            head = read_at(self.descriptor, min(first, MOST_HEADER), 0)
             if header_checksum(head, places) != self.attributes[HEADER_CHECKSUM]:
                 raise ValueError("the header is damaged: it has another checksum")
 
@@ -73,7 +74,7 @@ class File:
         length = _BLOCK
         while True:
             try:
-                return parsed(os.pread(self.descriptor, length, 0))
+                return parsed(read_at(self.descriptor, length, 0))
             except (struct.error, IndexError, KeyError, OverflowError, UnicodeDecodeError) as error:
                 if length >= min(size, MOST_HEADER):
                     raise ValueError("the header is damaged") from error
@@ -88,7 +89,7 @@ class File:
         """All values of a variable, in this machine's order of bytes; texts as str. Not of rows that are left out."""
         entry = self.entries[name]
         if not entry.in_rows:
-            raw = os.pread(self.descriptor, size_of(entry), entry.begin)
+            raw = read_at(self.descriptor, size_of(entry), entry.begin)
             values = np.frombuffer(raw, entry.dtype).reshape(entry.shape)
             return _texts(values) if entry.dtype.kind == "S" else values.astype(entry.dtype.newbyteorder("="))
         values = np.empty((self.rows - len(self.left_out), *entry.shape), entry.dtype.newbyteorder("="))
@@ -116,7 +117,8 @@ class File:
         block = np.empty(min(rows, max(1, _BLOCK // max(1, self.row_bytes))), self._row)
         for start in range(0, rows, len(block)):
             part = block[: rows - start]
-            if os.preadv(self.descriptor, [part.view("u1")], self._first + start * self.row_bytes) != part.nbytes:
+            at = self._first + start * self.row_bytes
+            if read_into(self.descriptor, memoryview(part.view("u1")), at) != part.nbytes:
                 raise OSError(f"{self.path}: was cut short while it was read")
             yield start, part
 
@@ -176,7 +178,7 @@ class File:
             return False
         self._put(line + b" " * (size - used - len(line)), begin + used)
         self._put(b" " * used, begin)
-        self.attributes["report"] = os.pread(self.descriptor, size, begin).decode()
+        self.attributes["report"] = read_at(self.descriptor, size, begin).decode()
         return True
 
     def _check_follows(self, first: int) -> None:
@@ -190,7 +192,7 @@ class File:
     def _put(self, data, at: int) -> None:
         left = memoryview(data)
         while len(left):
-            done = os.pwrite(self.descriptor, left, at)
+            done = write_at(self.descriptor, left, at)
             left, at = left[done:], at + done
 
 

@@ -11,6 +11,7 @@ import errno
 import hashlib
 import json
 import os
+import shutil
 import time
 from collections.abc import Callable
 from copy import copy
@@ -24,6 +25,7 @@ from .. import engine
 from ..errors import ResultFileError
 from ..kernels.libraries import load
 from ..model.model import Model
+from ..operating_system import BYTES
 from ..parts.scene_data import SceneData
 from ..parts.scene_text import dumps
 from ..parts.settings import RunSettings
@@ -99,8 +101,7 @@ class Stream:
     @property
     def free(self) -> int:
         """Bytes that the file can have: those that are free, and those of the one that is there."""
-        disk = os.statvfs(self._path.parent)
-        return disk.f_bavail * disk.f_frsize + (self._path.stat().st_size if self._path.exists() else 0)
+        return shutil.disk_usage(self._path.parent).free + (self._path.stat().st_size if self._path.exists() else 0)
 
     def start(self, model: Model, engine: engine.Engine, pace: Pauses, events: list[dict]) -> None:
         """Make the file, with the first row, or go on where the checkpoint was taken.
@@ -249,7 +250,7 @@ class Stream:
         """A descriptor of the file that is there already, which no other run can then write; -1 where there is none."""
         while self._path.exists():
             try:
-                descriptor = os.open(self._path, os.O_RDWR | os.O_CLOEXEC)
+                descriptor = os.open(self._path, os.O_RDWR | BYTES)
             except FileNotFoundError:
                 return -1
             except OSError as error:

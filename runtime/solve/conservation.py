@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..engine import Engine
 from ..errors import SceneError
-from ..kernels.libraries import kernels_of
+from ..kernels.libraries import of_library
 from ..model.model import Model
 from ..parts.scene_data import SceneData
 from .integrators import EnergyMomentum
@@ -17,7 +17,7 @@ def check_conserves(model: Model, scene: SceneData, engine: Engine, method: Ener
             raise SceneError(scene.bodies[body.name].where, 'integrator "energy" does not know modal bodies',
                              'take "radau" with a small tol, or "genalpha"')
     for cable in model.cables:
-        if not hasattr(kernels_of(cable.library), f"{cable.element}_{cable.law}_discrete_force"):
+        if not of_library(cable.library)[cable.element].laws[cable.law].discrete_gradient:
             raise SceneError(scene.cables[cable.name].where,
                              f'integrator "energy" has no discrete gradient of the law "{cable.law}"',
                              "take another law, or another integrator")

@@ -47,7 +47,7 @@ class GeneralisedAlpha:
 class EnergyMomentum:
     """Keeps energy and momenta to rounding (Simo & Tarnow 1992; Gonzalez 1996); with a spectral radius below 1 at
     infinite frequency momenta alone, while algorithmic dissipation takes energy from the fast vibrations of cables
-    (engine/algorithmic.c).
+    (engine/integrators/algorithmic_dissipation.c).
     """
 
     spectral_radius: float = 1.0
@@ -86,9 +86,8 @@ class Radau:
     """Radau IIA of three stages, of order 5 (Hairer & Wanner 1996, IV.5 and IV.8), from its nodes.
 
     Steps are chosen by an embedded estimate of order 3 and, for vibrations, by one of the method's own order that
-    follows from it (engine/radau.c). After a step that failed the next ones stay below ``retry_factor`` of it for a
-    while:
-    factorisations are dear.
+    follows from it (engine/integrators/radau.c). After a step that failed the next ones stay below ``retry_factor`` of
+    it for a while: factorisations are dear.
     """
 
     name, order, error_overestimate, retry_factor = "radau", 3, 1.0, 0.65

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..model.model import Model
 from ..parts.scene_data import SceneData
-from ..parts.section_stiffness import STABILISATION
+from ..parts.section_stiffness import STABILISATION, is_reduced
 
 
 def notes(scene: SceneData, model: Model, time: np.ndarray, q: np.ndarray) -> list[str]:
@@ -16,7 +16,7 @@ def notes(scene: SceneData, model: Model, time: np.ndarray, q: np.ndarray) -> li
     """
     found = []
     for cable in model.cables:
-        if not len(q) or not scene.cables[cable.name].law.endswith("_reduced"):
+        if not len(q) or not is_reduced(scene.cables[cable.name].law):
             continue
         nodes = q[:, cable.coordinates].reshape(len(q), *cable.shape)[:, :, cable.vectors.index("r")]
         strain = np.linalg.norm(np.diff(nodes, axis=1), axis=-1) / cable.length - 1

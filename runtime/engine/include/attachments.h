@@ -1,0 +1,37 @@
+/* Attachments: what springs and joints hold on to: couplings/attachments.c. */
+#ifndef FUNICULAR_ATTACHMENTS_H
+#define FUNICULAR_ATTACHMENTS_H
+
+#include "bodies.h"
+
+/* One end of a spring or a joint: a point with axes of the ground (cable and body -1), of a cable's element, of a body; or
+ * axes alone, of the cable where a slide is. */
+enum { FU_UP = -1, FU_CARRIED = -2 };
+typedef struct {
+    int cable, body, element, slide; /* -1 where it is not on one */
+    double u[3];                     /* the point: of the ground; of the body in its axes */
+    double N[FU_MAX_COORDINATES];    /* shape functions at the point of the element */
+    const fu_frame_kernels *frame;           /* of a cable; null where there are no axes */
+    int slopes[2];                   /* its vectors: 0 1 2 for r_x r_y r_z; FU_UP; FU_CARRIED for the slide's director */
+    double S[2 * FU_MAX_COORDINATES]; /* derivatives of the shape functions for both, unless on a slide */
+    double up[3];
+    double axes[9]; /* in those of what carries it, by columns */
+    fu_modal_attachment spot;   /* the point of a modal body, instead of u */
+} fu_attachment;
+
+/* Where an end stands and how it moves with its own n coordinates (numbers for fu_add in `at`): dp = P dq, and axes turn
+ * by T dq about global axes; velocities, and accelerations where those of the coordinates are zero. */
+enum { FU_POINT = 1, FU_AXES = 2 };
+typedef struct {
+    int n, at[FU_ATTACHMENT_COORDINATES];
+    double p[3], v[3], bias[3], P[3 * FU_ATTACHMENT_COORDINATES];
+    double A[9], omega[3], alpha[3], T[3 * FU_ATTACHMENT_COORDINATES];
+} fu_attachment_state;
+
+int fu_attachment_coordinates(const fu_model *model, const fu_attachment *end, const fu_state *state, int *at);
+void fu_attachment_at(const fu_model *model, const fu_attachment *end, const fu_state *state, double s_rate, int what,
+                  fu_attachment_state *place);
+void fu_geometric_stiffness(const fu_model *model, const fu_attachment *end, const fu_state *state, const double *f, const double *m,
+                      int n, double *K);
+
+#endif

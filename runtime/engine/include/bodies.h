@@ -1,0 +1,74 @@
+/* Rigid and modal bodies: bodies/bodies.c, bodies/modal.c. */
+#ifndef FUNICULAR_BODIES_H
+#define FUNICULAR_BODIES_H
+
+#include "linear.h"
+
+/* A body as seen at an instant: its part of q, of v, of the accelerations. */
+typedef struct {
+    const double *b, *w, *a;
+} fu_instant;
+
+/* What bodies are made of: bodies.c, modal.c. b, w, a and f begin with the body's own entries. */
+typedef struct fu_body fu_body;
+typedef struct {
+    int constant; /* its M is, in body axes, and it has no K */
+    void (*mass_times)(const fu_body *body, const double *b, const double *a, double *f); /* f = M a */
+    void (*forces)(const fu_body *body, const double *b, const double *w, double *f); /* f += what is left without a */
+    void (*mass)(const fu_body *body, const double *b, double *M);
+    void (*tangent)(const fu_body *body, const fu_instant *at, double *D, double *K);
+    double (*kinetic_energy)(const fu_body *body, const double *b, const double *w);
+    double (*elastic_energy)(const fu_body *body, const double *b);
+    double (*potential_energy)(const fu_body *body, const double *b); /* less what model->gravity gives */
+    double (*dissipation)(const fu_body *body, const double *b, const double *w);
+} fu_matter;
+extern const fu_matter fu_rigid_matter, fu_modal_matter;
+
+/* Modes of a body; index 0 of S and X is the undeformed place (derive/bodies/modal.py). */
+typedef struct {
+    const fu_modal_kernels *kernel;
+    const double *S, *X;               /* (n + 1) x dim; (n + 1) x (n + 1) x dim x dim */
+    const double *mass, *stiffness, *damping; /* n x n */
+    const double *zero;                /* as many as it has dofs */
+    double *sums, *matrices;           /* work space: 3 (n + 1) dim^2; 3 dofs^2 (mass_times takes the first) */
+    double g[3];
+} fu_shape;
+
+/* A body with a frame: rigid, or modal with so many modes. */
+struct fu_body {
+    const fu_body_kernels *kernel; /* of its frame */
+    const fu_matter *matter;
+    int configuration; /* first entry in q: the frame's, then the modes' */
+    int dof;           /* first dof: likewise */
+    int modes;
+    double mass;
+    double J[9];
+    const fu_shape *shape; /* of the modes; null without */
+};
+
+/* A point of a modal body: where it is undeformed, and the modes' displacements and turns there. */
+typedef struct {
+    const double *x, *phi, *psi; /* dim; modes x dim; modes x turns */
+} fu_modal_attachment;
+typedef struct {
+    double p[3], axes[9], velocity[3], omega[3], bias[3], omega_bias[3];
+} fu_modal_point;
+
+/* bodies.c: rigid and modal */
+int fu_body_dofs(const fu_body *body);
+void fu_bodies_mass_times(const fu_model *model, const double *q, const double *a, double *f);
+void fu_bodies_forces(const fu_model *model, const double *q, const double *v, double *f);
+void fu_bodies_matrix(const fu_model *model, const fu_state *at, const double *psi, fu_weights weights, fu_system *system);
+void fu_bodies_mass(const fu_model *model, const double *q, int constant, fu_system *system);
+double fu_bodies_kinetic_energy(const fu_model *model, const double *q, const double *v);
+double fu_bodies_elastic_energy(const fu_model *model, const double *q);
+double fu_bodies_potential_energy(const fu_model *model, const double *q);
+double fu_bodies_dissipation(const fu_model *model, const double *q, const double *v);
+
+/* modal.c: points */
+void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *spot, const double *b, const double *w, fu_modal_point *out,
+                     double *P, double *T);
+void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *spot, const double *b, const double *f, const double *m,
+                           double *K);
+
+#endif

@@ -1,0 +1,38 @@
+/* Cables, and sums over their elements: bodies/assembly.c. */
+#ifndef FUNICULAR_CABLES_H
+#define FUNICULAR_CABLES_H
+
+#include "linear.h"
+
+typedef struct {
+    const fu_element_kernels *kernel;
+    const fu_law_kernels *law;
+    const fu_law_blocks *blocks; /* null where there are none */
+    int n_elements;
+    int first;        /* first dof and first entry in q */
+    int coordinates;  /* of an element */
+    int per_node;     /* coordinates of a node */
+    double length;    /* of an element, m */
+    double tau;       /* Kelvin-Voigt retardation time, s */
+    double mass_damping; /* 1/s */
+    const double *m;  /* mass matrix of an element over nodal vectors */
+    const double *A;  /* constants of the law, of the first element */
+    int A_stride;     /* from one element's to the next's: zero where they are equal */
+    int memory;       /* first number in the memory of algorithmic dissipation: law->rates + 1 an element */
+} fu_cable;
+
+int fu_has_threads(void);
+void fu_mass_times(const fu_model *model, const double *q, const double *a, double *f);
+void fu_internal_forces(const fu_model *model, const double *q, const double *v, double *f);
+void fu_rate_forces(const fu_model *model, const double *q, const double *v, double *f);
+void fu_discrete_forces(const fu_model *model, const double *q, const double *q_next, double *f);
+void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, double inertia, double rate,
+                       double stiffness, fu_system *system);
+double fu_kinetic_energy(const fu_model *model, const double *q, const double *v);
+double fu_elastic_energy(const fu_model *model, const double *q);
+double fu_potential_energy(const fu_model *model, const double *q);
+double fu_dissipation(const fu_model *model, const double *q, const double *v);
+double fu_length(const fu_model *model, int slide);
+double fu_element_start(const fu_model *model, int slide, int element);
+
+#endif

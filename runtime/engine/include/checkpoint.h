@@ -1,0 +1,11 @@
+/* All that later steps depend on: run/checkpoint.c. */
+#ifndef FUNICULAR_CHECKPOINT_H
+#define FUNICULAR_CHECKPOINT_H
+
+#include "common.h"
+
+void fu_pause(fu_run *run);
+long fu_save(const fu_run *run, char *bytes);
+int fu_restore(fu_run *run, const char *bytes, int rows);
+
+#endif

@@ -1,0 +1,24 @@
+/* What all headers of the engine share: kernels, limits, and names of structures that are described elsewhere. */
+#ifndef FUNICULAR_COMMON_H
+#define FUNICULAR_COMMON_H
+
+#include "blocks.h"
+#include "kernels.h"
+
+#define FU_MAX_COORDINATES 32 /* of one element, or of the kernels of a slide on it; model/build.py checks */
+#define FU_ATTACHMENT_COORDINATES 40 /* of what an end is on, s among them; model/build.py checks */
+#define FU_SLIDE_COORDINATES (FU_MAX_COORDINATES + FU_ATTACHMENT_COORDINATES)
+#define FU_ROW_COORDINATES (2 * (FU_ATTACHMENT_COORDINATES + FU_SLIDE_COORDINATES))
+#define FU_MAX_RATES 128 /* of strain, of one element; engine.pyx checks */
+#define FU_SIGNAL_TERMS 7 /* coefficients of a piece of a signal */
+
+typedef struct fu_model fu_model;
+typedef struct fu_state fu_state;
+typedef struct fu_run fu_run;
+
+/* Newton matrix = inertia M + stiffness (K + rate D); statics has no inertia */
+typedef struct {
+    double inertia, rate, stiffness;
+} fu_weights;
+
+#endif

@@ -1,0 +1,47 @@
+/* The engine: what is integrated, and the work space of integrating it.
+ *
+ * Coordinates. q is the configuration: for each cable its nodal vectors node by node, then for each body position and
+ * attitude (unit quaternion; in the plane unit complex number) and, of a modal one, the coordinates of its modes. v, accelerations and increments have one entry a degree
+ * of freedom (dof): the cables' as in q, then the bodies' (translation; rotation about body axes; modes).
+ *
+ * Unknowns of a linear system: the free coordinates of the cables ("band"), then the border: those of nodes where cables
+ * meet, if that is cheaper (model/unknowns.py), those of the bodies, then what each joint and spring adds. Supports make dofs
+ * linear in the unknowns, dofs = T unknowns + what motions prescribe; place[dof] is the place of the unknown that the dof
+ * is, -1 where it is held or prescribed, -2 - k where it is the k-th combination of unknowns (linear/unknowns.c).
+ *
+ * Every array belongs to the caller; nothing here allocates.
+ */
+#ifndef FUNICULAR_ENGINE_H
+#define FUNICULAR_ENGINE_H
+
+#include "acceleration.h"
+#include "algorithmic_dissipation.h"
+#include "attachments.h"
+#include "bodies.h"
+#include "cables.h"
+#include "checkpoint.h"
+#include "common.h"
+#include "constraints.h"
+#include "end_stops.h"
+#include "energy_balance.h"
+#include "events.h"
+#include "failure.h"
+#include "integrator.h"
+#include "joints.h"
+#include "linear.h"
+#include "loads.h"
+#include "model.h"
+#include "motions.h"
+#include "newton.h"
+#include "part_timing.h"
+#include "projection.h"
+#include "record.h"
+#include "resistances.h"
+#include "rotation.h"
+#include "run.h"
+#include "slides.h"
+#include "springs.h"
+#include "state.h"
+#include "unknowns.h"
+
+#endif

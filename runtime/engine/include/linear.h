@@ -1,0 +1,70 @@
+/* Banded matrices with a border, and LAPACK for their parts: linear/band.c, linear/bordered.c. */
+#ifndef FUNICULAR_LINEAR_H
+#define FUNICULAR_LINEAR_H
+
+#include "common.h"
+
+/* LAPACK, as scipy hands it out. */
+typedef struct {
+    void (*dgbtrf)(int *, int *, int *, int *, double *, int *, int *, int *);
+    void (*dgbtrs)(char *, int *, int *, int *, int *, double *, int *, int *, double *, int *, int *);
+    void (*dpbtrf)(char *, int *, int *, double *, int *, int *);
+    void (*dgetrf)(int *, int *, double *, int *, int *, int *);
+    void (*zgbtrf)(int *, int *, int *, int *, void *, int *, int *, int *);
+    void (*zgbtrs)(char *, int *, int *, int *, int *, void *, int *, int *, void *, int *, int *);
+    void (*zgetrf)(int *, int *, void *, int *, int *, int *);
+    void (*zgetrs)(char *, int *, int *, void *, int *, int *, void *, int *, int *);
+    void (*dgetrs)(char *, int *, int *, double *, int *, int *, double *, int *, int *);
+} fu_lapack;
+
+/* band.c eliminates so many columns at once (a band is one less wide at least), and touches so many numbers beyond the
+ * end of a column of n. */
+#define FU_BAND_GROUP 4
+#define FU_BAND_BEYOND(width) ((width) + FU_BAND_GROUP)
+#define FU_BAND_LENGTH(n, width) ((long)(n) + FU_BAND_BEYOND(width))
+
+/* rows [first, end) of a column */
+typedef struct {
+    int first, end;
+} fu_span;
+
+/* What column k of X, or row k of C, has in half a chain: of what closes a ring, both ends count and not the middle. */
+typedef struct {
+    int k;
+    fu_span rows;
+} fu_piece;
+
+/* A banded matrix with a border: [K B; C D]. Only K is large. It falls into chains, which the border alone ties. */
+typedef struct {
+    int n, width;      /* band part: size, half bandwidth */
+    int m;             /* border */
+    int n_chains;
+    int constant, constant_columns, constant_rows; /* of the border, from the first on, that stay; their pieces */
+    int definite;      /* the band is factored in L (band.c), else in K (dgbtrf) */
+    int n_columns, n_rows; /* pieces */
+    const int *chains; /* n_chains + 1: the first row of each, and n */
+    const int *half;   /* of each row of the band: 2 chain, and 1 more from the middle on */
+    double *K;         /* LAPACK band storage, (3 width + 1) x n; of all systems of a run the same */
+    double *L;         /* (width + 1) x n, and a group more for each chain */
+    double *B;         /* n x m, column by column */
+    double *C;         /* the border's rows, transposed: n x m */
+    double *D;         /* m x m, column by column */
+    double *X;         /* K^-1 B in the chains that B touches, FU_BAND_LENGTH a column */
+    fu_span *span_B, *span_C; /* 2 n_chains x m: rows of each half that are not zero; end 0 where none is */
+    fu_piece *columns, *rows; /* of X and C */
+    int *pivot_band, *pivot_border;
+} fu_system;
+
+int fu_band_factor(const fu_lapack *lapack, int n, int width, double *A);
+void fu_band_solve(int n, int width, const double *A, int first, double *x);
+
+void fu_system_clear(fu_system *system);
+void fu_system_clear_border(fu_system *system);
+fu_span fu_common(fu_span one, fu_span other);
+int fu_pieces(const fu_system *system, int k, int chain, const double *x, fu_piece *pieces);
+int fu_system_factor_band(fu_system *system, const fu_lapack *lapack);
+void fu_system_keep_border(fu_system *system, const fu_lapack *lapack, int columns);
+int fu_system_factor_border(fu_system *system, const fu_lapack *lapack);
+void fu_system_solve(const fu_system *system, const fu_lapack *lapack, double *x);
+
+#endif

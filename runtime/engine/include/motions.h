@@ -1,0 +1,33 @@
+/* Signals, and the degrees of freedom that follow them: bodies/motions.c. */
+#ifndef FUNICULAR_MOTIONS_H
+#define FUNICULAR_MOTIONS_H
+
+#include "common.h"
+
+/* f(t) = a polynomial of t - breaks[i] in each interval (the first and the last go on beyond the breaks)
+ *        + amplitude sin(angular_frequency t + phase) */
+typedef struct {
+    int n;
+    const double *breaks;       /* n + 1 */
+    const double *coefficients; /* n rows of FU_SIGNAL_TERMS, ascending powers */
+    double amplitude, angular_frequency, phase;
+} fu_signal;
+
+/* An instant at which a signal is not smooth, s, and what jumps there of what it drives: nothing, the acceleration, the
+ * rate (model/knots.py). */
+enum { FU_HIGHER_JUMPS, FU_ACCELERATION_JUMPS, FU_RATE_JUMPS };
+typedef struct {
+    double t;
+    int jumps;
+} fu_knot;
+
+/* A dof that follows signals: q = base + linear f + cosine cos f + sine sin f */
+typedef struct {
+    int dof, signal, first; /* first: of those of its dof, whose work is counted once */
+    double base, linear, cosine, sine;
+} fu_motion;
+
+double fu_signal_at(const fu_signal *signal, double t, double *rate, double *second);
+void fu_prescribe(const fu_model *model, fu_state *state);
+
+#endif

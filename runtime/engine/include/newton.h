@@ -1,0 +1,34 @@
+/* Newton's method of implicit steps: integrators/newton.c. */
+#ifndef FUNICULAR_NEWTON_H
+#define FUNICULAR_NEWTON_H
+
+#include "common.h"
+
+/* What implicit integrators have in common. `predict` makes a first `next`; `kinematics` completes it from the
+ * unknowns; `residual` leaves minus the scaled residual in run->rhs, `matrix` its derivative in run->newton; `apply` adds
+ * the solution in run->rhs and returns its size as a length. */
+
+typedef struct {
+    void (*predict)(fu_run *run, double h);
+    void (*kinematics)(fu_run *run, double h);
+    void (*residual)(fu_run *run, double h);
+    void (*matrix)(fu_run *run, double h);
+    double (*apply)(fu_run *run, double h);
+    int most_iterations, to_rounding; /* the latter: go on below the rounding of positions, until increments shrink no more */
+} fu_newton;
+
+void fu_linearise(fu_run *run, double h, const double *change);
+void fu_static_move(fu_run *run, const double *change);
+void fu_static_residual(fu_run *run);
+void fu_matrix(fu_run *run, fu_weights weights);
+double fu_clock(void);
+
+int fu_newton_step(fu_run *run, const fu_newton *method, double h);
+void fu_predict_extra(fu_run *run, double h);
+void fu_apply_extra(fu_run *run, double inertia, double scale);
+double fu_spread_size(fu_run *run);
+double fu_filtered_size(fu_run *run);
+double fu_row_unit(double inertia, double mass);
+void fu_joint_coordinates(const fu_model *model, const fu_state *state, int j, int *at);
+
+#endif

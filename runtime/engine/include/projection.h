@@ -1,0 +1,15 @@
+/* States brought back to their constraints: integrators/projection.c. */
+#ifndef FUNICULAR_PROJECTION_H
+#define FUNICULAR_PROJECTION_H
+
+#include "common.h"
+
+int fu_find_slides(fu_run *run);
+int fu_close(fu_run *run);
+int fu_return_to_joints(fu_run *run, fu_state *state);
+int fu_probe_mechanism(fu_run *run, const double *along, double *left);
+int fu_complete(fu_run *run, fu_state *state);
+int fu_is_short(const fu_run *run, double h);
+int fu_coast(fu_run *run, double h);
+
+#endif

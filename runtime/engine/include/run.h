@@ -1,0 +1,87 @@
+/* A run, and its time loop: run/run.c. */
+#ifndef FUNICULAR_RUN_H
+#define FUNICULAR_RUN_H
+
+#include "acceleration.h"
+#include "algorithmic_dissipation.h"
+#include "energy_balance.h"
+#include "events.h"
+#include "failure.h"
+#include "integrator.h"
+#include "linear.h"
+#include "model.h"
+#include "record.h"
+#include "state.h"
+
+typedef struct {
+    long steps, rejected, newton_iterations, factorisations, crossings, newton_failures, evaluations;
+    double h_min, h_max, error_sum, time_factor, time_solve, time_residual, time_output;
+} fu_statistics;
+
+enum { FU_RUNNING = 0, FU_DONE = 1, FU_END_OF_CABLE = 2, FU_NO_CONVERGENCE = 3, FU_SINGULAR = 4, FU_EVENT = 5,
+       FU_UNSTABLE = 6 };
+
+struct fu_run {
+    const fu_model *model;
+    const fu_integrator *integrator;
+    int order;           /* of the error in positions as controlled */
+    fu_genalpha scheme;
+    fu_algorithmic algorithmic;
+    fu_tableau tableau;
+    fu_collocation collocation;
+    fu_complex_system complex_newton;
+    double retry_factor;      /* of a step that failed: what the next ones stay below, 0 where failures are cheap */
+    double error_overestimate;        /* how much larger the estimate of the local error is than that error */
+    double *scratch;     /* of the integrator: checkpoints do not hold it */
+    int n_watches;
+    const fu_watch *watches;
+    double *watched;     /* per watch: its value at `now`, 0 where it has just passed */
+    int *late;           /* per watch: the side to which it passed together with another event */
+    double *watch_work;  /* n_dof: accelerations that a watched traction is of */
+    double (*call)(void *context, int watch, const fu_state *state);
+    void *context;
+    fu_event event;      /* that the run has stopped at */
+    int n_knots;
+    const fu_knot *knots; /* increasing; steps end there, those of a fixed length where a rate jumps */
+    double duration, output_step, fixed_step, tol;
+    fu_state now, next;
+    fu_system newton;
+    fu_accelerator accelerator;
+    fu_record record;
+    fu_statistics statistics;
+    double *rhs;                              /* unknowns, and FU_BAND_BEYOND */
+    double *psi, *force, *work, *before;      /* n_dof; force is what supports and motions give, once Newton is done */
+    double *first;                            /* n_q: the configuration at the start */
+    double *s_slope;                          /* per slide: predicts ds/dt */
+    /* From here to the end numbers alone, which a checkpoint copies as they are. */
+    double h, h_factored, contraction, last_error;
+    double since; /* energy.c: how long before `now` the acceleration there belongs, s */
+    double dissipated, dissipated_power, external, external_power; /* J, W */
+    double drive_power, drive_power_before, drive_step; /* W, W, s: of drives; a step before; how long that
+                                                          * was, 0 where only the first is known, -1 none */
+    double recorded; /* s: time of the last row */
+    double usual; /* s: the step that is wanted, were it not for an event or an output time */
+    double motion, least_motion, extent; /* m: largest so far, assumed at least, largest coordinate of a position */
+    double size; /* m: of the scene as it is at the start, wherever it lies */
+    double allowed; /* m: error of the step */
+    double closed;  /* m: gaps at the start */
+    double ceiling; /* s: that steps stay below, after one that failed */
+    double newton_tolerance, round_off; /* of increments, m: where Newton may stop, and where it cannot go on */
+    double acted; /* s: when a slide has last stuck, broken loose, or come to an end of its cable */
+    int factored, stopped_joint, turned, acts;
+    int holds; /* slides keep their elements in a step, which ends where one of these does */
+    int net_rejections; /* steps rejected of late, less those taken */
+    fu_failure failure; /* of the last step that failed */
+    fu_energy_balance balance;
+    int predictor; /* the scratch holds a last step's stages */
+    int rest_start; /* for order.py only: start the scheme from zero accelerations */
+};
+
+/* The time loop */
+int fu_all_finite(const double *numbers, long n);
+int fu_prepare(fu_run *run);
+int fu_start(fu_run *run);
+int fu_advance(fu_run *run, double seconds);
+int fu_stop(fu_run *run);
+
+#endif

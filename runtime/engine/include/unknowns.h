@@ -1,0 +1,13 @@
+/* Degrees of freedom and unknowns: linear/unknowns.c. */
+#ifndef FUNICULAR_UNKNOWNS_H
+#define FUNICULAR_UNKNOWNS_H
+
+#include "linear.h"
+
+void fu_gather(const fu_model *model, const double *force, double *x);
+void fu_spread(const fu_model *model, const double *x, double *dofs);
+void fu_add(const fu_model *model, fu_system *system, int i, int j, double value);
+int fu_extra(const fu_model *model, int k);
+double fu_size(const fu_model *model, const double *dofs);
+
+#endif

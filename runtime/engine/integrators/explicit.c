@@ -1,0 +1,146 @@
+/* Explicit Runge-Kutta with an embedded error estimate on the index-1 form of the equations, eq 38.
+ *
+ * Differentiated are the entries of the configuration (attitudes as they stand, normalised at the end of a step) and
+ * the velocities; the slides' s is where C_l = 0, eq 21, at every stage. What the constraints lost in a step is
+ * projected away, in the norm of the mass: C_m = 0 by Newton, then H v = 0. The accelerations at the end are the first
+ * stage of the next step and the last of the error estimate (Hairer, Norsett & Wanner 1993, II.5 and II.10).
+ */
+#include "engine.h"
+
+#include <string.h>
+
+/* stage k of the scratch: rates of q, then of v */
+static double *stage(fu_run *run, int k)
+{
+    return run->scratch + (long)k * (run->model->n_q + run->model->n_dof);
+}
+
+/* rates of the configuration and of the velocities of a state whose accelerations are known */
+static void rates(const fu_model *model, const fu_state *state, double *rate)
+{
+    const int n_flexible = model->n_bodies ? model->bodies[0].dof : model->n_dof;
+    memcpy(rate, state->v, sizeof(double) * (size_t)n_flexible);
+    for (int b = 0; b < model->n_bodies; ++b) {
+        const fu_body *body = &model->bodies[b];
+        fu_body_rate(body->kernel, state->q + body->configuration, state->v + body->dof, rate + body->configuration);
+        memcpy(rate + body->configuration + body->kernel->configuration, state->v + body->dof + body->kernel->velocity,
+               sizeof(double) * (size_t)body->modes);
+    }
+    memcpy(rate + model->n_q, state->acceleration, sizeof(double) * (size_t)model->n_dof);
+}
+
+/* y = the row's combination of the first n stages */
+static void combine(fu_run *run, const double *row, int n, double h, double *q, double *v)
+{
+    const fu_model *model = run->model;
+    for (int k = 0; k < n; ++k) {
+        const double weight = h * row[k], *rate = stage(run, k);
+        if (weight == 0.0) continue;
+        for (int i = 0; i < model->n_q; ++i) q[i] += weight * rate[i];
+        for (int i = 0; i < model->n_dof; ++i) v[i] += weight * rate[model->n_q + i];
+    }
+}
+
+/* powers of stage k: dissipated, external */
+static double *powers(fu_run *run, int k)
+{
+    return stage(run, run->tableau.stages + 2) + 2 * k;
+}
+
+/* what stage k says: rates, and powers of what reads them */
+static void keep(fu_run *run, int k, const fu_state *state)
+{
+    rates(run->model, state, stage(run, k));
+    powers(run, k)[0] = fu_dissipated_power(run, state);
+    powers(run, k)[1] = fu_external_power(run, state, run->force);
+}
+
+/* next = now + what the row says, at t; each slide where C_l = 0; 0 when that was found */
+static int move_to(fu_run *run, const double *row, int n, double t, double h)
+{
+    const fu_model *model = run->model;
+    fu_state *next = &run->next;
+    memcpy(next->q, run->now.q, sizeof(double) * (size_t)model->n_q);
+    memcpy(next->v, run->now.v, sizeof(double) * (size_t)model->n_dof);
+    combine(run, row, n, h, next->q, next->v);
+    next->t = t;
+    if (model->n_motions) fu_prescribe(model, next);
+    return fu_find_slides(run);
+}
+
+static int start(fu_run *run)
+{
+    (void)run;
+    return FU_RUNNING;
+}
+
+static int step(fu_run *run, double h)
+{
+    const fu_model *model = run->model;
+    const fu_tableau *tableau = &run->tableau;
+    const int n = tableau->stages;
+    fu_state *next = &run->next;
+    double *reaction = model->n_motions ? run->force : 0;
+    fu_predict_extra(run, h);
+    rates(model, &run->now, stage(run, 0));
+    powers(run, 0)[0] = run->dissipated_power;
+    powers(run, 0)[1] = run->external_power;
+    for (int k = 1; k < n; ++k) {
+        if (move_to(run, tableau->A + k * n, k, run->now.t + tableau->c[k] * h, h)) return 1;
+        if (fu_accelerations(model, next, &run->accelerator, next->acceleration, 0, reaction))
+            return fu_fail_eq38(run);
+        keep(run, k, next);
+    }
+    if (move_to(run, tableau->b, n, run->now.t + h, h)) return 1;
+    if (fu_return_to_joints(run, next)) return 1;
+    if (fu_complete(run, next)) return fu_fail_eq38(run);
+    keep(run, n, next);
+    run->statistics.evaluations += n;
+    for (int i = 0; i < model->n_dof; ++i)
+        if (!(fabs(next->v[i]) < 1e30)) return fu_fail(run, FU_NOT_FINITE, next->v, -1);
+    return 0;
+}
+
+/* an estimate's size as a length: of positions, and of velocities times the step */
+static double estimate(fu_run *run, const double *row, double h)
+{
+    const fu_model *model = run->model;
+    const int n_flexible = model->n_bodies ? model->bodies[0].dof : model->n_dof;
+    double *q = stage(run, run->tableau.stages + 1), *v = q + model->n_q;
+    memset(q, 0, sizeof(double) * (size_t)(model->n_q + model->n_dof));
+    combine(run, row, run->tableau.stages + 1, h, q, v);
+    for (int i = 0; i < n_flexible; ++i) run->work[i] = q[i];
+    for (int b = 0; b < model->n_bodies; ++b) {
+        const fu_body *body = &model->bodies[b];
+        fu_body_increment(body->kernel, run->next.q + body->configuration, q + body->configuration,
+                          run->work + body->dof);
+        memcpy(run->work + body->dof + body->kernel->velocity, q + body->configuration + body->kernel->configuration,
+               sizeof(double) * (size_t)body->modes);
+    }
+    for (int k = 0; k < model->n_motions; ++k) run->work[model->motions[k].dof] = v[model->motions[k].dof] = 0.0;
+    for (int i = 0; i < model->n_dof; ++i) v[i] *= h;
+    return fmax(fu_size(model, run->work), fu_size(model, v));
+}
+
+/* Two embedded estimates, joined as in DOP853. */
+static double error(fu_run *run, double h)
+{
+    const fu_tableau *tableau = &run->tableau;
+    const double fine = estimate(run, tableau->error, h);
+    if (fine == 0.0) return 0.0;
+    const double coarse = estimate(run, tableau->coarse, h);
+    return fine * fine / sqrt(fine * fine + 0.01 * coarse * coarse);
+}
+
+static void book(fu_run *run, double h)
+{
+    const int n = run->tableau.stages;
+    for (int k = 0; k < n; ++k) {
+        run->dissipated += h * run->tableau.b[k] * powers(run, k)[0];
+        run->external += h * run->tableau.b[k] * powers(run, k)[1];
+    }
+    run->dissipated_power = powers(run, n)[0];
+    run->external_power = powers(run, n)[1];
+}
+
+const fu_integrator fu_explicit_method = {"explicit", start, step, error, book, 0, 0, 0};

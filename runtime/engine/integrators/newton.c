@@ -1,0 +1,197 @@
+/* Newton's method of an implicit step: residual and matrix are the integrator's, what they have in common is here. */
+#define _POSIX_C_SOURCE 199309L
+#include "engine.h"
+
+#include <string.h>
+#include <time.h>
+
+#define STAGNANT 0.3 /* increments that shrink less than to this, at the size of rounding, are rounding */
+#define QUICK 0.03   /* contraction that is believed in: the first iterations mend what is linear, the next are slower */
+
+double fu_clock(void)
+{
+    struct timespec now;
+#ifdef CLOCK_MONOTONIC
+    clock_gettime(CLOCK_MONOTONIC, &now);
+#else
+    timespec_get(&now, TIME_UTC);
+#endif
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* Statics has no mass to scale a joint's rows and force by. */
+double fu_row_unit(double inertia, double mass)
+{
+    return inertia != 0.0 ? mass : 1.0;
+}
+
+static int factor(fu_run *run, const fu_newton *method, double h)
+{
+    const double begin = fu_clock();
+    method->matrix(run, h);
+    int info = fu_system_factor_band(&run->newton, run->model->lapack);
+    if (info) fu_fail_at(run, FU_MATRIX, info - 1);
+    else {
+        info = fu_system_factor_border(&run->newton, run->model->lapack);
+        if (info) fu_fail_at(run, FU_MATRIX, run->newton.n + info - 1);
+    }
+    run->factored = !info;
+    run->h_factored = h;
+    ++run->statistics.factorisations;
+    run->statistics.time_factor += fu_clock() - begin;
+    return info;
+}
+
+/* largest of the unknowns in run->rhs, as a length; the dofs' part of them is left in run->work */
+double fu_spread_size(fu_run *run)
+{
+    const fu_model *model = run->model;
+    const double *extra = run->rhs + model->n_band + model->n_border_dof;
+    fu_spread(model, run->rhs, run->work);
+    double largest = fu_size(model, run->work);
+    for (int i = 0; i < model->n_extra; ++i)
+        if (!(fabs(extra[i]) <= largest)) largest = fabs(extra[i]);
+    return largest;
+}
+
+/* the solution in run->rhs, added to s and to the forces of slides, joints and springs */
+void fu_apply_extra(fu_run *run, double inertia, double scale)
+{
+    const fu_model *model = run->model;
+    const double *extra = run->rhs + model->n_band + model->n_border_dof;
+    for (int j = 0; j < model->n_slides; ++j) {
+        const fu_slide *slide = &model->slides[j];
+        run->next.s[j] += extra[slide->unknown];
+        for (int d = 0; d < slide->kernel->dim; ++d)
+            run->next.f[3 * j + d] += extra[slide->unknown + 1 + d] * fu_row_unit(inertia, slide->mass) / scale;
+    }
+    for (int k = 0; k < model->n_joints; ++k) {
+        const fu_joint *joint = &model->joints[k];
+        for (int r = 0; r < joint->kernel->rows; ++r)
+            run->next.multipliers[6 * k + r] += extra[joint->unknown + r] * fu_row_unit(inertia, joint->scale[r]) / scale;
+    }
+    for (int k = 0; k < model->n_springs; ++k) {
+        const fu_spring *spring = &model->springs[k];
+        for (int d = 0; d < spring->dim; ++d)
+            run->next.spring[3 * k + d] += extra[spring->unknown + d] * fu_row_unit(inertia, spring->mass) / scale;
+    }
+}
+
+/* What an integrator does not predict otherwise: time, and the joints' and springs' part of `next`. */
+void fu_predict_extra(fu_run *run, double h)
+{
+    const fu_model *model = run->model;
+    const size_t real = sizeof(double);
+    run->next.t = run->now.t + h;
+    memcpy(run->next.f, run->now.f, 3 * real * (size_t)model->n_slides);
+    memcpy(run->next.multipliers, run->now.multipliers, 6 * real * (size_t)model->n_joints);
+    memcpy(run->next.spring, run->now.spring, 3 * real * (size_t)model->n_springs);
+    memcpy(run->next.director, run->now.director, 3 * real * (size_t)model->n_slides);
+    for (int j = 0; j < model->n_slides; ++j) {
+        run->next.s[j] = run->now.s[j] + h * run->s_slope[j];
+        run->next.element[j] = run->now.element[j];
+        run->next.mode[j] = run->now.mode[j];
+        run->next.locked_s[j] = run->now.locked_s[j];
+        run->next.slip_direction[j] = run->now.slip_direction[j];
+        run->next.contact[j] = run->now.contact[j];
+    }
+}
+
+/* The iteration has failed where its last correction, in run->rhs and run->work, is largest; returns 1. */
+static int blame(fu_run *run)
+{
+    const fu_model *model = run->model;
+    const double *extra = run->rhs + model->n_band + model->n_border_dof;
+    double largest = fu_size(model, run->work);
+    int slide = -1;
+    for (int j = 0; j < model->n_slides; ++j)
+        for (int d = 0; d <= model->slides[j].kernel->dim; ++d) {
+            const double size = fabs(extra[model->slides[j].unknown + d]);
+            if (!(size > largest)) continue;
+            largest = size;
+            slide = j;
+        }
+    return fu_fail(run, FU_ITERATION, run->work, slide);
+}
+
+/* Newton from the prediction with the matrix at hand; 0 when it converged */
+static int iterate(fu_run *run, const fu_newton *method, double h)
+{
+    double last = 0.0, ratio = 0.0;
+    for (int i = 0; i < method->most_iterations; ++i) {
+        method->kinematics(run, h);
+        method->residual(run, h);
+        if (!run->factored) {
+            if (factor(run, method, h)) return 1;
+            run->contraction = 0.5; /* nothing is known yet: do not stop after one iteration */
+        }
+        const double begin = fu_clock();
+        fu_system_solve(&run->newton, run->model->lapack, run->rhs);
+        run->statistics.time_solve += fu_clock() - begin;
+        const double size = method->apply(run, h);
+        ++run->statistics.newton_iterations;
+        if (!(size < 1e30)) return blame(run);
+        if (i > 0) {
+            ratio = size / last;
+            if (ratio >= 1.0 && size > 100.0 * run->round_off) return blame(run);
+            run->contraction = ratio < QUICK ? QUICK : ratio > 0.9 ? 0.9 : ratio;
+        }
+        if (size * run->contraction / (1.0 - run->contraction) <= run->newton_tolerance ||
+            (size <= run->round_off && (!method->to_rounding || ratio > STAGNANT))) {
+            method->kinematics(run, h);
+            if (4 * (i + 1) > method->most_iterations) run->factored = 0; /* made anew for the next step */
+            return 0;
+        }
+        last = size;
+    }
+    if (last > 100.0 * run->round_off) return blame(run);
+    method->kinematics(run, h); /* rounding: long chains of joints make more of it than one position has */
+    run->factored = 0;
+    return 0;
+}
+
+/* One step of size h from `now` to `next`; 0 when the Newton iteration converged. */
+int fu_newton_step(fu_run *run, const fu_newton *method, double h)
+{
+    if (fabs(h - run->h_factored) > 1e-6 * h) run->factored = 0;
+    const int stale = run->factored;
+    method->predict(run, h);
+    if (!iterate(run, method, h)) return 0;
+    if (stale) { /* the matrix was of an earlier step: make it here before giving up */
+        run->factored = 0;
+        method->predict(run, h);
+        if (!iterate(run, method, h)) return 0;
+    }
+    run->factored = 0;
+    ++run->statistics.newton_failures;
+    return 1;
+}
+
+/* Size of an error of positions in run->work, passed through (M + sigma K)^-1 M on the constraints' tangent space so that
+ * vibrations that the step does not resolve count by their amplitude and not by their acceleration. */
+double fu_filtered_size(fu_run *run)
+{
+    const fu_model *model = run->model;
+    fu_mass_times(model, run->next.q, run->work, run->before);
+    fu_gather(model, run->before, run->rhs);
+    for (int i = 0; i < model->n_extra; ++i) run->rhs[model->n_band + model->n_border_dof + i] = 0.0;
+    const double begin = fu_clock();
+    fu_system_solve(&run->newton, model->lapack, run->rhs);
+    run->statistics.time_solve += fu_clock() - begin;
+    for (int i = 0; i < model->n_extra; ++i) run->rhs[model->n_band + model->n_border_dof + i] = 0.0;
+    return fu_spread_size(run);
+}
+
+/* For tests of the matrix: the residual after moving the predicted step by `change` (unknowns), in run->rhs with
+ * its sign turned, and the unfactored matrix there in run->newton. */
+void fu_linearise(fu_run *run, double h, const double *change)
+{
+    const fu_newton *method = run->integrator->newton;
+    method->predict(run, h);
+    for (int i = 0; i < run->newton.n + run->newton.m; ++i) run->rhs[i] = change[i];
+    method->apply(run, h);
+    method->kinematics(run, h);
+    method->matrix(run, h);
+    method->residual(run, h);
+    run->factored = 0;
+}

@@ -1,0 +1,136 @@
+/* What the integrators on eq 38 share: slides where C_l = 0, projection of what the constraints lost in a step, and what
+ * follows from positions and velocities. */
+#include "engine.h"
+
+#include <string.h>
+
+#define MOST_PROJECTIONS 10
+#define SHORT_STEP 1e-3 /* of the usual step */
+
+/* s of `next` where C_l = 0, eq 21, from what the last step's slope predicts; 0 when that was found */
+int fu_find_slides(fu_run *run)
+{
+    fu_state *next = &run->next;
+    for (int j = 0; j < run->model->n_slides; ++j) {
+        if (next->mode[j] == FU_LEFT) continue;
+        next->s[j] = run->now.s[j] + (next->t - run->now.t) * run->s_slope[j];
+        if (fu_find_arc_length(run->model, next, j, &next->s[j])) return fu_fail(run, FU_LOST_RIDER, next->v, j);
+    }
+    return 0;
+}
+
+static void normalise(const fu_model *model, double *q)
+{
+    for (int b = 0; b < model->n_bodies; ++b) {
+        const fu_body_kernels *kernel = model->bodies[b].kernel;
+        double *p = q + model->bodies[b].configuration + kernel->dim, square = 0.0;
+        const int n = kernel->configuration - kernel->dim;
+        for (int i = 0; i < n; ++i) square += p[i] * p[i];
+        for (int i = 0; i < n; ++i) p[i] /= sqrt(square);
+    }
+}
+
+/* Positions of a state back onto its joints, and s with them, until a correction is small enough; 0 when that converged */
+static int close_gaps(fu_run *run, fu_state *state, double enough)
+{
+    const fu_model *model = run->model;
+    for (int i = 0;; ++i) {
+        if (fu_project_positions(model, state, &run->accelerator, run->work))
+            return fu_fail(run, FU_MATRIX, state->v, -1);
+        const double size = fu_size(model, run->work);
+        if (!(size < 1e30) || i == MOST_PROJECTIONS) return fu_fail(run, FU_ITERATION, run->work, -1);
+        fu_move(model, state->q, run->work);
+        for (int j = 0; j < model->n_slides; ++j)
+            if (state->mode[j] != FU_LEFT && fu_find_arc_length(model, state, j, &state->s[j]))
+                return fu_fail(run, FU_LOST_RIDER, state->v, j);
+        if (size <= enough) return 0;
+    }
+}
+
+/* A start with small gaps onto its joints, if it is not there; run->closed is how large they are. 0 when that converged. */
+int fu_close(fu_run *run)
+{
+    const double rounding = 1e-13 * run->extent;
+    if (fu_project_positions(run->model, &run->now, &run->accelerator, run->work)) return 1;
+    run->closed = fu_size(run->model, run->work);
+    return run->closed > rounding && close_gaps(run, &run->now, rounding);
+}
+
+/* a state back onto its joints, after attitudes: positions, s, velocities; 0 when that converged */
+int fu_return_to_joints(fu_run *run, fu_state *state)
+{
+    const fu_model *model = run->model;
+    normalise(model, state->q);
+    if (!model->n_multipliers) return 0;
+    if (close_gaps(run, state, fmax(run->round_off, run->newton_tolerance))) return 1;
+    if (fu_project_velocities(model, state, &run->accelerator, run->work)) return fu_fail(run, FU_MATRIX, state->v, -1);
+    for (int i = 0; i < model->n_dof; ++i) state->v[i] += run->work[i];
+    return 0;
+}
+
+/* Go from `now` along these dofs, made ones that joints allow and no longer than given, and back onto the joints: what is
+ * `left` of all rows of links then (6 a link), idle ones too. Not zero where there is no way back. */
+int fu_probe_mechanism(fu_run *run, const double *along, double *left)
+{
+    const fu_model *model = run->model;
+    fu_state *next = &run->next;
+    int at[2 * FU_SLIDE_COORDINATES];
+    double J[6 * 2 * FU_ATTACHMENT_COORDINATES];
+    fu_predict_extra(run, 0.0);
+    memcpy(next->q, run->now.q, sizeof(double) * (size_t)model->n_q);
+    memcpy(next->v, along, sizeof(double) * (size_t)model->n_dof);
+    if (fu_project_velocities(model, next, &run->accelerator, run->work)) return 1;
+    for (int i = 0; i < model->n_dof; ++i) run->work[i] += along[i];
+    const double size = fu_size(model, run->work), most = fu_size(model, along);
+    for (int i = 0; i < model->n_dof && size > most; ++i) run->work[i] *= most / size;
+    fu_move(model, next->q, run->work);
+    for (int j = 0; j < model->n_slides; ++j)
+        if (fu_find_arc_length(model, next, j, &next->s[j])) return 1;
+    if (close_gaps(run, next, 1e-12 * run->extent)) return 1;
+    for (int k = 0; k < model->n_joints; ++k) fu_joint_residual(model, &model->joints[k], next, left + 6 * k, at, J);
+    return 0;
+}
+
+/* Accelerations of a state by eq 38, and with them the forces of joints and springs; what supports give, in run->force,
+ * where something moves them. 0 when that was found. */
+int fu_complete(fu_run *run, fu_state *state)
+{
+    const fu_model *model = run->model;
+    fu_slide_output *slides = (fu_slide_output *)run->accelerator.slides;
+    const int info = fu_accelerations(model, state, &run->accelerator, state->acceleration, slides,
+                                      model->n_motions ? run->force : 0);
+    if (info) return info;
+    for (int j = 0; j < model->n_slides; ++j) memcpy(state->f + 3 * j, slides[j].force, sizeof slides[j].force);
+    for (int k = 0; k < model->n_joints; ++k)
+        memcpy(state->multipliers + 6 * k, run->accelerator.multipliers + model->joints[k].multiplier,
+               sizeof(double) * (size_t)model->joints[k].kernel->rows);
+    fu_spring_forces_of(model, state, state->spring);
+    return 0;
+}
+
+/* Whether a step is so much shorter than usual, as one to an event or an output time can be, that the rounding of positions
+ * would rule a velocity or an acceleration that is made of them. */
+int fu_is_short(const fu_run *run, double h)
+{
+    return h < SHORT_STEP * run->usual;
+}
+
+/* Such a step, of any length: `next` from `now` by its accelerations, and back onto the joints; 0 when that converged. */
+int fu_coast(fu_run *run, double h)
+{
+    const fu_model *model = run->model;
+    const fu_state *now = &run->now;
+    fu_state *next = &run->next;
+    fu_predict_extra(run, h);
+    for (int i = 0; i < model->n_dof; ++i) {
+        run->psi[i] = h * (now->v[i] + 0.5 * h * now->acceleration[i]);
+        next->v[i] = now->v[i] + h * now->acceleration[i];
+    }
+    memcpy(next->q, now->q, sizeof(double) * (size_t)model->n_q);
+    fu_move(model, next->q, run->psi);
+    if (model->n_motions) fu_prescribe(model, next);
+    if (fu_find_slides(run) || fu_return_to_joints(run, next)) return 1;
+    if (fu_complete(run, next)) return fu_fail_eq38(run);
+    memcpy(next->a, next->acceleration, sizeof(double) * (size_t)model->n_dof);
+    return 0;
+}
