@@ -219,7 +219,7 @@ class Run:
         """Forces and moments in sections of ``cable``.
 
         s: arc-lengths (n,) in m; or the name of a slide on it, for the section where that is at each time. None given:
-        along all of the cable, with both sides of supports, joins and loads.
+        along all of the cable, with both sides of supports, ties and loads.
         method: "balance", from what is in balance with the nodes' forces, loads, inertia and riders; "constitutive",
         from the elastic law and the strains of the mesh, without what Kelvin-Voigt damping adds. They go to the same as
         the mesh is refined, the second slowly: beside a point force, and wherever a cable turns within an element, it
