@@ -77,53 +77,39 @@ cdef class Engine(Statics):
 
     cdef object watcher, error
 
-    def _algorithmic(self, method):
-        cdef int i
-        a = &self.run.algorithmic
-        a.lag, a.viscosity, a.inertia, a.weight = method.parameters
-        if a.weight:
-            self.model.n_memory = sum([self.cables[i].n_elements * (self.cables[i].law.rates + 1)
-                                       for i in range(self.model.n_cables)])
-        self.run.now.memory, self.run.next.memory = self._zeros(self.model.n_memory), self._zeros(self.model.n_memory)
-        a.expected = self._zeros(self.model.n_memory)
+    def _take_integrator(self, method):
+        """Let the run take an integrator (package integrators): its parameters, its work space, what it keeps."""
+        cdef int k
+        run = &self.run
+        run.integrator = fu_integrator_of(method.name.encode())
+        if run.integrator == NULL:
+            raise ValueError(f"the engine has no integrator {method.name}")
+        parameters = method.parameters
+        run.parameters = self._doubles(parameters)
+        if run.integrator.n_parameters(run.parameters) != len(parameters):
+            raise ValueError(f"integrator {method.name}: {run.integrator.n_parameters(run.parameters)} parameters, not "
+                             f"{len(parameters)}")
+        run.order, run.error_overestimate, run.retry_factor = method.order, method.error_overestimate, method.retry_factor
+        if run.integrator.n_dissipation_state != NULL:
+            self.model.n_dissipation_state = run.integrator.n_dissipation_state(run)
+            for k in range(FU_N_STATE_ARRAYS):
+                if fu_state_array(&self.model, &run.now, k).name == b"dissipation_state":
+                    self._attach(&run.now, k)
+                    self._attach(&run.next, k)
+        run.scratch = self._zeros(run.integrator.n_scratch(run))
 
-    def held_strains(self):
-        """Per cable (elements, rates + 1): g and the energy of r of algorithmic dissipation (engine/integrators/algorithmic_dissipation.c)."""
-        cdef const double[::1] memory = <double[:max(1, self.model.n_memory)]>self.run.now.memory
-        numbers, ends = np.array(memory), np.cumsum([self.cables[i].n_elements * (self.cables[i].law.rates + 1)
+    def relaxed_strains(self):
+        """Return, for each cable, (elements, rates + 1): g and the energy of r of algorithmic dissipation, as in
+        engine/integrators/algorithmic_dissipation.c.
+        """
+        numbers, ends = self._view(&self.run.now, "dissipation_state").copy(), np.cumsum([self.cables[i].n_elements * (self.cables[i].law.rates + 1)
                                                      for i in range(self.model.n_cables)])
         return [part.reshape(self.cables[i].n_elements, -1)
-                for i, part in enumerate(np.split(numbers[:self.model.n_memory], ends[:-1]))]
+                for i, part in enumerate(np.split(numbers, ends[:-1]))]
 
     def without_algorithmic_force(self):
         """Numbers of the cables whose law has no kernel for algorithmic dissipation."""
         return [i for i in range(self.model.n_cables) if self.cables[i].law.algorithmic_force == NULL]
-
-    def _tableau(self, method):
-        t = &self.run.tableau
-        t.stages = len(method.b)
-        t.A, t.b, t.c = self._doubles(method.A), self._doubles(method.b), self._doubles(method.c)
-        t.error, t.coarse = self._doubles(method.error), self._doubles(method.coarse)
-        stage = self.model.n_q + self.model.n_dof
-        self.run.scratch = self._zeros((t.stages + 2) * stage + 2 * (t.stages + 1))
-
-    def _collocation(self, method):
-        o, system = &self.run.collocation, &self.run.newton
-        cdef int k
-        for k in range(9):
-            o.A[k], o.A_inverse[k] = method.A.flat[k], method.A_inverse.flat[k]
-            o.T[k], o.T_inverse[k] = method.T.flat[k], method.T_inverse.flat[k]
-        for k in range(3):
-            o.c[k], o.error[k] = method.c[k], method.error[k]
-        o.gamma, o.alpha, o.beta = method.gamma, method.alpha, method.beta
-        n, m, rows = system.n, system.m, 3 * system.width + 1
-        c = &self.run.complex_newton
-        c.K, c.D, c.x = self._zeros(2.0 * rows * n), self._zeros(2.0 * m * m), self._zeros(2.0 * (n + m))
-        c.B, c.C, c.X = self._zeros(2.0 * n * m), self._zeros(2.0 * n * m), self._zeros(2.0 * n * m)
-        c.columns = <fu_piece *>self._ints(np.zeros(3 * 2 * m * system.n_chains))
-        c.D_real, c.pivot_band, c.pivot_border = self._zeros(1.0 * m * m), self._ints(np.zeros(n)), self._ints(np.zeros(m))
-        self.run.scratch = self._zeros(12 * self.model.n_dof + 3 * self.model.n_q + 7 + n + m
-                                        + 8 * self.model.n_slides)
 
     def use_threads(self, int threads):
         """Let so many threads share the elements; whether that is possible: OpenMP was there when this was built."""
@@ -187,51 +173,44 @@ cdef class Engine(Statics):
 
     cdef _snapshot(self, const fu_state *state):
         """t, q, v, s of a state."""
-        m = &self.model
-        return (state.t, np.array([state.q[i] for i in range(m.n_q)]), np.array([state.v[i] for i in range(m.n_dof)]),
-                np.array([state.s[i] for i in range(m.n_slides)]))
+        return state.t, *(self._view(state, name).copy() for name in ("q", "v", "s"))
 
     def start(self, *, duration, output_step, tol, step, method, first_step, knots=((), ()), capacity=None,
               rest_start=False):
-        """Allocate output rows, `capacity` of them or all, and compute the consistent start; method: see
-        solve/integrators.py.
+        """Allocate output rows, `capacity` of them or all, and compute the consistent start; method: one of integrators/.
 
         knots: times at which steps end, increasing, and what jumps there; see model/knots.py.
         Returns a status where that failed, else None, and the change of velocities that the joints asked for.
         """
+        cdef int k
+        cdef fu_array array
         run = &self.run
         run.duration, run.output_step, run.tol = duration, output_step, tol
         run.fixed_step, run.h, run.rest_start = step, first_step, rest_start
         self._knots(*knots)
-        run.order, run.error_overestimate, run.retry_factor = method.order, method.error_overestimate, method.retry_factor
-        if method.name == "explicit":
-            run.integrator = &fu_explicit_method
-            self._tableau(method)
-        elif method.name == "radau":
-            run.integrator = &fu_radau_method
-            self._collocation(method)
-        elif method.name == "energy":
-            run.integrator = &fu_energy_method
-            run.scratch = self._zeros(self.model.n_q + 2 * self.model.n_dof)
-            self._algorithmic(method)
-        else:
-            run.integrator = &fu_genalpha_method
-            run.scheme.alpha_m, run.scheme.alpha_f, run.scheme.beta, run.scheme.gamma = method.parameters
+        self._take_integrator(method)
         rows = int(np.ceil(duration / output_step * (1 - 1e-12))) + 2 if capacity is None else capacity
         m = &self.model
-        r = &run.record
-        r.time, r.kinetic, r.elastic = self._named("time", rows), self._named("kinetic", rows), self._named("elastic", rows)
-        r.potential, r.dissipated = self._named("potential", rows), self._named("dissipated", rows)
-        r.q, r.v = self._named("q", (rows, m.n_q)), self._named("v", (rows, m.n_dof))
-        r.acceleration = self._named("acceleration", (rows, m.n_dof))
-        r.reaction, r.external = self._named("reaction", (rows, m.n_dof)), self._named("external", rows)
-        r.spring = self._named("spring", (rows, m.n_springs, 3))
-        r.s, r.slide = self._named("s", (rows, m.n_slides)), self._named("slide", (rows, m.n_slides, FU_SLIDE_OUTPUTS))
-        r.joint = self._named("joint", (rows, m.n_joints, FU_JOINT_OUTPUTS))
+        for k in range(FU_N_RECORD_ARRAYS):
+            array = fu_record_array(&self.model, &run.record, k)
+            shape = (rows, array.items) if array.axes == 2 else rows
+            fu_record_attach(&run.record, k, self._named(array.name.decode(), shape))
+        output = self.arrays.pop("output")
+        for kind in ("slide", "joint", "spring"):
+            self.arrays[kind] = self._outputs(kind, output)
         cdef int status = fu_start(run)
         if status:
             return STATUS[status], np.zeros(m.n_dof)
         return None, np.array([run.before[i] for i in range(m.n_dof)])
+
+    def _outputs(self, str kind, output):
+        """The part of rows of output that couplings of a kind have: a view, (rows, couplings, numbers of one)."""
+        cdef int i, first = 0, width = 0
+        count = self._count(kind)
+        for i in range(self.model.n_couplings - 1, -1, -1):
+            if self._kind(self.couplings[i]) == kind:
+                first, width = self.couplings[i].output, self.couplings[i].type.n_outputs
+        return output[:, first:first + count * width].reshape(len(output), count, width)
 
     def advance(self, on_progress, int every=0, stream=None, double interval=0.05):
         """Run to the end; returns the status, "interrupted" after Ctrl-C.
@@ -257,7 +236,8 @@ cdef class Engine(Statics):
                 PyErr_CheckSignals()
                 if status == FU_EVENT and run.event.kind == FU_ACTED:
                     if self.watcher is not None:
-                        self.watcher.acts(run.event.which, ACTIONS[run.event.side], run.now.t, run.now.s[run.event.which])
+                        self.watcher.acts(run.event.which, ACTIONS[run.event.side], run.now.t,
+                                          self._view(&run.now, "s")[run.event.which])
                     status = FU_RUNNING
                 if status == FU_EVENT:
                     if not self.watcher.happens(run.event.which, *self._snapshot(&run.now)):
@@ -300,7 +280,7 @@ cdef class Engine(Statics):
         return self.run.record.n
 
     def slide_row(self, slides):
-        """Split slides' numbers (..., FU_SLIDE_OUTPUTS) by name; see fu_slide_output."""
+        """Split slides' numbers (..., numbers of a slide) by name; see fu_slide_output."""
         sizes = (1, 1, 3, 2, 1, 3)
         ends = np.cumsum(sizes)
         return {name: slides[..., end - size:end] if size > 1 else slides[..., end - 1]
@@ -319,9 +299,10 @@ cdef class Engine(Statics):
 
     def costs(self):
         """(slides + joints,): what each takes of a step, in seconds, timed by itself in less than 1 ms; see run/part_timing.c."""
-        cdef double[::1] seconds = np.zeros(self.model.n_slides + self.model.n_joints + 1)
+        cdef double[::1] seconds = np.zeros(self.model.n_couplings + 1)
+        cdef int first = self._count("load"), n = self._count("slide") + self._count("joint")
         fu_part_timing(&self.run, &seconds[0])
-        return np.asarray(seconds)[:-1]
+        return np.asarray(seconds)[first:first + n]
 
     @property
     def integrator(self):
@@ -400,20 +381,20 @@ cdef class Engine(Statics):
         leave; None where no way leads back onto them. See fu_probe_mechanism.
         """
         cdef double[::1] path = np.ascontiguousarray(along, dtype=float)
-        cdef double[::1] left = np.zeros(6 * self.model.n_joints + 1)
+        cdef double[::1] left = np.zeros(self.model.n_forces + 1)
         if fu_probe_mechanism(&self.run, &path[0], &left[0]):
             return None
-        return np.asarray(left)[:6 * self.model.n_joints].reshape(-1, 6)
+        return self._own("joint", left, 6)
 
     def held(self):
-        """(links, FU_JOINT_OUTPUTS): force and moment of joints on their second ends, and residual, in the static state."""
-        cdef int k, r
-        cdef double[::1] out = np.zeros(FU_JOINT_OUTPUTS * self.model.n_joints + 1)
-        for k in range(self.model.n_joints):
-            for r in range(self.joints[k].kernel.rows):
-                self.run.accelerator.multipliers[self.joints[k].multiplier + r] = self.run.next.multipliers[6 * k + r]
-        fu_joint_outputs(&self.model, &self.run.next, &self.run.accelerator, <fu_joint_output *>&out[0])
-        return np.asarray(out)[:FU_JOINT_OUTPUTS * self.model.n_joints].reshape(-1, FU_JOINT_OUTPUTS)
+        """(joints, 7): force and moment of joints on their second ends, and residual, in the static state."""
+        cdef int k, n = self._count("joint")
+        out = np.zeros((n, fu_coupling_type_of(b"joint").n_outputs))
+        cdef double[:, ::1] view = out
+        for k in range(n):
+            fu_joint_outputs(&self.model, &self.joints[k], &self.run.next,
+                             self.run.next.forces + self.joints[k].base.force, <fu_joint_output *>&view[k, 0])
+        return out
 
     @property
     def extent(self):
@@ -437,4 +418,4 @@ cdef class Engine(Statics):
     @property
     def stopped_s(self):
         """Arc-length of that slide, m."""
-        return self.run.now.s[self.run.stopped_joint]
+        return self._view(&self.run.now, "s")[self.run.stopped_joint]

@@ -8,8 +8,8 @@ import pytest
 from funicular import Material, Rectangle, Scene
 from funicular.derive.codegen import drift
 from funicular.engine import Engine
+from funicular.integrators import GeneralisedAlpha
 from funicular.model.build import build
-from funicular.solve.integrators import GeneralisedAlpha
 
 ELEMENTS = 7  # a block and a rest
 SAME_BITS = platform.machine() in ("x86_64", "AMD64")  # no contraction to fused operations there

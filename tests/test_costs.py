@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from funicular import Scene
 from funicular.engine import Engine
+from funicular.integrators import GeneralisedAlpha
 from funicular.model.build import build
-from funicular.solve.integrators import GeneralisedAlpha
 from scenery import one_rider
 from test_joints import INTEGRATORS, of_bodies
 from test_newton_matrix import tied

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from funicular import Harmonic, Material, Rectangle, Scene, SceneError
 from funicular.engine import Engine
+from funicular.integrators import EnergyMomentum
 from funicular.model.build import build
-from funicular.solve.integrators import EnergyMomentum
 from test_newton_matrix import loaded
 
 CABLES = {"beam24": {"element": "beam24"}, "green": {"element": "cable12", "strain": "green"},

@@ -3,8 +3,8 @@
 import funicular as fu
 import numpy as np
 import pytest
+from funicular.integrators import Radau
 from funicular.parts.settings import RunSettings
-from funicular.solve.integrators import Radau
 
 
 def soft(elements: int = 4, youngs_modulus: float = 2e6, damping_time: float = 0.0) -> fu.Scene:

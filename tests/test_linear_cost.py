@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from funicular import Circle, Material, Scene
 from funicular.engine import Engine
+from funicular.integrators import GeneralisedAlpha
 from funicular.model import unknowns as reduction
 from funicular.model.build import build
-from funicular.solve.integrators import GeneralisedAlpha
 from linear_cost import SCENES, ladder, scene
 from test_newton_matrix import SCENES as DIFFICULT
 

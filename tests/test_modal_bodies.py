@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from funicular import Material, Rectangle, Scene
 from funicular.engine import Engine
+from funicular.integrators import Radau
 from funicular.model.build import build
 from funicular.rotations import rotate
-from funicular.solve.integrators import Radau
 
 RUBBER = Material(youngs_modulus=2e6, poisson_ratio=0.0, density=1100)
 BAR = Rectangle(height=0.03, width=0.02)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from funicular import Buffer, Friction, Harmonic, Material, Ramp, Rectangle, Scene
 from funicular.engine import Engine
+from funicular.integrators import GeneralisedAlpha
 from funicular.model.build import build
-from funicular.solve.integrators import GeneralisedAlpha
 
 
 def rider() -> Scene:

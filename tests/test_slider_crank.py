@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from funicular.engine import Engine
+from funicular.integrators import Explicit
 from funicular.model.build import build
 from funicular.model.redundant_constraints import drop_redundant_rows
-from funicular.solve.integrators import Explicit
 from slider_crank import ACCELERATIONS, CRANK, END, ROD, SPEED, START, Rod, machine
 
 UNDEFORMED = {"angle": -0.33119284248796127, "slider": 0.16971948685427088,

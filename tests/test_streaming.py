@@ -25,7 +25,7 @@ from funicular import (
     TableSignal,
     load_run,
 )
-from funicular.parts.settings import INTEGRATORS
+from funicular.integrators import INTEGRATORS
 from funicular.results import (
     streaming,
 )
@@ -153,7 +153,7 @@ def test_dying_in_the_middle_of_a_write(uninterrupted, tmp_path, monkeypatch, wr
 
 
 @pytest.mark.filterwarnings("ignore:initial velocities broke a joint")
-@pytest.mark.parametrize("method", [*({"integrator": name} for name in INTEGRATORS if name != "auto"),
+@pytest.mark.parametrize("method", [*({"integrator": name} for name in INTEGRATORS),
                                     {"integrator": "energy", "spectral_radius": 0.5}],
                          ids=lambda method: "-".join(map(str, method.values())))
 def test_every_integrator_goes_on_exactly(tmp_path, monkeypatch, method):

@@ -18,8 +18,9 @@ from statistics import median
 import numpy as np
 
 from ..errors import FunicularError, FunicularWarning, SceneError, near
+from ..integrators import AUTO, INTEGRATORS
 from ..parts import Cable
-from ..parts.settings import INTEGRATORS, RunSettings
+from ..parts.settings import RunSettings
 from ..parts.validation import MOST
 from ..results.run import Run
 from ..scene import Scene
@@ -107,10 +108,10 @@ def grid(scene: Scene, *, integrators=None, elements=("x1", "x2"), tols=TOLS, ou
     for name, values in (("integrators", integrators), ("elements", elements), ("tols", tols), ("outputs", outputs)):
         if values is not None and not len(values):
             raise SceneError("bench", f"{name}: the list is empty", "name one, or leave it out")
-    integrators = tuple(integrators or (name for name in INTEGRATORS if name != "auto"))
+    integrators = tuple(integrators or INTEGRATORS)
     for name in integrators:
-        if name not in INTEGRATORS:
-            raise SceneError("bench", f'there is no integrator "{name}"', near(name, INTEGRATORS))
+        if name not in (AUTO, *INTEGRATORS):
+            raise SceneError("bench", f'there is no integrator "{name}"', near(name, (AUTO, *INTEGRATORS)))
     for tol in tols:
         if not 0 < tol < 1:
             raise SceneError("bench", f"tols: a tolerance must lie inside (0, 1), got {tol:g}")

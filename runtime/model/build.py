@@ -39,7 +39,7 @@ def build(scene: SceneData) -> Model:
     slides = _slides(scene, attachments, actions)
     joints = _joints(scene, attachments, actions, slides)
     n_extra = (1 + dim) * len(slides) + sum(joint.rows for joint in joints)
-    springs = [actions.spring(spring, n_extra + dim * k) for k, spring in enumerate(scene.springs.values())]
+    springs = [actions.point_force(spring, n_extra + dim * k) for k, spring in enumerate(scene.springs.values())]
     n_of_bodies = sum(dofs_of(body, dim) for body in bodies)
     numbering = reduction.numbering
     return Model(

@@ -59,16 +59,20 @@ class LoadModel:
 
 
 @dataclass
-class SpringModel:
-    """Two ends and what is between them; unknown: the place of its force."""
+class PointForceModel:
+    """A force between two points; unknown: the place of its force.
 
+    type: the engine's type of coupling; parameters: those of its law, in the order that the engine has them;
+    is_damped: whether the force depends on velocities; mass: scale of its equations, kg.
+    """
+
+    type: str
     name: str
     ends: list[AttachmentModel]
     dim: int
     unknown: int
-    stiffness: float
-    damping: float
-    length: float
+    parameters: tuple[float, ...]
+    is_damped: bool
     mass: float
 
 
@@ -142,8 +146,8 @@ class Actions:
         self.turning += [LoadModel(kind, number, self.cable_index[cable], element, x, (0.0, 0.0, 0.0),
                                    tuple(weight * c)) for element, x, weight in points]
 
-    def spring(self, spring, unknown: int) -> SpringModel:
-        """The model of a spring whose force is unknown number `unknown` beyond the dofs."""
-        ends = [self.attachments.model(spring.a), self.attachments.model(spring.b)]
-        return SpringModel(spring.name, ends, self.scene.dim, unknown, spring.stiffness, spring.damping, spring.length,
-                           max(end.mass for end in ends))
+    def point_force(self, part, unknown: int) -> PointForceModel:
+        """Return the model of a spring or the like, whose force is unknown number `unknown` beyond the dofs."""
+        ends = [self.attachments.model(part.a), self.attachments.model(part.b)]
+        return PointForceModel(part.kind, part.name, ends, self.scene.dim, unknown, part.parameters, part.is_damped,
+                               max(end.mass for end in ends))

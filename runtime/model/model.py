@@ -17,7 +17,7 @@ from ..parts.end_stops import Stop
 from ..parts.friction import Friction
 from .attachments import AttachmentModel
 from .joints import JointModel
-from .loads import DeadLoad, LoadModel, SignalModel, SpringModel
+from .loads import DeadLoad, LoadModel, PointForceModel, SignalModel
 from .unknowns import Node
 
 
@@ -137,7 +137,7 @@ class Model:
     bodies: list[BodyModel]
     slides: list[SlideModel]
     joints: list[JointModel]
-    springs: list[SpringModel]
+    springs: list[PointForceModel]
     signals: list[SignalModel]
     motions: list[MotionModel]
     dead_loads: list[DeadLoad]

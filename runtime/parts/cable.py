@@ -16,7 +16,6 @@ from ..kernels.libraries import of_library, resolved
 from . import cable_laws, curves
 from .material import Material
 from .section import AnySection, Circle, Tube
-from .section_stiffness import kernel_law
 from .validation import EXACT, Count, Name, Part, Vector, one_of, positive, show, shown, xyz
 
 FOLLOWS = 0.5
@@ -219,8 +218,7 @@ class Cable(Part):
     @property
     def kernel_law(self) -> str:
         """Name of the law among the element's kernels."""
-        law = kernel_law(self.law)
-        return (self.kind_of_element.law_for_curved_shape(law) or law) if self.is_curved else law
+        return cable_laws.name_of_kernels(self.kind_of_element, self.law, self.is_curved)
 
     @property
     def traits(self) -> LawTraits:

@@ -62,6 +62,12 @@ def chosen(kind: ElementKind, data: dict) -> str:
     return law
 
 
+def name_of_kernels(kind: ElementKind, law: str, curved: bool) -> str:
+    """Return the name of a law among an element's kernels, of a cable whose stress-free shape is curved or straight."""
+    law = kernel_law(law)
+    return (kind.law_for_curved_shape(law) or law) if curved else law
+
+
 def check(cable: Described) -> None:
     """Raise ValueError(cause, remedy) where the law of a cable does not suit its shape, its section or its material."""
     kind = cable.kind_of_element

@@ -7,14 +7,19 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import BeforeValidator, Field, model_validator
 
+from ..integrators import AUTO, INTEGRATORS, stable_at
 from .validation import Count, Flag, Part, one_of, positive, within
-
-INTEGRATORS = ("auto", "genalpha", "explicit", "radau", "energy")
 
 SMALLEST_STEP = 1e-12
 """Of the duration, as in engine/run/run.c."""
 
 Duration = Annotated[float, positive("s")]
+
+
+def default_spectral_radius(integrator: str) -> float:
+    """Return the spectral radius where none is given: the integrator's own, else that of the one for fixed steps."""
+    own = INTEGRATORS[integrator].default_spectral_radius if integrator in INTEGRATORS else None
+    return stable_at(fixed_step=True).default_spectral_radius if own is None else own
 
 
 def _text_of_path(value: Any) -> Any:
@@ -41,9 +46,9 @@ class RunSettings(Part):
     tol: Annotated[float, positive()] = 1e-4
     step: Duration | None = None
     output_step: Duration = Field(default_factory=lambda data: data["duration"] / 100)
-    integrator: Annotated[str, one_of(INTEGRATORS)] = "auto"
+    integrator: Annotated[str, one_of((AUTO, *INTEGRATORS))] = AUTO
     spectral_radius: Annotated[float, within(0, 1, ends=True)] = Field(
-        default_factory=lambda data: 1.0 if data.get("integrator") == "energy" else 0.9)
+        default_factory=lambda data: default_spectral_radius(data.get("integrator", AUTO)))
     initial: Annotated[str, one_of(("drawn", "equilibrium"))] = "drawn"
     save: Annotated[str | None, BeforeValidator(_text_of_path)] = None
     threads: Count = 1

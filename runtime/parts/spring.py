@@ -28,6 +28,16 @@ class Spring(Part):
     damping: Annotated[float, not_negative("N s/m")] = 0.0
     length: Annotated[float, not_negative("m")] | None = None
 
+    @property
+    def parameters(self) -> tuple[float, ...]:
+        """Stiffness, damping and length, as the engine's law takes them (engine/couplings/springs.c)."""
+        return self.stiffness, self.damping, self.length or 0.0
+
+    @property
+    def is_damped(self) -> bool:
+        """Whether its force depends on velocities."""
+        return self.damping > 0
+
     @model_validator(mode="after")
     def _acts(self) -> Spring:
         if self.a.on is None and self.b.on is None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..integrators import INTEGRATORS, stable_at
 from ..model.model import CableModel, Model
 from ..model.redundant_constraints import redundant
 from ..parts.settings import RunSettings
@@ -57,7 +58,7 @@ def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
             "jam": f"friction jams {where}: the more it holds, the more it is pressed on the cable"}[cause]
     counts = engine.statistics
     gone = f" after {counts['steps']} steps down to {counts['smallest_step_s']:.2g} s" if counts["steps"] else ""
-    if settings.step is not None and engine.integrator == "explicit":
+    if settings.step is not None and INTEGRATORS[engine.integrator].stability is not None:
         remedy = _too_large(engine, settings)
     elif cause == "jam":
         remedy = "Take a smaller coefficient, or the rider's point nearer to its centre of mass"
@@ -72,7 +73,9 @@ def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
 def _too_large(engine, settings: RunSettings) -> str:
     size = f"tol {settings.tol:g}" if settings.step is None else f"step {settings.step:g} s"
     others = "" if settings.step is None else ", or none, so that tol chooses it"
-    stable = f', or integrator="{"radau" if settings.step is None else "genalpha"}"' * (engine.integrator == "explicit")
+    stable = ""
+    if INTEGRATORS[engine.integrator].stability is not None:
+        stable = f', or integrator="{stable_at(settings.step is not None).name}"'
     return f'The {size} is too large for integrator "{engine.integrator}": take a smaller one{others}{stable}'
 
 
@@ -145,7 +148,7 @@ def unexplained(engine, settings: RunSettings) -> list[str]:
     if not off > quiet * max(exchanged, STEADY * in_motion) + rounding:
         return []
     what = ("went that neither damping nor friction nor impacts took", "came that nothing did work for")[grown > lost]
-    damps = engine.integrator == "genalpha" and settings.spectral_radius < 1  # "energy" counts what it damps
+    damps = INTEGRATORS[engine.integrator].loses_energy_by_spectral_radius and settings.spectral_radius < 1
     damped = ", or a spectral_radius nearer to 1" if lost > grown and damps else ""
     part = f"{off / exchanged:.2g} of the {exchanged:.3g} J exchanged" if exchanged > off else "all that was exchanged"
     return [f"the energy balance is off by up to {off:.3g} J, {part}: energy {what}. The integration makes this error: "

@@ -8,11 +8,12 @@ from collections import deque
 
 from ..engine import Engine
 from ..errors import FunicularWarning
+from ..integrators import INTEGRATORS, stable_at
 from ..model.model import Model
 from ..parts.settings import RunSettings
 from .diagnosis import damping, place
 from .event_watcher import Watcher
-from .integrators import STABLE, STABLE_DAMPING, fastest_rates
+from .integrator_choice import fastest_rates
 from .progress import Meter
 
 MANY_STEPS = 1_000_000
@@ -95,9 +96,11 @@ class LongRun:
             return (f"{counts['rejected_steps']} steps were rejected beside {counts['steps']} taken{where}: forces "
                     f"change within a step, as at contacts and kinks of friction. Take a larger tol{damped}")
         frequency, decay = self._fastest()
-        if engine.integrator == "explicit" and mean * max(frequency / STABLE, decay / STABLE_DAMPING) > NEAR:
-            return (f"stability asks the explicit method for steps of {mean:.2g} s: the highest frequency is "
-                    f"{frequency:.3g} rad/s, the fastest decay {decay:.3g} 1/s. Take integrator=\"radau\""
+        stability = INTEGRATORS[engine.integrator].stability
+        if stability is not None and stability.part(mean, frequency, decay) > NEAR:
+            return (f"stability asks the {engine.integrator} method for steps of {mean:.2g} s: the highest frequency "
+                    f"is {frequency:.3g} rad/s, the fastest decay {decay:.3g} 1/s. Take "
+                    f'integrator="{stable_at(fixed_step=False).name}"'
                     + ", or fewer, longer elements" * bool(self._model.cables))
         return (f"tol = {settings.tol:g} asks for steps of {mean:.2g} s, for vibrations of about {1 / mean:.2g} rad/s"
                 f"{where} (the highest frequency is {frequency:.3g} rad/s). Take a larger tol{damped}, or a less stiff "

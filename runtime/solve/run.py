@@ -12,6 +12,7 @@ import numpy as np
 from ..checks.velocity_jumps import velocity_jumps
 from ..engine import Engine
 from ..errors import FunicularWarning, SceneError
+from ..integrators import Integrator
 from ..model.build import build
 from ..model.knots import knots
 from ..model.model import Model
@@ -19,10 +20,9 @@ from ..model.redundant_constraints import drop_redundant_rows
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
 from . import reduced_strain, straight_struts
-from .conservation import check_conserves
 from .diagnosis import notes
 from .event_watcher import Watcher
-from .integrators import Integrator, choose
+from .integrator_choice import choose
 from .long_runs import LongRun
 from .pauses import Pauses, pauses
 from .progress import Meter
@@ -91,8 +91,6 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
         messages += [f"equilibrium to start from: {message}" for message in initial.messages]
     messages += _divided_step(settings) + share_elements(engine, settings.threads)
     method, reason = choose(settings, scene, model, engine)
-    if method.name == "energy":
-        check_conserves(model, scene, engine, method)
     set_up, cpu = time.perf_counter() - begin, time.process_time()
     status, changed = _start(scene, settings, model, engine, method, None if stream is None else pace.capacity)
     messages += changed.gaps

@@ -32,7 +32,7 @@ import exudyn_models as peer
 import numpy as np
 from funicular import FunicularError, FunicularWarning, Scene
 from funicular.bench.outputs import distance, largest_change
-from funicular.parts.settings import INTEGRATORS
+from funicular.integrators import INTEGRATORS
 from pendulum import pendulum
 from sliding import sliding_mass
 from table import parser, show
@@ -134,7 +134,7 @@ def curve(settings, make: Callable[[float], Point], limit: float) -> list[Point]
 def our_curves(case: Case, limit: float) -> dict[str, list[Point]]:
     """Work and precision here: each integrator by its tolerance, generalised-alpha by its step as well."""
     curves = {}
-    for integrator in (name for name in INTEGRATORS if name != "auto"):
+    for integrator in INTEGRATORS:
         curves[integrator] = curve(TOLS, lambda tol, name=integrator: Point(
             f"{name} tol", tol, partial(integrate, case, limit, integrator=name, tol=tol)), limit)
     curves["genalpha step"] = curve((DURATION / n for n in STEPS), lambda step: Point(

@@ -24,8 +24,8 @@ from pathlib import Path
 import numpy as np
 from funicular import Material, Rectangle, Scene
 from funicular.engine import Engine
+from funicular.integrators import GeneralisedAlpha
 from funicular.model.build import build
-from funicular.solve.integrators import GeneralisedAlpha
 from scipy.linalg.lapack import dpbtrf, dpbtrs
 from table import parser, show
 

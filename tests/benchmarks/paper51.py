@@ -57,8 +57,8 @@ def integrate(*, step=0.0, tol=1e-4, from_rest=False):
     from_rest: start the scheme from zero accelerations, which no user can ask for.
     """
     from funicular.engine import Engine
+    from funicular.integrators import GeneralisedAlpha
     from funicular.model.build import build
-    from funicular.solve.integrators import GeneralisedAlpha
 
     engine = Engine(build(load_scene("paper51")))
     begin = time.process_time()

@@ -241,8 +241,9 @@ double fu_kinetic_energy(const fu_model *model, const double *q, const double *v
     return total + fu_bodies_kinetic_energy(model, q, v);
 }
 
-double fu_elastic_energy(const fu_model *model, const double *q)
+double fu_elastic_energy(const fu_model *model, const fu_state *state)
 {
+    const double *q = state->q;
     double total = 0.0, part;
     for (int c = 0; c < model->n_cables; ++c) {
         const fu_cable *cable = &model->cables[c];
@@ -251,7 +252,7 @@ double fu_elastic_energy(const fu_model *model, const double *q)
             total += part;
         }
     }
-    return total + fu_bodies_elastic_energy(model, q) + fu_spring_energy(model, q);
+    return total + fu_bodies_elastic_energy(model, q) + fu_coupling_energy(model, state);
 }
 
 /* of gravity */
@@ -266,10 +267,11 @@ double fu_potential_energy(const fu_model *model, const double *q)
     return total + fu_bodies_potential_energy(model, q);
 }
 
-/* power taken out by damping */
-double fu_dissipation(const fu_model *model, const double *q, const double *v)
+/* power taken out by damping and friction; work: see `dissipation` in coupling.h */
+double fu_dissipation(const fu_model *model, const fu_state *state, const fu_accelerator *work)
 {
-    double total = fu_spring_dissipation(model, q, v) + fu_bodies_dissipation(model, q, v), part[FU_MAX_COORDINATES];
+    const double *q = state->q, *v = state->v;
+    double total = fu_bodies_dissipation(model, q, v), part[FU_MAX_COORDINATES];
     for (int c = 0; c < model->n_cables; ++c) {
         const fu_cable *cable = &model->cables[c];
         if (cable->tau <= 0.0 && cable->mass_damping <= 0.0) continue;
@@ -285,7 +287,7 @@ double fu_dissipation(const fu_model *model, const double *q, const double *v)
             }
         }
     }
-    return total;
+    return total + fu_coupling_dissipation(model, state, work);
 }
 
 double fu_length(const fu_model *model, int slide)

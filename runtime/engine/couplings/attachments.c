@@ -1,5 +1,5 @@
-/* Ends of springs and joints: a point and axes of the ground, of a cable, of a body; how they move with the coordinates
- * of what carries them, and what a force and a moment on them change with these.
+/* Attachments: a point and axes of the ground, of a cable, of a body; how they move with the coordinates of what carries
+ * them, and what a force and a moment on them change with these.
  */
 #include "engine.h"
 
@@ -24,32 +24,32 @@ typedef struct {
     double S[2][3 * FU_MAX_COORDINATES]; /* shape functions of each: themselves, their first and second derivative by x */
 } frame_vectors;
 
-static void vectors_of(const fu_model *model, const fu_attachment *end, const fu_state *state, double s_rate, int n_own,
+static void vectors_of(const fu_model *model, const fu_attachment *on, const fu_state *state, double s_rate, int n_own,
                        frame_vectors *w)
 {
-    const int on_slide = end->slide >= 0;
-    const fu_cable *cable = &model->cables[end->cable];
+    const int on_slide = on->slide >= 0;
+    const fu_cable *cable = &model->cables[on->cable];
     const int dim = cable->kernel->dim, n = cable->coordinates / dim;
-    const int element = on_slide ? state->element[end->slide] : end->element;
+    const int element = on_slide ? state->element[on->slide] : on->element;
     const double *e = state->q + cable->first + element * cable->per_node;
     const double *v = state->v + cable->first + element * cable->per_node;
     double every[9 * FU_MAX_COORDINATES];
     memset(w->rows, 0, sizeof(double) * 2 * (size_t)(dim * n_own));
     if (on_slide)
-        cable->kernel->slopes(cable->length, state->s[end->slide] - fu_element_start(model, end->slide, element), every);
+        cable->kernel->slopes(cable->length, state->s[on->slide] - fu_element_start(model, on->slide, element), every);
     for (int k = 0; k < 2; ++k) {
-        const double *held = end->slopes[k] == FU_CARRIED ? state->director + 3 * end->slide : end->up;
+        const double *fixed = on->slopes[k] == FU_CARRIED ? state->director + 3 * on->slide : on->up;
         for (int d = 0; d < dim; ++d) {
-            w->value[k][d] = held[d];
+            w->value[k][d] = fixed[d];
             w->rate[k][d] = w->second[k][d] = 0.0;
         }
-        if (end->slopes[k] < 0) {
+        if (on->slopes[k] < 0) {
             memset(w->S[k], 0, sizeof w->S[k]);
             continue;
         }
-        if (on_slide) memcpy(w->S[k], every + 3 * n * end->slopes[k], sizeof(double) * 3 * (size_t)n);
+        if (on_slide) memcpy(w->S[k], every + 3 * n * on->slopes[k], sizeof(double) * 3 * (size_t)n);
         else {
-            memcpy(w->S[k], end->S + k * n, sizeof(double) * (size_t)n);
+            memcpy(w->S[k], on->S + k * n, sizeof(double) * (size_t)n);
             memset(w->S[k] + n, 0, sizeof(double) * 2 * (size_t)n);
         }
         const double *S = w->S[k], *S_x = S + n, *S_xx = S + 2 * n;
@@ -73,136 +73,162 @@ static void vectors_of(const fu_model *model, const fu_attachment *end, const fu
     }
 }
 
-/* number of the end's own coordinates, and their numbers for fu_add; on a slide the last is s */
-int fu_attachment_coordinates(const fu_model *model, const fu_attachment *end, const fu_state *state, int *at)
+/* number of the attachment's coordinates, and their numbers for fu_add; on a slide the last is s */
+int fu_attachment_coordinates(const fu_model *model, const fu_attachment *on, const fu_state *state, int *at)
 {
-    if (end->body >= 0) {
-        const fu_body *body = &model->bodies[end->body];
+    if (on->body >= 0) {
+        const fu_body *body = &model->bodies[on->body];
         const int n = fu_body_dofs(body);
         for (int i = 0; i < n; ++i) at[i] = body->dof + i;
         return n;
     }
-    if (end->cable < 0) return 0;
-    const fu_cable *cable = &model->cables[end->cable];
-    const int element = end->slide >= 0 ? state->element[end->slide] : end->element, n = cable->coordinates;
+    if (on->cable < 0) return 0;
+    const fu_cable *cable = &model->cables[on->cable];
+    const int element = on->slide >= 0 ? state->element[on->slide] : on->element, n = cable->coordinates;
     for (int i = 0; i < n; ++i) at[i] = cable->first + element * cable->per_node + i;
-    if (end->slide < 0) return n;
-    at[n] = fu_extra(model, model->slides[end->slide].unknown);
+    if (on->slide < 0) return n;
+    at[n] = fu_extra(model, model->slides[on->slide].base.unknown);
     return n + 1;
 }
 
-static void point_of(const fu_model *model, const fu_attachment *end, const fu_state *state, fu_attachment_state *place)
+static void point_of(const fu_model *model, const fu_attachment *on, const fu_state *state, fu_attachment_state *out)
 {
-    const int dim = model->dim, n = place->n;
-    for (int d = 0; d < 3; ++d) place->v[d] = place->bias[d] = 0.0;
-    memcpy(place->p, end->u, sizeof place->p);
-    memset(place->P, 0, sizeof(double) * (size_t)(dim * n));
-    if (end->body >= 0) {
-        const fu_body *body = &model->bodies[end->body];
-        body->kernel->point(state->q + body->configuration, end->u, state->v + body->dof, place->p, place->P, place->v,
-                            place->bias);
-    } else if (end->cable >= 0 && end->slide < 0) {
-        const fu_cable *cable = &model->cables[end->cable];
-        const int first = cable->first + end->element * cable->per_node;
+    const int dim = model->dim, n = out->n;
+    for (int d = 0; d < 3; ++d) out->v[d] = out->bias[d] = 0.0;
+    memcpy(out->p, on->u, sizeof out->p);
+    memset(out->P, 0, sizeof(double) * (size_t)(dim * n));
+    if (on->body >= 0) {
+        const fu_body *body = &model->bodies[on->body];
+        body->kernel->point(state->q + body->configuration, on->u, state->v + body->dof, out->p, out->P, out->v,
+                            out->bias);
+    } else if (on->cable >= 0 && on->slide < 0) {
+        const fu_cable *cable = &model->cables[on->cable];
+        const int first = cable->first + on->element * cable->per_node;
         for (int d = 0; d < dim; ++d) {
-            place->p[d] = 0.0;
+            out->p[d] = 0.0;
             for (int k = 0; k < n / dim; ++k) {
-                place->P[d * n + k * dim + d] = end->N[k];
-                place->p[d] += end->N[k] * state->q[first + k * dim + d];
-                place->v[d] += end->N[k] * state->v[first + k * dim + d];
+                out->P[d * n + k * dim + d] = on->N[k];
+                out->p[d] += on->N[k] * state->q[first + k * dim + d];
+                out->v[d] += on->N[k] * state->v[first + k * dim + d];
             }
         }
     }
 }
 
-static void axes_of(const fu_model *model, const fu_attachment *end, const fu_state *state, double s_rate, fu_attachment_state *place)
+static void axes_of(const fu_model *model, const fu_attachment *on, const fu_state *state, double s_rate,
+                    fu_attachment_state *out)
 {
-    const int dim = model->dim, n = place->n, turns = dim == 3 ? 3 : 1;
+    const int dim = model->dim, n = out->n, turns = dim == 3 ? 3 : 1;
     double A[9];
     memcpy(A, unit_axes, sizeof A);
-    for (int d = 0; d < 3; ++d) place->omega[d] = place->alpha[d] = 0.0;
-    memset(place->T, 0, sizeof(double) * (size_t)(turns * n));
-    if (end->body >= 0) {
-        const fu_body *body = &model->bodies[end->body];
+    for (int d = 0; d < 3; ++d) out->omega[d] = out->alpha[d] = 0.0;
+    memset(out->T, 0, sizeof(double) * (size_t)(turns * n));
+    if (on->body >= 0) {
+        const fu_body *body = &model->bodies[on->body];
         double unused[36];
-        body->kernel->frame(state->q + body->configuration, model->zero, A, place->T, unused);
-        multiply(turns, n, 1, place->T, state->v + body->dof, place->omega); /* at omega' = 0 the axes' own bias is nil */
-    } else if (end->frame) {
+        body->kernel->frame(state->q + body->configuration, model->zero, A, out->T, unused);
+        multiply(turns, n, 1, out->T, state->v + body->dof, out->omega); /* at omega' = 0 the axes' own bias is nil */
+    } else if (on->frame) {
         frame_vectors w;
         double T[18];
-        vectors_of(model, end, state, s_rate, n, &w);
-        end->frame->axes(w.value[0], w.value[1], A, T);
-        end->frame->motion(w.value[0], w.value[1], w.rate[0], w.rate[1], w.second[0], w.second[1], place->omega,
-                           place->alpha);
-        multiply(turns, 2 * dim, n, T, w.rows, place->T);
+        vectors_of(model, on, state, s_rate, n, &w);
+        on->frame->axes(w.value[0], w.value[1], A, T);
+        on->frame->motion(w.value[0], w.value[1], w.rate[0], w.rate[1], w.second[0], w.second[1], out->omega,
+                           out->alpha);
+        multiply(turns, 2 * dim, n, T, w.rows, out->T);
     } else if (dim == 2) {
         A[1] = A[2] = 0.0;
         A[3] = 1.0;
     }
-    multiply(dim, dim, dim, A, end->axes, place->A);
+    multiply(dim, dim, dim, A, on->axes, out->A);
 }
 
-/* The node of a modal body: all at once. */
-static void of_modes(const fu_model *model, const fu_attachment *end, const fu_state *state, fu_attachment_state *place)
+/* A node of a modal body: its point and its axes together. */
+static void of_modes(const fu_model *model, const fu_attachment *on, const fu_state *state, fu_attachment_state *out)
 {
-    const fu_body *body = &model->bodies[end->body];
+    const fu_body *body = &model->bodies[on->body];
     const int dim = model->dim;
     fu_modal_point at;
-    fu_modal_attachment_state(body, &end->spot, state->q + body->configuration, state->v + body->dof, &at, place->P, place->T);
-    memset(place->p, 0, sizeof place->p);
-    memset(place->v, 0, sizeof place->v);
-    memset(place->bias, 0, sizeof place->bias);
-    memcpy(place->p, at.p, sizeof(double) * (size_t)dim);
-    memcpy(place->v, at.velocity, sizeof(double) * (size_t)dim);
-    memcpy(place->bias, at.bias, sizeof(double) * (size_t)dim);
-    memcpy(place->omega, at.omega, sizeof place->omega);
-    memcpy(place->alpha, at.omega_bias, sizeof place->alpha);
-    multiply(dim, dim, dim, at.axes, end->axes, place->A);
+    fu_modal_attachment_state(body, &on->spot, state->q + body->configuration, state->v + body->dof, &at, out->P, out->T);
+    memset(out->p, 0, sizeof out->p);
+    memset(out->v, 0, sizeof out->v);
+    memset(out->bias, 0, sizeof out->bias);
+    memcpy(out->p, at.p, sizeof(double) * (size_t)dim);
+    memcpy(out->v, at.velocity, sizeof(double) * (size_t)dim);
+    memcpy(out->bias, at.bias, sizeof(double) * (size_t)dim);
+    memcpy(out->omega, at.omega, sizeof out->omega);
+    memcpy(out->alpha, at.omega_bias, sizeof out->alpha);
+    multiply(dim, dim, dim, at.axes, on->axes, out->A);
 }
 
-/* Where an end stands and how it moves: its point, its axes, or both; s_rate: of its slide, where velocities count. */
-void fu_attachment_at(const fu_model *model, const fu_attachment *end, const fu_state *state, double s_rate, int what,
-                  fu_attachment_state *place)
+/* The state of an attachment: of its point, its axes, or both; s_rate: of its slide, where velocities count. */
+void fu_attachment_at(const fu_model *model, const fu_attachment *on, const fu_state *state, double s_rate, int what,
+                  fu_attachment_state *out)
 {
-    place->n = fu_attachment_coordinates(model, end, state, place->at);
-    if (end->body >= 0 && model->bodies[end->body].modes) {
-        of_modes(model, end, state, place);
+    out->n = fu_attachment_coordinates(model, on, state, out->at);
+    if (on->body >= 0 && model->bodies[on->body].modes) {
+        of_modes(model, on, state, out);
         return;
     }
-    if (what & FU_POINT) point_of(model, end, state, place);
-    if (what & FU_AXES) axes_of(model, end, state, s_rate, place);
+    if (what & FU_POINT) point_of(model, on, state, out);
+    if (what & FU_AXES) axes_of(model, on, state, s_rate, out);
 }
 
-/* K (n x n) += derivative by the end's coordinates of P' f + T' m at a fixed force f and moment m; either may be null */
-void fu_geometric_stiffness(const fu_model *model, const fu_attachment *end, const fu_state *state, const double *f, const double *m,
-                      int n, double *K)
+/* Of an attachment to a body: as fu_geometric_stiffness. */
+static void add_stiffness_of_body(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *f,
+                                  const double *m, int n, double *K)
+{
+    const fu_body *body = &model->bodies[on->body];
+    const double *b = state->q + body->configuration, none[3] = {0.0};
+    double p[3], A[9], P[18], part[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
+    if (body->modes) {
+        fu_modal_attachment_force(body, &on->spot, b, f ? f : none, m ? m : none, part);
+        for (int i = 0; i < n * n; ++i) K[i] += part[i];
+        return;
+    }
+    if (f) {
+        body->kernel->point_force(b, on->u, f, p, P, part);
+        for (int i = 0; i < n * n; ++i) K[i] += part[i];
+    }
+    if (m) {
+        body->kernel->frame(b, m, A, P, part);
+        for (int i = 0; i < n * n; ++i) K[i] += part[i];
+    }
+}
+
+/* What depends on s of the frame where a slide is; g: derivatives of the moment's work by the frame's two vectors. */
+static void add_stiffness_of_s(const fu_model *model, const fu_attachment *on, const fu_state *state,
+                               const frame_vectors *w, const double *g, int n, double *K)
+{
+    const fu_cable *cable = &model->cables[on->cable];
+    const int dim = model->dim, vectors = cable->coordinates / dim, s = n - 1;
+    const double *e = state->q + cable->first + state->element[on->slide] * cable->per_node;
+    for (int k = 0; k < 2; ++k)
+        for (int d = 0; d < dim; ++d) {
+            const double pull = g[k * dim + d], *S_x = w->S[k] + vectors, *S_xx = w->S[k] + 2 * vectors;
+            for (int i = 0; i < vectors; ++i) {
+                K[(i * dim + d) * n + s] += pull * S_x[i];
+                K[s * n + i * dim + d] += pull * S_x[i];
+                K[s * n + s] += pull * S_xx[i] * (e[i * dim + d] - (i % cable->kernel->vectors == 0 ? e[d] : 0.0));
+            }
+        }
+}
+
+/* K (n x n) += derivative by the attachment's coordinates of P' f + T' m at a fixed force f and moment m; either may be
+ * null */
+void fu_geometric_stiffness(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *f,
+                            const double *m, int n, double *K)
 {
     const int dim = model->dim;
-    if (end->body >= 0) {
-        const fu_body *body = &model->bodies[end->body];
-        const double *b = state->q + body->configuration;
-        double p[3], A[9], P[18], part[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
-        if (body->modes) {
-            const double none[3] = {0.0};
-            fu_modal_attachment_force(body, &end->spot, b, f ? f : none, m ? m : none, part);
-            for (int i = 0; i < n * n; ++i) K[i] += part[i];
-            return;
-        }
-        if (f) {
-            body->kernel->point_force(b, end->u, f, p, P, part);
-            for (int i = 0; i < n * n; ++i) K[i] += part[i];
-        }
-        if (m) {
-            body->kernel->frame(b, m, A, P, part);
-            for (int i = 0; i < n * n; ++i) K[i] += part[i];
-        }
-        return;
-    }
-    if (!m || !end->frame) return;
     frame_vectors w;
     double g[6], of_frame[36], half[6 * FU_ATTACHMENT_COORDINATES];
-    vectors_of(model, end, state, 0.0, n, &w);
-    end->frame->moment(w.value[0], w.value[1], m, g, of_frame);
+    if (on->body >= 0) {
+        add_stiffness_of_body(model, on, state, f, m, n, K);
+        return;
+    }
+    if (!m || !on->frame) return;
+    vectors_of(model, on, state, 0.0, n, &w);
+    on->frame->moment(w.value[0], w.value[1], m, g, of_frame);
     multiply(2 * dim, 2 * dim, n, of_frame, w.rows, half);
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < n; ++j) {
@@ -210,17 +236,13 @@ void fu_geometric_stiffness(const fu_model *model, const fu_attachment *end, con
             for (int l = 0; l < 2 * dim; ++l) sum += w.rows[l * n + i] * half[l * n + j];
             K[i * n + j] += sum;
         }
-    if (end->slide < 0) return;
-    const fu_cable *cable = &model->cables[end->cable];
-    const int element = state->element[end->slide], vectors = cable->coordinates / dim, s = n - 1;
-    const double *e = state->q + cable->first + element * cable->per_node;
-    for (int k = 0; k < 2; ++k)
-        for (int d = 0; d < dim; ++d) {
-            const double pull = g[k * dim + d], *S_x = w.S[k] + vectors, *S_xx = w.S[k] + 2 * vectors;
-            for (int i = 0; i < vectors; ++i) {
-                K[(i * dim + d) * n + s] += pull * S_x[i];
-                K[s * n + i * dim + d] += pull * S_x[i];
-                K[s * n + s] += pull * S_xx[i] * (e[i * dim + d] - (i % cable->kernel->vectors == 0 ? e[d] : 0.0));
-            }
-        }
+    if (on->slide >= 0) add_stiffness_of_s(model, on, state, &w, g, n, K);
+}
+
+void fu_turn_attachment(const fu_model *model, const fu_attachment *on, const double *psi, double *rows, int n_rows,
+                        int n_columns, int first)
+{
+    if (!psi || on->body < 0) return;
+    const fu_body *body = &model->bodies[on->body];
+    fu_turn_columns(body->kernel, rows, n_rows, n_columns, first, psi + body->dof);
 }

@@ -1,14 +1,14 @@
-/* Slides that stick, break loose, or come to what waits at an end of their cable: events that change what holds s.
+/* Slides that stick, break loose, or come to what waits at an end of their cable: events that change what locks s.
  *
- * mode is FU_SLIDES, FU_LOCKED (where it stands: by friction that sticks, or against a hard stop, contact then tells which),
- * FU_LEFT. way is the direction of sliding where friction sticks at rest: known then, as a change of it is an event.
+ * mode is FU_SLIDES, FU_LOCKED (where it is: by friction that sticks, or against a hard stop, contact then tells which) or
+ * FU_LEFT. slip_direction is that of sliding where friction sticks at rest: known then, as a change of it is an event.
  */
 #include "engine.h"
 
 #include <string.h>
 
 #define AT_REST 1e-12 /* of the cable over the duration: speeds below are none */
-#define BOUNCE 1e-6   /* of the cable: a stop holds what would come no farther back */
+#define BOUNCE 1e-6   /* of the cable: what would come no farther back stays at the stop */
 
 static int is_hard(const fu_model *model, int j, int side)
 {
@@ -25,23 +25,30 @@ int fu_has_stops(const fu_model *model)
     return 0;
 }
 
-/* The force on the rider of a slide that is held: by eq 38, as a Newton method's has the rounding of positions over h^2. */
-static const double *held_force(const fu_run *run, const fu_state *state, int j)
+/* The force on the rider of a slide that is locked: by eq 38, as a Newton method's has the rounding of positions over h^2.
+ * Returns whether it is by eq 38: then `traction` is what of it is along the cable, without what moments put there. */
+static int locked_force(const fu_run *run, const fu_state *state, int j, double *f, double *traction)
 {
-    fu_slide_output *slides = (fu_slide_output *)run->accelerator.slides;
-    if (!run->integrator->newton && !fu_ties_a_frame(run->model, j)) return state->f + 3 * j;
+    const fu_model *model = run->model;
+    memcpy(f, state->forces + model->slides[j].base.force, sizeof(double) * (size_t)model->dim);
+    if (!run->integrator->newton && !fu_ties_a_frame(model, j)) return 0;
     fu_accelerator work = run->accelerator;
-    return fu_accelerations(run->model, state, &work, run->work, slides, 0) ? state->f + 3 * j : slides[j].force;
+    fu_slide_output out;
+    if (fu_accelerations(model, state, &work, run->work, 0)) return 0;
+    fu_slide_outputs(model, state, j, run->work, &work, &out);
+    memcpy(f, out.force, sizeof(double) * (size_t)model->dim);
+    *traction = out.traction;
+    return 1;
 }
 
-/* Force along the cable that must be held where a slide is held, and how much of it friction and a hard stop do not. */
+/* Force along the cable on a locked slide, and how much of it neither friction nor a hard stop can take. */
 static double excess(const fu_run *run, const fu_state *state, int j, double *pull)
 {
     const fu_model *model = run->model;
     const fu_slide *slide = &model->slides[j];
     const int dim = model->dim, side = state->contact[j];
-    const double *f = held_force(run, state, j);
-    double square = 0.0, along = 0.0, normal = 0.0;
+    double f[3], square = 0.0, along = 0.0, normal = 0.0, traction = 0.0;
+    const int by_eq38 = locked_force(run, state, j, f, &traction);
     fu_slide_state slide_state;
     fu_slide_now(model, state, j, &slide_state);
     const double *G = slide_state.by_point + (dim - 1) * dim; /* i/|r_x| */
@@ -51,16 +58,16 @@ static double excess(const fu_run *run, const fu_state *state, int j, double *pu
         const double across = f[d] - along * G[d] / sqrt(square);
         normal += across * across;
     }
-    /* what moments put along the cable is not held by friction */
-    if (fu_ties_a_frame(model, j)) along = ((const fu_slide_output *)run->accelerator.slides)[j].traction;
-    const double grip = slide->static_friction * sqrt(normal);
+    /* friction does not take what moments put along the cable */
+    if (by_eq38 && fu_ties_a_frame(model, j)) along = traction;
+    const double most = slide->static_friction * sqrt(normal);
     if (side && !is_hard(model, j, side)) /* the buffer's part */
         along += side * slide->stops[side > 0].stiffness * fu_compression(model, state, j, side) * sqrt(square);
     *pull = along;
-    return (is_hard(model, j, side) ? side * along : fabs(along)) - grip;
+    return (is_hard(model, j, side) ? side * along : fabs(along)) - most;
 }
 
-/* What is watched: negative as long as a slide stays held, or goes on its way. */
+/* What is watched: negative as long as a slide stays locked, or slides on in its direction. */
 double fu_stick_margin(const fu_run *run, const fu_state *state, int j)
 {
     const fu_slide *slide = &run->model->slides[j];
@@ -80,7 +87,7 @@ double fu_buffer_margin(const fu_run *run, const fu_state *state, int j, int sid
     return fmin(x, force);
 }
 
-/* Let go of a slide that is held, against which `pull` was needed. */
+/* Unlock a slide, on which there was the force `pull` along the cable. */
 static void release(fu_run *run, int j, double pull)
 {
     fu_state *now = &run->now;
@@ -90,8 +97,8 @@ static void release(fu_run *run, int j, double pull)
     if (hard) now->contact[j] = 0;
 }
 
-/* Hold a slide that stands still, if what holds it is enough, else let it go on; the status. */
-static int settle(fu_run *run, int j)
+/* Lock a slide that is at rest, if friction or its stop can take the force on it, else let it slide on; the status. */
+static int try_to_stick(fu_run *run, int j)
 {
     fu_state *now = &run->now;
     double pull;
@@ -109,13 +116,14 @@ static int is_at_rest(const fu_run *run, int j)
     return fabs(fu_slide_rate(run->model, &run->now, j)) * run->duration <= AT_REST * fu_length(run->model, j);
 }
 
-/* the way that each slide goes whose friction needs it */
-static void find_ways(fu_run *run)
+/* the direction of sliding of each slide whose friction needs it */
+static void find_slip_directions(fu_run *run)
 {
     fu_state *now = &run->now;
     for (int j = 0; j < run->model->n_slides; ++j) {
         const double rate = fu_slide_rate(run->model, now, j);
-        if (run->model->slides[j].sticks && now->mode[j] == FU_SLIDES && rate != 0.0) now->slip_direction[j] = rate > 0.0 ? 1 : -1;
+        if (run->model->slides[j].sticks && now->mode[j] == FU_SLIDES && rate != 0.0)
+            now->slip_direction[j] = rate > 0.0 ? 1 : -1;
     }
 }
 
@@ -123,13 +131,14 @@ static void find_ways(fu_run *run)
 int fu_begin_stops(fu_run *run)
 {
     const fu_model *model = run->model;
-    find_ways(run);
+    find_slip_directions(run);
     for (int j = 0; j < model->n_slides; ++j) {
         if (model->slides[j].drive >= 0) continue;
         for (int side = -1; side <= 1; side += 2)
-            if (model->slides[j].stops[side > 0].kind == FU_END_IS_BUFFERED && fu_buffer_margin(run, &run->now, j, side) > 0.0)
+            if (model->slides[j].stops[side > 0].kind == FU_END_IS_BUFFERED &&
+                fu_buffer_margin(run, &run->now, j, side) > 0.0)
                 run->now.contact[j] = side;
-        if (model->slides[j].sticks && is_at_rest(run, j) && settle(run, j)) return FU_SINGULAR;
+        if (model->slides[j].sticks && is_at_rest(run, j) && try_to_stick(run, j)) return FU_SINGULAR;
     }
     return FU_RUNNING;
 }
@@ -138,23 +147,28 @@ int fu_begin_stops(fu_run *run)
 static int strike(fu_run *run, int j, int side)
 {
     const fu_model *model = run->model;
-    const fu_slide_output *slide = (const fu_slide_output *)run->accelerator.slides + j;
     fu_state *now = &run->now;
+    fu_slide_state slide_state;
+    fu_slide_output slide;
     now->contact[j] = side;
     if (side * fu_slide_rate(model, now, j) > 0.0) {
         now->mode[j] = FU_LOCKED;
         now->locked_s[j] = now->s[j];
-        if (fu_strike(model, now, &run->accelerator, j, run->work)) return FU_SINGULAR;
-        fu_impact(run, run->work, model->slides[j].stops[side > 0].restitution);
+        const double restitution = model->slides[j].stops[side > 0].restitution;
+        fu_slide_now(model, now, j, &slide_state);
+        if (fu_strike(model, now, &run->accelerator, model->slides[j].base.row, model->dim - 1,
+                      restitution * slide_state.s_rate, run->work)) return FU_SINGULAR;
+        fu_impact(run, run->work, restitution);
     }
     release(run, j, 0.0);
     if (fu_complete(run, now)) return FU_SINGULAR;
-    const double back = -side * slide->s_rate, push = side * slide->s_acceleration;
+    fu_slide_outputs(model, now, j, now->acceleration, &run->accelerator, &slide);
+    const double back = -side * slide.s_rate, push = side * slide.s_acceleration;
     if (is_at_rest(run, j) || back * back <= 2.0 * push * BOUNCE * fu_length(model, j)) {
         now->contact[j] = side;
-        if (settle(run, j)) return FU_SINGULAR;
+        if (try_to_stick(run, j)) return FU_SINGULAR;
     }
-    find_ways(run);
+    find_slip_directions(run);
     return FU_RUNNING;
 }
 
@@ -198,7 +212,7 @@ int fu_act(fu_run *run, const fu_watch *watch, int side, int *what)
         return FU_RUNNING;
     }
     if (now->mode[j] != FU_SLIDES || !run->model->slides[j].sticks) return FU_RUNNING;
-    const int status = settle(run, j);
+    const int status = try_to_stick(run, j);
     *what = now->mode[j] == FU_LOCKED ? FU_STUCK : FU_TURNED;
     return status;
 }

@@ -81,7 +81,7 @@ static int generalised(const fu_model *model, const fu_load *load, const double 
             for (int i = 0; i < 3; ++i)
                 g[3 + i] = u[(i + 1) % 3] * c[(i + 2) % 3] - u[(i + 2) % 3] * c[(i + 1) % 3];
         break;
-    case FU_BODY_MOMENT: /* A' c: c along each body axis */
+    default: /* FU_BODY_MOMENT, A' c: c along each body axis */
         if (dim == 2) {
             g[2] = c[2];
             break;
@@ -95,28 +95,58 @@ static int generalised(const fu_model *model, const fu_load *load, const double 
             }
         }
         break;
-    default:
-        for (int i = 0; i < n - dim; ++i) g[dim + i] = c[dim == 2 ? 2 : i];
     }
     return n;
 }
 
+static void external_force(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f)
+{
+    const fu_load *load = (const fu_load *)coupling;
+    double g[FU_ATTACHMENT_COORDINATES], K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
+    const double scale = scale_at(model, load->signal, t);
+    int first;
+    const int n = generalised(model, load, q, g, K, &first);
+    for (int i = 0; i < n; ++i) f[first + i] -= scale * g[i];
+}
+
+/* system -= stiffness times the load's derivatives, by psi where that is given */
+static void matrix(const fu_model *model, const fu_load *load, double t, const double *q, const double *psi,
+                   double stiffness, fu_system *system)
+{
+    double g[FU_ATTACHMENT_COORDINATES], K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
+    const double scale = stiffness * scale_at(model, load->signal, t);
+    int first;
+    const int n = generalised(model, load, q, g, K, &first);
+    if (psi && load->kind >= FU_BODY_FORCE)
+        fu_turn_columns(model->bodies[load->on].kernel, K, n, n, 0, psi + first);
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j)
+            if (K[i * n + j] != 0.0) fu_add(model, system, first + i, first + j, -scale * K[i * n + j]);
+}
+
+static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
+{
+    matrix(model, (const fu_load *)coupling, at->next->t, at->next->q, at->psi, at->weights.stiffness, system);
+}
+
+/* The middle moves by half of psi, which weights.stiffness has. */
+static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
+{
+    matrix(model, (const fu_load *)coupling, at->middle->t, at->middle->q, 0, at->weights.stiffness, system);
+}
+
+const fu_coupling_type fu_load_type = {
+    .name = "load", .external_force = external_force, .tangent = tangent, .step_tangent = step_tangent};
+
 /* f -= loads other than gravity */
 void fu_loads(const fu_model *model, double t, const double *q, double *f)
 {
-    double g[FU_ATTACHMENT_COORDINATES], K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
     for (int k = 0; k < model->n_dead_loads; ++k) {
         const fu_dead_load *load = &model->dead_loads[k];
         const double scale = scale_at(model, load->signal, t);
         for (int i = load->first; i < load->first + load->n; ++i) f[model->dead_dof[i]] -= scale * model->dead_value[i];
     }
-    for (int k = 0; k < model->n_loads; ++k) {
-        const fu_load *load = &model->loads[k];
-        const double scale = scale_at(model, load->signal, t);
-        int first;
-        const int n = generalised(model, load, q, g, K, &first);
-        for (int i = 0; i < n; ++i) f[first + i] -= scale * g[i];
-    }
+    fu_coupling_external_forces(model, t, q, f);
 }
 
 /* f -= gravity and loads */
@@ -124,22 +154,4 @@ void fu_external_forces(const fu_model *model, double t, const double *q, double
 {
     for (int i = 0; i < model->n_dof; ++i) f[i] -= model->gravity[i];
     fu_loads(model, t, q, f);
-}
-
-/* system -= stiffness times derivatives of the loads, by psi where that is given (rotation.c) */
-void fu_loads_matrix(const fu_model *model, double t, const double *q, const double *psi, double stiffness,
-                     fu_system *system)
-{
-    double g[FU_ATTACHMENT_COORDINATES], K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
-    for (int k = 0; k < model->n_loads; ++k) {
-        const fu_load *load = &model->loads[k];
-        const double scale = stiffness * scale_at(model, load->signal, t);
-        int first;
-        const int n = generalised(model, load, q, g, K, &first);
-        if (psi && load->kind >= FU_BODY_FORCE)
-            fu_turn_columns(model->bodies[load->on].kernel, K, n, n, 0, psi + first);
-        for (int i = 0; i < n; ++i)
-            for (int j = 0; j < n; ++j)
-                if (K[i * n + j] != 0.0) fu_add(model, system, first + i, first + j, -scale * K[i * n + j]);
-    }
 }

@@ -1,12 +1,16 @@
 /* Friction of a slide that slides, and the buffer that it has run into: R, the force along the cable on the rider times
  * r_x, from the tangent t = r_x, the velocity u of the rider's point over the cable's particle and the whole force f.
  *
- * R stands in the row of s, f . r_x = R (eq 30 has zero there), and in eq 38 as G' R. A slide that is held needs none: the
- * force along the cable is then what holding takes. Of a slide that is driven it is a part of that: the drive gives the
- * rest, and R counts for its power and for what goes to heat alone.
+ * R stands in the row of s, f . r_x = R (eq 30 has zero there), and in eq 38 as G' R. A locked slide needs none: the
+ * force along the cable is then that of the lock. Of a slide that is driven R is a part of that force: the drive gives the
+ * rest, and R counts for the drive's power and for the energy dissipated.
  */
 #include "engine.h"
 
+#include <string.h>
+
+#define TRIAL 0.1          /* of the change that the law asks for: the first step, lest it turn the normal force round */
+#define STEEP 0.1          /* slopes below have no secant that is worth it */
 #define LEAST_NORMAL 1e-30 /* N: of a normal force of zero there is no direction */
 
 /* whether R acts on a slide as it is */
@@ -16,12 +20,12 @@ int fu_has_resistance(const fu_model *model, const fu_state *state, int j)
     return slide->resistance && (state->mode[j] == FU_SLIDES || (state->mode[j] == FU_LOCKED && slide->drive >= 0));
 }
 
-/* direction that friction is against, 0 where it goes smoothly with the speed; a drive that stands needs none of it */
-static double way_of(const fu_model *model, const fu_state *state, int j)
+/* direction that friction is against, 0 where it rises smoothly with the speed, and of a drive at rest */
+static double direction_of(const fu_model *model, const fu_state *state, int j)
 {
     double rate, second;
     if (model->slides[j].drive < 0) return state->slip_direction[j];
-    fu_slide_held(model, state, j, &rate, &second);
+    fu_slide_locked_s(model, state, j, &rate, &second);
     return model->slides[j].sticks ? (rate > 0.0) - (rate < 0.0) : 0.0;
 }
 
@@ -46,12 +50,13 @@ void fu_resistance_at(const fu_model *model, const fu_state *state, int j, const
     const fu_slide *slide = &model->slides[j];
     const fu_end_stop *stop = pressed(model, state, j);
     const int side = state->contact[j];
-    const double friction[5] = {slide->friction, slide->viscous, slide->velocity, way_of(model, state, j),
+    const double friction[5] = {slide->friction, slide->viscous, slide->velocity, direction_of(model, state, j),
                                 LEAST_NORMAL};
     const double buffer[4] = {stop ? stop->stiffness : 0.0, stop ? stop->damping : 0.0,
                               stop ? fu_compression(model, state, j, side) : 0.0, side};
     double by_x;
-    slide->resistance->force(t, u, f, friction, buffer, &resistance->R, resistance->by_t, resistance->by_u, resistance->by_f, &by_x);
+    slide->resistance->force(t, u, f, friction, buffer, &resistance->R, resistance->by_t, resistance->by_u, resistance->by_f,
+                             &by_x);
     resistance->by_s = side * by_x;
 }
 
@@ -85,33 +90,26 @@ static double spring_energy(const fu_model *model, const fu_state *state, int j,
     return energy;
 }
 
-/* J in the springs of the buffers */
-double fu_buffer_energy(const fu_model *model, const fu_state *state)
+double fu_buffer_energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
-    double energy = 0.0;
-    for (int j = 0; j < model->n_slides; ++j) energy += spring_energy(model, state, j, 1);
-    return energy;
+    return spring_energy(model, state, coupling->index, 1);
 }
 
-/* J that dampers of buffers have taken in a step: a slide that a damper would hold back is let go, and the spring, which
- * follows it to the buffer's beginning, gives the damper what it gives up. */
-double fu_lost_in_buffers(const fu_model *model, const fu_state *from, const fu_state *to)
+double fu_lost_in_buffers(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to)
 {
-    double lost = 0.0;
-    for (int j = 0; j < model->n_slides; ++j)
-        if (model->slides[j].resistance) lost += spring_energy(model, from, j, 0) - spring_energy(model, to, j, 0);
-    return lost;
+    const int j = coupling->index;
+    if (!model->slides[j].resistance) return 0.0;
+    return spring_energy(model, from, j, 0) - spring_energy(model, to, j, 0);
 }
 
-/* Statics: the buffers that slides are in. */
-void fu_touch_buffers(const fu_model *model, fu_state *state)
+void fu_touch_buffers(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
-    for (int j = 0; j < model->n_slides; ++j) {
-        state->contact[j] = 0;
-        for (int side = -1; side <= 1; side += 2)
-            if (model->slides[j].stops[side > 0].kind == FU_END_IS_BUFFERED && fu_compression(model, state, j, side) > 0.0)
-                state->contact[j] = side;
-    }
+    const int j = coupling->index;
+    if (!model->slides[j].resistance) return;
+    state->contact[j] = 0;
+    for (int side = -1; side <= 1; side += 2)
+        if (model->slides[j].stops[side > 0].kind == FU_END_IS_BUFFERED && fu_compression(model, state, j, side) > 0.0)
+            state->contact[j] = side;
 }
 
 /* t and u from the derivatives of phi = r - p by the slide's coordinates and s */
@@ -144,4 +142,105 @@ void fu_resistance_rows(const fu_model *model, const fu_state *state, int j, con
     }
     by_place[s] += resistance->by_s;
     by_rate[s] = 0.0;
+}
+
+/* In eq 38 */
+
+/* r_x, and the velocity along it, of a slide on its cable */
+static void along(const fu_model *model, const fu_slide_state *slide_state, double *t, double *u)
+{
+    const int dim = model->dim;
+    const double *G = slide_state->by_point + (dim - 1) * dim;
+    double square = 0.0;
+    for (int d = 0; d < dim; ++d) square += G[d] * G[d];
+    for (int d = 0; d < dim; ++d) {
+        t[d] = G[d] / square;
+        u[d] = t[d] * slide_state->s_rate;
+    }
+}
+
+/* By how much R should change where its law asks for `change`: by the secant of the last sweep, as what friction presses on
+ * the cable or takes off it depends on R almost linearly. */
+static double secant_step(fu_slide_state *last, double change)
+{
+    const double slope = last->step != 0.0 ? (last->change - change) / last->step : 0.0;
+    last->step = last->step == 0.0 ? TRIAL * change : slope > STEEP ? change / slope : change;
+    last->change = change;
+    return last->step;
+}
+
+double fu_resistance_react(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
+                           fu_accelerator *work)
+{
+    const int j = coupling->index, dim = model->dim;
+    fu_slide_state *slide_state = &work->slide_states[j];
+    fu_rows *rows = &work->rows[coupling->row];
+    double t[3], u[3], f[3], size = 0.0;
+    fu_resistance resistance;
+    slide_state->power = 0.0;
+    if (!lambda) slide_state->R = slide_state->step = 0.0;
+    if (!model->slides[j].resistance || state->mode[j] != FU_SLIDES) return 0.0;
+    along(model, slide_state, t, u);
+    if (lambda) fu_slide_force(model, work, j, lambda, f);
+    else memcpy(f, state->forces + coupling->force, sizeof(double) * (size_t)dim);
+    fu_resistance_at(model, state, j, t, u, f, &resistance);
+    slide_state->power = fu_resistance_power(model, state, j, t, u, f);
+    const double change = resistance.R - slide_state->R, step = lambda ? secant_step(slide_state, change) : change;
+    for (int d = 0; d < dim; ++d) size = fmax(size, fabs(f[d]));
+    size = fmax(size, fabs(resistance.R));
+    slide_state->R += step;
+    rows->by_push = slide_state->G;
+    rows->push = slide_state->R;
+    for (int k = 0; k < rows->n; ++k) work->work[rows->at[k]] += slide_state->G[k] * step;
+    return change != 0.0 ? fabs(change) / size : 0.0;
+}
+
+/* Of a slide that is driven: of the force along the cable, the part that its drive does not give; and what it takes. */
+void fu_resistance_reacted(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
+                           fu_accelerator *work)
+{
+    const int j = coupling->index;
+    fu_slide_state *slide_state = &work->slide_states[j];
+    double t[3], u[3], f[3];
+    fu_resistance resistance;
+    slide_state->driven_R = 0.0;
+    if (model->slides[j].drive < 0 || !fu_has_resistance(model, state, j)) return;
+    along(model, slide_state, t, u);
+    fu_slide_force(model, work, j, lambda, f);
+    fu_resistance_at(model, state, j, t, u, f, &resistance);
+    slide_state->driven_R = resistance.R;
+    slide_state->power = fu_resistance_power(model, state, j, t, u, f);
+    work->rows[coupling->row].opposed = resistance.R * slide_state->s_rate;
+}
+
+double fu_resistance_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                                 const fu_accelerator *work)
+{
+    const int j = coupling->index;
+    const double *f = state->forces + coupling->force;
+    double J[3 * (FU_SLIDE_COORDINATES + 1)], K[(FU_SLIDE_COORDINATES + 1) * (FU_SLIDE_COORDINATES + 1)], t[3], u[3];
+    if (!model->slides[j].resistance) return 0.0;
+    if (work) return work->slide_states[j].power;
+    if (!fu_has_resistance(model, state, j)) return 0.0;
+    fu_slide_tangent(model, state, j, f, J, K);
+    fu_slide_motion(model, state, j, J, t, u);
+    return fu_resistance_power(model, state, j, t, u, f);
+}
+
+/* Where the normal force turns round within a step, friction has a kink, and no quadrature over the step is right: the
+ * friction of the mean normal force differs from the mean friction, by at least the error made. The rider's speed stays
+ * wrong, and its position is off by that times the time that is left. */
+double fu_resistance_kink(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int n,
+                          const double *weights, const double *multipliers, double square)
+{
+    const fu_slide *slide = (const fu_slide *)coupling;
+    double mean[2] = {0.0, 0.0}, all = 0.0;
+    if (!slide->resistance || state->mode[coupling->index] != FU_SLIDES) return 0.0;
+    for (int k = 0; k < n; ++k) {
+        const double *N = multipliers + (long)k * model->n_multipliers + coupling->multiplier;
+        const double normal[2] = {N[0], model->dim == 3 ? N[1] : 0.0};
+        for (int d = 0; d < 2; ++d) mean[d] += weights[k] * normal[d];
+        all += weights[k] * hypot(normal[0], normal[1]);
+    }
+    return square * slide->friction * (all - hypot(mean[0], mean[1])) / coupling->scale[0];
 }

@@ -11,7 +11,7 @@
 typedef struct {
     double length, x;
     const double *e, *v, *b, *u, *w;
-    fu_attachment_state place; /* of the rider where it is a point */
+    fu_attachment_state rider; /* where it is a point */
 } slide_view;
 
 static const double no_arm[3];
@@ -32,9 +32,9 @@ static void look(const fu_model *model, const fu_state *state, int j, slide_view
         view->u = slide->rider.u;
         return;
     }
-    fu_attachment_at(model, &slide->rider, state, 0.0, FU_POINT, &view->place);
-    view->b = view->place.p;
-    view->w = view->place.v;
+    fu_attachment_at(model, &slide->rider, state, 0.0, FU_POINT, &view->rider);
+    view->b = view->rider.p;
+    view->w = view->rider.v;
     view->u = no_arm;
 }
 
@@ -42,7 +42,7 @@ static void look(const fu_model *model, const fu_state *state, int j, slide_view
 static void expand(const fu_slide *slide, const slide_view *view, int n_rows, int n_element, int more, const double *given,
                    double *rows)
 {
-    const int dim = slide->kernel->dim, n = view->place.n;
+    const int dim = slide->kernel->dim, n = view->rider.n;
     const int from = n_element + dim + more, to = n_element + n + more;
     for (int r = 0; r < n_rows; ++r) {
         const double *row = given + r * from;
@@ -50,7 +50,7 @@ static void expand(const fu_slide *slide, const slide_view *view, int n_rows, in
         memcpy(out, row, sizeof(double) * (size_t)n_element);
         for (int k = 0; k < n; ++k) {
             double sum = 0.0;
-            for (int d = 0; d < dim; ++d) sum += row[n_element + d] * view->place.P[d * n + k];
+            for (int d = 0; d < dim; ++d) sum += row[n_element + d] * view->rider.P[d * n + k];
             out[n_element + k] = sum;
         }
         for (int k = 0; k < more; ++k) out[n_element + n + k] = row[n_element + dim + k];
@@ -65,7 +65,7 @@ int fu_slide_coordinates(const fu_model *model, const fu_state *state, int j, in
     const int n = cable->coordinates;
     for (int i = 0; i < n; ++i) at[i] = cable->first + state->element[j] * cable->per_node + i;
     const int all = n + fu_attachment_coordinates(model, &slide->rider, state, at + n);
-    at[all] = fu_extra(model, slide->unknown);
+    at[all] = fu_extra(model, slide->base.unknown);
     return all;
 }
 
@@ -76,7 +76,7 @@ void fu_slide_residual(const fu_model *model, const fu_state *state, int j, doub
     double of_point[FU_MAX_COORDINATES];
     slide_view v;
     look(model, state, j, &v);
-    slide->kernel->residual(v.length, v.x, v.e, v.b, v.u, state->f + 3 * j, phi, slide->rider_is_rigid ? g : of_point);
+    slide->kernel->residual(v.length, v.x, v.e, v.b, v.u, state->forces + slide->base.force, phi, slide->rider_is_rigid ? g : of_point);
     if (!slide->rider_is_rigid) expand(slide, &v, 1, model->cables[slide->cable].coordinates, 1, of_point, g);
 }
 
@@ -93,7 +93,7 @@ void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, const
         return;
     }
     double J_point[3 * FU_MAX_COORDINATES], pull[3], part[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
-    const int n_rider = v.place.n, n = n_element + n_rider + 1;
+    const int n_rider = v.rider.n, n = n_element + n_rider + 1;
     slide->kernel->tangent(v.length, v.x, v.e, v.b, v.u, f, J_point, of_point);
     expand(slide, &v, dim, n_element, 1, J_point, J);
     /* the rider's point stands in phi = r - p alone: of second derivatives there are those of the point itself */
@@ -123,41 +123,41 @@ void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows
         return;
     }
     look(model, state, j, &v);
-    const int n = fu_slide_coordinates(model, state, j, rows->at), held = dim - 1;
+    const int n = fu_slide_coordinates(model, state, j, rows->at), across = dim - 1;
     slide->kernel->terms(v.length, v.x, v.e, v.b, v.u, v.v, v.w, state->director + 3 * j, slide_state->C, C_q, C_s, G,
                          &slide_state->s_rate, Q_d, H, rows->W, &slide_state->s_bias);
     const int stride = slide->rider_is_rigid ? n : n_element + dim;
     for (int d = 0; d < dim; ++d) {
-        for (int c = 0; c < held; ++c) slide_state->by_point[c * dim + d] = H[c * stride + n_element + d];
-        slide_state->by_point[held * dim + d] = G[n_element + d];
+        for (int c = 0; c < across; ++c) slide_state->by_point[c * dim + d] = H[c * stride + n_element + d];
+        slide_state->by_point[across * dim + d] = G[n_element + d];
     }
     if (slide->rider_is_rigid) {
-        memcpy(rows->H, H, sizeof(double) * (size_t)(held * n));
+        memcpy(rows->H, H, sizeof(double) * (size_t)(across * n));
         memcpy(slide_state->G, G, sizeof(double) * (size_t)n);
     } else {
-        expand(slide, &v, held, n_element, 0, H, rows->H);
+        expand(slide, &v, across, n_element, 0, H, rows->H);
         expand(slide, &v, 1, n_element, 0, G, slide_state->G);
         for (int d = 0; d < dim; ++d) {
-            for (int c = 0; c < held; ++c) rows->W[c] -= slide_state->by_point[c * dim + d] * v.place.bias[d];
-            slide_state->s_bias += slide_state->by_point[held * dim + d] * v.place.bias[d];
+            for (int c = 0; c < across; ++c) rows->W[c] -= slide_state->by_point[c * dim + d] * v.rider.bias[d];
+            slide_state->s_bias += slide_state->by_point[across * dim + d] * v.rider.bias[d];
         }
     }
     rows->n = n;
-    rows->rows = state->mode[j] == FU_LOCKED ? dim : held;
-    for (int c = 0; c < held; ++c) {
+    rows->rows = state->mode[j] == FU_LOCKED ? dim : across;
+    for (int c = 0; c < across; ++c) {
         rows->C[c] = slide_state->C[1 + c];
         rows->rate[c] = 0.0;
     }
     if (state->mode[j] != FU_LOCKED) return;
     double rate, second;
-    memcpy(rows->H + held * n, slide_state->G, sizeof(double) * (size_t)n);
-    rows->C[held] = state->s[j] - fu_slide_held(model, state, j, &rate, &second);
-    rows->rate[held] = -rate;
-    rows->W[held] = second - slide_state->s_bias;
+    memcpy(rows->H + across * n, slide_state->G, sizeof(double) * (size_t)n);
+    rows->C[across] = state->s[j] - fu_slide_locked_s(model, state, j, &rate, &second);
+    rows->rate[across] = -rate;
+    rows->W[across] = second - slide_state->s_bias;
 }
 
-/* where s is held, its rate and its second rate */
-double fu_slide_held(const fu_model *model, const fu_state *state, int j, double *rate, double *second)
+/* s of a slide that is locked, its rate and its second rate */
+double fu_slide_locked_s(const fu_model *model, const fu_state *state, int j, double *rate, double *second)
 {
     *rate = *second = 0.0;
     if (model->slides[j].drive < 0) return state->locked_s[j];

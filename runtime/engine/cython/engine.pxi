@@ -33,7 +33,7 @@ cdef extern from "blocks.h" nogil:
     const fu_law_blocks *fu_blocks_of(const char *law)
 
 cdef extern from "engine.h" nogil:
-    int FU_SLIDE_OUTPUTS, FU_JOINT_OUTPUTS, FU_MAX_COORDINATES, FU_MAX_RATES, FU_ATTACHMENT_COORDINATES, FU_SLIDES, FU_LOCKED, FU_LEFT
+    int FU_MAX_COORDINATES, FU_MAX_PARAMETERS, FU_MAX_RATES, FU_ATTACHMENT_COORDINATES, FU_SLIDES, FU_LOCKED, FU_LEFT
     int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT, FU_UNSTABLE
     int FU_NO_FAILURE, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE, FU_JAM
     int FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_RATE, FU_WATCH_TRACTION, FU_WATCH_CALL
@@ -47,7 +47,7 @@ cdef extern from "engine.h" nogil:
         const fu_element_kernels *kernel
         const fu_law_kernels *law
         const fu_law_blocks *blocks
-        int n_elements, first, coordinates, per_node, A_stride, memory
+        int n_elements, first, coordinates, per_node, A_stride, dissipation_state
         double length, tau, mass_damping
         const double *m
         const double *A
@@ -101,21 +101,31 @@ cdef extern from "engine.h" nogil:
     ctypedef struct fu_end_stop:
         int kind
         double restitution, length, stiffness, damping
+    ctypedef struct fu_coupling_type:
+        const char *name
+        int n_outputs
+        const void *law
+    ctypedef struct fu_coupling:
+        const fu_coupling_type *type
+        int index, unknown, n_coordinates, coordinate, n_forces, force, n_multipliers, multiplier, row, output
+        int reacts, is_damped, is_driven
+        double scale[6]
+    const fu_coupling_type *fu_coupling_type_of(const char *name)
     ctypedef struct fu_slide:
+        fu_coupling base
         const fu_slide_kernels *kernel
-        int cable, rider_is_rigid, unknown, multiplier, max_multipliers, drive, carries_director
+        int cable, rider_is_rigid, drive, carries_director
         fu_attachment rider
-        double mass
         const fu_resistance_kernels *resistance
         int sticks
         double friction, static_friction, viscous, velocity
         fu_end_stop stops[2]
     ctypedef struct fu_joint:
+        fu_coupling base
         const fu_joint_kernels *kernel
         fu_attachment ends[2]
-        int unknown, multiplier, signal, redundant_rows
-        double base
-        double scale[6]
+        int signal, redundant_rows
+        double c0
     ctypedef struct fu_signal:
         int n
         const double *breaks
@@ -130,15 +140,17 @@ cdef extern from "engine.h" nogil:
     ctypedef struct fu_dead_load:
         int signal, first, n
     ctypedef struct fu_load:
+        fu_coupling base
         int kind, signal, on, element
         double x
         double u[3]
         double c[3]
         fu_modal_attachment spot
-    ctypedef struct fu_spring:
+    ctypedef struct fu_point_force:
+        fu_coupling base
         fu_attachment ends[2]
-        int dim, unknown
-        double stiffness, damping, length, mass
+        int dim
+        double parameters[8]
     ctypedef struct fu_lapack:
         void *dgbtrf
         void *dgbtrs
@@ -171,17 +183,16 @@ cdef extern from "engine.h" nogil:
         int *pivot_band
         int *pivot_border
     ctypedef struct fu_model:
-        int dim, n_cables, n_bodies, n_slides, n_joints, n_springs, n_motions, n_dead_loads, n_loads
+        int dim, n_cables, n_bodies, n_slides, n_couplings, n_motions, n_dead_loads
         const fu_cable *cables
         const fu_body *bodies
         const fu_slide *slides
-        const fu_joint *joints
-        const fu_spring *springs
+        const fu_coupling *const *couplings
         const fu_motion *motions
         const fu_dead_load *dead_loads
-        const fu_load *loads
         const fu_signal *signals
-        int n_q, n_dof, n_band, n_border_dof, n_resistances, n_memory, n_extra, n_multipliers
+        int n_q, n_dof, n_band, n_border_dof, n_dissipation_state, n_extra, n_multipliers
+        int n_coordinates, n_forces, n_rows, n_outputs
         const int *place
         const int *combination_start
         const int *combination_place
@@ -194,23 +205,18 @@ cdef extern from "engine.h" nogil:
         const fu_lapack *lapack
         int threads
         double *parts
+    ctypedef struct fu_array:
+        const char *name
+        void *data
+        long items
+        size_t size
+        int is_real, axes
+    int FU_N_STATE_ARRAYS, FU_N_RECORD_ARRAYS
     ctypedef struct fu_state:
         double t
-        double *q
-        double *v
-        double *acceleration
-        double *a
-        double *s
-        double *f
-        double *spring
-        double *multipliers
-        double *locked_s
-        int *element
-        int *mode
-        int *slip_direction
-        int *contact
-        double *director
-        double *memory
+        double *forces
+    fu_array fu_state_array(const fu_model *model, const fu_state *state, int k)
+    void fu_state_attach(fu_state *state, int k, void *data)
     ctypedef struct fu_rows:
         int rows
     ctypedef struct fu_slide_state:
@@ -225,44 +231,10 @@ cdef extern from "engine.h" nogil:
         double *work
         double *prescribed
         double *multipliers
-        double *resistance
-        double *driven_resistance
         int jammed
-        double *slides
         long evaluated
     ctypedef struct fu_joint_output:
         double residual
-    ctypedef struct fu_genalpha:
-        double alpha_m, alpha_f, beta, gamma
-    ctypedef struct fu_algorithmic:
-        double lag, viscosity, inertia, weight
-        double *expected
-    ctypedef struct fu_tableau:
-        int stages
-        const double *A
-        const double *b
-        const double *c
-        const double *error
-        const double *coarse
-    ctypedef struct fu_collocation:
-        double A[9]
-        double A_inverse[9]
-        double c[3]
-        double T[9]
-        double T_inverse[9]
-        double gamma, alpha, beta
-        double error[3]
-    ctypedef struct fu_complex_system:
-        void *K
-        void *B
-        void *C
-        void *D
-        void *X
-        void *x
-        double *D_real
-        fu_piece *columns
-        int *pivot_band
-        int *pivot_border
     ctypedef struct fu_watch:
         int kind, index, direction
         double value
@@ -277,34 +249,16 @@ cdef extern from "engine.h" nogil:
         double h_min, h_max, error_sum, time_factor, time_solve, time_residual, time_output
     ctypedef struct fu_record:
         int n, first, pause
-        double *time
-        double *q
-        double *v
-        double *acceleration
-        double *reaction
-        double *s
-        double *slide
-        double *joint
-        double *kinetic
-        double *elastic
-        double *potential
-        double *dissipated
-        double *external
-        double *spring
+    fu_array fu_record_array(const fu_model *model, const fu_record *record, int k)
+    void fu_record_attach(fu_record *record, int k, double *data)
     ctypedef struct fu_weights:
         double inertia, rate, stiffness
-    ctypedef struct fu_integrator:
-        const char *name
-    const fu_integrator fu_genalpha_method, fu_explicit_method, fu_energy_method, fu_radau_method
+    ctypedef struct fu_integrator
     ctypedef struct fu_run:
         const fu_model *model
         const fu_integrator *integrator
         int order
-        fu_genalpha scheme
-        fu_algorithmic algorithmic
-        fu_tableau tableau
-        fu_collocation collocation
-        fu_complex_system complex_newton
+        const double *parameters
         double retry_factor, error_overestimate
         double *scratch
         int n_watches
@@ -334,6 +288,12 @@ cdef extern from "engine.h" nogil:
         int factored, stopped_joint, rest_start
         fu_failure failure
         fu_energy_balance balance
+    ctypedef struct fu_integrator:
+        const char *name
+        long (*n_parameters)(const double *parameters) noexcept nogil
+        long (*n_scratch)(const fu_run *run) noexcept nogil
+        long (*n_dissipation_state)(const fu_run *run) noexcept nogil
+    const fu_integrator *fu_integrator_of(const char *name)
     int fu_has_threads()
     void fu_linearise(fu_run *run, double h, const double *change)
     int fu_system_factor_band(fu_system *system, const fu_lapack *lapack)
@@ -341,18 +301,18 @@ cdef extern from "engine.h" nogil:
     void fu_system_solve(const fu_system *system, const fu_lapack *lapack, double *x)
     void fu_static_move(fu_run *run, const double *change)
     void fu_static_residual(fu_run *run)
-    void fu_matrix(fu_run *run, fu_weights weights)
+    void fu_matrix_of_weights(fu_run *run, fu_weights weights)
     void fu_spread(const fu_model *model, const double *x, double *dofs)
     void fu_prescribe(const fu_model *model, fu_state *state)
-    void fu_carry_directors(const fu_model *model, fu_state *state)
-    double fu_elastic_energy(const fu_model *model, const double *q)
-    void fu_touch_buffers(const fu_model *model, fu_state *state)
-    double fu_buffer_energy(const fu_model *model, const fu_state *state)
+    void fu_number_couplings(fu_coupling *const *couplings, int n, fu_model *model)
+    double fu_elastic_energy(const fu_model *model, const fu_state *state)
+    void fu_touch(const fu_model *model, fu_state *state)
     int fu_moves(const fu_run *run)
     int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S)
     int fu_prepare(fu_run *run)
     int fu_probe_mechanism(fu_run *run, const double *along, double *left)
-    void fu_joint_outputs(const fu_model *model, const fu_state *state, const fu_accelerator *work, fu_joint_output *out)
+    void fu_joint_outputs(const fu_model *model, const fu_joint *joint, const fu_state *state, const double *multipliers,
+                          fu_joint_output *out)
     int fu_between_cables(const fu_joint *joint)
     int fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, int *at, double *J, double *K)
     int fu_attachment_coordinates(const fu_model *model, const fu_attachment *end, const fu_state *state, int *at)
@@ -362,4 +322,4 @@ cdef extern from "engine.h" nogil:
     long fu_save(const fu_run *run, char *bytes)
     int fu_restore(fu_run *run, const char *bytes, int rows)
     int fu_stop(fu_run *run)
-    void fu_part_timing(const fu_run *run, double *seconds)
+    void fu_part_timing(fu_run *run, double *seconds)

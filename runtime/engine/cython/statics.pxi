@@ -68,38 +68,55 @@ cdef class Statics(Translation):
         cdef fu_state *state = &self.run.next
         cdef int i
         state.t = t
-        for i in range(self.model.n_dof):
-            state.v[i] = state.acceleration[i] = 0.0
-        for i in range(self.model.n_q):
-            state.q[i] = self.run.now.q[i] if q is None else q[i]
+        self._view(state, "q")[:] = self._view(&self.run.now, "q") if q is None else q
+        self._rest(state)
         fu_prescribe(&self.model, state)
-        for i in range(self.model.n_dof):
-            state.v[i] = state.acceleration[i] = 0.0
+        self._rest(state)
+        self._view(state, "s")[:] = self._view(&self.run.now, "s") if s is None else s
+        arc_length, element = self._view(state, "s"), self._view(state, "element")
         for i in range(self.model.n_slides):
-            state.s[i] = self.run.now.s[i] if s is None else s[i]
             n, length = self.cables[self.slides[i].cable].n_elements, self.cables[self.slides[i].cable].length
-            if not length * state.element[i] <= state.s[i] <= length * (state.element[i] + 1):
-                state.element[i] = min(max(int(state.s[i] // length), 0), n - 1)
-            for k in range(3):
-                state.f[3 * i + k] = 0.0 if force is None else force[i][k]
-        if self.model.n_resistances:
-            fu_touch_buffers(&self.model, state)
-        for i in range(self.model.n_joints):
-            for k in range(6):
-                state.multipliers[6 * i + k] = 0.0 if multipliers is None else multipliers[i][k]
-        for i in range(self.model.n_springs):
-            for k in range(3):
-                state.spring[3 * i + k] = 0.0 if spring is None else spring[i][k]
+            if not length * element[i] <= arc_length[i] <= length * (element[i] + 1):
+                element[i] = min(max(int(arc_length[i] // length), 0), n - 1)
+        fu_touch(&self.model, state)
+        forces = self._view(state, "forces")
+        given = {"slide": force, "joint": multipliers, "spring": spring}
+        for i in range(self.model.n_couplings):
+            c = self.couplings[i]
+            values = given.get(self._kind(c))
+            for k in range(c.n_forces):
+                forces[c.force + k] = 0.0 if values is None else values[c.index][k]
+
+    cdef _rest(self, fu_state *state):
+        self._view(state, "v")[:] = 0.0
+        self._view(state, "acceleration")[:] = 0.0
 
     def placed(self):
         """The static state as the arguments of `place` (but t)."""
         cdef fu_state *state = &self.run.next
-        cdef int i, slides = self.model.n_slides, joints = self.model.n_joints, springs = self.model.n_springs
-        return {"q": np.array([state.q[i] for i in range(self.model.n_q)]),
-                "s": np.array([state.s[i] for i in range(slides)]),
-                "force": np.array([state.f[i] for i in range(3 * slides)]).reshape(slides, 3),
-                "multipliers": np.array([state.multipliers[i] for i in range(6 * joints)]).reshape(joints, 6),
-                "spring": np.array([state.spring[i] for i in range(3 * springs)]).reshape(springs, 3)}
+        forces = self._view(state, "forces")
+        return {"q": self._view(state, "q").copy(), "s": self._view(state, "s").copy(),
+                "force": self._own("slide", forces, 3), "multipliers": self._own("joint", forces, 6),
+                "spring": self._own("spring", forces, 3)}
+
+    cdef _own(self, str kind, forces, int width):
+        """(couplings of a kind, width): entries of `forces`, zeros after those that one has."""
+        cdef int i, k
+        found = []
+        for i in range(self.model.n_couplings):
+            c = self.couplings[i]
+            if self._kind(c) == kind:
+                found.append([forces[c.force + k] if k < c.n_forces else 0.0 for k in range(width)])
+        return np.array(found).reshape(-1, width)
+
+    cdef str _kind(self, const fu_coupling *coupling):
+        """"load", "slide", "joint", or "spring" for all forces between two points."""
+        return "spring" if coupling.type.law != NULL else coupling.type.name.decode()
+
+    cdef int _count(self, str kind):
+        """Number of couplings of a kind."""
+        cdef int i
+        return sum([self._kind(self.couplings[i]) == kind for i in range(self.model.n_couplings)])
 
     def load(self, double fraction, gravity=True):
         """Apply this fraction of all loads at `place`d states; gravity: of the weight, too, which else stays whole.
@@ -113,7 +130,7 @@ cdef class Statics(Translation):
             self.full = {"gravity": [m.gravity[i] for i in range(m.n_dof)],
                          "of shapes": [[self.shapes[i].g[k] for k in range(3)] for i in range(m.n_bodies)],
                          "fixed": [m.dead_value[i] for i in range(self._fixed_values())],
-                         "turning": [[self.loads[i].c[k] for k in range(3)] for i in range(m.n_loads)]}
+                         "turning": [[self.loads[i].c[k] for k in range(3)] for i in range(self._count("load"))]}
         cdef double *own_weight = <double *>m.gravity
         cdef double *fixed = <double *>m.dead_value
         for i, value in enumerate(self.full["gravity"]):
@@ -123,7 +140,7 @@ cdef class Statics(Translation):
         for k in range(3):
             for i in range(m.n_bodies):
                 self.shapes[i].g[k] = weight * self.full["of shapes"][i][k]
-            for i in range(m.n_loads):
+            for i in range(self._count("load")):
                 self.loads[i].c[k] = fraction * self.full["turning"][i][k]
 
     def stiffen(self, int cable, A):
@@ -160,8 +177,8 @@ cdef class Statics(Translation):
         """inertia M + stiffness (K + rate D) at the static state, (n, n) sparse; constraints where stiffness is not 0."""
         cdef fu_weights weights
         weights.inertia, weights.rate, weights.stiffness = inertia, rate, stiffness
-        fu_matrix(&self.run, weights)
-        return self._matrix() + stiffness * self._between_cables() if stiffness and self.model.n_joints else self._matrix()
+        fu_matrix_of_weights(&self.run, weights)
+        return self._matrix() + stiffness * self._between_cables() if stiffness and self._count("joint") else self._matrix()
 
     def _between_cables(self):
         """(n, n) sparse: what joints between two cables add to the stiffness and Newton in time does without."""
@@ -172,7 +189,7 @@ cdef class Statics(Translation):
         cdef int k, i, n, first, n_dof = self.model.n_dof, total = self.run.newton.n + self.run.newton.m
         whole = n_dof + self.model.n_extra
         stiffness = csr_array((whole, whole))
-        for k in range(self.model.n_joints):
+        for k in range(self._count("joint")):
             if not fu_between_cables(&self.joints[k]):
                 continue
             first = fu_attachment_coordinates(&self.model, &self.joints[k].ends[0], &self.run.next, &at[0])
@@ -195,13 +212,13 @@ cdef class Statics(Translation):
         return self.spreads.T @ stiffness @ self.spreads
 
     def _is_held(self, int extra):
-        return any([self.slides[j].unknown == extra and self.run.next.mode[j] != FU_SLIDES
+        mode = self._view(&self.run.next, "mode")
+        return any([self.slides[j].base.unknown == extra and mode[j] != FU_SLIDES
                     for j in range(self.model.n_slides)])
 
     def elastic_energy(self):
         """J, of the static state."""
-        cdef double buffers = fu_buffer_energy(&self.model, &self.run.next) if self.model.n_resistances else 0.0
-        return fu_elastic_energy(&self.model, self.run.next.q) + buffers
+        return fu_elastic_energy(&self.model, &self.run.next)
 
     def spread(self, unknowns):
         """(n_dof,): what unknowns move the dofs by."""

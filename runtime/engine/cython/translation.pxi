@@ -8,12 +8,13 @@ cdef class Translation(Arrays):
     cdef fu_shape *shapes
     cdef fu_slide *slides
     cdef fu_joint *joints
-    cdef fu_spring *springs
+    cdef fu_point_force *point_forces
     cdef fu_motion *motions
     cdef fu_dead_load *dead_loads
     cdef fu_load *loads
     cdef fu_signal *signals
     cdef fu_knot *knots
+    cdef fu_coupling **couplings
     cdef fu_watch *watches
     cdef fu_model model
     cdef fu_run run
@@ -24,28 +25,32 @@ cdef class Translation(Arrays):
         self.shapes = <fu_shape *>PyMem_Calloc(len(model.bodies) + 1, sizeof(fu_shape))
         self.slides = <fu_slide *>PyMem_Calloc(len(model.slides) + 1, sizeof(fu_slide))
         self.joints = <fu_joint *>PyMem_Calloc(len(model.joints) + 1, sizeof(fu_joint))
-        self.springs = <fu_spring *>PyMem_Calloc(len(model.springs) + 1, sizeof(fu_spring))
+        self.point_forces = <fu_point_force *>PyMem_Calloc(len(model.springs) + 1, sizeof(fu_point_force))
         self.motions = <fu_motion *>PyMem_Calloc(len(model.motions) + 1, sizeof(fu_motion))
         self.dead_loads = <fu_dead_load *>PyMem_Calloc(len(model.dead_loads) + 1, sizeof(fu_dead_load))
         self.loads = <fu_load *>PyMem_Calloc(len(model.loads) + 1, sizeof(fu_load))
         self.signals = <fu_signal *>PyMem_Calloc(len(model.signals) + 1, sizeof(fu_signal))
-        if not (self.cables and self.bodies and self.shapes and self.slides and self.joints and self.springs
-                and self.motions and self.dead_loads and self.loads and self.signals):
+        n_couplings = len(model.loads) + len(model.slides) + len(model.joints) + len(model.springs)
+        self.couplings = <fu_coupling **>PyMem_Calloc(n_couplings + 1, sizeof(fu_coupling *))
+        if not (self.cables and self.bodies and self.shapes and self.slides and self.joints and self.point_forces
+                and self.motions and self.dead_loads and self.loads and self.signals and self.couplings):
             raise MemoryError
 
     def __dealloc__(self):
         for pointer in (<size_t>self.cables, <size_t>self.bodies, <size_t>self.shapes, <size_t>self.slides,
-                        <size_t>self.joints, <size_t>self.springs, <size_t>self.motions, <size_t>self.dead_loads,
-                        <size_t>self.loads, <size_t>self.signals, <size_t>self.knots, <size_t>self.watches):
+                        <size_t>self.joints, <size_t>self.point_forces, <size_t>self.motions, <size_t>self.dead_loads,
+                        <size_t>self.loads, <size_t>self.signals, <size_t>self.knots, <size_t>self.couplings,
+                        <size_t>self.watches):
             PyMem_Free(<void *><size_t>pointer)
 
     def __init__(self, model, blocks=True):
         tables = [<size_t>TABLES, *model.tables]
         self._bodies_and_cables(model, tables, blocks)
-        self._joints_and_springs(model, tables)
-        self._loads_and_motions(model)
         m = &self.model
         m.dim, m.n_q, m.n_dof = model.dim, model.n_q, model.n_dof
+        self._slides_joints_and_point_forces(model, tables)
+        self._loads_and_motions(model)
+        self._list_couplings(model)
         m.n_band, m.n_border_dof = model.n_band, model.n_border_dof
         m.n_extra, m.n_multipliers = model.n_extra, model.n_multipliers
         m.place, m.weight, m.lapack = self._ints(model.place), self._doubles(model.weight), &LAPACK
@@ -57,7 +62,7 @@ cdef class Translation(Arrays):
         self._work_space(model)
 
     def _bodies_and_cables(self, model, list tables, blocks):
-        cdef int i, k, memory = 0
+        cdef int i, k, numbers = 0
         for i, cable in enumerate(model.cables):
             c = &self.cables[i]
             c.kernel = <const fu_element_kernels *>_found(tables, "element", cable.element)
@@ -73,7 +78,7 @@ cdef class Translation(Arrays):
             c.A_stride = cable.A.shape[1] if len(cable.A) > 1 else 0
             if c.law.rates > FU_MAX_RATES:
                 raise ValueError(f"{cable.element}: more rates of strain than the engine's {FU_MAX_RATES}")
-            c.memory, memory = memory, memory + c.n_elements * (c.law.rates + 1)
+            c.dissipation_state, numbers = numbers, numbers + c.n_elements * (c.law.rates + 1)
         for i, body in enumerate(model.bodies):
             r = &self.bodies[i]
             r.kernel = <const fu_body_kernels *>_found(tables, "body", body.kernel)
@@ -150,19 +155,47 @@ cdef class Translation(Arrays):
             to.axes[k] = end.axes.flat[k]
         return 0
 
-    def _joints_and_springs(self, model, list tables):
-        cdef int i, k, resistances = 0
+    cdef int _coupling(self, fu_coupling *base, str type, int index, int unknown, scale) except -1:
+        """Fill in what all couplings have; own forces are one a row of `scale`."""
+        cdef int k
+        base.type = fu_coupling_type_of(type.encode())
+        if base.type == NULL:
+            raise ValueError(f"the engine has no coupling {type!r}")
+        base.index, base.unknown, base.n_forces = index, unknown, len(scale)
+        for k in range(len(scale)):
+            base.scale[k] = scale[k]
+        return 0
+
+    def _list_couplings(self, model):
+        """The list that the engine loops over: contributions are added up in its order."""
+        cdef int i, n = 0
+        for i in range(len(model.loads)):
+            self.couplings[n], n = &self.loads[i].base, n + 1
+        for i in range(len(model.slides)):
+            self.couplings[n], n = &self.slides[i].base, n + 1
+        for i in range(len(model.joints)):
+            self.couplings[n], n = &self.joints[i].base, n + 1
+        for i in range(len(model.springs)):
+            self.couplings[n], n = &self.point_forces[i].base, n + 1
+        fu_number_couplings(self.couplings, n, &self.model)
+
+    def _slides_joints_and_point_forces(self, model, list tables):
+        cdef int i, k
         for i, slide in enumerate(model.slides):
             j = &self.slides[i]
             j.kernel = <const fu_slide_kernels *>_found(tables, "slide", slide.kernel)
             if j.kernel.coordinates + 1 > FU_MAX_COORDINATES:
                 raise ValueError(f"{slide.kernel}: more coordinates than the engine's {FU_MAX_COORDINATES}")
-            j.cable, j.rider_is_rigid, j.max_multipliers, j.drive = slide.cable, slide.rider_is_rigid, slide.max_multipliers, slide.drive
-            j.unknown, j.multiplier, j.carries_director = slide.unknown, slide.multiplier, slide.carries_director
-            j.mass = slide.mass
+            self._coupling(&j.base, "slide", i, slide.unknown, [slide.mass] * model.dim)
+            j.base.n_coordinates, j.base.multiplier, j.base.n_multipliers = 1, slide.multiplier, slide.max_multipliers
+            for k in range(model.dim, slide.max_multipliers):
+                j.base.scale[k] = slide.mass
+            j.cable, j.rider_is_rigid, j.drive = slide.cable, slide.rider_is_rigid, slide.drive
+            j.carries_director = slide.carries_director
             self._end(&j.rider, slide.rider, tables)
             j.resistance = <const fu_resistance_kernels *>_found(tables, "resistance", slide.resistance) if slide.resistance else NULL
-            resistances += bool(slide.resistance)
+            j.base.reacts = j.base.is_damped = bool(slide.resistance)
+            j.base.is_driven = slide.drive >= 0
             j.velocity = 1.0  # of no friction
             if slide.friction is not None:
                 j.sticks, j.viscous, j.velocity = slide.friction.sticks, slide.friction.viscous, slide.friction.velocity
@@ -177,21 +210,22 @@ cdef class Translation(Arrays):
         for i, joint in enumerate(model.joints):
             l = &self.joints[i]
             l.kernel = <const fu_joint_kernels *>_found(tables, "joint", joint.kernel)
-            l.unknown, l.multiplier, l.signal, l.base = joint.unknown, joint.multiplier, joint.signal, joint.base
-            for k in range(joint.rows):
-                l.scale[k] = joint.scale[k]
+            self._coupling(&l.base, "joint", i, joint.unknown, joint.scale)
+            l.base.multiplier, l.base.n_multipliers, l.base.is_driven = joint.multiplier, joint.rows, joint.signal >= 0
+            l.signal, l.c0 = joint.signal, joint.base
             for k in range(2):
                 self._end(&l.ends[k], joint.ends[k], tables)
-        for i, spring in enumerate(model.springs):
-            p = &self.springs[i]
-            p.dim, p.unknown, p.mass = spring.dim, spring.unknown, spring.mass
-            p.stiffness, p.damping, p.length = spring.stiffness, spring.damping, spring.length
+        for i, force in enumerate(model.springs):
+            p = &self.point_forces[i]
+            self._coupling(&p.base, force.type, i, force.unknown, [force.mass] * force.dim)
+            p.base.is_damped, p.dim = force.is_damped, force.dim
+            if len(force.parameters) > FU_MAX_PARAMETERS:
+                raise ValueError(f"{force.type}: more parameters than the engine's {FU_MAX_PARAMETERS}")
+            for k in range(len(force.parameters)):
+                p.parameters[k] = force.parameters[k]
             for k in range(2):
-                self._end(&p.ends[k], spring.ends[k], tables)
-        m = &self.model
-        m.n_slides, m.n_joints, m.n_springs = len(model.slides), len(model.joints), len(model.springs)
-        m.n_resistances = resistances
-        m.slides, m.joints, m.springs = self.slides, self.joints, self.springs
+                self._end(&p.ends[k], force.ends[k], tables)
+        self.model.n_slides, self.model.slides = len(model.slides), self.slides
 
     def _loads_and_motions(self, model):
         cdef int i, k, at = 0
@@ -218,14 +252,15 @@ cdef class Translation(Arrays):
         self.model.dead_dof, self.model.dead_value = self._ints(dofs), self._doubles(values)
         for i, load in enumerate(model.loads):
             n = &self.loads[i]
+            self._coupling(&n.base, "load", i, 0, ())
             n.kind, n.signal, n.on, n.element, n.x = load.kind, load.signal, load.on, load.element, load.x
             for k in range(3):
                 n.u[k], n.c[k] = load.u[k], load.c[k]
             if load.spot is not None:
                 self._spot(&n.spot, load.on, load.spot)
         m = &self.model
-        m.n_motions, m.n_dead_loads, m.n_loads = len(model.motions), len(model.dead_loads), len(model.loads)
-        m.motions, m.dead_loads, m.loads, m.signals = self.motions, self.dead_loads, self.loads, self.signals
+        m.n_motions, m.n_dead_loads = len(model.motions), len(model.dead_loads)
+        m.motions, m.dead_loads, m.signals = self.motions, self.dead_loads, self.signals
 
     cdef void _system(self, fu_system *system, model, int width, int m):
         cdef int n = model.n_band, chains = len(model.chains) - 1
@@ -242,19 +277,40 @@ cdef class Translation(Arrays):
         system.rows = <fu_piece *>self._ints(np.zeros(3 * 2 * m * chains))
         system.pivot_band, system.pivot_border = self._ints(np.zeros(n)), self._ints(np.zeros(m))
 
-    cdef void _state(self, fu_state *state, model):
-        state.q, state.v = self._doubles(model.q), self._doubles(model.v)
-        state.acceleration, state.a = self._doubles(np.zeros(model.n_dof)), self._doubles(np.zeros(model.n_dof))
-        slides = len(model.slides)
-        state.s, state.f = self._doubles([j.s for j in model.slides]), self._doubles(np.zeros(3 * slides))
-        state.spring, state.t = self._doubles(np.zeros(3 * len(model.springs))), 0.0
-        state.multipliers = self._doubles(np.zeros(6 * len(model.joints)))
-        state.locked_s = self._doubles(np.zeros(slides))
-        state.element = self._ints([j.element for j in model.slides])
-        state.mode = self._ints([FU_LOCKED if j.drive >= 0 else FU_SLIDES for j in model.slides])
-        state.slip_direction, state.contact = self._ints(np.zeros(slides)), self._ints(np.zeros(slides))
-        state.director = self._doubles([j.director for j in model.slides])
-        state.memory = self._zeros(0)
+    cdef _state(self, fu_state *state, model):
+        """Give a state its arrays (state.h), and in them the model as it is drawn."""
+        drawn = {"q": model.q, "v": model.v, "s": [slide.s for slide in model.slides],
+                 "element": [slide.element for slide in model.slides],
+                 "mode": [FU_LOCKED if slide.drive >= 0 else FU_SLIDES for slide in model.slides],
+                 "director": np.ravel([slide.director for slide in model.slides])}
+        cdef int k
+        for k in range(FU_N_STATE_ARRAYS):
+            self._attach(state, k)
+        for name, values in drawn.items():
+            self._view(state, name)[:] = values
+
+    cdef int _attach(self, fu_state *state, int k) except -1:
+        """Give a state its k-th array, of zeros."""
+        cdef fu_array array = fu_state_array(&self.model, state, k)
+        if array.is_real:
+            fu_state_attach(state, k, self._zeros(array.items))
+        else:
+            fu_state_attach(state, k, self._ints(np.zeros(array.items)))
+        return 0
+
+    cdef _view(self, const fu_state *state, str name):
+        """Return an array of a state by its name in state.h; what is written to it is written to the state."""
+        cdef int k
+        cdef fu_array array
+        for k in range(FU_N_STATE_ARRAYS):
+            array = fu_state_array(&self.model, state, k)
+            if array.name == name.encode():
+                if array.items == 0:
+                    return np.zeros(0)
+                if array.is_real:
+                    return np.asarray(<double[:array.items]><double *>array.data)
+                return np.asarray(<int[:array.items]><int *>array.data)
+        raise KeyError(name)
 
     def _work_space(self, model):
         n_slides, n_dof = len(model.slides), model.n_dof
@@ -271,16 +327,14 @@ cdef class Translation(Arrays):
         run.newton.K = a.mass.K = self._zeros((3.0 * width + 1) * model.n_band)
         a.corner = self._zeros(<double>a.mass.m * a.mass.m)
         a.rhs = self._zeros(unknowns + model.n_multipliers + FU_BAND_BEYOND(width))
-        rows = n_slides + len(model.joints)
-        a.rows = <fu_rows *>self._zeros(rows * sizeof(fu_rows) // sizeof(double) + 1)
+        a.rows = <fu_rows *>self._zeros(self.model.n_rows * sizeof(fu_rows) // sizeof(double) + 1)
         a.slide_states = <fu_slide_state *>self._zeros(n_slides * sizeof(fu_slide_state) // sizeof(double) + 1)
         a.multipliers = self._zeros(model.n_multipliers)
-        a.resistance, a.driven_resistance, a.jammed = self._zeros(3 * n_slides + 1), self._zeros(n_slides), -1
-        a.slides = self._doubles(np.zeros(n_slides * FU_SLIDE_OUTPUTS))
+        a.jammed = -1
         a.force, a.work = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         a.prescribed = self._doubles(np.zeros(n_dof))
         run.rhs = self._zeros(unknowns + model.n_extra + FU_BAND_BEYOND(width))
         run.psi, run.force = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         run.work, run.before = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
-        run.first, run.s_slope = self._doubles(np.zeros(model.n_q)), self._doubles(np.zeros(n_slides))
+        run.first, run.s_slope = self._doubles(np.zeros(model.n_q)), self._zeros(self.model.n_coordinates)
         self._watch([])

@@ -4,12 +4,14 @@
 
 #include "common.h"
 
-/* Of the energy-momentum method, integrators/algorithmic_dissipation.c; weight: of a change of strain in the stress, zero: there is none. */
+/* The parameters of the energy-momentum method. weight: of a change of strain in the stress; zero: there is no
+ * algorithmic dissipation. */
 typedef struct {
     double lag, viscosity, inertia, weight;
-    double *expected; /* like the memory: what the velocities at the start of the step would change, and its energy */
 } fu_algorithmic;
 
+const fu_algorithmic *fu_algorithmic_of(const fu_run *run);
+long fu_algorithmic_state(const fu_run *run);
 void fu_algorithmic_start(fu_run *run, double h);
 void fu_algorithmic_forces(fu_run *run, const double *q, double *force);
 double fu_algorithmic_account(fu_run *run, const double *q);

@@ -1,11 +1,11 @@
-/* Attachments: what springs and joints hold on to: couplings/attachments.c. */
+/* Attachments of couplings: couplings/attachments.c. */
 #ifndef FUNICULAR_ATTACHMENTS_H
 #define FUNICULAR_ATTACHMENTS_H
 
 #include "bodies.h"
 
-/* One end of a spring or a joint: a point with axes of the ground (cable and body -1), of a cable's element, of a body; or
- * axes alone, of the cable where a slide is. */
+/* An attachment: a point with axes of the ground (cable and body -1), of a cable's element, of a body; or axes alone, of the
+ * cable where a slide is. */
 enum { FU_UP = -1, FU_CARRIED = -2 };
 typedef struct {
     int cable, body, element, slide; /* -1 where it is not on one */
@@ -19,7 +19,7 @@ typedef struct {
     fu_modal_attachment spot;   /* the point of a modal body, instead of u */
 } fu_attachment;
 
-/* Where an end stands and how it moves with its own n coordinates (numbers for fu_add in `at`): dp = P dq, and axes turn
+/* State of an attachment, and how it moves with its n coordinates (numbers for fu_add in `at`): dp = P dq, and axes turn
  * by T dq about global axes; velocities, and accelerations where those of the coordinates are zero. */
 enum { FU_POINT = 1, FU_AXES = 2 };
 typedef struct {
@@ -28,10 +28,14 @@ typedef struct {
     double A[9], omega[3], alpha[3], T[3 * FU_ATTACHMENT_COORDINATES];
 } fu_attachment_state;
 
-int fu_attachment_coordinates(const fu_model *model, const fu_attachment *end, const fu_state *state, int *at);
-void fu_attachment_at(const fu_model *model, const fu_attachment *end, const fu_state *state, double s_rate, int what,
-                  fu_attachment_state *place);
-void fu_geometric_stiffness(const fu_model *model, const fu_attachment *end, const fu_state *state, const double *f, const double *m,
-                      int n, double *K);
+int fu_attachment_coordinates(const fu_model *model, const fu_attachment *on, const fu_state *state, int *at);
+void fu_attachment_at(const fu_model *model, const fu_attachment *on, const fu_state *state, double s_rate, int what,
+                  fu_attachment_state *out);
+void fu_geometric_stiffness(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *f,
+                            const double *m, int n, double *K);
+/* Derivatives by an attachment's coordinates, the first of them in column `first`, made those by psi that moves the bodies;
+ * psi null: they are. */
+void fu_turn_attachment(const fu_model *model, const fu_attachment *on, const double *psi, double *rows, int n_rows,
+                        int n_columns, int first);
 
 #endif

@@ -18,7 +18,7 @@ typedef struct {
     const double *m;  /* mass matrix of an element over nodal vectors */
     const double *A;  /* constants of the law, of the first element */
     int A_stride;     /* from one element's to the next's: zero where they are equal */
-    int memory;       /* first number in the memory of algorithmic dissipation: law->rates + 1 an element */
+    int dissipation_state; /* first number in a state's of algorithmic dissipation: law->rates + 1 an element */
 } fu_cable;
 
 int fu_has_threads(void);
@@ -29,9 +29,9 @@ void fu_discrete_forces(const fu_model *model, const double *q, const double *q_
 void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, double inertia, double rate,
                        double stiffness, fu_system *system);
 double fu_kinetic_energy(const fu_model *model, const double *q, const double *v);
-double fu_elastic_energy(const fu_model *model, const double *q);
+double fu_elastic_energy(const fu_model *model, const fu_state *state);
 double fu_potential_energy(const fu_model *model, const double *q);
-double fu_dissipation(const fu_model *model, const double *q, const double *v);
+double fu_dissipation(const fu_model *model, const fu_state *state, const struct fu_accelerator *work);
 double fu_length(const fu_model *model, int slide);
 double fu_element_start(const fu_model *model, int slide, int element);
 

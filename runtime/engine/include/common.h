@@ -5,12 +5,26 @@
 #include "blocks.h"
 #include "kernels.h"
 
+#include <stddef.h>
+
 #define FU_MAX_COORDINATES 32 /* of one element, or of the kernels of a slide on it; model/build.py checks */
 #define FU_ATTACHMENT_COORDINATES 40 /* of what an end is on, s among them; model/build.py checks */
 #define FU_SLIDE_COORDINATES (FU_MAX_COORDINATES + FU_ATTACHMENT_COORDINATES)
 #define FU_ROW_COORDINATES (2 * (FU_ATTACHMENT_COORDINATES + FU_SLIDE_COORDINATES))
 #define FU_MAX_RATES 128 /* of strain, of one element; engine.pyx checks */
 #define FU_SIGNAL_TERMS 7 /* coefficients of a piece of a signal */
+
+#define FU_SPACE 3 /* components of a vector, in the plane too */
+
+/* An array of a state or of a row of output: its name, how many items it has of which size, whether they are real numbers
+ * (else whole ones), and how many axes it has in output, rows being the first. */
+typedef struct {
+    const char *name;
+    void *data;
+    long items;
+    size_t size;
+    int is_real, axes;
+} fu_array;
 
 typedef struct fu_model fu_model;
 typedef struct fu_state fu_state;

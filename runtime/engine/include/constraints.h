@@ -5,12 +5,15 @@
 #include "common.h"
 
 /* Constraints H q'' = W over the dofs `at`, with what is left of them C, and their rate at rest: `rows` of them now, from
- * the multiplier `first` on, which has `room` for some more; those of the bits `idle` are nil. */
+ * the multiplier `first` on. They have max_multipliers at most; those of the bits redundant_rows are nil. */
 typedef struct {
     int first, max_multipliers, rows, redundant_rows, n, at[FU_ROW_COORDINATES];
     int slide; /* that an end of a joint is on, -1; by_s: derivatives by its s */
     double by_s[6];
     double H[6 * FU_ROW_COORDINATES], W[6], C[6], rate[6], scale[6];
+    const double *by_push; /* null, or over the dofs `at`: what a force `push` beside the multipliers puts on them */
+    double push;
+    double opposed;        /* W: of the constraints' driving power, what a force on them takes */
 } fu_rows;
 
 #endif

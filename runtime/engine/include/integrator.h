@@ -1,49 +1,35 @@
-/* Integrators: their interface, and the parameters of each. */
+/* Integrators: what the time loop knows of one, and how it gets its work space. Their list is integrators/list.c. */
 #ifndef FUNICULAR_INTEGRATOR_H
 #define FUNICULAR_INTEGRATOR_H
 
-#include "linear.h"
 #include "newton.h"
 
-typedef struct {
-    double alpha_m, alpha_f, beta, gamma;
-} fu_genalpha;
-
-/* Explicit Runge-Kutta method with two embedded error estimates. */
-typedef struct {
-    int stages;
-    const double *A, *b, *c;          /* stages x stages, row by row; stages; stages */
-    const double *error, *coarse;     /* stages + 1: the last is of the state at the end */
-} fu_tableau;
-
-/* Implicit Runge-Kutta method of three stages, stiffly accurate: A^-1 = T L T^-1 with L = gamma beside the block of
- * alpha +- i beta; `error` over the stages' increments, beside gamma0 = 1/gamma times the rate at the start. */
-typedef struct {
-    double A[9], A_inverse[9], c[3], T[9], T_inverse[9], gamma, alpha, beta, error[3];
-} fu_collocation;
-
-/* A complex matrix laid out as an fu_system; real systems of two steps combine to it. */
-typedef struct {
-    void *K, *B, *C, *D, *X, *x; /* fu_complex (complex_number.h); x: right side and solution */
-    double *D_real;              /* the real system's border before it was factored */
-    int n_columns;
-    fu_piece *columns;           /* of X; those of C are the real system's */
-    int *pivot_band, *pivot_border;
-} fu_complex_system;
-
-/* A way through time. `now` has consistent v, accelerations and forces when `start` is called; `step` makes `next` from
- * it and is not zero where that failed; `error` is the local error of positions of the step just made, m; `book` adds
- * what that step, now accepted, has dissipated and got from outside. */
+/* A way through time. Its parameters are the numbers run->parameters, in the order of the class of its name in the
+ * package funicular.integrators; its work space is run->scratch, which nothing else reads and checkpoints do not hold. */
 typedef struct {
     const char *name;
+    /* Returns how many parameters it takes, of which the first is given. */
+    long (*n_parameters)(const double *parameters);
+    /* Returns how many doubles of work space it takes for the model of a run. */
+    long (*n_scratch)(const fu_run *run);
+    /* Returns how many numbers of algorithmic dissipation a state keeps; null: none. */
+    long (*n_dissipation_state)(const fu_run *run);
+    /* Begins at `now`, which has consistent velocities, accelerations and forces; returns a status. */
     int (*start)(fu_run *run);
+    /* Makes `next` from `now`; returns 0, or not 0 where that failed. */
     int (*step)(fu_run *run, double h);
+    /* Returns the local error of positions of the step just made, m. */
     double (*error)(fu_run *run, double h);
-    void (*book)(fu_run *run, double h);
-    int conserves; /* energy: velocities stay as they are where the scheme starts anew, projecting them would cost some */
-    int straddles; /* steps may go over boundaries of elements: the slides' elements are found within the iteration */
-    const fu_newton *newton; /* null where there is none */
+    /* Adds what the step just accepted has dissipated and got from outside. */
+    void (*account)(fu_run *run, double h);
+    /* Drops what it keeps from step to step in its work space, as at a pause; null: nothing. */
+    void (*forget)(fu_run *run);
+    int keeps_energy;       /* velocities stay as they are where it starts anew: to project them would cost energy */
+    int crosses_boundaries; /* it finds the slides' elements within a step, which may go over boundaries of elements */
+    const fu_newton *newton; /* of implicit steps with constraints on positions; null where eq 38 gives accelerations */
 } fu_integrator;
-extern const fu_integrator fu_genalpha_method, fu_explicit_method, fu_energy_method, fu_radau_method;
+
+/* Returns the integrator of this name, null where there is none. */
+const fu_integrator *fu_integrator_of(const char *name);
 
 #endif

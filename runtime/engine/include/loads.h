@@ -3,6 +3,7 @@
 #define FUNICULAR_LOADS_H
 
 #include "bodies.h"
+#include "coupling.h"
 
 /* Constant direction in the dofs: value[first ... first + n) on dof[first ...), times a signal */
 typedef struct {
@@ -10,17 +11,17 @@ typedef struct {
 } fu_dead_load;
 
 /* A load that turns with what it acts on: at x of a cable's element, at the point u of a body, at that of a modal one. */
-enum { FU_CABLE_FOLLOWER, FU_CABLE_MOMENT, FU_BODY_FORCE, FU_BODY_FOLLOWER, FU_BODY_MOMENT, FU_BODY_MOMENT_FOLLOWER };
+enum { FU_CABLE_FOLLOWER, FU_CABLE_MOMENT, FU_BODY_FORCE, FU_BODY_FOLLOWER, FU_BODY_MOMENT };
 typedef struct {
+    fu_coupling base;
     int kind, signal, on; /* `on`: the cable or the body */
     int element;
     double x, u[3], c[3]; /* c: components, N or N m */
     fu_modal_attachment spot;
 } fu_load;
+extern const fu_coupling_type fu_load_type;
 
 void fu_external_forces(const fu_model *model, double t, const double *q, double *f);
 void fu_loads(const fu_model *model, double t, const double *q, double *f);
-void fu_loads_matrix(const fu_model *model, double t, const double *q, const double *psi, double stiffness,
-                     fu_system *system);
 
 #endif

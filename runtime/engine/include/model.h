@@ -4,28 +4,27 @@
 
 #include "bodies.h"
 #include "cables.h"
-#include "joints.h"
+#include "coupling.h"
 #include "linear.h"
 #include "loads.h"
 #include "motions.h"
 #include "slides.h"
-#include "springs.h"
 
 struct fu_model {
-    int dim, n_cables, n_bodies, n_slides, n_joints, n_springs, n_motions, n_dead_loads, n_loads;
+    int dim, n_cables, n_bodies, n_slides, n_couplings, n_motions, n_dead_loads;
     const fu_cable *cables;
     const fu_body *bodies;
     const fu_slide *slides;
-    const fu_joint *joints;
-    const fu_spring *springs;
+    const fu_coupling *const *couplings; /* all of them: loads, slides, joints, springs */
     const fu_motion *motions;
     const fu_dead_load *dead_loads;
-    const fu_load *loads;
     const fu_signal *signals;
     int n_q, n_dof, n_band, n_border_dof;
-    int n_resistances; /* slides that have one */
-    int n_memory; /* zero without algorithmic dissipation */
-    int n_extra, n_multipliers; /* unknowns of slides, joints and springs in a Newton system, of the former in eq 38 */
+    /* Sums over the couplings: own coordinates, own forces, sets of constraint rows, numbers in a row of output; how many
+     * react, act from outside, are driven, are damped. */
+    int n_coordinates, n_forces, n_rows, n_outputs, n_reacting, n_external, n_driven, n_damped;
+    int n_dissipation_state; /* zero without algorithmic dissipation */
+    int n_extra, n_multipliers; /* unknowns of couplings in a Newton system, and in eq 38 */
     const int *place;
     const int *combination_start, *combination_place; /* combinations, row by row */
     const double *combination_value;

@@ -18,17 +18,12 @@ typedef struct {
 } fu_newton;
 
 void fu_linearise(fu_run *run, double h, const double *change);
-void fu_static_move(fu_run *run, const double *change);
-void fu_static_residual(fu_run *run);
-void fu_matrix(fu_run *run, fu_weights weights);
 double fu_clock(void);
 
 int fu_newton_step(fu_run *run, const fu_newton *method, double h);
-void fu_predict_extra(fu_run *run, double h);
-void fu_apply_extra(fu_run *run, double inertia, double scale);
+void fu_predict_own(fu_run *run, double h);
+void fu_add_solution(fu_run *run, double inertia, double scale);
 double fu_spread_size(fu_run *run);
 double fu_filtered_size(fu_run *run);
-double fu_row_unit(double inertia, double mass);
-void fu_joint_coordinates(const fu_model *model, const fu_state *state, int j, int *at);
 
 #endif

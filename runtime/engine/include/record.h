@@ -1,18 +1,42 @@
-/* Rows of output. */
+/* Rows of output, one an output time: their arrays, described once. */
 #ifndef FUNICULAR_RECORD_H
 #define FUNICULAR_RECORD_H
 
 #include "common.h"
 
-/* Rows of output, one an output time; joint: FU_SLIDE_OUTPUTS numbers a joint in the order of fu_slide_output. */
-#define FU_SLIDE_OUTPUTS 11
-#define FU_JOINT_OUTPUTS 7
+/* ARRAY(name, axes: 1 for a number a row, items of a row) */
+#define FU_RECORD_ARRAYS(ARRAY)                                                                                          \
+    ARRAY(time, 1, 1)                                                                                                    \
+    ARRAY(kinetic, 1, 1)                                                                                                 \
+    ARRAY(elastic, 1, 1)                                                                                                 \
+    ARRAY(potential, 1, 1)                                                                                               \
+    ARRAY(dissipated, 1, 1)                                                                                              \
+    ARRAY(q, 2, model->n_q)                                                                                              \
+    ARRAY(v, 2, model->n_dof)                                                                                            \
+    ARRAY(acceleration, 2, model->n_dof)                                                                                 \
+    ARRAY(reaction, 2, model->n_dof)                                                                                     \
+    ARRAY(external, 1, 1)                                                                                                \
+    ARRAY(s, 2, model->n_coordinates)                                                                                    \
+    ARRAY(output, 2, model->n_outputs) /* of each coupling n_outputs of its type from `output` on */
+
 typedef struct {
     int n;     /* rows recorded since the start */
     int first; /* the row that stands first in the arrays: those before it were taken away */
     int pause; /* at so many rows fu_advance returns, for the caller to call fu_pause */
-    double *time, *q, *v, *acceleration, *reaction, *s, *slide, *joint;
-    double *kinetic, *elastic, *potential, *dissipated, *external, *spring;
+#define FU_MEMBER(name, axes, items) double *name;
+    FU_RECORD_ARRAYS(FU_MEMBER)
+#undef FU_MEMBER
 } fu_record;
+
+enum {
+#define FU_COUNT(name, axes, items) +1
+    FU_N_RECORD_ARRAYS = 0 FU_RECORD_ARRAYS(FU_COUNT)
+#undef FU_COUNT
+};
+
+/* run/state.c */
+fu_array fu_record_array(const fu_model *model, const fu_record *record, int k);
+void fu_record_attach(fu_record *record, int k, double *data);
+int fu_record_is_finite(const fu_model *model, const fu_record *record, long row);
 
 #endif

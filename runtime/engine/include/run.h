@@ -3,7 +3,6 @@
 #define FUNICULAR_RUN_H
 
 #include "acceleration.h"
-#include "algorithmic_dissipation.h"
 #include "energy_balance.h"
 #include "events.h"
 #include "failure.h"
@@ -25,14 +24,10 @@ struct fu_run {
     const fu_model *model;
     const fu_integrator *integrator;
     int order;           /* of the error in positions as controlled */
-    fu_genalpha scheme;
-    fu_algorithmic algorithmic;
-    fu_tableau tableau;
-    fu_collocation collocation;
-    fu_complex_system complex_newton;
+    const double *parameters; /* of the integrator */
     double retry_factor;      /* of a step that failed: what the next ones stay below, 0 where failures are cheap */
     double error_overestimate;        /* how much larger the estimate of the local error is than that error */
-    double *scratch;     /* of the integrator: checkpoints do not hold it */
+    double *scratch;     /* of the integrator */
     int n_watches;
     const fu_watch *watches;
     double *watched;     /* per watch: its value at `now`, 0 where it has just passed */
@@ -69,15 +64,26 @@ struct fu_run {
     double newton_tolerance, round_off; /* of increments, m: where Newton may stop, and where it cannot go on */
     double acted; /* s: when a slide has last stuck, broken loose, or come to an end of its cable */
     int factored, stopped_joint, turned, acts;
-    int holds; /* slides keep their elements in a step, which ends where one of these does */
+    int keep_elements; /* slides keep their elements in a step, which ends where one of these does */
     int net_rejections; /* steps rejected of late, less those taken */
     fu_failure failure; /* of the last step that failed */
     fu_energy_balance balance;
-    int predictor; /* the scratch holds a last step's stages */
     int rest_start; /* for order.py only: start the scheme from zero accelerations */
 };
 
-/* The time loop */
+/* run/scene_size.c */
+double fu_largest_motion(const fu_model *model, const double *from, const double *to);
+double fu_extent(const fu_model *model, const double *origin, const double *q);
+double fu_scene_size(const fu_model *model, const double *origin, const double *q);
+
+/* run/step_control.c */
+double fu_fit_step(double remaining, double want);
+double fu_allow(fu_run *run, double h);
+void fu_adapt_step(fu_run *run, double h, double ratio);
+double fu_shrink_step(fu_run *run, double h, double ratio);
+double fu_retry_step(fu_run *run, double h);
+
+/* run/run.c: the time loop */
 int fu_all_finite(const double *numbers, long n);
 int fu_prepare(fu_run *run);
 int fu_start(fu_run *run);

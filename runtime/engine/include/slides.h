@@ -1,38 +1,61 @@
-/* Slides: couplings/slides.c. */
+/* Slides: couplings/slides.c has their kernels over their coordinates, couplings/slide_operations.c what couplings do. */
 #ifndef FUNICULAR_SLIDES_H
 #define FUNICULAR_SLIDES_H
 
 #include "attachments.h"
 #include "constraints.h"
+#include "coupling.h"
 #include "end_stops.h"
 
-/* A slide_state. It slides, or s is held, at a signal or where it stands, or the rider has left the cable. */
+/* Mode of a slide: it slides; s is locked, at a signal or where it stands; the rider has left the cable. */
 enum { FU_SLIDES, FU_LOCKED, FU_LEFT };
 typedef struct {
+    fu_coupling base;        /* one coordinate, s; as many forces as dimensions, on the rider */
     const fu_slide_kernels *kernel;
     int cable;
     fu_attachment rider;
-    int rider_is_rigid;              /* the kernels take the rider's own configuration: it is a rigid body */
-    int unknown, multiplier; /* places beyond the border's dofs: of s and the force, of the multipliers of eq 38 */
-    int max_multipliers;                /* multipliers that it has: one more where it may be held */
+    int rider_is_rigid;      /* the kernels take the rider's own configuration: it is a rigid body */
     int drive;               /* signal that s follows, -1 */
     int carries_director;    /* the element has none of its own */
-    double mass; /* scale of the constraint rows, kg */
-    const fu_resistance_kernels *resistance;   /* null where there are neither friction nor buffers */
+    const fu_resistance_kernels *resistance; /* null where there are neither friction nor buffers */
     int sticks;              /* friction holds it at rest, else it rises with the speed */
     double friction, static_friction, viscous, velocity; /* coefficients sliding and at rest; N s/m; m/s */
-    fu_end_stop stops[2];        /* at the start and at the end */
+    fu_end_stop stops[2];    /* at the start and at the end */
 } fu_slide;
+extern const fu_coupling_type fu_slide_type;
 
+/* How a slide moves at a state (eq 20-37), and its resistance R there. */
 typedef struct {
     double C[3], G[FU_SLIDE_COORDINATES], s_rate, s_bias;
-    double by_point[9]; /* derivatives of the rows in use by the rider's point, row by row */
+    double by_point[9];      /* derivatives of the rows in use by the rider's point, row by row */
+    double R, driven_R;      /* of one that slides; of one that is driven */
+    double power;            /* W: that goes to heat */
+    double step, change;     /* of R: the last step, and the change that the law asked for */
 } fu_slide_state;
+
+/* A slide's numbers in a row of output. traction: the force on the rider along the cable; of a slide that is driven what its
+ * drive gives, over s: times s_rate it is the drive's power. */
+typedef struct {
+    double s_rate, s_acceleration, force[3], multiplier[2], traction, residual[3];
+} fu_slide_output;
+
 int fu_slide_coordinates(const fu_model *model, const fu_state *state, int j, int *at);
-double fu_slide_held(const fu_model *model, const fu_state *state, int j, double *rate, double *second);
+double fu_slide_locked_s(const fu_model *model, const fu_state *state, int j, double *rate, double *second);
 void fu_slide_residual(const fu_model *model, const fu_state *state, int j, double *phi, double *g);
 void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, const double *f, double *J, double *K);
 void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows *rows, fu_slide_state *slide_state);
 double fu_slide_step(const fu_model *model, const fu_state *state, int j, double s, double A_t[9]);
+
+/* couplings/arc_length.c: s where C_l = 0 (eq 21), not zero where there is none; and the director that goes with it. */
+int fu_find_arc_length(const fu_model *model, const fu_state *state, int slide, double *s);
+void fu_carry_director(const fu_model *model, const fu_coupling *coupling, fu_state *state);
+
+/* How one slide moves, and its ds/dt. */
+void fu_slide_now(const fu_model *model, const fu_state *state, int slide, fu_slide_state *slide_state);
+double fu_slide_rate(const fu_model *model, const fu_state *state, int slide);
+/* Its force on the rider by these multipliers; its numbers in a row of output. */
+void fu_slide_force(const fu_model *model, const fu_accelerator *work, int j, const double *lambda, double *f);
+void fu_slide_outputs(const fu_model *model, const fu_state *state, int j, const double *acceleration,
+                      const fu_accelerator *work, fu_slide_output *out);
 
 #endif

@@ -1,25 +1,50 @@
-/* State of the motion at one instant. */
+/* State of the motion at one instant: its arrays, described once. */
 #ifndef FUNICULAR_STATE_H
 #define FUNICULAR_STATE_H
 
 #include "common.h"
 
-/* State of the motion at one instant. */
+/* The couplings' part of a state, which the first guess of a step takes over: ARRAY(type, name, items of a model). */
+#define FU_STATE_OF_COUPLINGS(ARRAY)                                                                                     \
+    /* couplings' own forces: on the rider of a slide, multipliers of a joint, on a spring's first end */               \
+    ARRAY(double, forces, model->n_forces)                                                                               \
+    /* per slide: a unit vector across the tangent, carried along with the slide */                                      \
+    ARRAY(double, director, FU_SPACE * (long)model->n_slides)                                                            \
+    ARRAY(double, locked_s, model->n_slides)    /* per slide: s where it is locked, m */                                 \
+    ARRAY(int, element, model->n_slides)        /* per slide: the element on which it is */                              \
+    ARRAY(int, mode, model->n_slides)           /* per slide: FU_SLIDES and so on */                                     \
+    /* per slide: 1 or -1 where friction is against that direction whatever the speed */                                 \
+    ARRAY(int, slip_direction, model->n_slides)                                                                          \
+    /* per slide: 1 or -1 where it lies against what is at the end or at the start */                                    \
+    ARRAY(int, contact, model->n_slides)
+
+/* All arrays of a state. */
+#define FU_STATE_ARRAYS(ARRAY)                                                                                           \
+    ARRAY(double, q, model->n_q)                                                                                         \
+    ARRAY(double, v, model->n_dof)                                                                                       \
+    ARRAY(double, acceleration, model->n_dof)                                                                            \
+    ARRAY(double, a, model->n_dof)              /* the integrator's auxiliary acceleration */                            \
+    ARRAY(double, s, model->n_coordinates)      /* couplings' own coordinates: of each slide the arc-length, m */        \
+    FU_STATE_OF_COUPLINGS(ARRAY)                                                                                         \
+    /* of algorithmic dissipation (integrators/algorithmic_dissipation.c) */                                             \
+    ARRAY(double, dissipation_state, model->n_dissipation_state)
+
 struct fu_state {
-    double t;
-    double *q, *v, *acceleration;
-    double *a;       /* the integrator's auxiliary acceleration */
-    double *s;       /* per slide: arc-length */
-    double *f;       /* per slide: force on the rider, 3 */
-    double *spring;  /* per spring: force on its first end, 3 */
-    double *multipliers; /* per joint: 6 */
-    double *locked_s;    /* per slide: s where it is held */
-    int *element;    /* per slide: element that holds s */
-    int *mode;       /* per slide: FU_SLIDES and so on */
-    int *slip_direction;        /* per slide: 1 or -1 where friction is against that direction whatever the speed */
-    int *contact;    /* per slide: 1 or -1 where it lies against what is at the end or at the start */
-    double *director; /* per slide: unit vector across the tangent, carried along with the slide */
-    double *memory;  /* of algorithmic dissipation */
+    double t; /* s */
+#define FU_MEMBER(type, name, items) type *name;
+    FU_STATE_ARRAYS(FU_MEMBER)
+#undef FU_MEMBER
 };
+
+enum {
+#define FU_COUNT(type, name, items) +1
+    FU_N_STATE_ARRAYS = 0 FU_STATE_ARRAYS(FU_COUNT)
+#undef FU_COUNT
+};
+
+/* run/state.c */
+fu_array fu_state_array(const fu_model *model, const fu_state *state, int k);
+void fu_state_attach(fu_state *state, int k, void *data);
+void fu_state_take_couplings(const fu_model *model, fu_state *to, const fu_state *from);
 
 #endif

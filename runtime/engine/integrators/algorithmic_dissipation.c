@@ -23,6 +23,8 @@
  */
 #include "engine.h"
 
+#include "algorithmic_dissipation.h"
+
 #include <string.h>
 
 #define LEAST_PIVOT 1e-14 /* of the largest: a turn that bends nothing */
@@ -36,10 +38,37 @@ typedef struct {
     double weight, omega[3];
 } moving;
 
-/* Numbers of a cable's k-th element in `memory`: g, and the energy of r. */
-static double *memory_of(const fu_cable *cable, double *memory, int k)
+const fu_algorithmic *fu_algorithmic_of(const fu_run *run)
 {
-    return memory + cable->memory + (long)k * (cable->law->rates + 1);
+    return (const fu_algorithmic *)run->parameters;
+}
+
+/* Numbers of an element: g, and the energy of r. */
+static long numbers_of(const fu_cable *cable)
+{
+    return cable->law->rates + 1;
+}
+
+/* Returns how many numbers of it a state keeps. */
+long fu_algorithmic_state(const fu_run *run)
+{
+    long numbers = 0;
+    for (int c = 0; c < run->model->n_cables && fu_algorithmic_of(run)->weight != 0.0; ++c)
+        numbers += numbers_of(&run->model->cables[c]) * run->model->cables[c].n_elements;
+    return numbers;
+}
+
+/* Numbers of a cable's k-th element in an array of those of all. */
+static double *state_of(const fu_cable *cable, double *numbers, int k)
+{
+    return numbers + cable->dissipation_state + k * numbers_of(cable);
+}
+
+/* Like a state's numbers: r, what the velocities at the start of the step would change, and its energy; at the head of
+ * the scratch. */
+static double *expected_of(const fu_run *run)
+{
+    return run->scratch;
 }
 
 static int entry_of(const fu_cable *cable, int k)
@@ -111,16 +140,16 @@ typedef void (*stress_of)(const fu_run *run, const fu_cable *cable, int k, doubl
 /* `known` of the whole stress, of its second part, of none */
 static void of_both(const fu_run *run, const fu_cable *cable, int k, double *known)
 {
-    const fu_algorithmic *a = &run->algorithmic;
-    const double *g = memory_of(cable, run->now.memory, k), *r = memory_of(cable, a->expected, k);
+    const fu_algorithmic *a = fu_algorithmic_of(run);
+    const double *g = state_of(cable, run->now.dissipation_state, k), *r = state_of(cable, expected_of(run), k);
     const double maxwell = 2.0 * a->viscosity / (2.0 * a->lag + 1.0);
     for (int i = 0; i < cable->law->rates; ++i) known[i] = maxwell * g[i] + 2.0 * a->inertia * r[i];
 }
 
 static void of_inertia(const fu_run *run, const fu_cable *cable, int k, double *known)
 {
-    const double *r = memory_of(cable, run->algorithmic.expected, k);
-    for (int i = 0; i < cable->law->rates; ++i) known[i] = 2.0 * run->algorithmic.inertia * r[i];
+    const double *r = state_of(cable, expected_of(run), k);
+    for (int i = 0; i < cable->law->rates; ++i) known[i] = 2.0 * fu_algorithmic_of(run)->inertia * r[i];
 }
 
 static void of_none(const fu_run *run, const fu_cable *cable, int k, double *known)
@@ -158,14 +187,14 @@ static moving without_turn(const fu_run *run, const fu_cable *cable, const doubl
 /* r_0 of a step of h from `now` */
 void fu_algorithmic_start(fu_run *run, double h)
 {
-    const fu_algorithmic *a = &run->algorithmic;
+    const fu_algorithmic *a = fu_algorithmic_of(run);
     for (int c = 0; a->weight > 0.0 && c < run->model->n_cables; ++c) {
         const fu_cable *cable = &run->model->cables[c];
         const int n = cable->law->rates;
         const moving m = without_turn(run, cable, run->now.q, run->now.v, 1.0, of_none);
         for (int k = 0; k < cable->n_elements; ++k) {
-            double f[FU_MAX_COORDINATES], *r = memory_of(cable, a->expected, k);
-            const double left = memory_of(cable, run->now.memory, k)[n];
+            double f[FU_MAX_COORDINATES], *r = state_of(cable, expected_of(run), k);
+            const double left = state_of(cable, run->now.dissipation_state, k)[n];
             const double holds = 0.5 * a->inertia * h * h * element_force(&m, k, none, f, r);
             const double part = holds > left ? sqrt(left / holds) : 1.0;
             for (int i = 0; i < n; ++i) r[i] *= h * part;
@@ -177,7 +206,7 @@ void fu_algorithmic_start(fu_run *run, double h)
 /* force += those of the step from `now` by psi, q its middle */
 void fu_algorithmic_forces(fu_run *run, const double *q, double *force)
 {
-    const double weight = run->algorithmic.weight;
+    const double weight = fu_algorithmic_of(run)->weight;
     for (int c = 0; weight > 0.0 && c < run->model->n_cables; ++c) {
         const fu_cable *cable = &run->model->cables[c];
         const moving m = without_turn(run, cable, q, run->psi, weight, of_both);
@@ -193,7 +222,7 @@ void fu_algorithmic_forces(fu_run *run, const double *q, double *force)
 /* The step is taken: the memory at its end. Returns the work of the stresses, J. */
 double fu_algorithmic_account(fu_run *run, const double *q)
 {
-    const fu_algorithmic *a = &run->algorithmic;
+    const fu_algorithmic *a = fu_algorithmic_of(run);
     double work = 0.0;
     for (int c = 0; a->weight > 0.0 && c < run->model->n_cables; ++c) {
         const fu_cable *cable = &run->model->cables[c];
@@ -202,8 +231,8 @@ double fu_algorithmic_account(fu_run *run, const double *q)
         moving second = m;
         second.weight = 2.0 * a->inertia;
         for (int k = 0; k < cable->n_elements; ++k) {
-            const double *psi = run->psi + entry_of(cable, k), *now = memory_of(cable, run->now.memory, k);
-            double *next = memory_of(cable, run->next.memory, k);
+            const double *psi = run->psi + entry_of(cable, k), *now = state_of(cable, run->now.dissipation_state, k);
+            double *next = state_of(cable, run->next.dissipation_state, k);
             double f[FU_MAX_COORDINATES], known[FU_MAX_RATES], dE[FU_MAX_RATES];
             of_both(run, cable, k, known);
             element_force(&m, k, known, f, dE);
@@ -211,7 +240,7 @@ double fu_algorithmic_account(fu_run *run, const double *q)
             for (int i = 0; i < n; ++i) next[i] = now[i] + 2.0 * (a->lag * dE[i] - now[i]) / (2.0 * a->lag + 1.0);
             of_inertia(run, cable, k, known);
             const double gained = element_force(&second, k, known, f, dE);
-            next[n] = fmax(0.0, memory_of(cable, a->expected, k)[n] + gained);
+            next[n] = fmax(0.0, state_of(cable, expected_of(run), k)[n] + gained);
         }
     }
     return work;

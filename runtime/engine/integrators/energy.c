@@ -11,21 +11,43 @@
  *
  * Unknowns as in genalpha.c with sigma = h^2/2. The Newton matrix takes elasticity at the middle, which leaves the
  * change of curvature of the energy over a step out: Newton converges linearly, by a factor that falls as h^2 or faster.
- * Algorithmic dissipation (algorithmic_dissipation.c) stands in it as so much more stiffness, which it is but for turns and tension.
+ * Algorithmic dissipation (algorithmic_dissipation.c) stands in it as so much more stiffness, which it is but for turns
+ * and tension.
  */
 #include "engine.h"
 
+#include "algorithmic_dissipation.h"
+#include "workspace.h"
+
 #include <string.h>
 
-/* Scratch: the middle of the step, and forces. */
+/* In the scratch, behind what algorithmic dissipation keeps there: the middle of the step, and forces. */
 typedef struct {
     double *q, *v, *force;
 } middle_view;
 
 static middle_view middle(const fu_run *run)
 {
-    double *q = run->scratch, *v = q + run->model->n_q;
+    double *q = run->scratch + run->model->n_dissipation_state, *v = q + run->model->n_q;
     return (middle_view){q, v, v + run->model->n_dof};
+}
+
+static long n_parameters(const double *given)
+{
+    (void)given;
+    return FU_DOUBLES(1, fu_algorithmic);
+}
+
+static long n_scratch(const fu_run *run)
+{
+    return run->model->n_dissipation_state + (long)run->model->n_q + 2L * run->model->n_dof;
+}
+
+/* The same as a state; its couplings' unknowns are those of `next`. */
+static fu_state middle_of(const fu_run *run, double h)
+{
+    const middle_view m = middle(run);
+    return (fu_state){.t = run->now.t + 0.5 * h, .q = m.q, .v = m.v};
 }
 
 static double sigma(double h)
@@ -37,7 +59,7 @@ static void predict(fu_run *run, double h)
 {
     const fu_state *now = &run->now;
     for (int i = 0; i < run->model->n_dof; ++i) run->psi[i] = h * (now->v[i] + 0.5 * h * now->acceleration[i]);
-    fu_predict_extra(run, h);
+    fu_predict_own(run, h);
 }
 
 /* next.q, v, and the mean acceleration of the step, from psi; the middle */
@@ -62,85 +84,28 @@ static void kinematics(fu_run *run, double h)
     fu_between(model, now->q, next->q, m.q);
 }
 
-static const double *configuration(const fu_model *model, const fu_state *state, const fu_slide *slide)
+/* The equations over a step. */
+static fu_equations equations(const fu_run *run, const fu_state *middle_state, double h)
 {
-    return state->q + model->bodies[slide->rider.body].configuration;
+    return (fu_equations){&run->now, &run->next, middle_state, run->psi, h, {1.0, 2.0 / h, sigma(h)}};
 }
 
 static void residual(fu_run *run, double h)
 {
-    const double begin = fu_clock(), scale = sigma(h);
+    const double begin = fu_clock();
     const fu_model *model = run->model;
     const fu_state *now = &run->now, *next = &run->next;
     const middle_view m = middle(run);
-    double *extra = run->rhs + model->n_band + model->n_border_dof;
+    const fu_state middle_state = middle_of(run, h);
+    const fu_equations at = equations(run, &middle_state, h);
     fu_mass_times(model, m.q, next->acceleration, run->force);
     fu_discrete_forces(model, now->q, next->q, run->force);
     fu_algorithmic_forces(run, m.q, run->force);
     fu_rate_forces(model, m.q, m.v, run->force);
-    fu_external_forces(model, now->t + 0.5 * h, m.q, run->force);
-    for (int j = 0; j < model->n_slides; ++j) {
-        const fu_slide *slide = &model->slides[j];
-        const double length = model->cables[slide->cable].length, start = fu_element_start(model, j, now->element[j]);
-        const double *f = next->f + 3 * j;
-        double G[3 * FU_MAX_COORDINATES], phi[3], unused[FU_MAX_COORDINATES];
-        int at[FU_SLIDE_COORDINATES + 1];
-        fu_slide_coordinates(model, next, j, at);
-        slide->kernel->discrete_gradient(length, now->s[j] - start, next->s[j] - start, now->q + at[0], next->q + at[0],
-                                         configuration(model, now, slide), configuration(model, next, slide), G);
-        slide->kernel->residual(length, next->s[j] - start, next->q + at[0], configuration(model, next, slide), slide->rider.u,
-                                f, phi, unused);
-        const int s = slide->kernel->coordinates, dim = slide->kernel->dim, n = s + 1;
-        double along = 0.0;
-        for (int d = 0; d < dim; ++d) {
-            for (int i = 0; i < s; ++i) run->force[at[i]] += f[d] * G[d * n + i];
-            along += f[d] * G[d * n + s];
-            extra[slide->unknown + 1 + d] = -slide->mass * phi[d];
-        }
-        extra[slide->unknown] = -scale * along;
-    }
-    for (int k = 0; k < model->n_springs; ++k) {
-        const fu_spring *spring = &model->springs[k];
-        double force[3];
-        fu_discrete_pull(model, spring, now->q, next->q, next->spring + 3 * k, run->force);
-        fu_discrete_spring(model, spring, now->q, next->q, h, force);
-        for (int d = 0; d < spring->dim; ++d)
-            extra[spring->unknown + d] = -scale * (next->spring[3 * k + d] - force[d]);
-    }
-    fu_gather(model, run->force, run->rhs);
-    for (int i = 0; i < model->n_band + model->n_border_dof; ++i) run->rhs[i] *= -scale;
+    fu_external_forces(model, middle_state.t, m.q, run->force);
+    fu_coupling_step_residuals(model, &at, run->force, fu_own(run));
+    fu_scale_residual(run, at.weights.stiffness);
     run->statistics.time_residual += fu_clock() - begin;
-}
-
-/* Rows and columns of a joint: the constraint at the end of the step, its discrete gradient, half the derivative of the
- * force there. */
-static void joint_matrix(fu_run *run, int j, double stiffness)
-{
-    const fu_model *model = run->model;
-    const fu_state *now = &run->now, *next = &run->next;
-    fu_system *system = &run->newton;
-    const fu_slide *slide = &model->slides[j];
-    const fu_body *rider = &model->bodies[slide->rider.body];
-    const double length = model->cables[slide->cable].length, start = fu_element_start(model, j, now->element[j]);
-    const int s = slide->kernel->coordinates, n = s + 1, dim = slide->kernel->dim;
-    const int turns = model->cables[slide->cable].coordinates;
-    double G[3 * FU_MAX_COORDINATES], J[3 * FU_MAX_COORDINATES], K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
-    int at[FU_SLIDE_COORDINATES + 1];
-    fu_slide_coordinates(model, next, j, at);
-    slide->kernel->discrete_gradient(length, now->s[j] - start, next->s[j] - start, now->q + at[0], next->q + at[0],
-                                     configuration(model, now, slide), configuration(model, next, slide), G);
-    slide->kernel->tangent(length, next->s[j] - start, next->q + at[0], configuration(model, next, slide), slide->rider.u,
-                           next->f + 3 * j, J, K);
-    fu_cayley_columns(rider->kernel, J, dim, n, turns, run->psi + rider->dof);
-    fu_cayley_columns(rider->kernel, K, n, n, turns, run->psi + rider->dof);
-    for (int i = 0; i < n; ++i) {
-        for (int d = 0; d < dim; ++d) {
-            fu_add(model, system, at[i], at[s] + 1 + d, slide->mass * G[d * n + i]);
-            fu_add(model, system, at[s] + 1 + d, at[i], slide->mass * J[d * n + i]);
-        }
-        for (int k = 0; k < n; ++k)
-            if (K[i * n + k] != 0.0) fu_add(model, system, at[i], at[k], stiffness * K[i * n + k]);
-    }
 }
 
 /* Elasticity half-way knows the stress of the mean vectors: a turn over the step shortens these, the mean stress not. */
@@ -165,25 +130,23 @@ static void mean_stress(fu_run *run, double stiffness)
 static void matrix(fu_run *run, double h)
 {
     const fu_model *model = run->model;
-    const middle_view m = middle(run);
-    const double rate = 2.0 / h, stiffness = 0.5 * sigma(h); /* the middle moves by half of psi */
-    const fu_state state = {.q = m.q, .v = m.v, .spring = run->next.spring};
+    const fu_state m = middle_of(run, h);
+    const double stiffer = 1.0 + 2.0 * fu_algorithmic_of(run)->weight;
+    fu_equations at = equations(run, &m, h);
+    fu_weights *w = &at.weights;
+    w->stiffness *= 0.5; /* the middle moves by half of psi */
     fu_system_clear(&run->newton);
-    const double stiffer = 1.0 + 2.0 * run->algorithmic.weight;
-    fu_dynamic_matrix(model, m.q, m.v, 1.0, rate / stiffer, stiffness * stiffer, &run->newton);
-    fu_bodies_matrix(model, &state, 0, (fu_weights){1.0, rate, stiffness}, &run->newton);
-    mean_stress(run, stiffness);
-    fu_loads_matrix(model, run->now.t + 0.5 * h, m.q, 0, stiffness, &run->newton);
-    for (int j = 0; j < model->n_slides; ++j) joint_matrix(run, j, stiffness);
-    for (int k = 0; k < model->n_springs; ++k)
-        fu_spring_matrix(model, &model->springs[k], &state, 0, rate, stiffness, model->springs[k].mass, &run->newton);
+    fu_dynamic_matrix(model, m.q, m.v, w->inertia, w->rate / stiffer, w->stiffness * stiffer, &run->newton);
+    fu_bodies_matrix(model, &m, 0, *w, &run->newton);
+    mean_stress(run, w->stiffness);
+    fu_coupling_step_tangents(model, &at, &run->newton);
 }
 
 static double apply(fu_run *run, double h)
 {
     const double size = fu_spread_size(run);
     for (int i = 0; i < run->model->n_dof; ++i) run->psi[i] += run->work[i];
-    fu_apply_extra(run, 1.0, sigma(h));
+    fu_add_solution(run, 1.0, sigma(h));
     return size;
 }
 
@@ -214,20 +177,22 @@ static double error(fu_run *run, double h)
 }
 
 /* Work of the forces that are not conserved, as the step has it: energy balances to rounding. */
-static void book(fu_run *run, double h)
+static void account(fu_run *run, double h)
 {
     const fu_model *model = run->model;
     const fu_state *now = &run->now, *next = &run->next;
     const middle_view m = middle(run);
-    double force[3];
+    const fu_equations at = equations(run, 0, h);
     run->since = 0.5 * h;
     for (int i = 0; i < model->n_dof; ++i) m.force[i] = 0.0;
     fu_rate_forces(model, m.q, m.v, m.force);
     const int n_flexible = model->n_bodies ? model->bodies[0].dof : model->n_dof; /* gyroscopic moments do no work */
     for (int i = 0; i < n_flexible; ++i) run->dissipated += m.force[i] * run->psi[i];
     run->dissipated += fu_algorithmic_account(run, m.q);
-    for (int k = 0; k < model->n_springs; ++k)
-        run->dissipated += h * fu_discrete_spring(model, &model->springs[k], now->q, next->q, h, force);
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->type->step_dissipation) run->dissipated += c->type->step_dissipation(model, c, &at);
+    }
     for (int i = 0; i < model->n_dof; ++i) m.force[i] = 0.0;
     fu_loads(model, now->t + 0.5 * h, m.q, m.force);
     for (int i = 0; i < model->n_dof; ++i) run->external -= m.force[i] * run->psi[i];
@@ -243,4 +208,13 @@ static void book(fu_run *run, double h)
     }
 }
 
-const fu_integrator fu_energy_method = {"energy", start, step, error, book, 1, 0, &newton};
+const fu_integrator fu_energy = {.name = "energy",
+                                 .n_parameters = n_parameters,
+                                 .n_scratch = n_scratch,
+                                 .n_dissipation_state = fu_algorithmic_state,
+                                 .start = start,
+                                 .step = step,
+                                 .error = error,
+                                 .account = account,
+                                 .keeps_energy = 1,
+                                 .newton = &newton};

@@ -9,10 +9,43 @@
 
 #include <string.h>
 
-/* stage k of the scratch: rates of q, then of v */
-static double *stage(fu_run *run, int k)
+/* An explicit Runge-Kutta method with two embedded error estimates: A (stages x stages, row by row), b, c (stages),
+ * error, coarse (stages + 1: the last is of the state at the end). */
+typedef struct {
+    int stages;
+    const double *A, *b, *c, *error, *coarse;
+} tableau;
+
+static tableau tableau_of(const fu_run *run)
+{
+    const double *p = run->parameters;
+    const int n = (int)p[0];
+    const double *A = p + 1, *b = A + n * n, *c = b + n, *error = c + n;
+    return (tableau){n, A, b, c, error, error + n + 1};
+}
+
+static long n_parameters(const double *given)
+{
+    const long n = (long)given[0];
+    return 1 + n * n + 2 * n + 2 * (n + 1);
+}
+
+/* Scratch: the rates of q and v of each stage, of the end of the step, and of an error estimate; then the powers,
+ * dissipated and external, of each stage and of the end. */
+static long n_scratch(const fu_run *run)
+{
+    const long n = tableau_of(run).stages;
+    return (n + 2) * ((long)run->model->n_q + run->model->n_dof) + 2 * (n + 1);
+}
+
+static double *stage(const fu_run *run, int k)
 {
     return run->scratch + (long)k * (run->model->n_q + run->model->n_dof);
+}
+
+static double *powers(const fu_run *run, int k)
+{
+    return stage(run, tableau_of(run).stages + 2) + 2 * k;
 }
 
 /* rates of the configuration and of the velocities of a state whose accelerations are known */
@@ -41,12 +74,6 @@ static void combine(fu_run *run, const double *row, int n, double h, double *q, 
     }
 }
 
-/* powers of stage k: dissipated, external */
-static double *powers(fu_run *run, int k)
-{
-    return stage(run, run->tableau.stages + 2) + 2 * k;
-}
-
 /* what stage k says: rates, and powers of what reads them */
 static void keep(fu_run *run, int k, const fu_state *state)
 {
@@ -65,7 +92,7 @@ static int move_to(fu_run *run, const double *row, int n, double t, double h)
     combine(run, row, n, h, next->q, next->v);
     next->t = t;
     if (model->n_motions) fu_prescribe(model, next);
-    return fu_find_slides(run);
+    return fu_find_own(run);
 }
 
 static int start(fu_run *run)
@@ -77,21 +104,21 @@ static int start(fu_run *run)
 static int step(fu_run *run, double h)
 {
     const fu_model *model = run->model;
-    const fu_tableau *tableau = &run->tableau;
-    const int n = tableau->stages;
+    const tableau method = tableau_of(run);
+    const int n = method.stages;
     fu_state *next = &run->next;
     double *reaction = model->n_motions ? run->force : 0;
-    fu_predict_extra(run, h);
+    fu_predict_own(run, h);
     rates(model, &run->now, stage(run, 0));
     powers(run, 0)[0] = run->dissipated_power;
     powers(run, 0)[1] = run->external_power;
     for (int k = 1; k < n; ++k) {
-        if (move_to(run, tableau->A + k * n, k, run->now.t + tableau->c[k] * h, h)) return 1;
-        if (fu_accelerations(model, next, &run->accelerator, next->acceleration, 0, reaction))
+        if (move_to(run, method.A + k * n, k, run->now.t + method.c[k] * h, h)) return 1;
+        if (fu_accelerations(model, next, &run->accelerator, next->acceleration, reaction))
             return fu_fail_eq38(run);
         keep(run, k, next);
     }
-    if (move_to(run, tableau->b, n, run->now.t + h, h)) return 1;
+    if (move_to(run, method.b, n, run->now.t + h, h)) return 1;
     if (fu_return_to_joints(run, next)) return 1;
     if (fu_complete(run, next)) return fu_fail_eq38(run);
     keep(run, n, next);
@@ -106,9 +133,10 @@ static double estimate(fu_run *run, const double *row, double h)
 {
     const fu_model *model = run->model;
     const int n_flexible = model->n_bodies ? model->bodies[0].dof : model->n_dof;
-    double *q = stage(run, run->tableau.stages + 1), *v = q + model->n_q;
+    const int end = tableau_of(run).stages;
+    double *q = stage(run, end + 1), *v = q + model->n_q;
     memset(q, 0, sizeof(double) * (size_t)(model->n_q + model->n_dof));
-    combine(run, row, run->tableau.stages + 1, h, q, v);
+    combine(run, row, end + 1, h, q, v);
     for (int i = 0; i < n_flexible; ++i) run->work[i] = q[i];
     for (int b = 0; b < model->n_bodies; ++b) {
         const fu_body *body = &model->bodies[b];
@@ -125,22 +153,29 @@ static double estimate(fu_run *run, const double *row, double h)
 /* Two embedded estimates, joined as in DOP853. */
 static double error(fu_run *run, double h)
 {
-    const fu_tableau *tableau = &run->tableau;
-    const double fine = estimate(run, tableau->error, h);
+    const tableau method = tableau_of(run);
+    const double fine = estimate(run, method.error, h);
     if (fine == 0.0) return 0.0;
-    const double coarse = estimate(run, tableau->coarse, h);
+    const double coarse = estimate(run, method.coarse, h);
     return fine * fine / sqrt(fine * fine + 0.01 * coarse * coarse);
 }
 
-static void book(fu_run *run, double h)
+static void account(fu_run *run, double h)
 {
-    const int n = run->tableau.stages;
+    const tableau method = tableau_of(run);
+    const int n = method.stages;
     for (int k = 0; k < n; ++k) {
-        run->dissipated += h * run->tableau.b[k] * powers(run, k)[0];
-        run->external += h * run->tableau.b[k] * powers(run, k)[1];
+        run->dissipated += h * method.b[k] * powers(run, k)[0];
+        run->external += h * method.b[k] * powers(run, k)[1];
     }
     run->dissipated_power = powers(run, n)[0];
     run->external_power = powers(run, n)[1];
 }
 
-const fu_integrator fu_explicit_method = {"explicit", start, step, error, book, 0, 0, 0};
+const fu_integrator fu_explicit = {.name = "explicit",
+                                   .n_parameters = n_parameters,
+                                   .n_scratch = n_scratch,
+                                   .start = start,
+                                   .step = step,
+                                   .error = error,
+                                   .account = account};

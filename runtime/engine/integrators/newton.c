@@ -19,12 +19,6 @@ double fu_clock(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-/* Statics has no mass to scale a joint's rows and force by. */
-double fu_row_unit(double inertia, double mass)
-{
-    return inertia != 0.0 ? mass : 1.0;
-}
-
 static int factor(fu_run *run, const fu_newton *method, double h)
 {
     const double begin = fu_clock();
@@ -54,63 +48,37 @@ double fu_spread_size(fu_run *run)
     return largest;
 }
 
-/* the solution in run->rhs, added to s and to the forces of slides, joints and springs */
-void fu_apply_extra(fu_run *run, double inertia, double scale)
+/* the solution in run->rhs, added to the couplings' own coordinates and forces */
+void fu_add_solution(fu_run *run, double inertia, double scale)
 {
-    const fu_model *model = run->model;
-    const double *extra = run->rhs + model->n_band + model->n_border_dof;
-    for (int j = 0; j < model->n_slides; ++j) {
-        const fu_slide *slide = &model->slides[j];
-        run->next.s[j] += extra[slide->unknown];
-        for (int d = 0; d < slide->kernel->dim; ++d)
-            run->next.f[3 * j + d] += extra[slide->unknown + 1 + d] * fu_row_unit(inertia, slide->mass) / scale;
-    }
-    for (int k = 0; k < model->n_joints; ++k) {
-        const fu_joint *joint = &model->joints[k];
-        for (int r = 0; r < joint->kernel->rows; ++r)
-            run->next.multipliers[6 * k + r] += extra[joint->unknown + r] * fu_row_unit(inertia, joint->scale[r]) / scale;
-    }
-    for (int k = 0; k < model->n_springs; ++k) {
-        const fu_spring *spring = &model->springs[k];
-        for (int d = 0; d < spring->dim; ++d)
-            run->next.spring[3 * k + d] += extra[spring->unknown + d] * fu_row_unit(inertia, spring->mass) / scale;
-    }
+    fu_add_own(run->model, &run->next, fu_own(run), inertia, scale);
 }
 
-/* What an integrator does not predict otherwise: time, and the joints' and springs' part of `next`. */
-void fu_predict_extra(fu_run *run, double h)
+/* What an integrator does not predict otherwise: time, and the couplings' part of `next`. */
+void fu_predict_own(fu_run *run, double h)
 {
     const fu_model *model = run->model;
-    const size_t real = sizeof(double);
     run->next.t = run->now.t + h;
-    memcpy(run->next.f, run->now.f, 3 * real * (size_t)model->n_slides);
-    memcpy(run->next.multipliers, run->now.multipliers, 6 * real * (size_t)model->n_joints);
-    memcpy(run->next.spring, run->now.spring, 3 * real * (size_t)model->n_springs);
-    memcpy(run->next.director, run->now.director, 3 * real * (size_t)model->n_slides);
-    for (int j = 0; j < model->n_slides; ++j) {
-        run->next.s[j] = run->now.s[j] + h * run->s_slope[j];
-        run->next.element[j] = run->now.element[j];
-        run->next.mode[j] = run->now.mode[j];
-        run->next.locked_s[j] = run->now.locked_s[j];
-        run->next.slip_direction[j] = run->now.slip_direction[j];
-        run->next.contact[j] = run->now.contact[j];
-    }
+    fu_state_take_couplings(model, &run->next, &run->now);
+    for (int i = 0; i < model->n_coordinates; ++i) run->next.s[i] = run->now.s[i] + h * run->s_slope[i];
 }
 
 /* The iteration has failed where its last correction, in run->rhs and run->work, is largest; returns 1. */
 static int blame(fu_run *run)
 {
     const fu_model *model = run->model;
-    const double *extra = run->rhs + model->n_band + model->n_border_dof;
+    const double *own = fu_own(run);
     double largest = fu_size(model, run->work);
     int slide = -1;
-    for (int j = 0; j < model->n_slides; ++j)
-        for (int d = 0; d <= model->slides[j].kernel->dim; ++d) {
-            const double size = fabs(extra[model->slides[j].unknown + d]);
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        for (int i = 0; c->n_coordinates && i < c->n_coordinates + c->n_forces; ++i) {
+            const double size = fabs(own[c->unknown + i]);
             if (!(size > largest)) continue;
             largest = size;
-            slide = j;
+            slide = c->index;
         }
+    }
     return fu_fail(run, FU_ITERATION, run->work, slide);
 }
 

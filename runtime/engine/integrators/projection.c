@@ -7,16 +7,20 @@
 #define MOST_PROJECTIONS 10
 #define SHORT_STEP 1e-3 /* of the usual step */
 
-/* s of `next` where C_l = 0, eq 21, from what the last step's slope predicts; 0 when that was found */
-int fu_find_slides(fu_run *run)
+/* A failure where a coupling's own coordinates do not follow from the others. */
+static int lost(fu_run *run, const double *v, const fu_coupling *coupling)
+{
+    return fu_fail(run, FU_LOST_RIDER, v, coupling->index);
+}
+
+/* Own coordinates of `next` where the others have them, from what the last step's slope predicts; 0 when they were found */
+int fu_find_own(fu_run *run)
 {
     fu_state *next = &run->next;
-    for (int j = 0; j < run->model->n_slides; ++j) {
-        if (next->mode[j] == FU_LEFT) continue;
-        next->s[j] = run->now.s[j] + (next->t - run->now.t) * run->s_slope[j];
-        if (fu_find_arc_length(run->model, next, j, &next->s[j])) return fu_fail(run, FU_LOST_RIDER, next->v, j);
-    }
-    return 0;
+    for (int i = 0; i < run->model->n_coordinates; ++i)
+        next->s[i] = run->now.s[i] + (next->t - run->now.t) * run->s_slope[i];
+    const fu_coupling *failed = fu_follow(run->model, next);
+    return failed ? lost(run, next->v, failed) : 0;
 }
 
 static void normalise(const fu_model *model, double *q)
@@ -40,9 +44,8 @@ static int close_gaps(fu_run *run, fu_state *state, double enough)
         const double size = fu_size(model, run->work);
         if (!(size < 1e30) || i == MOST_PROJECTIONS) return fu_fail(run, FU_ITERATION, run->work, -1);
         fu_move(model, state->q, run->work);
-        for (int j = 0; j < model->n_slides; ++j)
-            if (state->mode[j] != FU_LEFT && fu_find_arc_length(model, state, j, &state->s[j]))
-                return fu_fail(run, FU_LOST_RIDER, state->v, j);
+        const fu_coupling *failed = fu_follow(model, state);
+        if (failed) return lost(run, state->v, failed);
         if (size <= enough) return 0;
     }
 }
@@ -69,14 +72,12 @@ int fu_return_to_joints(fu_run *run, fu_state *state)
 }
 
 /* Go from `now` along these dofs, made ones that joints allow and no longer than given, and back onto the joints: what is
- * `left` of all rows of links then (6 a link), idle ones too. Not zero where there is no way back. */
+ * `left` of the couplings' equations then, redundant ones too, in the places of their forces. Not zero where there is no way back. */
 int fu_probe_mechanism(fu_run *run, const double *along, double *left)
 {
     const fu_model *model = run->model;
     fu_state *next = &run->next;
-    int at[2 * FU_SLIDE_COORDINATES];
-    double J[6 * 2 * FU_ATTACHMENT_COORDINATES];
-    fu_predict_extra(run, 0.0);
+    fu_predict_own(run, 0.0);
     memcpy(next->q, run->now.q, sizeof(double) * (size_t)model->n_q);
     memcpy(next->v, along, sizeof(double) * (size_t)model->n_dof);
     if (fu_project_velocities(model, next, &run->accelerator, run->work)) return 1;
@@ -84,28 +85,21 @@ int fu_probe_mechanism(fu_run *run, const double *along, double *left)
     const double size = fu_size(model, run->work), most = fu_size(model, along);
     for (int i = 0; i < model->n_dof && size > most; ++i) run->work[i] *= most / size;
     fu_move(model, next->q, run->work);
-    for (int j = 0; j < model->n_slides; ++j)
-        if (fu_find_arc_length(model, next, j, &next->s[j])) return 1;
+    if (fu_follow(model, next)) return 1;
     if (close_gaps(run, next, 1e-12 * run->extent)) return 1;
-    for (int k = 0; k < model->n_joints; ++k) fu_joint_residual(model, &model->joints[k], next, left + 6 * k, at, J);
+    fu_gaps(model, next, left);
     return 0;
 }
 
-/* Accelerations of a state by eq 38, and with them the forces of joints and springs; what supports give, in run->force,
- * where something moves them. 0 when that was found. */
+/* Accelerations of a state by eq 38, and with them the couplings' forces; what supports give, in run->force, where something
+ * moves them. 0 when that was found. */
 int fu_complete(fu_run *run, fu_state *state)
 {
     const fu_model *model = run->model;
-    fu_slide_output *slides = (fu_slide_output *)run->accelerator.slides;
-    const int info = fu_accelerations(model, state, &run->accelerator, state->acceleration, slides,
+    const int info = fu_accelerations(model, state, &run->accelerator, state->acceleration,
                                       model->n_motions ? run->force : 0);
-    if (info) return info;
-    for (int j = 0; j < model->n_slides; ++j) memcpy(state->f + 3 * j, slides[j].force, sizeof slides[j].force);
-    for (int k = 0; k < model->n_joints; ++k)
-        memcpy(state->multipliers + 6 * k, run->accelerator.multipliers + model->joints[k].multiplier,
-               sizeof(double) * (size_t)model->joints[k].kernel->rows);
-    fu_spring_forces_of(model, state, state->spring);
-    return 0;
+    if (!info) fu_take_forces(model, &run->accelerator, state);
+    return info;
 }
 
 /* Whether a step is so much shorter than usual, as one to an event or an output time can be, that the rounding of positions
@@ -121,7 +115,7 @@ int fu_coast(fu_run *run, double h)
     const fu_model *model = run->model;
     const fu_state *now = &run->now;
     fu_state *next = &run->next;
-    fu_predict_extra(run, h);
+    fu_predict_own(run, h);
     for (int i = 0; i < model->n_dof; ++i) {
         run->psi[i] = h * (now->v[i] + 0.5 * h * now->acceleration[i]);
         next->v[i] = now->v[i] + h * now->acceleration[i];
@@ -129,7 +123,7 @@ int fu_coast(fu_run *run, double h)
     memcpy(next->q, now->q, sizeof(double) * (size_t)model->n_q);
     fu_move(model, next->q, run->psi);
     if (model->n_motions) fu_prescribe(model, next);
-    if (fu_find_slides(run) || fu_return_to_joints(run, next)) return 1;
+    if (fu_find_own(run) || fu_return_to_joints(run, next)) return 1;
     if (fu_complete(run, next)) return fu_fail_eq38(run);
     memcpy(next->a, next->acceleration, sizeof(double) * (size_t)model->n_dof);
     return 0;

@@ -72,9 +72,10 @@ static void add(fu_system *s, int row, int column, double value)
         s->D[(long)(column - n) * s->m + row - n] += value;
 }
 
-/* system += value at dofs (or extra unknowns) i, j: T' value T */
+/* system += value at dofs (or extra unknowns) i, j: T' value T; null: nothing */
 void fu_add(const fu_model *model, fu_system *system, int i, int j, double value)
 {
+    if (!system) return;
     const int beyond = model->n_band + model->n_border_dof - model->n_dof;
     const int place_i = i < model->n_dof ? model->place[i] : beyond + i;
     const int place_j = j < model->n_dof ? model->place[j] : beyond + j;

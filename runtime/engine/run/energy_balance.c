@@ -6,54 +6,31 @@
 #define LEAST_MOTION 1e-10 /* of the largest coordinate: less is what step control and rounding leave of rest */
 #define ROUNDING 1e-14     /* of the energies */
 
-/* whether anything drives a slide or a joint */
-static int has_drives(const fu_model *model)
-{
-    int driven = 0;
-    for (int j = 0; j < model->n_slides; ++j) driven |= model->slides[j].drive >= 0;
-    for (int k = 0; k < model->n_joints; ++k) driven |= model->joints[k].signal >= 0;
-    return driven;
-}
-
-/* Power of what drives slides and joints, by the multipliers that eq 38 left. */
+/* Power of what drives constraints, by the multipliers that eq 38 left. */
 static double driving_power(const fu_run *run)
 {
-    const fu_model *model = run->model;
     const fu_accelerator *work = &run->accelerator;
+    const fu_rows *end = work->rows + run->model->n_rows;
     double power = 0.0;
-    for (int r = 0; r < model->n_slides + model->n_joints; ++r)
-        for (int c = 0; c < work->rows[r].rows; ++c)
-            power += work->multipliers[work->rows[r].first + c] * work->rows[r].rate[c];
-    for (int j = 0; j < model->n_slides; ++j)
-        if (model->slides[j].drive >= 0) power -= work->driven_resistance[j] * work->slide_states[j].s_rate;
+    for (const fu_rows *rows = work->rows; rows < end; ++rows)
+        for (int c = 0; c < rows->rows; ++c) power += work->multipliers[rows->first + c] * rows->rate[c];
+    for (const fu_rows *rows = work->rows; rows < end; ++rows) power -= rows->opposed;
     return power;
 }
 
-/* power that goes to heat at a state: in cables and springs, and in brakes by the forces that a Newton method solves for,
- * else by those of eq 38 */
+/* power that goes to heat at a state: in friction by the forces that a Newton method solves for, else by those of eq 38 */
 double fu_dissipated_power(const fu_run *run, const fu_state *state)
 {
-    const fu_model *model = run->model;
-    double power = fu_dissipation(model, state->q, state->v);
-    if (!model->n_resistances) return power;
-    if (!run->integrator->newton) return power + run->accelerator.resistance[model->n_slides];
-    for (int j = 0; j < model->n_slides; ++j) {
-        double t[3], u[3], J[3 * (FU_SLIDE_COORDINATES + 1)], K[(FU_SLIDE_COORDINATES + 1) * (FU_SLIDE_COORDINATES + 1)];
-        if (!fu_has_resistance(model, state, j)) continue;
-        fu_slide_tangent(model, state, j, state->f + 3 * j, J, K);
-        fu_slide_motion(model, state, j, J, t, u);
-        power += fu_resistance_power(model, state, j, t, u, state->f + 3 * j);
-    }
-    return power;
+    return fu_dissipation(run->model, state, run->integrator->newton ? 0 : &run->accelerator);
 }
 
-/* power of the loads, of what drives slides and joints, by the last call of fu_accelerations, and, with the forces that
+/* power of the loads, of what drives constraints, by the last call of fu_accelerations, and, with the forces that
  * the supports give, of the motions */
 double fu_external_power(fu_run *run, const fu_state *state, const double *reaction)
 {
     const fu_model *model = run->model;
-    double power = has_drives(model) ? driving_power(run) : 0.0;
-    if (model->n_dead_loads || model->n_loads) {
+    double power = model->n_driven ? driving_power(run) : 0.0;
+    if (model->n_dead_loads || model->n_external) {
         for (int i = 0; i < model->n_dof; ++i) run->work[i] = 0.0;
         fu_loads(model, state->t, state->q, run->work);
         for (int i = 0; i < model->n_dof; ++i) power -= run->work[i] * state->v[i];
@@ -86,8 +63,8 @@ static double beyond_trapezoid(fu_run *run, double h)
 /* The step just made, by the trapezoidal rule, as good as a method of order 2; drives better. */
 void fu_account_trapezoid(fu_run *run, double h)
 {
-    const int driven = has_drives(run->model);
-    if (driven) fu_accelerations(run->model, &run->next, &run->accelerator, run->work, 0, 0);
+    const int driven = run->model->n_driven > 0;
+    if (driven) fu_accelerations(run->model, &run->next, &run->accelerator, run->work, 0);
     const double dissipated = fu_dissipated_power(run, &run->next);
     const double external = fu_external_power(run, &run->next, run->force);
     run->dissipated += 0.5 * h * (run->dissipated_power + dissipated);
@@ -108,7 +85,7 @@ void fu_impact(fu_run *run, const double *change, double restitution)
     const double before = fu_kinetic_energy(model, now->q, now->v);
     for (int i = 0; i < model->n_dof; ++i) now->v[i] += change[i];
     run->dissipated += lost;
-    if (has_drives(model) || model->n_motions) run->external += fu_kinetic_energy(model, now->q, now->v) - before + lost;
+    if (model->n_driven || model->n_motions) run->external += fu_kinetic_energy(model, now->q, now->v) - before + lost;
 }
 
 /* Whether anything moves beyond what step control and rounding leave of a scene at rest */

@@ -5,6 +5,9 @@
 #include <string.h>
 
 #define MOST_TRIALS 80
+#define FEW_TRIALS 10     /* after so many every second one halves the interval */
+#define LEAST_STEP 1e-13  /* of the duration */
+#define FINER 1e-2        /* of Newton's tolerance: lest its noise rule where the event is */
 #define PRECISE 1e-13     /* of an element, or of what a watched quantity changes by in the step */
 #define LITTLE 1e-2       /* of what is allowed */
 #define LARGEST_MISS 1e-6 /* of an element */
@@ -28,7 +31,7 @@ static double outside(const fu_run *run, const fu_state *state, int j, int *side
  * elements that it was made with. */
 void fu_seat_slides(fu_run *run)
 {
-    if (run->holds) return;
+    if (run->keep_elements) return;
     for (int j = 0; j < run->model->n_slides; ++j) {
         const fu_cable *cable = &run->model->cables[run->model->slides[j].cable];
         int side, *element = &run->next.element[j];
@@ -87,8 +90,10 @@ double fu_time_of_turn(fu_run *run, double h)
 static double traction(const fu_run *run, const fu_state *state, int slide)
 {
     fu_accelerator *work = (fu_accelerator *)&run->accelerator; /* scratch: a run is never a constant */
-    fu_slide_output *outputs = (fu_slide_output *)work->slides;
-    return fu_accelerations(run->model, state, work, run->watch_work, outputs, 0) ? NAN : outputs[slide].traction;
+    fu_slide_output out;
+    if (fu_accelerations(run->model, state, work, run->watch_work, 0)) return NAN;
+    fu_slide_outputs(run->model, state, slide, run->watch_work, work, &out);
+    return out.traction;
 }
 
 /* what an event of the user's, or of a slide's, watches, positive where it has happened when `side` is 1 */
@@ -176,63 +181,92 @@ static int is_of_a_slide(const fu_watch *watch)
     return watch->kind == FU_WATCH_STICK || watch->kind == FU_WATCH_BUFFER;
 }
 
-/* Shorten the step until it ends where the event happens (Illinois); returns the step, 0 on failure. `next` is there
- * then. */
-static double locate(fu_run *run, fu_event event, double h)
+/* An interval of steps in which g, the event's value, passes zero: g_low < 0 <= g_high. */
+typedef struct {
+    double low, high, g_low, g_high;
+    int last; /* the side that has moved last: 1 high, -1 low */
+} bracket;
+
+static double secant(const bracket *b)
 {
-    double low = 0.0, high = h, g_high = value(run, &run->next, event);
-    double g_low = event.kind == FU_WATCHED ? event.side * run->watched[event.which] : value(run, &run->now, event);
-    double middle = h * g_low / (g_low - g_high);
-    const double least = 1e-13 * run->duration, close = landing(run, event, g_high - g_low);
-    int last = 0;
-    if (event.kind == FU_CROSSING) {
-        const double rate = event.side * fu_slide_rate(run->model, &run->now, event.which);
-        middle = h * root_of_parabola(g_low, g_high, h * rate);
+    return b->low + (b->high - b->low) * b->g_low / (b->g_low - b->g_high);
+}
+
+/* Narrows the bracket by g at `middle`; the value of an end that stays twice is halved (Illinois). */
+static void narrow(bracket *b, double middle, double g)
+{
+    const int side = g >= 0.0 ? 1 : -1;
+    if (side > 0) {
+        b->high = middle;
+        b->g_high = g;
+        if (b->last > 0) b->g_low *= 0.5;
+    } else {
+        b->low = middle;
+        b->g_low = g;
+        if (b->last < 0) b->g_high *= 0.5;
     }
-    if (g_high <= close) return h;
-    const int again = event.kind == FU_WATCHED && is_of_a_slide(&run->watches[event.which]) && fabs(g_low) <= close;
-    if (again) { /* it has just happened: from where it is off that zero again */
-        for (low = 0.5 * h; low > least; low *= 0.5) {
-            if (run->integrator->step(run, low)) return 0.0;
-            g_low = value(run, &run->next, event);
-            if (g_low < -close) break;
-            high = low;
-            g_high = g_low;
-        }
-        if (low <= least) return high < h || !run->integrator->step(run, high) ? high : 0.0;
-        middle = low + (high - low) * g_low / (g_low - g_high);
+    b->last = side;
+}
+
+/* For an event that has just happened, and whose value leaves its zero anew: moves the low end to where it is off that zero
+ * again. Returns 1 where it is found, 0 where there is none, -1 where a step fails. */
+static int leave_zero(fu_run *run, fu_event event, bracket *b, double least, double close)
+{
+    for (b->low = 0.5 * b->high; b->low > least; b->low *= 0.5) {
+        if (run->integrator->step(run, b->low)) return -1;
+        b->g_low = value(run, &run->next, event);
+        if (b->g_low < -close) return 1;
+        b->high = b->low;
+        b->g_high = b->g_low;
     }
+    return 0;
+}
+
+/* Shortens the step until it ends where the event happens; returns the step, 0 on failure. `next` is there then. */
+static double search(fu_run *run, fu_event event, bracket b, double middle, double least, double close)
+{
     for (int i = 0; i < MOST_TRIALS; ++i) {
-        if (!(middle > low && middle < high) || (i > 10 && i % 2)) middle = 0.5 * (low + high); /* rounding may rule g */
+        /* rounding may rule g */
+        if (!(middle > b.low && middle < b.high) || (i > FEW_TRIALS && i % 2)) middle = 0.5 * (b.low + b.high);
         if (run->integrator->step(run, middle)) return 0.0;
         const double g = value(run, &run->next, event);
-        if (fabs(g) <= close) return middle;
-        if (g >= 0.0) {
-            if (middle - low <= least) return middle;
-            high = middle;
-            g_high = g;
-            if (last > 0) g_low *= 0.5;
-            last = 1;
-        } else {
-            low = middle;
-            g_low = g;
-            if (last < 0) g_high *= 0.5;
-            last = -1;
-            if (high - low <= least) return run->integrator->step(run, high) ? 0.0 : high;
-        }
-        middle = low + (high - low) * g_low / (g_low - g_high);
+        if (fabs(g) <= close || (g >= 0.0 && middle - b.low <= least)) return middle;
+        narrow(&b, middle, g);
+        if (g < 0.0 && b.high - b.low <= least) return run->integrator->step(run, b.high) ? 0.0 : b.high;
+        middle = secant(&b);
     }
     return 0.0;
+}
+
+/* The same from the step h, which leads beyond the event. */
+static double locate(fu_run *run, fu_event event, double h)
+{
+    bracket b = {0.0, h, 0.0, value(run, &run->next, event), 0};
+    b.g_low = event.kind == FU_WATCHED ? event.side * run->watched[event.which] : value(run, &run->now, event);
+    const double least = LEAST_STEP * run->duration, close = landing(run, event, b.g_high - b.g_low);
+    double middle = h * b.g_low / (b.g_low - b.g_high);
+    if (event.kind == FU_CROSSING) {
+        const double rate = event.side * fu_slide_rate(run->model, &run->now, event.which);
+        middle = h * root_of_parabola(b.g_low, b.g_high, h * rate);
+    }
+    if (b.g_high <= close) return h;
+    if (event.kind == FU_WATCHED && is_of_a_slide(&run->watches[event.which]) && fabs(b.g_low) <= close) {
+        const int found = leave_zero(run, event, &b, least, close);
+        if (found < 0) return 0.0;
+        if (!found) return b.high < h || !run->integrator->step(run, b.high) ? b.high : 0.0;
+        middle = secant(&b);
+    }
+    return search(run, event, b, middle, least, close);
 }
 
 /* The same, with slides that keep their elements until one of them leaves it. */
 double fu_locate(fu_run *run, fu_event event, double h)
 {
-    const int holds = run->holds;
-    run->holds |= event.kind == FU_CROSSING;
-    run->newton_tolerance *= 1e-2; /* lest its noise rule where the event is */
+    const int kept = run->keep_elements;
+    run->keep_elements |= event.kind == FU_CROSSING;
+    run->newton_tolerance *= FINER;
     const double found = locate(run, event, h);
-    run->holds = holds;
+    run->keep_elements = kept;
     return found;
 }
 

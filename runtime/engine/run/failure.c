@@ -25,9 +25,8 @@ int fu_fail_at(fu_run *run, int cause, int unknown)
     run->failure = (fu_failure){cause, 0, -1};
     for (int i = 0; i < model->n_dof; ++i)
         if (model->place[i] == unknown) run->failure.dof = i;
-    for (int j = 0; j < model->n_slides && extra >= 0; ++j)
-        if (model->slides[j].unknown <= extra && extra <= model->slides[j].unknown + model->slides[j].kernel->dim)
-            run->failure.slide = j;
+    const fu_coupling *owner = extra >= 0 ? fu_owner(model, extra) : 0;
+    if (owner && owner->n_coordinates) run->failure.slide = owner->index;
     return 1;
 }
 

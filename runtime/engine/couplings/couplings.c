@@ -1,0 +1,206 @@
+/* Loops over the couplings of a model, in the order of its list: each calls the one operation that it is about. */
+#include "engine.h"
+
+void fu_number_couplings(fu_coupling *const *couplings, int n, fu_model *model)
+{
+    model->couplings = (const fu_coupling *const *)couplings;
+    model->n_couplings = n;
+    model->n_coordinates = model->n_forces = model->n_rows = model->n_outputs = 0;
+    model->n_reacting = model->n_external = model->n_driven = model->n_damped = 0;
+    for (int k = 0; k < n; ++k) {
+        fu_coupling *c = couplings[k];
+        c->coordinate = model->n_coordinates;
+        c->force = model->n_forces;
+        c->output = model->n_outputs;
+        c->row = c->type->rows ? model->n_rows++ : -1;
+        model->n_coordinates += c->n_coordinates;
+        model->n_forces += c->n_forces;
+        model->n_outputs += c->type->n_outputs;
+        model->n_reacting += c->reacts;
+        model->n_external += c->type->external_force != 0;
+        model->n_driven += c->is_driven;
+        model->n_damped += c->is_damped;
+    }
+}
+
+void fu_coupling_residuals(const fu_model *model, const fu_equations *at, double *f, double *own)
+{
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->type->residual) c->type->residual(model, c, at, f, own);
+    }
+}
+
+void fu_coupling_step_residuals(const fu_model *model, const fu_equations *at, double *f, double *own)
+{
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->type->step_residual) c->type->step_residual(model, c, at, f, own);
+    }
+}
+
+void fu_coupling_tangents(const fu_model *model, const fu_equations *at, fu_system *system)
+{
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->type->tangent) c->type->tangent(model, c, at, system);
+    }
+}
+
+void fu_coupling_step_tangents(const fu_model *model, const fu_equations *at, fu_system *system)
+{
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->type->step_tangent) c->type->step_tangent(model, c, at, system);
+    }
+}
+
+void fu_coupling_forces(const fu_model *model, const fu_state *state, double *f)
+{
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->type->force) c->type->force(model, c, state, f);
+    }
+}
+
+/* f += forces from outside */
+void fu_coupling_external_forces(const fu_model *model, double t, const double *q, double *f)
+{
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->type->external_force) c->type->external_force(model, c, t, q, f);
+    }
+}
+
+double fu_coupling_energy(const fu_model *model, const fu_state *state)
+{
+    double total = 0.0;
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->type->energy) total += c->type->energy(model, c, state);
+    }
+    return total;
+}
+
+double fu_coupling_dissipation(const fu_model *model, const fu_state *state, const fu_accelerator *work)
+{
+    double total = 0.0;
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->type->dissipation) total += c->type->dissipation(model, c, state, work);
+    }
+    return total;
+}
+
+double fu_lost_in_step(const fu_model *model, const fu_state *from, const fu_state *to)
+{
+    double total = 0.0;
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->type->lost_in_step) total += c->type->lost_in_step(model, c, from, to);
+    }
+    return total;
+}
+
+void fu_take_forces(const fu_model *model, const fu_accelerator *work, fu_state *state)
+{
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->type->take_forces) c->type->take_forces(model, c, work, state);
+    }
+}
+
+void fu_coupling_outputs(const fu_model *model, const fu_state *state, const double *acceleration,
+                         const fu_accelerator *work, double *out)
+{
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->type->outputs) c->type->outputs(model, c, state, acceleration, work, out + c->output);
+    }
+}
+
+void fu_gaps(const fu_model *model, const fu_state *state, double *gaps)
+{
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->type->gaps) c->type->gaps(model, c, state, gaps + c->force);
+    }
+}
+
+void fu_coordinate_rates(const fu_model *model, const fu_accelerator *work, double *rates)
+{
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->type->rates) c->type->rates(c, work, rates + c->coordinate);
+    }
+}
+
+void fu_carry(const fu_model *model, fu_state *state)
+{
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->type->carry) c->type->carry(model, c, state);
+    }
+}
+
+void fu_touch(const fu_model *model, fu_state *state)
+{
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->type->touch) c->type->touch(model, c, state);
+    }
+}
+
+/* Own coordinates where the others have them; null, or the first coupling of which none were found. */
+const fu_coupling *fu_follow(const fu_model *model, fu_state *state)
+{
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->type->follow && c->type->follow(model, c, state)) return c;
+    }
+    return 0;
+}
+
+int fu_may_start_open(const fu_model *model, const fu_state *state)
+{
+    int open = 0;
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->type->may_start_open) open |= c->type->may_start_open(c, state);
+    }
+    return open;
+}
+
+int fu_is_possible(const fu_model *model, const fu_state *state)
+{
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->type->is_possible && !c->type->is_possible(model, c, state)) return 0;
+    }
+    return 1;
+}
+
+double fu_row_unit(double inertia, double mass)
+{
+    return inertia != 0.0 ? mass : 1.0;
+}
+
+void fu_add_own(const fu_model *model, fu_state *state, const double *own, double inertia, double scale)
+{
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        const double *of = own + c->unknown;
+        for (int i = 0; i < c->n_coordinates; ++i) state->s[c->coordinate + i] += of[i];
+        for (int i = 0; i < c->n_forces; ++i)
+            state->forces[c->force + i] += of[c->n_coordinates + i] * fu_row_unit(inertia, c->scale[i]) / scale;
+    }
+}
+
+const fu_coupling *fu_owner(const fu_model *model, int unknown)
+{
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->unknown <= unknown && unknown < c->unknown + c->n_coordinates + c->n_forces) return c;
+    }
+    return 0;
+}

@@ -1,0 +1,15 @@
+/* The types of couplings: a new one has its line here. */
+#include "engine.h"
+
+#include <string.h>
+
+extern const fu_coupling_type fu_spring_type;
+
+static const fu_coupling_type *const types[] = {&fu_load_type, &fu_slide_type, &fu_joint_type, &fu_spring_type};
+
+const fu_coupling_type *fu_coupling_type_of(const char *name)
+{
+    for (size_t k = 0; k < sizeof types / sizeof *types; ++k)
+        if (!strcmp(types[k]->name, name)) return types[k];
+    return 0;
+}

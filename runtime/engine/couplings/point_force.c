@@ -1,0 +1,218 @@
+/* Forces between the points of two attachments, whatever their law. In a Newton system the force is an unknown of its own,
+ * so that two points far apart on cables do not widen the band.
+ */
+#include "engine.h"
+
+#include <string.h>
+
+/* Position and velocity of an attachment's point, and how it moves with its coordinates; returns its first dof. */
+static int point(const fu_model *model, const fu_attachment *on, const double *q, const double *v, fu_attachment_state *at)
+{
+    const fu_state state = {.q = (double *)q, .v = (double *)v};
+    fu_attachment_at(model, on, &state, 0.0, FU_POINT, at);
+    return at->n ? at->at[0] : 0;
+}
+
+/* The gap between the points, and its rate. */
+static void gap_of(const fu_model *model, const fu_point_force *between, const double *q, const double *v, double gap[3],
+                   double rate[3])
+{
+    fu_attachment_state at[2];
+    for (int e = 0; e < 2; ++e) point(model, &between->ends[e], q, v, &at[e]);
+    for (int d = 0; d < 3; ++d) {
+        gap[d] = at[1].p[d] - at[0].p[d];
+        rate[d] = at[1].v[d] - at[0].v[d];
+    }
+}
+
+/* The force on the first point by the law, and its derivatives by gap and rate. */
+static void force_at(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double force[3],
+                     double by_gap[9], double by_rate[9])
+{
+    double gap[3], rate[3];
+    gap_of(model, (const fu_point_force *)coupling, state->q, state->v, gap, rate);
+    coupling->type->law->force(coupling, gap, rate, force, by_gap, by_rate);
+}
+
+/* The force over a step, and the power that it dissipates. */
+static double step_force(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double force[3])
+{
+    const fu_point_force *between = (const fu_point_force *)coupling;
+    double gap[3], gap_next[3], unused[3];
+    gap_of(model, between, at->now->q, model->zero, gap, unused);
+    gap_of(model, between, at->next->q, model->zero, gap_next, unused);
+    return coupling->type->law->step_force(coupling, gap, gap_next, at->h, force);
+}
+
+/* f += P' force of one end */
+static void add_force(int dim, int first, int e, const fu_attachment_state *at, const double *force, double *f)
+{
+    for (int d = 0; d < dim; ++d)
+        for (int i = 0; i < at->n; ++i) f[first + i] += (e ? 1.0 : -1.0) * at->P[d * at->n + i] * force[d];
+}
+
+/* f += what a force on the first point, and its opposite on the second, puts on the left of the equations of motion */
+static void add_forces(const fu_model *model, const fu_point_force *between, const double *q, const double *force, double *f)
+{
+    for (int e = 0; e < 2; ++e) {
+        fu_attachment_state at;
+        const int first = point(model, &between->ends[e], q, model->zero, &at);
+        add_force(between->dim, first, e, &at, force, f);
+    }
+}
+
+/* The same over a step: what the force does is its work on the gap's change. */
+static void add_step_forces(const fu_model *model, const fu_point_force *between, const fu_equations *step,
+                            const double *force, double *f)
+{
+    for (int e = 0; e < 2; ++e) {
+        const fu_attachment *on = &between->ends[e];
+        fu_attachment_state at;
+        const int first = point(model, on, step->now->q, model->zero, &at);
+        if (on->body >= 0) {
+            const fu_body *body = &model->bodies[on->body];
+            body->kernel->discrete_point(step->now->q + body->configuration, on->u, step->next->q + body->configuration,
+                                         at.P);
+        }
+        add_force(between->dim, first, e, &at, force, f);
+    }
+}
+
+/* own of the rows: the unknown forces less those of the law */
+static void own_rows(const fu_coupling *coupling, const fu_equations *at, const double *force, double *own)
+{
+    const double *unknown = at->next->forces + coupling->force;
+    for (int d = 0; d < coupling->n_forces; ++d)
+        own[coupling->unknown + d] = -at->weights.stiffness * (unknown[d] - force[d]);
+}
+
+void fu_point_force_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
+                             double *own)
+{
+    double force[3], by_gap[9], by_rate[9];
+    add_forces(model, (const fu_point_force *)coupling, at->next->q, at->next->forces + coupling->force, f);
+    force_at(model, coupling, at->next, force, by_gap, by_rate);
+    own_rows(coupling, at, force, own);
+}
+
+void fu_point_force_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
+                                  double *own)
+{
+    double force[3];
+    add_step_forces(model, (const fu_point_force *)coupling, at, at->next->forces + coupling->force, f);
+    step_force(model, coupling, at, force);
+    own_rows(coupling, at, force, own);
+}
+
+/* On a body the point's derivatives P change with its coordinates. `turned` = P by the unknowns; `by_place`: derivatives of
+ * the point's velocity by them, at fixed rates; K: of P' own. */
+static void turning(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *own,
+                    const double *psi, const fu_attachment_state *at, double *turned, double *by_place, double *K)
+{
+    const fu_body *body = &model->bodies[on->body];
+    const double *turn = psi ? psi + body->dof : 0;
+    const int dim = model->dim, n = at->n, first = at->at[0];
+    for (int d = 0; d < dim; ++d) {
+        const double axis[3] = {d == 0, d == 1, d == 2};
+        memset(K, 0, sizeof(double) * (size_t)(n * n));
+        fu_geometric_stiffness(model, on, state, axis, 0, n, K);
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < n; ++j) by_place[d * n + j] += state->v[first + i] * K[i * n + j];
+    }
+    memset(K, 0, sizeof(double) * (size_t)(n * n));
+    fu_geometric_stiffness(model, on, state, own, 0, n, K);
+    if (!turn) return;
+    fu_turn_columns(body->kernel, turned, dim, n, 0, turn);
+    fu_turn_columns(body->kernel, by_place, dim, n, 0, turn);
+    fu_turn_columns(body->kernel, K, n, n, 0, turn);
+}
+
+/* Derivatives of the equations at a state; own: the forces; psi as in fu_equations. */
+static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *own,
+                   const double *psi, fu_weights weights, fu_system *system)
+{
+    const fu_point_force *between = (const fu_point_force *)coupling;
+    const int dim = between->dim, row = fu_extra(model, coupling->unknown);
+    const double unit = fu_row_unit(weights.inertia, coupling->scale[0]), stiffness = weights.stiffness;
+    double force[3], by_gap[9], by_rate[9];
+    force_at(model, coupling, state, force, by_gap, by_rate);
+    for (int d = 0; d < dim; ++d) fu_add(model, system, row + d, row + d, unit);
+    for (int e = 0; e < 2; ++e) {
+        fu_attachment_state at;
+        double turned[3 * FU_ATTACHMENT_COORDINATES], by_place[3 * FU_ATTACHMENT_COORDINATES];
+        const int first = point(model, &between->ends[e], state->q, state->v, &at), n = at.n;
+        const double sign = e ? 1.0 : -1.0, *P = at.P;
+        memcpy(turned, P, sizeof turned);
+        for (int i = 0; i < dim * n; ++i) by_place[i] = 0.0;
+        if (between->ends[e].body >= 0) {
+            double K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
+            turning(model, &between->ends[e], state, own, psi, &at, turned, by_place, K);
+            for (int i = 0; i < n; ++i)
+                for (int j = 0; j < n; ++j) fu_add(model, system, first + i, first + j, sign * stiffness * K[i * n + j]);
+        }
+        for (int i = 0; i < n; ++i)
+            for (int d = 0; d < dim; ++d) {
+                double change = 0.0;
+                for (int k = 0; k < dim; ++k)
+                    change += by_gap[d * dim + k] * turned[k * n + i] +
+                              by_rate[d * dim + k] * (by_place[k * n + i] + weights.rate * P[k * n + i]);
+                fu_add(model, system, row + d, first + i, -sign * stiffness * change);
+                fu_add(model, system, first + i, row + d, sign * unit * P[d * n + i]);
+            }
+    }
+}
+
+void fu_point_force_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
+{
+    matrix(model, coupling, at->next, at->next->forces + coupling->force, at->psi, at->weights, system);
+}
+
+/* The middle moves by half of psi, which weights.stiffness has. */
+void fu_point_force_step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at,
+                                 fu_system *system)
+{
+    matrix(model, coupling, at->middle, at->next->forces + coupling->force, 0, at->weights, system);
+}
+
+double fu_point_force_step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)
+{
+    double force[3];
+    return at->h * step_force(model, coupling, at, force);
+}
+
+void fu_point_force_force(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f)
+{
+    double force[3], by_gap[9], by_rate[9];
+    force_at(model, coupling, state, force, by_gap, by_rate);
+    add_forces(model, (const fu_point_force *)coupling, state->q, force, f);
+}
+
+void fu_point_force_outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                            const double *acceleration, const fu_accelerator *work, double *out)
+{
+    double by_gap[9], by_rate[9];
+    (void)acceleration, (void)work;
+    force_at(model, coupling, state, out, by_gap, by_rate);
+}
+
+void fu_point_force_take(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state)
+{
+    fu_point_force_outputs(model, coupling, state, 0, work, state->forces + coupling->force);
+}
+
+double fu_point_force_energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    double gap[3], rate[3];
+    gap_of(model, (const fu_point_force *)coupling, state->q, model->zero, gap, rate);
+    return coupling->type->law->energy(coupling, gap);
+}
+
+double fu_point_force_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                                  const fu_accelerator *work)
+{
+    double gap[3], rate[3];
+    (void)work;
+    if (!coupling->is_damped) return 0.0;
+    gap_of(model, (const fu_point_force *)coupling, state->q, state->v, gap, rate);
+    return coupling->type->law->dissipation(coupling, gap, rate);
+}

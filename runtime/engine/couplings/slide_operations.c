@@ -1,0 +1,309 @@
+/* What a slide does as a coupling. Own unknowns: s and the force f on the rider. Their equations are f . r_x = R, equilibrium
+ * along the cable (eq 30), and phi = r - p = 0.
+ */
+#include "engine.h"
+
+#include <string.h>
+
+/* t = r_x and u, as resistances.c has them, from the derivatives J of phi by the coordinates and s; and R by the own force. */
+static void resistance_of(const fu_model *model, const fu_state *state, int j, const double *J, fu_resistance *resistance)
+{
+    double t[3], u[3];
+    fu_slide_motion(model, state, j, J, t, u);
+    fu_resistance_at(model, state, j, t, u, state->forces + model->slides[j].base.force, resistance);
+}
+
+/* R of a slide in a Newton system */
+static double resisted(const fu_model *model, const fu_state *state, int j)
+{
+    double J[3 * (FU_SLIDE_COORDINATES + 1)], K[(FU_SLIDE_COORDINATES + 1) * (FU_SLIDE_COORDINATES + 1)];
+    fu_resistance resistance;
+    fu_slide_tangent(model, state, j, state->forces + model->slides[j].base.force, J, K);
+    resistance_of(model, state, j, J, &resistance);
+    return resistance.R;
+}
+
+static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, double *f,
+                     double *own)
+{
+    const fu_slide *slide = (const fu_slide *)coupling;
+    const fu_state *next = equations->next;
+    const int j = coupling->index, mode = next->mode[j];
+    const double scale = equations->weights.stiffness, unit = fu_row_unit(equations->weights.inertia, slide->base.scale[0]);
+    double phi[3], g[FU_SLIDE_COORDINATES + 1], rate, second;
+    int at[FU_SLIDE_COORDINATES + 1];
+    const int s = fu_slide_coordinates(model, next, j, at);
+    own += coupling->unknown;
+    fu_slide_residual(model, next, j, phi, g);
+    for (int i = 0; i < s; ++i) f[at[i]] += g[i];
+    own[0] = mode == FU_SLIDES ? -scale * g[s]
+        : -unit * (next->s[j] - (mode == FU_LOCKED ? fu_slide_locked_s(model, next, j, &rate, &second) : equations->now->s[j]));
+    if (slide->resistance && mode == FU_SLIDES) own[0] += scale * resisted(model, next, j);
+    for (int d = 0; d < slide->kernel->dim; ++d)
+        own[1 + d] = mode == FU_LEFT ? -scale * next->forces[coupling->force + d] : -unit * phi[d];
+}
+
+/* What R adds to the row of s; J: derivatives of phi by the coordinates themselves. */
+static void resistance_matrix(const fu_model *model, int j, const fu_equations *equations, const double *J, fu_system *system)
+{
+    const fu_slide *slide = &model->slides[j];
+    const fu_weights w = equations->weights;
+    double by_place[FU_SLIDE_COORDINATES + 1], by_rate[FU_SLIDE_COORDINATES + 1];
+    int at[FU_SLIDE_COORDINATES + 1];
+    const int s = fu_slide_coordinates(model, equations->next, j, at), n = s + 1;
+    fu_resistance resistance;
+    resistance_of(model, equations->next, j, J, &resistance);
+    fu_resistance_rows(model, equations->next, j, J, &resistance, by_place, by_rate);
+    fu_turn_attachment(model, &slide->rider, equations->psi, by_place, 1, n, model->cables[slide->cable].coordinates);
+    for (int k = 0; k < n; ++k)
+        fu_add(model, system, at[s], at[k], -w.stiffness * (by_place[k] + w.rate * by_rate[k]));
+    for (int d = 0; d < model->dim; ++d)
+        fu_add(model, system, at[s], at[s] + 1 + d, -fu_row_unit(w.inertia, slide->base.scale[0]) * resistance.by_f[d]);
+}
+
+static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, fu_system *system)
+{
+    const fu_slide *slide = (const fu_slide *)coupling;
+    const fu_state *next = equations->next;
+    const fu_weights w = equations->weights;
+    const int j = coupling->index, slides = next->mode[j] == FU_SLIDES, element = model->cables[slide->cable].coordinates;
+    const double mass = fu_row_unit(w.inertia, slide->base.scale[0]);
+    double J[3 * (FU_SLIDE_COORDINATES + 1)], K[(FU_SLIDE_COORDINATES + 1) * (FU_SLIDE_COORDINATES + 1)];
+    int at[FU_SLIDE_COORDINATES + 1];
+    const int s = fu_slide_coordinates(model, next, j, at), n = s + 1, dim = slide->kernel->dim;
+    const int row = at[s], force = row + 1;
+    fu_slide_tangent(model, next, j, next->forces + coupling->force, J, K);
+    if (slide->resistance && slides) resistance_matrix(model, j, equations, J, system);
+    for (int i = 0; i < n; ++i)
+        for (int d = 0; d < dim; ++d)
+            if (i < s || slides) fu_add(model, system, at[i], force + d, mass * J[d * n + i]);
+    fu_turn_attachment(model, &slide->rider, equations->psi, J, dim, n, element);
+    fu_turn_attachment(model, &slide->rider, equations->psi, K, n, n, element);
+    if (!slides) fu_add(model, system, row, row, mass);
+    for (int i = 0; i < n; ++i) {
+        for (int d = 0; d < dim; ++d) {
+            if (next->mode[j] != FU_LEFT) fu_add(model, system, force + d, at[i], mass * J[d * n + i]);
+            else if (i == 0) fu_add(model, system, force + d, force + d, mass);
+        }
+        if (i == s && !slides) continue;
+        for (int k = 0; k < n; ++k)
+            if (K[i * n + k] != 0.0) fu_add(model, system, at[i], at[k], w.stiffness * K[i * n + k]);
+    }
+}
+
+/* Over a step: the constraint at its end, and its discrete gradient G with G psi = phi_next - phi_now. */
+
+static const double *rider_at(const fu_model *model, const fu_state *state, const fu_slide *slide)
+{
+    return state->q + model->bodies[slide->rider.body].configuration;
+}
+
+static void discrete_gradient(const fu_model *model, const fu_coupling *coupling, const fu_equations *step, int first,
+                              double *G)
+{
+    const fu_slide *slide = (const fu_slide *)coupling;
+    const fu_state *now = step->now, *next = step->next;
+    const int j = coupling->index;
+    const double start = fu_element_start(model, j, now->element[j]);
+    slide->kernel->discrete_gradient(model->cables[slide->cable].length, now->s[j] - start, next->s[j] - start,
+                                     now->q + first, next->q + first, rider_at(model, now, slide),
+                                     rider_at(model, next, slide), G);
+}
+
+static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *step, double *f,
+                          double *own)
+{
+    const fu_slide *slide = (const fu_slide *)coupling;
+    const fu_state *next = step->next;
+    const int j = coupling->index, s = slide->kernel->coordinates, n = s + 1;
+    const double start = fu_element_start(model, j, step->now->element[j]), *force = next->forces + coupling->force;
+    double G[3 * FU_MAX_COORDINATES], phi[3], unused[FU_MAX_COORDINATES], along = 0.0;
+    int at[FU_SLIDE_COORDINATES + 1];
+    fu_slide_coordinates(model, next, j, at);
+    discrete_gradient(model, coupling, step, at[0], G);
+    slide->kernel->residual(model->cables[slide->cable].length, next->s[j] - start, next->q + at[0],
+                            rider_at(model, next, slide), slide->rider.u, force, phi, unused);
+    own += coupling->unknown;
+    for (int d = 0; d < slide->kernel->dim; ++d) {
+        for (int i = 0; i < s; ++i) f[at[i]] += force[d] * G[d * n + i];
+        along += force[d] * G[d * n + s];
+        own[1 + d] = -slide->base.scale[0] * phi[d];
+    }
+    own[0] = -step->weights.stiffness * along;
+}
+
+/* Rows and columns: the constraint at the end of the step, its discrete gradient, half the derivative of the force there. */
+static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *step, fu_system *system)
+{
+    const fu_slide *slide = (const fu_slide *)coupling;
+    const fu_state *next = step->next;
+    const fu_body *rider = &model->bodies[slide->rider.body];
+    const int j = coupling->index, s = slide->kernel->coordinates, n = s + 1, dim = slide->kernel->dim;
+    const int turns = model->cables[slide->cable].coordinates;
+    const double start = fu_element_start(model, j, step->now->element[j]);
+    double G[3 * FU_MAX_COORDINATES], J[3 * FU_MAX_COORDINATES], K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
+    int at[FU_SLIDE_COORDINATES + 1];
+    fu_slide_coordinates(model, next, j, at);
+    discrete_gradient(model, coupling, step, at[0], G);
+    slide->kernel->tangent(model->cables[slide->cable].length, next->s[j] - start, next->q + at[0],
+                           rider_at(model, next, slide), slide->rider.u, next->forces + coupling->force, J, K);
+    fu_cayley_columns(rider->kernel, J, dim, n, turns, step->psi + rider->dof);
+    fu_cayley_columns(rider->kernel, K, n, n, turns, step->psi + rider->dof);
+    for (int i = 0; i < n; ++i) {
+        for (int d = 0; d < dim; ++d) {
+            fu_add(model, system, at[i], at[s] + 1 + d, slide->base.scale[0] * G[d * n + i]);
+            fu_add(model, system, at[s] + 1 + d, at[i], slide->base.scale[0] * J[d * n + i]);
+        }
+        for (int k = 0; k < n; ++k)
+            if (K[i * n + k] != 0.0) fu_add(model, system, at[i], at[k], step->weights.stiffness * K[i * n + k]);
+    }
+}
+
+static void rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work)
+{
+    fu_slide_terms(model, state, coupling->index, &work->rows[coupling->row], &work->slide_states[coupling->index]);
+}
+
+void fu_slide_now(const fu_model *model, const fu_state *state, int j, fu_slide_state *slide_state)
+{
+    fu_rows unused;
+    fu_slide_terms(model, state, j, &unused, slide_state);
+}
+
+/* zero where s is locked for good */
+double fu_slide_rate(const fu_model *model, const fu_state *state, int j)
+{
+    fu_slide_state slide_state;
+    if (state->mode[j] == FU_LOCKED && model->slides[j].drive < 0) return 0.0;
+    fu_slide_now(model, state, j, &slide_state);
+    return slide_state.s_rate;
+}
+
+static void rates(const fu_coupling *coupling, const fu_accelerator *work, double *rate)
+{
+    *rate = work->slide_states[coupling->index].s_rate;
+}
+
+void fu_slide_force(const fu_model *model, const fu_accelerator *work, int j, const double *lambda, double *f)
+{
+    const fu_slide_state *slide_state = &work->slide_states[j];
+    const fu_rows *rows = &work->rows[model->slides[j].base.row];
+    const int dim = model->dim;
+    for (int d = 0; d < dim; ++d) {
+        f[d] = 0.0;
+        for (int c = 0; c < rows->rows; ++c) f[d] -= slide_state->by_point[c * dim + d] * lambda[rows->first + c];
+        if (model->slides[j].resistance) f[d] += slide_state->by_point[(dim - 1) * dim + d] * slide_state->R;
+    }
+}
+
+/* The force along the cable on a slide's rider that comes of joints whose frame goes with the slide, added: what their
+ * moments put on s, which stands in their rows as G. */
+static void add_force_of_frame(const fu_model *model, const fu_accelerator *work, int j, const double *lambda, double *f)
+{
+    const int dim = model->dim;
+    const double *G = work->slide_states[j].by_point + (dim - 1) * dim;
+    for (const fu_rows *rows = work->rows; rows < work->rows + model->n_rows; ++rows)
+        for (int c = 0; c < rows->rows && rows->slide == j; ++c)
+            for (int d = 0; d < dim; ++d) f[d] -= G[d] * rows->by_s[c] * lambda[rows->first + c];
+}
+
+static void take_forces(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state)
+{
+    double *f = state->forces + coupling->force;
+    fu_slide_force(model, work, coupling->index, work->multipliers, f);
+    add_force_of_frame(model, work, coupling->index, work->multipliers, f);
+}
+
+void fu_slide_outputs(const fu_model *model, const fu_state *state, int j, const double *acceleration,
+                      const fu_accelerator *work, fu_slide_output *out)
+{
+    const fu_slide *slide = &model->slides[j];
+    const fu_rows *rows = &work->rows[slide->base.row];
+    const fu_slide_state *slide_state = &work->slide_states[j];
+    const double *lambda = work->multipliers;
+    const int dim = model->dim;
+    double pull = 0.0, square = 0.0;
+    *out = (fu_slide_output){0};
+    out->s_rate = slide_state->s_rate;
+    out->s_acceleration = slide_state->s_bias;
+    for (int k = 0; k < rows->n; ++k) out->s_acceleration += slide_state->G[k] * acceleration[rows->at[k]];
+    for (int c = 0; c < dim - 1 && c < rows->rows; ++c) out->multiplier[c] = lambda[rows->first + c];
+    fu_slide_force(model, work, j, lambda, out->force);
+    for (int d = 0; d < dim; ++d) {
+        const double G = slide_state->by_point[(dim - 1) * dim + d]; /* along the tangent */
+        out->residual[d] = slide_state->C[d];
+        pull += G * out->force[d];
+        square += G * G;
+    }
+    if (square > 0.0) out->traction = pull / sqrt(square);
+    if (slide->drive >= 0 && state->mode[j] == FU_LOCKED)
+        out->traction = -lambda[rows->first + dim - 1] - slide_state->driven_R;
+    add_force_of_frame(model, work, j, lambda, out->force);
+}
+
+static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
+                    const fu_accelerator *work, double *out)
+{
+    fu_slide_outputs(model, state, coupling->index, acceleration, work, (fu_slide_output *)out);
+}
+
+/* A rigid body is put on its cable when it is drawn; s of one that is not locked follows. */
+static int may_start_open(const fu_coupling *coupling, const fu_state *state)
+{
+    return state->mode[coupling->index] == FU_LOCKED || !((const fu_slide *)coupling)->rider_is_rigid;
+}
+
+/* s where C_l = 0 (eq 21) */
+static int follow(const fu_model *model, const fu_coupling *coupling, fu_state *state)
+{
+    const int j = coupling->index;
+    return state->mode[j] != FU_LEFT && fu_find_arc_length(model, state, j, &state->s[j]);
+}
+
+static int in_range(int value, int least, int most)
+{
+    return value >= least && value <= most;
+}
+
+/* Whether a slide can be in its mode: only then is there a multiplier that locks it. */
+static int is_possible_mode(const fu_slide *slide, int mode)
+{
+    const int kinds[2] = {slide->stops[0].kind, slide->stops[1].kind};
+    if (mode == FU_LEFT) return kinds[0] == FU_END_IS_OPEN || kinds[1] == FU_END_IS_OPEN;
+    if (slide->drive >= 0) return mode == FU_LOCKED;
+    if (mode == FU_LOCKED) return slide->sticks || kinds[0] == FU_END_IS_HARD || kinds[1] == FU_END_IS_HARD;
+    return mode == FU_SLIDES;
+}
+
+static int is_possible(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    const fu_slide *slide = (const fu_slide *)coupling;
+    const int j = coupling->index;
+    return in_range(state->element[j], 0, model->cables[slide->cable].n_elements - 1) &&
+           is_possible_mode(slide, state->mode[j]) && in_range(state->slip_direction[j], -1, 1) &&
+           in_range(state->contact[j], -1, 1);
+}
+
+const fu_coupling_type fu_slide_type = {
+    .name = "slide",
+    .n_outputs = (int)(sizeof(fu_slide_output) / sizeof(double)),
+    .residual = residual,
+    .tangent = tangent,
+    .step_residual = step_residual,
+    .step_tangent = step_tangent,
+    .rows = rows,
+    .react = fu_resistance_react,
+    .kink = fu_resistance_kink,
+    .reacted = fu_resistance_reacted,
+    .take_forces = take_forces,
+    .outputs = outputs,
+    .rates = rates,
+    .energy = fu_buffer_energy,
+    .dissipation = fu_resistance_dissipation,
+    .lost_in_step = fu_lost_in_buffers,
+    .may_start_open = may_start_open,
+    .follow = follow,
+    .carry = fu_carry_director,
+    .touch = fu_touch_buffers,
+    .is_possible = is_possible,
+};

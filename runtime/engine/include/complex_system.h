@@ -1,0 +1,23 @@
+/* Complex matrices laid out as an fu_system: linear/complex_system.c. */
+#ifndef FUNICULAR_COMPLEX_SYSTEM_H
+#define FUNICULAR_COMPLEX_SYSTEM_H
+
+#include "complex_number.h"
+#include "linear.h"
+
+/* [K B; C D] as an fu_system has it; real systems of several weights are combined to it. */
+typedef struct {
+    fu_complex *K, *B, *C, *D, *X;
+    fu_complex *x;     /* right side, then solution */
+    int n_columns;
+    fu_piece *columns; /* of X; those of C are the real system's */
+    int *pivot_band, *pivot_border;
+} fu_complex_system;
+
+void fu_complex_system_take(fu_complex_system *c, const fu_system *real, double *scratch, long *taken);
+void fu_complex_system_clear(fu_complex_system *c, const fu_system *real);
+void fu_complex_system_accumulate(fu_complex_system *c, const fu_system *real, fu_complex factor);
+int fu_complex_system_factor(fu_complex_system *c, const fu_system *real, const fu_lapack *lapack, double *size);
+void fu_complex_system_solve(const fu_complex_system *c, const fu_system *real, const fu_lapack *lapack);
+
+#endif

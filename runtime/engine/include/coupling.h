@@ -1,0 +1,114 @@
+/* Couplings: what acts between attachments, or on one. couplings/couplings.c loops over them. */
+#ifndef FUNICULAR_COUPLING_H
+#define FUNICULAR_COUPLING_H
+
+#include "common.h"
+#include "linear.h"
+#include "state.h"
+
+#define FU_MAX_FORCES 6 /* of one coupling */
+
+typedef struct fu_coupling_type fu_coupling_type;
+typedef struct fu_accelerator fu_accelerator;
+
+/* What each coupling begins with: fu_slide, fu_joint, fu_spring and fu_load have it as their first member, `base`.
+ *
+ * A coupling may have unknowns of its own in a Newton system. They stand together from `unknown` on: first its
+ * coordinates (s of a slide), then its forces (multipliers are forces). fu_list_couplings numbers them. */
+typedef struct {
+    const fu_coupling_type *type;
+    int index;                     /* among the couplings of its structure */
+    int unknown;                   /* the first of its unknowns, counted beyond the dofs */
+    int n_coordinates, coordinate; /* its own coordinates, and the first of them in state->s */
+    int n_forces, force;           /* its own forces, and the first of them in state->forces */
+    int n_multipliers, multiplier; /* multipliers of eq 38: the most that it needs, and the first of them */
+    int row;                       /* its entry in fu_accelerator.rows, -1 where it has no constraints */
+    int output;                    /* its first number in a row of output */
+    int reacts;                    /* not zero where it has a force that depends on the multipliers of eq 38 */
+    int is_damped;                 /* not zero where it has a force that depends on velocities */
+    int is_driven;                 /* not zero where a signal does work on it */
+    double scale[FU_MAX_FORCES];   /* kg or kg m: rows of constraints times it have the scale of the mass matrix */
+} fu_coupling;
+
+/* Where a Newton method makes its equations: at `next`, or, in a method that conserves energy, over the step from `now` to
+ * `next` with `middle` between them. Rows of equilibrium are multiplied by weights.stiffness, rows of constraints by
+ * fu_row_unit; a coupling's own forces are solved for in units of fu_row_unit/weights.stiffness. */
+typedef struct {
+    const fu_state *now, *next, *middle;
+    const double *psi; /* what has moved the bodies to `next`; null where the unknowns move them from there */
+    double h;          /* s: of the step; 0 at an instant */
+    fu_weights weights;
+} fu_equations;
+
+/* The law of a force along the gap between two points; couplings/point_force.c does the rest. */
+typedef struct {
+    /* force on the first point, and its derivatives by gap and rate (dim x dim, row by row) */
+    void (*force)(const fu_coupling *coupling, const double *gap, const double *rate, double *force, double *by_gap,
+                  double *by_rate);
+    /* force over a step that does as much work as the energy changes, and dissipates the power that is returned */
+    double (*step_force)(const fu_coupling *coupling, const double *gap, const double *gap_next, double h, double *force);
+    double (*energy)(const fu_coupling *coupling, const double *gap);
+    double (*dissipation)(const fu_coupling *coupling, const double *gap, const double *rate);
+} fu_point_law;
+
+/* What a coupling can do. A null operation: it does nothing of that. f: generalised forces on the dofs, as they stand on the
+ * left of the equations of motion; own: minus the scaled residual of the unknowns beyond the dofs. */
+struct fu_coupling_type {
+    const char *name;
+    int n_outputs;           /* numbers that it gives to a row of output */
+    const fu_point_law *law; /* of a force between two points */
+
+    /* Newton systems at an instant: residual and its derivative. */
+    void (*residual)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own);
+    void (*tangent)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system);
+    /* The same over a step that conserves energy; and the energy that the coupling dissipates in it, J. */
+    void (*step_residual)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own);
+    void (*step_tangent)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system);
+    double (*step_dissipation)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
+
+    /* Accelerations (eq 38): constraint rows, H and W among them, into work->rows[coupling->row]. */
+    void (*rows)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work);
+    /* f += the coupling's own force; f += a force from outside, whose work the energy balance counts as external. */
+    void (*force)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f);
+    void (*external_force)(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f);
+    /* Forces that depend on the multipliers lambda (null: those of the state) into work->work; returns the largest change
+     * since the last call over the force. Afterwards `reacted` takes what follows from the final multipliers. */
+    double (*react)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
+                    fu_accelerator *work);
+    void (*reacted)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
+                    fu_accelerator *work);
+    /* Error that a kink of the force within a step may make, m: from n states of it, their weights in the mean, and the
+     * multipliers there (n x model->n_multipliers); square: the step times the time that is left, s^2. */
+    double (*kink)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int n, const double *weights,
+                   const double *multipliers, double square);
+    /* After eq 38: the state's own forces; numbers of a row of output. */
+    void (*take_forces)(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state);
+    void (*outputs)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
+                    const fu_accelerator *work, double *out);
+
+    /* What is left of the constraints, redundant ones among them: one number an own force. */
+    void (*gaps)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *gaps);
+    /* Rates of the own coordinates, after eq 38. */
+    void (*rates)(const fu_coupling *coupling, const fu_accelerator *work, double *rates);
+
+    /* Stored energy, J; power that goes to heat, W: by the state's own forces, or where work is not null by those of eq 38. */
+    double (*energy)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+    double (*dissipation)(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                          const fu_accelerator *work);
+
+    /* Energy that a step from one state to another dissipates beside that power, J. */
+    double (*lost_in_step)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to);
+
+    /* Whether a start may be off the constraints by a small gap. */
+    int (*may_start_open)(const fu_coupling *coupling, const fu_state *state);
+    /* Own coordinates that follow from the others: not zero where none is found. */
+    int (*follow)(const fu_model *model, const fu_coupling *coupling, fu_state *state);
+    /* State that goes along with an accepted step. */
+    void (*carry)(const fu_model *model, const fu_coupling *coupling, fu_state *state);
+    /* Statics: contact that follows from the positions. */
+    void (*touch)(const fu_model *model, const fu_coupling *coupling, fu_state *state);
+    /* Whether a state that was read from a file can be. */
+    int (*is_possible)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+};
+
+#endif

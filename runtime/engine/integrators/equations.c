@@ -1,0 +1,69 @@
+/* Equations of motion with their constraints at an instant, for implicit integrators and for statics; and statics. */
+#include "engine.h"
+
+double *fu_own(fu_run *run)
+{
+    return run->rhs + run->model->n_band + run->model->n_border_dof;
+}
+
+/* run->rhs of the dofs: minus the scaled sum in run->force. */
+void fu_scale_residual(fu_run *run, double scale)
+{
+    const fu_model *model = run->model;
+    fu_gather(model, run->force, run->rhs);
+    for (int i = 0; i < model->n_band + model->n_border_dof; ++i) run->rhs[i] *= -scale;
+}
+
+/* minus the scaled residual, over the unknowns; run->force keeps the unscaled sum over the dofs */
+void fu_residual(fu_run *run, const fu_equations *at)
+{
+    const double begin = fu_clock();
+    const fu_model *model = run->model;
+    const fu_state *next = at->next;
+    if (at->weights.inertia != 0.0) fu_mass_times(model, next->q, next->acceleration, run->force);
+    else
+        for (int i = 0; i < model->n_dof; ++i) run->force[i] = 0.0;
+    fu_internal_forces(model, next->q, next->v, run->force);
+    fu_external_forces(model, next->t, next->q, run->force);
+    fu_coupling_residuals(model, at, run->force, fu_own(run));
+    fu_scale_residual(run, at->weights.stiffness);
+    run->statistics.time_residual += fu_clock() - begin;
+}
+
+/* Derivative at `next` of the scaled residual by the unknowns, in run->newton. */
+void fu_matrix(fu_run *run, const fu_equations *at)
+{
+    const fu_model *model = run->model;
+    const fu_state *next = at->next;
+    const fu_weights w = at->weights;
+    fu_system_clear(&run->newton);
+    fu_dynamic_matrix(model, next->q, next->v, w.inertia, w.rate, w.stiffness, &run->newton);
+    fu_bodies_matrix(model, next, at->psi, w, &run->newton);
+    if (w.stiffness != 0.0) fu_coupling_tangents(model, at, &run->newton);
+}
+
+/* the same of these weights, unfactored; unknowns move bodies from `next` */
+void fu_matrix_of_weights(fu_run *run, fu_weights weights)
+{
+    const fu_equations at = {.now = &run->now, .next = &run->next, .weights = weights};
+    fu_matrix(run, &at);
+    run->factored = 0;
+}
+
+/* Statics: unknowns move `next`, from where it is. */
+void fu_static_move(fu_run *run, const double *change)
+{
+    const fu_model *model = run->model;
+    for (int i = 0; i < run->newton.n + run->newton.m; ++i) run->rhs[i] = change[i];
+    fu_spread(model, run->rhs, run->work);
+    fu_move(model, run->next.q, run->work);
+    fu_add_solution(run, 0.0, 1.0);
+    fu_touch(model, &run->next);
+}
+
+/* minus the sum of forces and the residuals of constraints, in run->rhs */
+void fu_static_residual(fu_run *run)
+{
+    const fu_equations at = {.now = &run->now, .next = &run->next, .weights = {0.0, 0.0, 1.0}};
+    fu_residual(run, &at);
+}

@@ -1,0 +1,63 @@
+/* Lengths of a scene that errors and rounding are measured by. */
+#include "engine.h"
+
+#include <math.h>
+
+/* Returns the largest distance that a node or a body's centre has moved, m. */
+double fu_largest_motion(const fu_model *model, const double *from, const double *to)
+{
+    double largest = 0.0;
+    for (int c = 0; c < model->n_cables; ++c) {
+        const fu_cable *cable = &model->cables[c];
+        for (int k = 0, at = cable->first; k <= cable->n_elements; ++k, at += cable->per_node) {
+            double square = 0.0;
+            for (int d = 0; d < cable->kernel->dim; ++d)
+                square += (to[at + d] - from[at + d]) * (to[at + d] - from[at + d]);
+            if (square > largest) largest = square;
+        }
+    }
+    for (int b = 0; b < model->n_bodies; ++b) {
+        const int at = model->bodies[b].configuration;
+        double square = 0.0;
+        for (int d = 0; d < model->bodies[b].kernel->dim; ++d)
+            square += (to[at + d] - from[at + d]) * (to[at + d] - from[at + d]);
+        if (square > largest) largest = square;
+    }
+    return sqrt(largest);
+}
+
+/* Returns the size of what coordinates are rounded to, m: the farthest position, or what unit slopes and turns move a point
+ * by. */
+double fu_extent(const fu_model *model, const double *origin, const double *q)
+{
+    double largest = fu_largest_motion(model, origin, q);
+    for (int c = 0; c < model->n_cables; ++c) {
+        const fu_cable *cable = &model->cables[c];
+        for (int i = cable->kernel->dim; i < cable->per_node; ++i)
+            largest = fmax(largest, model->weight[cable->first + i]);
+    }
+    for (int b = 0; b < model->n_bodies; ++b)
+        for (int i = model->bodies[b].kernel->dim; i < model->bodies[b].kernel->velocity; ++i)
+            largest = fmax(largest, model->weight[model->bodies[b].dof + i]);
+    return largest;
+}
+
+/* Returns the largest side of the box around all nodes and bodies' centres, or what unit slopes and turns move a point by, m. */
+double fu_scene_size(const fu_model *model, const double *origin, const double *q)
+{
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    double largest = fu_extent(model, origin, origin);
+    for (int c = 0; c < model->n_cables; ++c)
+        for (int k = 0, at = model->cables[c].first; k <= model->cables[c].n_elements; ++k, at += model->cables[c].per_node)
+            for (int d = 0; d < model->dim; ++d) {
+                low[d] = fmin(low[d], q[at + d]);
+                high[d] = fmax(high[d], q[at + d]);
+            }
+    for (int b = 0; b < model->n_bodies; ++b)
+        for (int d = 0; d < model->dim; ++d) {
+            low[d] = fmin(low[d], q[model->bodies[b].configuration + d]);
+            high[d] = fmax(high[d], q[model->bodies[b].configuration + d]);
+        }
+    for (int d = 0; d < model->dim; ++d) largest = fmax(largest, high[d] - low[d]);
+    return largest;
+}

@@ -1,0 +1,81 @@
+/* Sizes of steps: from the error of the last one, from what is left to the next instant of output. */
+#include "engine.h"
+
+#include <math.h>
+
+#define RECOVERY 1.05       /* of what steps stay below after a failure, with each step that is taken */
+#define FIRST_PART 1e-3     /* of the duration: errors in it share one allowance */
+#define SAFETY 0.5          /* what the logarithm costs */
+#define CAUTIOUS 0.8        /* of the step that the error would allow; smaller factors shorten the step */
+#define LARGEST_FACTOR 2.0  /* from step to step */
+#define LEAST_FACTOR 0.2    /* after a step that was rejected for its error */
+#define LEAST_RATIO 1e-12   /* of an error to what is allowed, lest a power of it overflow */
+#define WORTH_WHILE 1.4     /* a step that could be larger by less keeps its size, and its factored matrix */
+#define AFTER_FAILURE 0.5   /* of a step that failed */
+#define ROUNDED 1e-9        /* of a number of steps */
+#define ROUND_OFF 4e-16     /* of a coordinate: two units in its last place */
+#define NEWTON_PART 0.1     /* of what is allowed, times the step over the duration: what Newton may leave */
+#define NEWTON_MOST 1e-10   /* of the extent: likewise, at most */
+#define FIXED_PART 1e-2     /* of the last step's error: likewise, with a fixed step */
+#define FIXED_MOST 1e-14    /* of the extent: likewise */
+
+/* The step that ends at the target, or one of equal steps to there, none larger than wanted. */
+double fu_fit_step(double remaining, double want)
+{
+    const double pieces = ceil(remaining / want * (1.0 - ROUNDED));
+    return pieces <= 1.0 ? remaining : remaining / pieces;
+}
+
+/* Tolerances of a step: of its error, of Newton, and where rounding begins. Returns the first, m. */
+double fu_allow(fu_run *run, double h)
+{
+    run->round_off = ROUND_OFF * fmax(run->extent, run->motion);
+    const double scale = fmax(run->motion, run->least_motion);
+    /* Of what is allowed until t, relative to the motion until then, a step gets the part h/t: local errors then add up
+     * to tol times the logarithm of the times at most. With h/duration the first instants, in which hardly anything has
+     * moved yet, would take most of the steps. */
+    const double share = SAFETY * h / fmax(run->now.t + h, FIRST_PART * run->duration);
+    const double allowed = fmax(run->tol * scale * fmin(1.0, run->error_overestimate * share), run->round_off);
+    /* what Newton leaves has the same sign step after step and acts like a force: it counts (T/h)^2 times in
+     * positions, the local error T/h times; a fixed step is solved as well as it can be, whatever its error */
+    const double extent = fmax(run->extent, scale);
+    run->newton_tolerance = run->fixed_step > 0.0 ? fmin(FIXED_PART * h / run->duration * run->last_error, FIXED_MOST * extent)
+                                                  : fmin(NEWTON_PART * h / run->duration * allowed, NEWTON_MOST * extent);
+    return run->allowed = allowed;
+}
+
+/* The next step by the last one's error over what is allowed: the error falls with the power order + 1 of the step,
+ * what is allowed with the first. Small changes are not worth a new factorisation. After a step that failed the next ones
+ * stay below it for a while. */
+void fu_adapt_step(fu_run *run, double h, double ratio)
+{
+    const double factor = fmin(LARGEST_FACTOR, CAUTIOUS * pow(fmax(ratio, LEAST_RATIO), -1.0 / run->order));
+    run->ceiling = fmin(RECOVERY * run->ceiling, run->duration);
+    const double larger = fmin(h * factor, run->ceiling);
+    if (larger > WORTH_WHILE * h) run->h = fmax(run->h, larger);
+    else if (factor < CAUTIOUS) run->h = h * factor;
+}
+
+/* The step after one whose error was too large. */
+double fu_shrink_step(fu_run *run, double h, double ratio)
+{
+    double want = h * fmax(LEAST_FACTOR, CAUTIOUS * pow(ratio, -1.0 / run->order));
+    if (!(want > 0.0)) want = LEAST_FACTOR * h;
+    fu_fail(run, FU_ERROR, run->work, -1);
+    ++run->statistics.rejected;
+    ++run->net_rejections;
+    return run->h = want;
+}
+
+/* The step after one that could not be made. */
+double fu_retry_step(fu_run *run, double h)
+{
+    const double want = AFTER_FAILURE * h;
+    if (run->fixed_step <= 0.0 && run->retry_factor > 0.0) {
+        run->h = want;
+        run->ceiling = run->retry_factor * h;
+    }
+    ++run->statistics.rejected;
+    ++run->net_rejections;
+    return want;
+}

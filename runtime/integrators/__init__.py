@@ -1,0 +1,21 @@
+"""Integrators that a run can take: a file each, and their list; the engine's is in engine/integrators/list.c."""
+
+from .energy import EnergyMomentum
+from .explicit import Explicit
+from .genalpha import GeneralisedAlpha
+from .integrator import Demands, Integrator
+from .radau import Radau
+
+LIST = (GeneralisedAlpha, Explicit, Radau, EnergyMomentum)
+INTEGRATORS: dict[str, type[Integrator]] = {one.name: one for one in LIST}
+AUTO = "auto"
+"""The name by which a run chooses one itself."""
+
+
+def stable_at(fixed_step: bool) -> type[Integrator]:
+    """Return the integrator that is stable at any step: with a fixed step, or with steps chosen by the tolerance."""
+    return GeneralisedAlpha if fixed_step else Radau
+
+
+__all__ = ["AUTO", "INTEGRATORS", "Demands", "EnergyMomentum", "Explicit", "GeneralisedAlpha", "Integrator", "Radau",
+           "stable_at"]

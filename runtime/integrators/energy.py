@@ -1,0 +1,35 @@
+"""The energy-momentum method."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .integrator import Integrator
+
+
+@dataclass(frozen=True)
+class EnergyMomentum(Integrator):
+    """Implicit, of order 2; keeps energy and momenta to rounding (Simo & Tarnow 1992; Gonzalez 1996).
+
+    With a spectral radius below 1 at infinite frequency it keeps momenta alone, while algorithmic dissipation takes
+    energy from the fast vibrations of cables (engine/integrators/algorithmic_dissipation.c).
+    """
+
+    spectral_radius: float = 1.0
+    name, order = "energy", 2
+    default_spectral_radius = 1.0
+    takes_modal_bodies = takes_friction_and_stops = False
+    needs_discrete_gradient = True
+
+    @property
+    def parameters(self) -> np.ndarray:
+        """Return lag in steps, viscosity, inertia, and the weight that follows from them.
+
+        The modulus 1 + inertia p^2 + viscosity p lag p/(1 + lag p) of elasticity and algorithmic stress is to be
+        (1 + p/a)^3/(1 + lag p), with p = -a where (1 + p/2)/(1 - p/2) is minus the spectral radius.
+        """
+        a = 2 * (1 + self.spectral_radius) / (1 - self.spectral_radius) if self.spectral_radius < 1 else np.inf
+        lag, inertia, viscosity = 3 / a, 1 / (3 * a**2), 8 / (9 * a)
+        return np.array([lag, viscosity, inertia, 2 * viscosity * lag / (2 * lag + 1) + 2 * inertia])

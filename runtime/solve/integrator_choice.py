@@ -1,0 +1,141 @@
+"""The choice of a run's integrator, by what the scene asks for."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse.linalg import splu
+
+from ..engine import Engine
+from ..errors import SceneError
+from ..integrators import AUTO, INTEGRATORS, Demands, Integrator, stable_at
+from ..kernels.libraries import of_library
+from ..model.model import Model
+from ..parts.scene_data import SceneData
+from ..parts.settings import RunSettings
+from ..parts.slide import Slide
+from .condensation import condensed
+
+ITERATIONS = 20
+"""Of the power iteration."""
+
+
+def choose(settings: RunSettings, scene: SceneData, model: Model, engine: Engine) -> tuple[Integrator, str]:
+    """Return the integrator of a run, and why it is that one. "auto" takes the cheaper by stiffness and tolerance.
+
+    Raises SceneError where the one that was asked for cannot run the scene.
+    """
+    if settings.integrator != AUTO:
+        chosen = INTEGRATORS[settings.integrator].of(settings.spectral_radius)
+        check(chosen, scene, model, engine)
+        return chosen, "as asked for"
+    fixed = stable_at(fixed_step=True).of(settings.spectral_radius)
+    if settings.step is not None:
+        return fixed, f"the step is fixed: {fixed.name} holds at any"
+    if "spectral_radius" in settings.model_fields_set:
+        return fixed, f"spectral_radius is given, which is {fixed.name}'s"
+    return cheapest(demands_of(settings, scene, model, engine))
+
+
+def cheapest(demands: Demands) -> tuple[Integrator, str]:
+    """Return the cheapest of the integrators that say what they cost, and what each says; the last one of equals."""
+    said = [(one, *cost) for one in INTEGRATORS.values() if (cost := one.cost(demands)) is not None]
+    chosen = min(reversed(said), key=lambda of_one: of_one[1])[0]
+    return chosen(), ", ".join(why for _, _, why in said)
+
+
+def demands_of(settings: RunSettings, scene: SceneData, model: Model, engine: Engine) -> Demands:
+    """Return what a scene asks of an integrator."""
+    frequency, decay = fastest_rates(model, engine)
+    decay = max(decay, *(regularised_decay(scene, slide) for slide in scene.slides.values()), 0.0)
+    rubs = any(slide.friction is not None and slide.friction.sliding for slide in scene.slides.values())
+    return Demands(frequency, decay, slowest_rate(scene, model, settings.duration), rubs, settings.tol)
+
+
+def check(integrator: Integrator, scene: SceneData, model: Model, engine: Engine) -> None:
+    """Raise SceneError for what an integrator cannot run."""
+    who = f'integrator "{integrator.name}"'
+    for body in model.bodies:
+        if body.modes and not integrator.takes_modal_bodies:
+            raise SceneError(scene.bodies[body.name].where, f"{who} does not know modal bodies",
+                             f"{_take_another('takes_modal_bodies')}, with a small tol")
+    for slide in scene.slides.values():
+        if integrator.takes_friction_and_stops:
+            break
+        if slide.friction is not None or (slide.at_start, slide.at_end) != ("error", "error"):
+            raise SceneError(slide.where, f"{who} knows neither friction nor ends of cables",
+                             _take_another("takes_friction_and_stops"))
+    if integrator.needs_discrete_gradient:
+        _check_gradients(integrator, scene, model, engine)
+
+
+def _take_another(capability: str) -> str:
+    """Return the end of a message: which integrators can."""
+    able = [one.name for one in INTEGRATORS.values() if getattr(one, capability)]
+    return f"take another integrator: {', '.join(able[:-1])} or {able[-1]}"
+
+
+def _check_gradients(integrator: Integrator, scene: SceneData, model: Model, engine: Engine) -> None:
+    """Raise SceneError for what has no discrete gradient, or lacks the algorithmic dissipation that is asked for."""
+    who = f'integrator "{integrator.name}"'
+    for cable in model.cables:
+        if not of_library(cable.library)[cable.element].laws[cable.law].discrete_gradient:
+            raise SceneError(scene.cables[cable.name].where, f'{who} has no discrete gradient of the law "{cable.law}"',
+                             "take another law, or another integrator")
+    if integrator.spectral_radius < 1:
+        for cable in [model.cables[i] for i in engine.without_algorithmic_force()]:
+            raise SceneError(scene.cables[cable.name].where,
+                             f'{who} has no algorithmic dissipation of the law "{cable.law}"',
+                             "take spectral_radius = 1, another law, or another integrator")
+    parts = [*(scene.joints[joint.name] for joint in model.joints if joint.slide is None),
+             *(part for part, slide in zip(scene.slides.values(), model.slides, strict=True)
+               if not slide.rider_is_rigid or slide.drive >= 0 or part.frame != "point")]
+    for part in parts:
+        raise SceneError(part.where, f"{who} has no discrete gradient of it", "take another integrator")
+
+
+def regularised_decay(scene: SceneData, slide: Slide) -> float:
+    """1/s: how fast a slow rider under its weight comes to the speed at which regularised friction lets it creep."""
+    friction = slide.friction
+    if friction is None or friction.sticks or slide.prescribed is not None:
+        return 0.0
+    return friction.sliding * float(np.linalg.norm(scene.gravity)) / friction.velocity
+
+
+def slowest_rate(scene: SceneData, model: Model, duration: float) -> float:
+    """rad/s of the motion as a whole: a pendulum as long as the scene, or what crosses it, or the run."""
+    points = [node.vector("r") for nodes in model.nodes.values() for node in nodes]
+    points += [model.q[b.configuration : b.configuration + model.dim] for b in model.bodies]
+    size = float(np.max(np.ptp(points, axis=0)))
+    if size == 0.0:
+        return 1.0 / duration
+    speed = max((float(np.linalg.norm(body.velocity)) for body in scene.bodies.values()), default=0.0)
+    return max(np.sqrt(np.linalg.norm(scene.gravity) / size), speed / size, 1.0 / duration)
+
+
+def fastest_rates(model: Model, engine: Engine) -> tuple[float, float]:
+    """rad/s and 1/s: the highest frequency and rate of decay of the state at the start, its slides left out.
+
+    Holding riders on their cables only lowers them.
+    """
+    engine.place(0.0)
+    n = model.n_band + model.n_border_dof
+    if n == 0:
+        return 0.0, 0.0
+    mass = engine.matrix(1.0, 0.0, 0.0)[:n, :n]
+    stiffness = condensed(engine.matrix(0.0, 0.0, 1.0), model)[0][:n, :n]
+    damping = condensed(engine.matrix(0.0, 1.0, 1.0), model)[0][:n, :n] - stiffness
+    return np.sqrt(_largest(stiffness, mass)), _largest(damping, mass)
+
+
+def _largest(matrix, mass) -> float:
+    """About the largest eigenvalue of the symmetric part by the mass, in size: power iteration, some per cent low."""
+    symmetric, factors = (matrix + matrix.T) / 2, splu(mass.tocsc())
+    x = np.random.default_rng(0).normal(size=mass.shape[0])
+    value = 0.0
+    for _ in range(ITERATIONS):
+        moved = factors.solve(symmetric @ x)
+        size = np.sqrt(moved @ (mass @ moved))
+        if size == 0.0:
+            return 0.0
+        value, x = size / np.sqrt(x @ (mass @ x)), moved / size
+    return float(value)
