@@ -19,7 +19,6 @@ from .errors import (
     SceneError,
     enough_memory,
 )
-from .parts.body_shape import Shape
 from .parts.modal_body import ModalBody
 from .parts.scene_text import dumps, read
 from .parts.settings import EquilibriumSettings, ModeSettings, RunSettings
@@ -32,6 +31,7 @@ from .solve.threads import one_blas_thread
 if TYPE_CHECKING:
     # Model, solvers and their results bring SciPy along, which would double the time of `import funicular`. So they
     # are imported by the methods that need them, here and below.
+    from .parts.body_shape import Shape
     from .results.equilibrium import Equilibrium
     from .solve.modes import Modes
 

@@ -16,7 +16,7 @@ from .placement import HELD
 
 
 def check_supports(scene: SceneData, joint: Joint) -> None:
-    """No support or join may hold a node to what the joint holds it to."""
+    """No support or tie may hold a node to what the joint holds it to."""
     for end, other in ((joint.a, joint.b), (joint.b, joint.a)):
         if (node := _node(scene, end)) is None:
             continue

@@ -69,12 +69,12 @@ def placed_tie(scene: SceneData, tie: Tie) -> Tie:
     if gap > EXACT * max(a.length, b.length):
         raise SceneError(tie.where, f"the nodes are {gap:.6g} m apart, at {show(a.point(tie.s))} and "
                          f"{show(b.point(tie.at), 'm')}", "draw both cables through the same point")
-    holders = support_of(scene, one), support_of(scene, other)
-    if all(holders):
-        raise SceneError(tie.where, f"both nodes are held already, by the {holders[0].where} and the "
-                         f"{holders[1].where}", "leave one of them out")
+    supports = support_of(scene, one), support_of(scene, other)
+    if all(supports):
+        raise SceneError(tie.where, f"both nodes are held already, by the {supports[0].where} and the "
+                         f"{supports[1].where}", "leave one of them out")
     if tie.rotation == "rigid" and _shears_the_end(a, tie.s, b, tie.at):
-        message = (f"{tie.where}: the join shares the slopes of both cables, so that a moment on one shears the last "
+        message = (f"{tie.where}: the tie shares the slopes of both cables, so that a moment on one shears the last "
                    "element of the other: the corner is too soft, the more so the shorter the elements are; "
                    'take scene.joint("weld", ...) instead, with up for an element without section axes')
         scene.messages.append(message)
@@ -83,9 +83,9 @@ def placed_tie(scene: SceneData, tie: Tie) -> Tie:
 
 
 def _shears_the_end(a: Cable, s: float, b: Cable, at: float) -> bool:
-    """Whether a rigid join in space ties the tangent of one cable to the section of the other.
+    """Whether a rigid tie in space joins the tangent of one cable to the section of the other.
 
-    In the plane, joins at an angle share the turn of the section alone (model/unknowns.py), which is not linear in
+    In the plane, ties at an angle share the turn of the section alone (model/unknowns.py), which is not linear in
     space.
     """
     if 2 in (a.dim, b.dim):

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from .libraries import kernels_of
 
 
-@dataclass(frozen=True)
 class ElementLine:
-    """Elements of one kind and length (m) on nodes with ``nodal_vectors`` (nodes, vectors, dim)."""
+    """Elements of one kind on nodes."""
 
-    library: str | None
-    element: str
-    length: float
-    nodal_vectors: np.ndarray
+    def __init__(self, library: str | None, element: str, length: float, nodal_vectors: np.ndarray):
+        """length: of an element, in m; nodal_vectors: (nodes, vectors, dim)."""
+        self.library, self.element, self.length, self.nodal_vectors = library, element, length, nodal_vectors
 
     def point(self, s: float, y: float = 0.0, z: float = 0.0) -> np.ndarray:
         """Return the point (3,) in m at arc-length ``s``, height ``y`` and width ``z`` of the section, all in m."""

@@ -1,6 +1,6 @@
 """What the engine integrates, as data: cables, bodies, slides, joints, springs, loads, and arrays over all of them.
 
-Coordinates, unknowns and their order are those of engine/engine.h.
+Coordinates, unknowns and their order are those of engine/include/engine.h.
 """
 
 from __future__ import annotations
@@ -130,7 +130,7 @@ class MotionModel:
 
 @dataclass
 class Model:
-    """Arrays that the engine reads; see engine/engine.h for their meaning. tables: addresses of further kernels."""
+    """Arrays that the engine reads; engine/include/ says what they mean. tables: addresses of further kernels."""
 
     dim: int
     cables: list[CableModel]

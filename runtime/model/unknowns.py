@@ -176,8 +176,8 @@ class Supports:
         n = int(unknown.sum())
         combined = {dof: row for dof, row in self.rows.items() if row.free}
         if any(row.prescribed for row in combined.values()):
-            raise SceneError("scene", "a join ties a node that moves as prescribed to one that is partly free",
-                             "prescribe displacement and rotation there, or join with rotation = \"free\"")
+            raise SceneError("scene", "a tie joins a node that moves as prescribed to one that is partly free",
+                             "prescribe displacement and rotation there, or tie with rotation = \"free\"")
         made_of = [(dof, drawn[of]) for dof, row in combined.items() for of in row.free]
         touches = _touches(elements, np.concatenate([np.stack([np.flatnonzero(unknown), np.arange(n)], axis=1),
                                                      np.array(made_of, dtype=int).reshape(-1, 2)]), (n_dof, n))
@@ -336,7 +336,7 @@ def supports(scene: SceneData, nodes: dict[str, list[Node]], signal) -> Supports
             made.displace(rooted[-1], [None if s is None else signal(s) for s in motion.displacement])
         if motion.rotation is not None:
             made.rotate(rooted[-1], np.array(motion.rotation.axis), signal(motion.rotation.angle))
-    links = [(at(join.cable, join.s), at(join.to, join.at), join.rotation == "rigid") for join in scene.ties.values()]
+    links = [(at(tie.cable, tie.s), at(tie.to, tie.at), tie.rotation == "rigid") for tie in scene.ties.values()]
     done = {node.first for node in rooted}
     # a node with directors can give the slopes of one without, not the other way round
     starts = sorted((node for link in links for node in link[:2] if node.first not in done),

@@ -1,4 +1,4 @@
-"""Anchors: what springs, joints and flexible riders hold on to."""
+"""Attachments: what springs, joints and flexible riders hold on to."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Attachment(Part):
             yield show(self.at, "m")
 
 
-def _anchor(value: Any) -> Attachment:
+def _attachment(value: Any) -> Attachment:
     if isinstance(value, Attachment):
         return value
     value = value.tolist() if hasattr(value, "tolist") else value
@@ -51,5 +51,5 @@ def _anchor(value: Any) -> Attachment:
     return Attachment(on=on, s=number(place, "m"))
 
 
-AnyAttachment = Annotated[Attachment, PlainValidator(_anchor)]
-"""An anchor, or what `Attachment.data` gives, with a part of the scene for its name where that is at hand."""
+AnyAttachment = Annotated[Attachment, PlainValidator(_attachment)]
+"""An attachment, or what `Attachment.data` gives, with a part of the scene for its name where that is at hand."""

@@ -221,7 +221,8 @@ class Cable(Part):
         return cable_laws.name_of_kernels(self.kind_of_element, self.law, self.is_curved)
 
     @property
-    def _traits(self) -> LawTraits:
+    def traits(self) -> LawTraits:
+        """What the law of its kernels is."""
         return self.kind_of_element.laws[self.kernel_law]
 
     @property
@@ -331,7 +332,7 @@ class Cable(Part):
     @property
     def reference(self) -> np.ndarray | None:
         """(elements, 2 vectors, dim): stress-free nodal vectors of each element; None where the law takes none."""
-        if not self._traits.takes_shape:
+        if not self.traits.takes_shape:
             return None
         rest = self.rest_nodal_vectors[..., : self.dim]
         return np.concatenate([rest[:-1], rest[1:]], axis=1)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
-from ..kernels.elements import ElementKind, built_in
+from ..kernels.elements import ElementKind, LawTraits, built_in
 from .material import Material
 from .section import GeneralSection, Section
 from .section_stiffness import kernel_law, law_of_measures, variants
@@ -22,7 +22,7 @@ class Described(Protocol):
     section: Section
     material: Material
     is_curved: bool
-    kernel_law: str
+    traits: LawTraits
     stiffness_law: str
     kind_of_element: ElementKind
     dim: int
@@ -91,7 +91,7 @@ def check(cable: Described) -> None:
         if isinstance(section, GeneralSection) and section.has_rotary:
             raise ValueError(f"section.rotary_moment is given, but {cable.element} has no rotary inertia",
                              "leave it out, or take " + others(kind.dim, cable=False))
-    elif kind.laws[cable.kernel_law].kind == "structural":
+    elif cable.traits.kind == "structural":
         needed = {"shear_factors"} | ({"torsion_constant"} if kind.dim == 3 else set())
         if isinstance(section, GeneralSection) and (missing := needed - given):
             raise ValueError(f'law "structural" needs section.{min(missing)}, which a general section does not '

@@ -5,20 +5,22 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator
 from functools import cached_property
-from typing import Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
 from pydantic import PlainValidator, PrivateAttr, model_validator
 
 from ..errors import SceneError
 from ..rotations import rotate
-from .body_shape import Shape, of_file
 from .cable import Cable
 from .material import Material
 from .plane import across, in_plane
 from .rigid_body import Quaternion, unit_quaternion
 from .section import AnySection
 from .validation import EXACT, Count, Flag, Name, Part, Vector, not_negative, one_of, show, shown, xyz
+
+if TYPE_CHECKING:
+    from .body_shape import Shape
 
 
 def _path(value: Any) -> str | None:
@@ -50,7 +52,7 @@ class ModalBody(Part):
     m/s, angular_velocity in body axes in rad/s. A run starts undeformed.
     """
 
-    _of_mesh: Callable[[ModalBody], Shape] | None = PrivateAttr(None)
+    _of_mesh: Callable[[ModalBody], Any] | None = PrivateAttr(None)
 
     kind: ClassVar[str] = "modal_body"
     group: ClassVar[str] = "bodies"
@@ -114,6 +116,8 @@ class ModalBody(Part):
         Raises SceneError for a mesh of a body that is in no scene.
         """
         if self.data is not None:
+            from .body_shape import of_file  # for these bodies alone: `import funicular` stays quick
+
             return of_file(self.data, self.orthogonal)
         if self._of_mesh is None:
             raise SceneError(self.where, "has no modes yet: a scene makes them of its mesh",

@@ -17,21 +17,21 @@ def node_of(scene: SceneData, support: Support) -> Node:
     return support.cable, scene.cables[support.cable].node_at(support.s)
 
 
-def ends_of(scene: SceneData, join: Tie) -> tuple[Node, Node]:
-    """The nodes that a join of the scene ties: that of its cable, and the other one."""
-    return ((join.cable, scene.cables[join.cable].node_at(join.s)), (join.to, scene.cables[join.to].node_at(join.at)))
+def ends_of(scene: SceneData, tie: Tie) -> tuple[Node, Node]:
+    """The nodes that a tie of the scene joins: that of its cable, and the other one."""
+    return ((tie.cable, scene.cables[tie.cable].node_at(tie.s)), (tie.to, scene.cables[tie.to].node_at(tie.at)))
 
 
 def joined(scene: SceneData, node: Node, without: Tie | None = None) -> set[Node]:
-    """All nodes that joins, but for ``without``, tie to ``node``, itself included."""
+    """All nodes that ties, but for ``without``, join to ``node``, itself included."""
     found, new = {node}, [node]
     while new:
         at = new.pop()
-        for join in scene.ties.values():
-            if at[0] not in (join.cable, join.to):
+        for tie in scene.ties.values():
+            if at[0] not in (tie.cable, tie.to):
                 continue
-            pair = set(ends_of(scene, join))
-            if join is not without and at in pair:
+            pair = set(ends_of(scene, tie))
+            if tie is not without and at in pair:
                 new += pair - found
                 found |= pair
     return found

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from ..errors import SceneError, check_renamed
+from .attachment import Attachment
 from .cable import Cable
 from .event import Event
 from .joint import Joint
@@ -78,6 +79,11 @@ class SceneData:
         """Yield all parts, in an order in which they can be added."""
         for group in _groups():
             yield from self.group(group)
+
+    def attachments(self) -> Iterator[Attachment]:
+        """Yield the attachments that parts have as fields: of springs, of joints, of what else acts between two."""
+        for part in self.parts():
+            yield from (value for _, value in part if isinstance(value, Attachment))
 
     def group(self, name: str) -> Iterable[Part]:
         """The parts of a group, in the order in which they were added."""

@@ -1,4 +1,4 @@
-"""What holds or joins the nodes of cables: pins, clamps, joins, prescribed motions."""
+"""What holds or joins the nodes of cables: pins, clamps, ties, prescribed motions."""
 
 from __future__ import annotations
 
@@ -174,7 +174,7 @@ class Tie(Part):
 
     @classmethod
     def place(cls, data: dict) -> str:
-        """How messages name the join."""
+        """How messages name the tie."""
         if data.get("name") is not None:
             return super().place(data)
         return f"tie of {_called(data.get('cable'))} and {_called(data.get('to'))}"

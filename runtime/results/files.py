@@ -17,7 +17,8 @@ from pydantic import BaseModel, ConfigDict
 from ..errors import FunicularWarning, ResultFileError, shown_path
 from .locks import Taken, created, lock
 from .netcdf import File, create
-from .netcdf_header import Variable, last_report
+from .netcdf_header import last_report
+from .quantities import Variable
 
 FILE_FORMAT = 3
 """Raised when a reader of older files could misread new ones."""

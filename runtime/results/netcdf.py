@@ -23,13 +23,13 @@ from .netcdf_header import (
     HEADER_CHECKSUM,
     NOT_YET,
     Entry,
-    Variable,
     header_checksum,
     header_of,
     parsed,
     report_line,
     size_of,
 )
+from .quantities import Variable
 
 _BLOCK = 1 << 22
 """Bytes that are read at once."""

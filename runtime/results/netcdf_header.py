@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .checksums import text_checksum
+from .quantities import Variable
 
 MAGIC = b"CDF\x02"
 COUNT_AT = len(MAGIC)
@@ -24,15 +25,6 @@ NOT_YET = "00000000"
 """In the place of a text's checksum while that is computed."""
 _REPORT_CHECKSUM = '{"checksum": "'
 """How a line of the report begins that has one."""
-
-
-class Variable(NamedTuple):
-    """An array with the names of its dimensions, its unit and what it is."""
-
-    dims: tuple[str, ...]
-    values: np.ndarray
-    units: str
-    long_name: str
 
 
 class Entry(NamedTuple):

@@ -45,8 +45,8 @@ def tied_cables(scene: SceneData, model: Model, cable: int) -> list[int]:
     found, new = {model.cables[cable].name}, [model.cables[cable].name]
     while new:
         name = new.pop()
-        for join in scene.ties.values():
-            pair = {join.cable, join.to}
+        for tie in scene.ties.values():
+            pair = {tie.cable, tie.to}
             if name in pair:
                 new += pair - found
                 found |= pair

@@ -2,9 +2,19 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
-from .netcdf_header import Variable
+
+class Variable(NamedTuple):
+    """An array with the names of its dimensions, its unit and what it is."""
+
+    dims: tuple[str, ...]
+    values: np.ndarray
+    units: str
+    long_name: str
+
 
 _XYZ, _TIME = ("time", "xyz"), ("time",)
 

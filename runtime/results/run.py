@@ -16,10 +16,7 @@ from ..parts.cable import Cable
 from ..parts.scene_data import SceneData
 from ..parts.scene_text import dumps
 from ..parts.settings import RunSettings
-from .files import WITH_CHECKSUMS, check_free, check_writable, create_file, file_text, over_time
-from .netcdf import Stored
-from .netcdf_header import Variable
-from .quantities import ENERGIES, labelled
+from .quantities import ENERGIES, Variable, labelled
 
 if TYPE_CHECKING:
     # These bring SciPy or xarray along: `import funicular` does without.
@@ -161,6 +158,8 @@ class Run:
         """All of it as an xarray.Dataset, with units, long names, the report and the scene as attributes."""
         import xarray  # 0.5 s, for those who ask for it
 
+        from .files import WITH_CHECKSUMS, file_text
+
         def arrays(variables: Mapping[str, Variable]) -> dict:
             return {
                 name: (v.dims, v.values, {"units": v.units, "long_name": v.long_name}) for name, v in variables.items()
@@ -175,6 +174,10 @@ class Run:
 
         Raises ResultFileError.
         """
+        # The file format, for those who save: `import funicular` does without.
+        from .files import check_free, check_writable, create_file, file_text, over_time
+        from .netcdf import Stored
+
         path = check_writable(path)
         check_free(path)
         part = path.with_name(f".{path.name}.{os.getpid()}-{threading.get_ident()}.part")
@@ -216,7 +219,7 @@ class Run:
         """Forces and moments in sections of ``cable``.
 
         s: arc-lengths (n,) in m; or the name of a slide on it, for the section where that is at each time. None given:
-        along all of the cable, with both sides of supports, joins and loads.
+        along all of the cable, with both sides of supports, ties and loads.
         method: "balance", from what is in balance with the nodes' forces, loads, inertia and riders; "constitutive",
         from the elastic law and the strains of the mesh, without what Kelvin-Voigt damping adds. They go to the same as
         the mesh is refined, the second slowly: beside a point force, and wherever a cable turns within an element, it

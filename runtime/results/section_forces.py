@@ -143,12 +143,11 @@ def jumps(scene: SceneData, name: str) -> np.ndarray:
     """Arc-lengths of the cable at which something that stays there holds on: inside, in order."""
     cable = scene.cables[name]
     places = [load.s for load in scene.loads.values() if getattr(load, "on", None) == name]
-    anchors = [slide.rider for slide in scene.slides.values()]
-    anchors += [end for part in (*scene.springs.values(), *scene.joints.values()) for end in (part.a, part.b)]
-    places += [anchor.s for anchor in anchors if anchor.on == name]
+    attachments = [*(slide.rider for slide in scene.slides.values()), *scene.attachments()]
+    places += [attachment.s for attachment in attachments if attachment.on == name]
     places += [support.s for support in scene.supports if support.cable == name]
-    for join in scene.ties.values():
-        places += [s for on, s in ((join.cable, join.s), (join.to, join.at)) if on == name]
+    for tie in scene.ties.values():
+        places += [s for on, s in ((tie.cable, tie.s), (tie.to, tie.at)) if on == name]
     for load in scene.loads.values():
         if getattr(load, "cable", None) == name:
             places += [load.start, load.stop]

@@ -117,21 +117,21 @@ def centreline(nodal_vectors: np.ndarray, node_s: np.ndarray) -> np.ndarray:
 
 def rider_path(run: Run, slide: str) -> np.ndarray:
     """(time, 3): where the rider's point of ``slide`` was, in m."""
-    return anchor_path(run, run.scene.slides[slide].rider)
+    return attachment_path(run, run.scene.slides[slide].rider)
 
 
-def anchor_path(run: Run, anchor: Attachment) -> np.ndarray:
-    """(time, 3): where an anchor was, in m."""
-    if anchor.on is None:
-        return np.broadcast_to(anchor.at, (len(run.time), 3))
-    body = run.scene.bodies.get(anchor.on)
+def attachment_path(run: Run, attachment: Attachment) -> np.ndarray:
+    """(time, 3): where an attachment was, in m."""
+    if attachment.on is None:
+        return np.broadcast_to(attachment.at, (len(run.time), 3))
+    body = run.scene.bodies.get(attachment.on)
     if isinstance(body, ModalBody):
-        node = np.argmin(np.linalg.norm(body.shape.nodes - anchor.at, axis=1))
-        return run[f"{anchor.on}.nodes"][:, node]
+        node = np.argmin(np.linalg.norm(body.shape.nodes - attachment.at, axis=1))
+        return run[f"{attachment.on}.nodes"][:, node]
     if body is not None:
-        return run[f"{anchor.on}.position"] + rotate(run[f"{anchor.on}.orientation"], anchor.at)
-    points = centreline(run[f"{anchor.on}.nodal_vectors"], run.coords[f"{anchor.on}.node"].values)
-    return points[:, round(anchor.s / run.scene.cables[anchor.on].length * (points.shape[1] - 1))]
+        return run[f"{attachment.on}.position"] + rotate(run[f"{attachment.on}.orientation"], attachment.at)
+    points = centreline(run[f"{attachment.on}.nodal_vectors"], run.coords[f"{attachment.on}.node"].values)
+    return points[:, round(attachment.s / run.scene.cables[attachment.on].length * (points.shape[1] - 1))]
 
 
 def held_points(run: Run) -> dict[str, np.ndarray]:
@@ -141,7 +141,7 @@ def held_points(run: Run) -> dict[str, np.ndarray]:
     ends += [end for joint in run.scene.joints.values() for end in (joint.a, joint.b)]
     for end in ends:
         if end.on in run.scene.bodies:
-            held.setdefault(end.on, []).append(anchor_path(run, end))
+            held.setdefault(end.on, []).append(attachment_path(run, end))
     return {name: np.stack(paths, axis=1) for name, paths in held.items() if len(paths) > 1}
 
 
