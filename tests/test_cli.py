@@ -147,7 +147,7 @@ def test_scenes():
 @pytest.mark.parametrize("code", [0, 1])
 def test_derive_and_verify_pass_on_names_and_exit_codes(monkeypatch, code):
     calls = []
-    for name in ("derive", "derive.codegen", "derive.codegen.drift", "derive.verify", "derive.verify.command"):
+    for name in ("derive", "derive.pipeline", "derive.verify", "derive.verify.command"):
         module = ModuleType(f"funicular.{name}")
         module.main = lambda *args: calls.append(args) or code
         monkeypatch.setitem(sys.modules, module.__name__, module)
