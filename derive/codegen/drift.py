@@ -11,6 +11,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import Progress
 
+from ..algebra import section_points
 from ..catalogue import families, named
 from ..spec import FamilyError
 from . import rendering as emit
@@ -46,7 +47,8 @@ def generate(names: list[str] | None = None, show: bool = False) -> dict[str, st
         progress.update(task, description="print")
         files = emit.render(known, wanted, lambda _: progress.advance(task))
     kept = {f"{d.family.name}.c": _current(f"{d.family.name}.c") for d in known if d.family.name not in wanted}
-    files[MANIFEST] = emit.manifest(known, {n: text for n, text in kept.items() if text is not None} | files)
+    files[MANIFEST] = emit.manifest(known, {n: text for n, text in kept.items() if text is not None} | files,
+                                    more={"section_points": section_points.table()})
     return files
 
 

@@ -6,12 +6,17 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ..kernels.elements import manifest
 from ..kernels.libraries import kernels_of
 from ..parts.cable import Cable
 from ..parts.section_stiffness import section_stiffness
 
 POINTS = 5
 """Gauss points along an element: exact where the stress-free shape is straight, of the eighth degree."""
+
+
+PLANAR = 4
+"""Elastic constants of a planar continuum; of a spatial one there are nine."""
 
 
 def constants(cable: Cable, axial: float = 1.0) -> np.ndarray:
@@ -47,8 +52,7 @@ def integral_over_volume(stiffness_at, length: float, e0: np.ndarray, S: np.ndar
 
 
 def section_points(S: np.ndarray) -> Iterator[tuple[float, float, np.ndarray]]:
-    """Nine points of a section (three of a planar one) that have its table S, as in
-    derive/laws/continuum/curved_section.py.
+    """Nine points of a section (three of a planar one) that have its table S, as the kernels of its stress have them.
 
     S: (9, 6) or, planar, (4, 6), see `section_stiffness`. Yields y, z in m and the elastic constants there, times the
     part of the section that it stands for, in N.
@@ -56,10 +60,9 @@ def section_points(S: np.ndarray) -> Iterator[tuple[float, float, np.ndarray]]:
     full, by_y, by_z, _, by_both, _ = S.T
     y2, z2 = S[0, 3] / S[0, 1], S[0, 5] / S[0, 2]
     of_y, of_z, of_both = by_y / y2, by_z / z2, by_both / (y2 * z2)
-    if len(S) == 4:
+    if len(S) == PLANAR:
         of_z, of_both = 0 * of_z, 0 * of_both
-    shares = {(0, 0): full - of_y - of_z + of_both, (1, 0): (of_y - of_both) / 2, (0, 1): (of_z - of_both) / 2,
-              (1, 1): of_both / 4}
-    for (i, k), D in shares.items():
-        if len(S) == 9 or k == 0:
+    for i, k, shares in manifest()["section_points"]:
+        D = sum(share * integral for share, integral in zip(shares, (full, of_y, of_z, of_both), strict=True))
+        if len(S) != PLANAR or k == 0:
             yield from ((y * np.sqrt(y2), z * np.sqrt(z2), D) for y in sorted({i, -i}) for z in sorted({k, -k}))

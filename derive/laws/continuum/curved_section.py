@@ -1,8 +1,7 @@
 """Force and moment resultants of a continuum with a curved stress-free shape, at a point of its axis.
 
-The stress is no polynomial in y and z: nine points of the section, at heights and widths where they have the moments of
-the table S, up to the fourth, as Gauss points have those of a rectangle. The elastic constants all have the
-ratios of the fourth moments to the second of D11, or none.
+The stress is no polynomial in y and z: it is summed over points of the section (section_points.py). The elastic
+constants all have the ratios of the fourth moments to the second of D11, or none.
 """
 
 from __future__ import annotations
@@ -14,6 +13,7 @@ import sympy as sp
 
 from ...algebra.gram import DIRECTIONS, Gram
 from ...algebra.gram_point import Expansion, expansion
+from ...algebra.section_points import KINDS
 from ...algebra.tangent_frame import cross, spatial
 from ...codegen.program import Program
 from .curved_point import Metric, at_point, columns, frame, voigt
@@ -56,22 +56,20 @@ def _points(program: Program, S: np.ndarray, dim: int) -> list[tuple]:
     program.stage("points of the section")
     (y, per_y), (z, per_z) = (_place(program, name, S[0, second], S[0, fourth])
                               for name, second, fourth in (("y", 1, 3), ("z", 2, 5)))
-    shares = []
+    integrals = []
     for k, row in enumerate(S):
-        of_y = program.define(f"D{k}_y", row[1] * per_y)
-        if dim == 2:
-            shares.append((row[0] - of_y, of_y / 2))
-            continue
-        of_z, both = program.define(f"D{k}_z", row[2] * per_z), program.define(f"D{k}_yz", row[4] * per_y * per_z)
-        shares.append((row[0] - of_y - of_z + both, (of_y - both) / 2, (of_z - both) / 2, both / 4))
-    names = ("middle", "side_y", "side_z", "corner")
-    middle, by_y, *more = ([program.define(f"{name}{k}", v) for k, v in enumerate(values)]
-                           for name, values in zip(names, zip(*shares, strict=True), strict=False))
-    found = [(sp.S.Zero, sp.S.Zero, middle), (y, sp.S.Zero, by_y), (-y, sp.S.Zero, by_y)]
-    if more:
-        by_z, corner = more
-        found += [(sp.S.Zero, s * z, by_z) for s in (1, -1)]
-        found += [(s * y, t * z, corner) for s in (1, -1) for t in (1, -1)]
+        of_y, of_z, both = program.define(f"D{k}_y", row[1] * per_y), sp.S.Zero, sp.S.Zero
+        if dim == 3:
+            of_z, both = program.define(f"D{k}_z", row[2] * per_z), program.define(f"D{k}_yz", row[4] * per_y * per_z)
+        integrals.append((row[0], of_y, of_z, both))
+    kinds = [(name, *kind) for name, kind in zip(("middle", "side_y", "side_z", "corner"), KINDS, strict=True)
+             if dim == 3 or kind[1] == 0]
+    found = []
+    for name, i, k, shares in kinds:
+        D = [program.define(f"{name}{row}", sum(sp.Rational(share) * value
+                                                for share, value in zip(shares, values, strict=True)))
+             for row, values in enumerate(integrals)]
+        found += [(s * y, t * z, D) for s in ((1, -1) if i else (0,)) for t in ((1, -1) if k else (0,))]
     return found
 
 

@@ -21,7 +21,7 @@ typedef struct {
     int kind, which, side;
 } fu_event;
 
-fu_event fu_find_event(const fu_run *run, fu_event known);
+fu_event fu_find_event(const fu_run *run, fu_event but);
 fu_event fu_late_event(fu_run *run);
 double fu_time_to_boundary(fu_run *run);
 double fu_time_of_turn(fu_run *run, double h);

@@ -4,6 +4,9 @@
 
 #include "common.h"
 
+#define FU_RUNS_AWAY 1e30 /* an increment in m, or a velocity, of a solution that is lost */
+#define FU_SAME_STEP 1e-6 /* of a step: one that differs by less has the same matrix */
+
 /* What implicit integrators have in common. `predict` makes a first `next`; `kinematics` completes it from the
  * unknowns; `residual` leaves minus the scaled residual in run->rhs, `matrix` its derivative in run->newton; `apply` adds
  * the solution in run->rhs and returns its size as a length. */

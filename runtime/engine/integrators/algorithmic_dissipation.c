@@ -10,11 +10,11 @@
  *
  *   viscosity D (g_1 - g_0)^2   and what goes into   viscosity/(2 lag) D g^2 + inertia/2 D r^2
  *
- * which comes back or is lost: energy is never above its start. r_0 = h B v_0 at the start of the step; where it would hold
+ * which comes back or is lost: energy is never above its start. r_0 = h B v_0 at the start of the step; where its energy would be
  * more than r_1 of the step before has left, it is shortened to that. S is of the order of h^2 in slow motion, and none in
  * rigid motion. The aim is that of Armero & Romero (Comput. Methods Appl. Mech. Eng. 190 (2001) 6783-6824); the form is
  * linear: an oscillator of stiffness D has p^2 (1 + lag p) + (h omega)^2 (1 + p/a)^3 = 0 for its eigenvalues
- * (1 + p/2)/(1 - p/2), with the three numbers of solve/integrators.py, and all three reach the spectral radius as h omega grows.
+ * (1 + p/2)/(1 - p/2), with the three numbers of integrators/energy.py, and all three reach the spectral radius as h omega grows.
  *
  * B of a spatial cable sees a turn about the tangent where it is bent (cable_damping.py), which would cost momentum. A turn
  * of the cable as a whole is taken off, v - omega x r, the one that leaves its forces without a moment.
@@ -96,8 +96,8 @@ static double dot(int n, const double *a, const double *b)
     return sum;
 }
 
-/* f of D (weight dE - known), and dE; returns the work of the one with the other */
-static double element_force(const moving *m, int k, const double *known, double *f, double *dE)
+/* f of D (weight dE - relaxed), and dE; returns the work of the one with the other */
+static double element_force(const moving *m, int k, const double *relaxed, double *f, double *dE)
 {
     const fu_cable *cable = m->cable;
     const double back[3] = {-m->omega[0], -m->omega[1], -m->omega[2]};
@@ -105,7 +105,7 @@ static double element_force(const moving *m, int k, const double *known, double 
     memcpy(v, m->v + entry_of(cable, k), sizeof(double) * (size_t)cable->coordinates);
     if (cable->law->spins) turn(m, k, back, v);
     cable->law->algorithmic_force(cable->length, m->q + entry_of(cable, k), v, cable->A + (long)k * cable->A_stride,
-                                  m->weight, known, f, dE);
+                                  m->weight, relaxed, f, dE);
     return dot(cable->coordinates, f, v);
 }
 
@@ -135,30 +135,30 @@ static void solve(double N[9], double b[3], double x[3])
     }
 }
 
-typedef void (*stress_of)(const fu_run *run, const fu_cable *cable, int k, double *known);
+typedef void (*stress_of)(const fu_run *run, const fu_cable *cable, int k, double *relaxed);
 
-/* `known` of the whole stress, of its second part, of none */
-static void of_both(const fu_run *run, const fu_cable *cable, int k, double *known)
+/* `relaxed`, the part of dE that makes no stress, of the whole stress, of its second part, of none */
+static void of_both(const fu_run *run, const fu_cable *cable, int k, double *relaxed)
 {
     const fu_algorithmic *a = fu_algorithmic_of(run);
     const double *g = state_of(cable, run->now.dissipation_state, k), *r = state_of(cable, expected_of(run), k);
     const double maxwell = 2.0 * a->viscosity / (2.0 * a->lag + 1.0);
-    for (int i = 0; i < cable->law->rates; ++i) known[i] = maxwell * g[i] + 2.0 * a->inertia * r[i];
+    for (int i = 0; i < cable->law->rates; ++i) relaxed[i] = maxwell * g[i] + 2.0 * a->inertia * r[i];
 }
 
-static void of_inertia(const fu_run *run, const fu_cable *cable, int k, double *known)
+static void of_inertia(const fu_run *run, const fu_cable *cable, int k, double *relaxed)
 {
     const double *r = state_of(cable, expected_of(run), k);
-    for (int i = 0; i < cable->law->rates; ++i) known[i] = 2.0 * fu_algorithmic_of(run)->inertia * r[i];
+    for (int i = 0; i < cable->law->rates; ++i) relaxed[i] = 2.0 * fu_algorithmic_of(run)->inertia * r[i];
 }
 
-static void of_none(const fu_run *run, const fu_cable *cable, int k, double *known)
+static void of_none(const fu_run *run, const fu_cable *cable, int k, double *relaxed)
 {
     (void)run, (void)k;
-    memset(known, 0, sizeof(double) * (size_t)cable->law->rates);
+    memset(relaxed, 0, sizeof(double) * (size_t)cable->law->rates);
 }
 
-/* the cable, with the turn that leaves the forces of D (weight dE - known) without a moment */
+/* the cable, with the turn that leaves the forces of D (weight dE - relaxed) without a moment */
 static moving without_turn(const fu_run *run, const fu_cable *cable, const double *q, const double *v, double weight,
                            stress_of stress)
 {
@@ -166,9 +166,9 @@ static moving without_turn(const fu_run *run, const fu_cable *cable, const doubl
     double N[9] = {0.0}, M[3] = {0.0};
     if (!cable->law->spins) return m;
     for (int k = 0; k < cable->n_elements; ++k) {
-        double f[FU_MAX_COORDINATES], turns[3][FU_MAX_COORDINATES] = {{0.0}}, known[FU_MAX_RATES], dE[FU_MAX_RATES];
-        stress(run, cable, k, known);
-        element_force(&m, k, known, f, dE);
+        double f[FU_MAX_COORDINATES], turns[3][FU_MAX_COORDINATES] = {{0.0}}, relaxed[FU_MAX_RATES], dE[FU_MAX_RATES];
+        stress(run, cable, k, relaxed);
+        element_force(&m, k, relaxed, f, dE);
         for (int d = 0; d < 3; ++d) {
             const double axis[3] = {d == 0, d == 1, d == 2};
             turn(&m, k, axis, turns[d]);
@@ -195,10 +195,10 @@ void fu_algorithmic_start(fu_run *run, double h)
         for (int k = 0; k < cable->n_elements; ++k) {
             double f[FU_MAX_COORDINATES], *r = state_of(cable, expected_of(run), k);
             const double left = state_of(cable, run->now.dissipation_state, k)[n];
-            const double holds = 0.5 * a->inertia * h * h * element_force(&m, k, none, f, r);
-            const double part = holds > left ? sqrt(left / holds) : 1.0;
+            const double energy = 0.5 * a->inertia * h * h * element_force(&m, k, none, f, r);
+            const double part = energy > left ? sqrt(left / energy) : 1.0;
             for (int i = 0; i < n; ++i) r[i] *= h * part;
-            r[n] = part * part * holds;
+            r[n] = part * part * energy;
         }
     }
 }
@@ -211,15 +211,15 @@ void fu_algorithmic_forces(fu_run *run, const double *q, double *force)
         const fu_cable *cable = &run->model->cables[c];
         const moving m = without_turn(run, cable, q, run->psi, weight, of_both);
         for (int k = 0; k < cable->n_elements; ++k) {
-            double f[FU_MAX_COORDINATES], known[FU_MAX_RATES], dE[FU_MAX_RATES];
-            of_both(run, cable, k, known);
-            element_force(&m, k, known, f, dE);
+            double f[FU_MAX_COORDINATES], relaxed[FU_MAX_RATES], dE[FU_MAX_RATES];
+            of_both(run, cable, k, relaxed);
+            element_force(&m, k, relaxed, f, dE);
             for (int i = 0; i < cable->coordinates; ++i) force[entry_of(cable, k) + i] += f[i];
         }
     }
 }
 
-/* The step is taken: the memory at its end. Returns the work of the stresses, J. */
+/* The step is taken: fills the dissipation state at its end. Returns the work of the stresses, J. */
 double fu_algorithmic_account(fu_run *run, const double *q)
 {
     const fu_algorithmic *a = fu_algorithmic_of(run);
@@ -233,13 +233,13 @@ double fu_algorithmic_account(fu_run *run, const double *q)
         for (int k = 0; k < cable->n_elements; ++k) {
             const double *psi = run->psi + entry_of(cable, k), *now = state_of(cable, run->now.dissipation_state, k);
             double *next = state_of(cable, run->next.dissipation_state, k);
-            double f[FU_MAX_COORDINATES], known[FU_MAX_RATES], dE[FU_MAX_RATES];
-            of_both(run, cable, k, known);
-            element_force(&m, k, known, f, dE);
+            double f[FU_MAX_COORDINATES], relaxed[FU_MAX_RATES], dE[FU_MAX_RATES];
+            of_both(run, cable, k, relaxed);
+            element_force(&m, k, relaxed, f, dE);
             work += dot(cable->coordinates, f, psi);
             for (int i = 0; i < n; ++i) next[i] = now[i] + 2.0 * (a->lag * dE[i] - now[i]) / (2.0 * a->lag + 1.0);
-            of_inertia(run, cable, k, known);
-            const double gained = element_force(&second, k, known, f, dE);
+            of_inertia(run, cable, k, relaxed);
+            const double gained = element_force(&second, k, relaxed, f, dE);
             next[n] = fmax(0.0, state_of(cable, expected_of(run), k)[n] + gained);
         }
     }

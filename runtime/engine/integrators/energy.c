@@ -21,6 +21,8 @@
 
 #include <string.h>
 
+#define LEFT_BY_NEWTON 1e-17 /* of the way of a step */
+
 /* In the scratch, behind what algorithmic dissipation keeps there: the middle of the step, and forces. */
 typedef struct {
     double *q, *v, *force;
@@ -162,7 +164,7 @@ static int start(fu_run *run)
 static int step(fu_run *run, double h)
 {
     /* what Newton leaves does work on the step: it is measured by psi and not by positions */
-    run->newton_tolerance = 1e-17 * h * fu_size(run->model, run->now.v);
+    run->newton_tolerance = LEFT_BY_NEWTON * h * fu_size(run->model, run->now.v);
     fu_algorithmic_start(run, h);
     return fu_newton_step(run, &newton, h);
 }

@@ -9,6 +9,8 @@
 
 #include <string.h>
 
+#define COARSE_SHARE 0.01 /* of the coarse estimate's square, as in DOP853 (Hairer, Norsett & Wanner 1993, II.10) */
+
 /* An explicit Runge-Kutta method with two embedded error estimates: A (stages x stages, row by row), b, c (stages),
  * error, coarse (stages + 1: the last is of the state at the end). */
 typedef struct {
@@ -124,7 +126,7 @@ static int step(fu_run *run, double h)
     keep(run, n, next);
     run->statistics.evaluations += n;
     for (int i = 0; i < model->n_dof; ++i)
-        if (!(fabs(next->v[i]) < 1e30)) return fu_fail(run, FU_NOT_FINITE, next->v, -1);
+        if (!(fabs(next->v[i]) < FU_RUNS_AWAY)) return fu_fail(run, FU_NOT_FINITE, next->v, -1);
     return 0;
 }
 
@@ -157,7 +159,7 @@ static double error(fu_run *run, double h)
     const double fine = estimate(run, method.error, h);
     if (fine == 0.0) return 0.0;
     const double coarse = estimate(run, method.coarse, h);
-    return fine * fine / sqrt(fine * fine + 0.01 * coarse * coarse);
+    return fine * fine / sqrt(fine * fine + COARSE_SHARE * coarse * coarse);
 }
 
 static void account(fu_run *run, double h)

@@ -52,7 +52,7 @@ static void kinematics(fu_run *run, double h)
     const fu_state *now = &run->now;
     fu_state *next = &run->next;
     const double over = 1.0 / (1.0 - g->alpha_f), slope = over * (1.0 - g->alpha_m);
-    const double slope_now = over * g->alpha_m, held = over * g->alpha_f;
+    const double slope_now = over * g->alpha_m, share_before = over * g->alpha_f;
     const double by_now = h * h * (0.5 - g->beta), by_next = h * h * g->beta;
     const double rate_now = h * (1.0 - g->gamma), rate_next = h * g->gamma;
     const double *v = now->v, *a = now->a, *before = now->acceleration, *change = next->a;
@@ -60,7 +60,7 @@ static void kinematics(fu_run *run, double h)
     for (int i = 0; i < model->n_dof; ++i) {
         psi[i] = h * v[i] + by_now * a[i] + by_next * change[i];
         velocity[i] = v[i] + rate_now * a[i] + rate_next * change[i];
-        acceleration[i] = slope * change[i] + slope_now * a[i] - held * before[i];
+        acceleration[i] = slope * change[i] + slope_now * a[i] - share_before * before[i];
     }
     memcpy(next->q, now->q, sizeof(double) * (size_t)model->n_q);
     fu_move(model, next->q, run->psi);
@@ -90,11 +90,11 @@ static double apply(fu_run *run, double h)
     return size;
 }
 
-/* psi = h v: accelerations hold vibrations that the step does not resolve, and do not predict where they lead. */
+/* psi = h v: accelerations are those of vibrations that the step does not resolve, and do not predict where they lead. */
 static void predict(fu_run *run, double h)
 {
-    const double held = 1.0 - 0.5 / scheme_of(run)->beta;
-    for (int i = 0; i < run->model->n_dof; ++i) run->next.a[i] = held * run->now.a[i];
+    const double kept = 1.0 - 0.5 / scheme_of(run)->beta;
+    for (int i = 0; i < run->model->n_dof; ++i) run->next.a[i] = kept * run->now.a[i];
     fu_predict_own(run, h);
     fu_seat_slides(run);
 }

@@ -6,6 +6,10 @@
 #include <time.h>
 
 #define STAGNANT 0.3 /* increments that shrink less than to this, at the size of rounding, are rounding */
+#define FIRST_CONTRACTION 0.5 /* before there are two increments: not small enough to stop after one iteration */
+#define SLOWEST 0.9          /* contraction by which the rest of the error is estimated, at most */
+#define BEYOND_ROUNDING 100.0 /* times the rounding of positions: an increment that is no rounding */
+#define MANY 4               /* a step of more than this part of the most iterations has its matrix made anew next */
 #define QUICK 0.03   /* contraction that is believed in: the first iterations mend what is linear, the next are slower */
 
 double fu_clock(void)
@@ -91,28 +95,28 @@ static int iterate(fu_run *run, const fu_newton *method, double h)
         method->residual(run, h);
         if (!run->factored) {
             if (factor(run, method, h)) return 1;
-            run->contraction = 0.5; /* nothing is known yet: do not stop after one iteration */
+            run->contraction = FIRST_CONTRACTION;
         }
         const double begin = fu_clock();
         fu_system_solve(&run->newton, run->model->lapack, run->rhs);
         run->statistics.time_solve += fu_clock() - begin;
         const double size = method->apply(run, h);
         ++run->statistics.newton_iterations;
-        if (!(size < 1e30)) return blame(run);
+        if (!(size < FU_RUNS_AWAY)) return blame(run);
         if (i > 0) {
             ratio = size / last;
-            if (ratio >= 1.0 && size > 100.0 * run->round_off) return blame(run);
-            run->contraction = ratio < QUICK ? QUICK : ratio > 0.9 ? 0.9 : ratio;
+            if (ratio >= 1.0 && size > BEYOND_ROUNDING * run->round_off) return blame(run);
+            run->contraction = ratio < QUICK ? QUICK : ratio > SLOWEST ? SLOWEST : ratio;
         }
         if (size * run->contraction / (1.0 - run->contraction) <= run->newton_tolerance ||
             (size <= run->round_off && (!method->to_rounding || ratio > STAGNANT))) {
             method->kinematics(run, h);
-            if (4 * (i + 1) > method->most_iterations) run->factored = 0; /* made anew for the next step */
+            if (MANY * (i + 1) > method->most_iterations) run->factored = 0; /* made anew for the next step */
             return 0;
         }
         last = size;
     }
-    if (last > 100.0 * run->round_off) return blame(run);
+    if (last > BEYOND_ROUNDING * run->round_off) return blame(run);
     method->kinematics(run, h); /* rounding: long chains of joints make more of it than one position has */
     run->factored = 0;
     return 0;
@@ -121,7 +125,7 @@ static int iterate(fu_run *run, const fu_newton *method, double h)
 /* One step of size h from `now` to `next`; 0 when the Newton iteration converged. */
 int fu_newton_step(fu_run *run, const fu_newton *method, double h)
 {
-    if (fabs(h - run->h_factored) > 1e-6 * h) run->factored = 0;
+    if (fabs(h - run->h_factored) > FU_SAME_STEP * h) run->factored = 0;
     const int stale = run->factored;
     method->predict(run, h);
     if (!iterate(run, method, h)) return 0;

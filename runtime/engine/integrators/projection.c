@@ -6,6 +6,8 @@
 
 #define MOST_PROJECTIONS 10
 #define SHORT_STEP 1e-3 /* of the usual step */
+#define CLOSED 1e-13     /* of the extent: smaller gaps at the start are rounding */
+#define PROBED 1e-12     /* of the extent: where a probed mechanism is back on its joints */
 
 /* A failure where a coupling's own coordinates do not follow from the others. */
 static int lost(fu_run *run, const double *v, const fu_coupling *coupling)
@@ -42,7 +44,7 @@ static int close_gaps(fu_run *run, fu_state *state, double enough)
         if (fu_project_positions(model, state, &run->accelerator, run->work))
             return fu_fail(run, FU_MATRIX, state->v, -1);
         const double size = fu_size(model, run->work);
-        if (!(size < 1e30) || i == MOST_PROJECTIONS) return fu_fail(run, FU_ITERATION, run->work, -1);
+        if (!(size < FU_RUNS_AWAY) || i == MOST_PROJECTIONS) return fu_fail(run, FU_ITERATION, run->work, -1);
         fu_move(model, state->q, run->work);
         const fu_coupling *failed = fu_follow(model, state);
         if (failed) return lost(run, state->v, failed);
@@ -53,7 +55,7 @@ static int close_gaps(fu_run *run, fu_state *state, double enough)
 /* A start with small gaps onto its joints, if it is not there; run->closed is how large they are. 0 when that converged. */
 int fu_close(fu_run *run)
 {
-    const double rounding = 1e-13 * run->extent;
+    const double rounding = CLOSED * run->extent;
     if (fu_project_positions(run->model, &run->now, &run->accelerator, run->work)) return 1;
     run->closed = fu_size(run->model, run->work);
     return run->closed > rounding && close_gaps(run, &run->now, rounding);
@@ -86,7 +88,7 @@ int fu_probe_mechanism(fu_run *run, const double *along, double *left)
     for (int i = 0; i < model->n_dof && size > most; ++i) run->work[i] *= most / size;
     fu_move(model, next->q, run->work);
     if (fu_follow(model, next)) return 1;
-    if (close_gaps(run, next, 1e-12 * run->extent)) return 1;
+    if (close_gaps(run, next, PROBED * run->extent)) return 1;
     fu_gaps(model, next, left);
     return 0;
 }

@@ -20,6 +20,11 @@
 
 #define MOST_ITERATIONS 10
 #define SLOW 0.3          /* contraction above which the matrix is made anew for the next step */
+#define FIRST_CONTRACTION 0.5 /* before there are two increments */
+#define QUICKEST 1e-3     /* contraction by which the rest of the error is estimated: least and most */
+#define SLOWEST 0.9
+#define DIVERGES 2.0      /* growth of an increment from one iteration to the next */
+#define BEYOND_ROUNDING 100.0 /* times the rounding of positions: an increment that is no rounding */
 #define SAFE 1.5e-2       /* of the allowed error: what Newton may leave */
 #define VIBRATION 2.0     /* of the estimate for vibrations: what counts, as sensitive motions let errors grow */
 #define EMBEDDED 0.1      /* the same of the embedded estimate, of too low an order */
@@ -349,16 +354,16 @@ static int iterate(fu_run *run, workspace *w, double h)
         if (evaluate(run, w, h)) return 1;
         const double size = correct(run, w, h);
         ++run->statistics.newton_iterations;
-        if (!(size < 1e30)) return fu_fail(run, FU_ITERATION, run->work, -1);
+        if (!(size < FU_RUNS_AWAY)) return fu_fail(run, FU_ITERATION, run->work, -1);
         double ratio = 1.0;
         if (i > 0) {
             ratio = size / last;
-            if (ratio >= 2.0 || (ratio >= 1.0 && size > 100.0 * run->round_off && i > 2))
+            if (ratio >= DIVERGES || (ratio >= 1.0 && size > BEYOND_ROUNDING * run->round_off && i > 2))
                 return fu_fail(run, FU_ITERATION, run->work, -1);
             /* the mean of two, as in RADAU5: one may be small by chance, where corrections of what is stiff and of what
              * constraints hold take turns */
             const double mean = i > 1 ? sqrt(ratio * before) : ratio;
-            run->contraction = mean < 1e-3 ? 1e-3 : mean > 0.9 ? 0.9 : mean;
+            run->contraction = mean < QUICKEST ? QUICKEST : mean > SLOWEST ? SLOWEST : mean;
             before = ratio;
         }
         if (size * run->contraction / (1.0 - run->contraction) <= enough || size <= run->round_off) {
@@ -392,12 +397,12 @@ static void begin_step(fu_run *run)
 static int step(fu_run *run, double h)
 {
     workspace *w = space(run);
-    if (fabs(h - run->h_factored) > 1e-6 * h) run->factored = 0;
+    if (fabs(h - run->h_factored) > FU_SAME_STEP * h) run->factored = 0;
     for (int fresh = !run->factored;; fresh = 1) {
         begin_step(run);
         if (fresh) {
             if (factor(run, h)) return 1;
-            run->contraction = 0.5; /* nothing is known yet */
+            run->contraction = FIRST_CONTRACTION;
         }
         const int failed = iterate(run, w, h);
         if (!failed) break;

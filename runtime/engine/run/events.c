@@ -130,8 +130,8 @@ static fu_event passes(const fu_run *run, int k, double after)
 }
 
 /* The slide of `next` that is farthest outside its element, else the first of the user's events between `now` and
- * `next`, but for one that is known. */
-fu_event fu_find_event(const fu_run *run, fu_event known)
+ * `next`, but for one. */
+fu_event fu_find_event(const fu_run *run, fu_event but)
 {
     fu_event found = {FU_NO_EVENT, 0, 0};
     double worst = 0.0;
@@ -139,13 +139,13 @@ fu_event fu_find_event(const fu_run *run, fu_event known)
         int side;
         if (run->next.mode[j] == FU_LEFT) continue; /* its s stays where it was */
         const double d = outside(run, &run->next, j, &side) - boundary_tolerance(run, j);
-        if (d > worst && (known.kind != FU_CROSSING || known.which != j)) {
+        if (d > worst && (but.kind != FU_CROSSING || but.which != j)) {
             worst = d;
             found = (fu_event){FU_CROSSING, j, side};
         }
     }
     for (int k = 0; k < run->n_watches && !found.kind; ++k)
-        if (known.kind != FU_WATCHED || known.which != k) found = passes(run, k, watched(run, &run->next, k));
+        if (but.kind != FU_WATCHED || but.which != k) found = passes(run, k, watched(run, &run->next, k));
     return found;
 }
 
@@ -275,12 +275,12 @@ double fu_locate(fu_run *run, fu_event event, double h)
 void fu_watch_now(fu_run *run, fu_event event)
 {
     for (int k = 0; k < run->n_watches; ++k) {
-        const int known = event.kind == FU_WATCHED && event.which == k;
-        const double value = known ? 0.0 : watched(run, &run->now, k);
+        const int expected = event.kind == FU_WATCHED && event.which == k;
+        const double value = expected ? 0.0 : watched(run, &run->now, k);
         const fu_event late = passes(run, k, value);
-        if (known || late.kind) run->watched[k] = 0.0;
+        if (expected || late.kind) run->watched[k] = 0.0;
         else if (value != 0.0) run->watched[k] = value;
-        if (!known && late.kind) run->late[k] = late.side;
+        if (!expected && late.kind) run->late[k] = late.side;
     }
 }
 

@@ -5,6 +5,8 @@
 #include <string.h>
 
 #define SMALLEST_STEP 1e-12 /* of the duration */
+#define AT_REST 1e-9        /* of the extent: a scene that moves less may be at rest */
+#define FIRST_MOTION 1e-3   /* of the duration: until then the motion is judged by the velocities at the start */
 #define BEYOND 0.1          /* of a step: how far it may go on after a slide should have reached its boundary */
 #define MOST_REJECTIONS 10000 /* steps rejected beyond those taken */
 #define AT_ONCE 1e-12       /* of the duration: instants that are no farther apart are one (knots.py) */
@@ -111,9 +113,9 @@ int fu_start(fu_run *run)
     }
     /* tolerances are relative to the largest motion: until there is one, that of a thousandth of the duration; and
      * never to less than what a scene at rest cannot help */
-    run->least_motion = 1e-9 * run->extent;
+    run->least_motion = AT_REST * run->extent;
     for (int i = 0; i < model->n_dof; ++i) {
-        const double t = fmin(run->output_step, 1e-3 * run->duration);
+        const double t = fmin(run->output_step, FIRST_MOTION * run->duration);
         const double d = model->weight[i] * (fabs(now->v[i]) * t + 0.5 * fabs(now->acceleration[i]) * t * t);
         if (d > run->least_motion) run->least_motion = d;
     }
@@ -405,8 +407,8 @@ int fu_advance(fu_run *run, double seconds)
     const double until = fu_clock() + seconds;
     for (;;) {
         double target = run->record.n * run->output_step;
-        if (target > run->duration * (1.0 - 1e-12)) target = run->duration;
-        if (run->now.t >= target - 1e-12 * run->duration) {
+        if (target > run->duration * (1.0 - AT_ONCE)) target = run->duration;
+        if (run->now.t >= target - AT_ONCE * run->duration) {
             run->now.t = target;
             const int recorded = record_row(run);
             if (recorded) return recorded;
