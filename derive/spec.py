@@ -1,18 +1,14 @@
-"""What a spec is: an element's basis and nodal conditions, and what follows from them.
+"""What a spec is: of an element its basis and nodal conditions, of a law what it knows and what it takes.
 
 The shape functions are solved from the nodal conditions (eq 1-2), never typed in.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 
 import sympy as sp
-
-from .codegen.program import Program
 
 x, y, z, l = sp.symbols("x y z l", positive=True)
 COORDINATES = {"x": x, "y": y, "z": z}
@@ -20,15 +16,32 @@ CABLE_LAWS = ("green_exact", "green_linear", "engineering_exact", "engineering_l
 ASSUMED_LAWS = tuple(f"{law}_assumed" for law in CABLE_LAWS)
 
 
-class FamilyError(ValueError):
-    """Families of one role whose kernels do not fit one table."""
+@dataclass(frozen=True)
+class LawTraits:
+    """What a law is, beyond its kernels: the manifest tells it to whoever needs to know.
+
+    kind               "cable" (of the axis alone), "continuum" or "structural" (of the whole section)
+    strain, curvature  the measures of a cable: "green" or "engineering", "exact" or "linear"
+    membrane           how a cable represents its axial strain: "full", or "assumed", by its lowest Legendre modes
+    straight           where the law is for a curved stress-free shape: the law for a straight one; else empty
+    takes_shape        whether its kernels take the stress-free shape e0
+    damped_like        the law whose damping kernels it takes; empty where it has its own
+    """
+
+    kind: str
+    strain: str = ""
+    curvature: str = ""
+    membrane: str = ""
+    straight: str = ""
+    takes_shape: bool = False
+    damped_like: str = ""
 
 
 @dataclass(frozen=True)
 class Element:
-    """r(x, y, z) = sum_k N_k d_k (eq 2): monomials, nodes, and which vectors the nodes carry.
+    """r(x, y, z) = sum_k N_k d_k, eq 2: monomials, nodes, and which vectors the nodes carry.
 
-    `director` names the nodal vector from which the tangent frame takes its normal (eq 16); empty where there is
+    `director` names the nodal vector from which the tangent frame takes its normal, eq 16; empty where there is
     none. `laws` are the energies that it comes with: names in laws/, or classes of the same interface.
     """
 
@@ -44,7 +57,7 @@ class Element:
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """Names of the nodal vectors over all nodes: r_1, r_x1, ... r_2, ..."""
+        """Return the names of the nodal vectors over all nodes: r_1, r_x1, ... r_2, ..."""
         return tuple(f"{v}{'' if '_' in v else '_'}{i + 1}" for i in range(len(self.nodes))
                      for v in self.nodal_vectors)
 
@@ -60,16 +73,16 @@ class Element:
 
     @property
     def n_vectors(self) -> int:
-        """Nodal vectors of the element, over all nodes."""
+        """Return the nodal vectors of the element, over all nodes."""
         return len(self.nodes) * len(self.nodal_vectors)
 
     @property
     def n_coordinates(self) -> int:
-        """Length of e (eq 1)."""
+        """Return the length of the nodal coordinates e, the nodal vectors one after the other (eq 1)."""
         return self.dim * self.n_vectors
 
     def nodal_conditions(self, functions) -> sp.Matrix:
-        """Value of each nodal functional (row: r, r_x, ... at a node) on each function (column)."""
+        """Return the value of each nodal functional (row: r, r_x, ... at a node) on each function (column)."""
         rows = []
         for node in self.nodes:
             for vector in self.nodal_vectors:
@@ -90,46 +103,3 @@ class Element:
             raise ValueError(f"{self.name}: {conditions.shape[0]} nodal conditions do not fix "
                              f"{len(basis)} basis functions")
         return tuple((sp.Matrix([basis]) * conditions.inv()).applyfunc(sp.expand))
-
-
-@dataclass(frozen=True)
-class Family:
-    """The kernels of one generated file.
-
-    `modules` are its specs: their text, and all that they import here, is in the spec hash. Families of one `role` have
-    kernels of the same signatures, but for those in `own`; the engine reaches them through a table, each with its
-    `facts` (integers).
-    `element`, `law`, `rider` (the name of a body) and `dim` are what the kernels are about: verification samples their
-    states.
-    `lacks` names kernels of the role that this one cannot have: the table holds a null pointer there.
-    `shared` names, by kernel, the family of the role whose kernel this one takes instead of one of its own.
-    `like` is the law in laws/ whose section stiffness and scale the law shares: itself, but for a law of the user's.
-    `spec` is the user's file that the element stands in, None for those of this package.
-    """
-
-    name: str
-    doc: str
-    build: Callable[[], list[Program]]
-    modules: tuple[str, ...]
-    role: str = ""
-    facts: dict[str, int] = field(default_factory=dict)
-    own: tuple[str, ...] = ()
-    shared: dict[str, str] = field(default_factory=dict)
-    lacks: tuple[str, ...] = ()
-    element: Element | None = None
-    law: str | None = None
-    like: str | None = None
-    rider: str | None = None
-    dim: int | None = None
-    spec: Path | None = None
-
-    @property
-    def elsewhere(self) -> set[str]:
-        """Kernels of the role that are not among this family's own."""
-        return {*self.shared, *self.lacks}
-
-    def kernel(self, suffix: str) -> str:
-        """Name of a kernel that the engine's table has, 0 where the family lacks it."""
-        if suffix in self.lacks:
-            return "0"
-        return f"{self.shared.get(suffix, self.name)}_{suffix}"

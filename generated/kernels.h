@@ -93,7 +93,7 @@ void beam24_continuum_step_stiffness(fu_real l, const fu_real *e, const fu_real 
 void beam24_continuum_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void beam24_continuum_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void beam24_continuum_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
-void beam24_continuum_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
+void beam24_continuum_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *relaxed_strain, fu_real *f, fu_real *dE);
 void beam24_continuum_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* beam24_continuum_curved: elastic law continuum_curved on beam24 */
@@ -125,7 +125,7 @@ void cable12_green_exact_step_stiffness(fu_real l, const fu_real *e, const fu_re
 void cable12_green_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable12_green_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable12_green_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
-void cable12_green_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
+void cable12_green_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *relaxed_strain, fu_real *f, fu_real *dE);
 void cable12_green_exact_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable12_green_linear: elastic law green_linear on cable12 */
@@ -147,7 +147,7 @@ void cable12_engineering_exact_step_stiffness(fu_real l, const fu_real *e, const
 void cable12_engineering_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable12_engineering_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable12_engineering_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
-void cable12_engineering_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
+void cable12_engineering_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *relaxed_strain, fu_real *f, fu_real *dE);
 void cable12_engineering_exact_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable12_engineering_linear: elastic law engineering_linear on cable12 */
@@ -223,7 +223,7 @@ void cable18_green_exact_step_stiffness(fu_real l, const fu_real *e, const fu_re
 void cable18_green_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable18_green_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable18_green_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
-void cable18_green_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
+void cable18_green_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *relaxed_strain, fu_real *f, fu_real *dE);
 void cable18_green_exact_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable18_engineering_exact: elastic law engineering_exact on cable18 */
@@ -236,7 +236,7 @@ void cable18_engineering_exact_step_stiffness(fu_real l, const fu_real *e, const
 void cable18_engineering_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable18_engineering_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable18_engineering_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
-void cable18_engineering_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
+void cable18_engineering_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *relaxed_strain, fu_real *f, fu_real *dE);
 void cable18_engineering_exact_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable18_green_exact_assumed: elastic law green_exact_assumed on cable18 */
@@ -267,7 +267,7 @@ void beam12p_continuum_step_stiffness(fu_real l, const fu_real *e, const fu_real
 void beam12p_continuum_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void beam12p_continuum_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void beam12p_continuum_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
-void beam12p_continuum_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
+void beam12p_continuum_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *relaxed_strain, fu_real *f, fu_real *dE);
 void beam12p_continuum_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* beam12p_continuum_curved: elastic law continuum_curved on beam12p */
@@ -299,7 +299,7 @@ void cable8p_green_exact_step_stiffness(fu_real l, const fu_real *e, const fu_re
 void cable8p_green_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable8p_green_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable8p_green_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
-void cable8p_green_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
+void cable8p_green_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *relaxed_strain, fu_real *f, fu_real *dE);
 void cable8p_green_exact_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable8p_green_linear: elastic law green_linear on cable8p */
@@ -321,7 +321,7 @@ void cable8p_engineering_exact_step_stiffness(fu_real l, const fu_real *e, const
 void cable8p_engineering_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
 void cable8p_engineering_exact_damping_tangent(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
 void cable8p_engineering_exact_dissipation(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
-void cable8p_engineering_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
+void cable8p_engineering_exact_algorithmic_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *relaxed_strain, fu_real *f, fu_real *dE);
 void cable8p_engineering_exact_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
 
 /* cable8p_engineering_linear: elastic law engineering_linear on cable8p */
@@ -397,11 +397,11 @@ void modal_mode_tangent(const fu_real *b, const fu_real *w, const fu_real *a, co
 void modal_pair_tangent(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *X_kl, fu_real *D, fu_real *K);
 void modal_kinetic_energy(const fu_real *b, const fu_real *w, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *X, const fu_real *X1, fu_real X11, fu_real *T);
 void modal_potential_energy(const fu_real *b, const fu_real *g, fu_real mass, const fu_real *S, fu_real *V);
-void modal_anchor(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *w, const fu_real *u1, const fu_real *theta1, fu_real *p, fu_real *axes, fu_real *P, fu_real *T, fu_real *velocity, fu_real *omega, fu_real *bias, fu_real *omega_bias);
-void modal_anchor_mode(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, fu_real *P, fu_real *T);
-void modal_anchor_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *f, const fu_real *m, fu_real *K);
-void modal_anchor_mode_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *f, const fu_real *m, fu_real *K, fu_real *K_frame);
-void modal_anchor_pair_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K);
+void modal_attachment(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *w, const fu_real *u1, const fu_real *theta1, fu_real *p, fu_real *axes, fu_real *P, fu_real *T, fu_real *velocity, fu_real *omega, fu_real *bias, fu_real *omega_bias);
+void modal_attachment_mode(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, fu_real *P, fu_real *T);
+void modal_attachment_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *f, const fu_real *m, fu_real *K);
+void modal_attachment_mode_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *f, const fu_real *m, fu_real *K, fu_real *K_frame);
+void modal_attachment_pair_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K);
 
 /* planar_modal: modal body on a planar_rigid frame */
 void planar_modal_inertia_force(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *S2, const fu_real *X, const fu_real *X1, const fu_real *X2, fu_real *f);
@@ -413,11 +413,11 @@ void planar_modal_mode_tangent(const fu_real *b, const fu_real *w, const fu_real
 void planar_modal_pair_tangent(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *X_kl, fu_real *D, fu_real *K);
 void planar_modal_kinetic_energy(const fu_real *b, const fu_real *w, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *X, const fu_real *X1, fu_real X11, fu_real *T);
 void planar_modal_potential_energy(const fu_real *b, const fu_real *g, fu_real mass, const fu_real *S, fu_real *V);
-void planar_modal_anchor(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *w, const fu_real *u1, const fu_real *theta1, fu_real *p, fu_real *axes, fu_real *P, fu_real *T, fu_real *velocity, fu_real *omega, fu_real *bias, fu_real *omega_bias);
-void planar_modal_anchor_mode(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, fu_real *P, fu_real *T);
-void planar_modal_anchor_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *f, const fu_real *m, fu_real *K);
-void planar_modal_anchor_mode_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *f, const fu_real *m, fu_real *K, fu_real *K_frame);
-void planar_modal_anchor_pair_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K);
+void planar_modal_attachment(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *w, const fu_real *u1, const fu_real *theta1, fu_real *p, fu_real *axes, fu_real *P, fu_real *T, fu_real *velocity, fu_real *omega, fu_real *bias, fu_real *omega_bias);
+void planar_modal_attachment_mode(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, fu_real *P, fu_real *T);
+void planar_modal_attachment_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *f, const fu_real *m, fu_real *K);
+void planar_modal_attachment_mode_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *f, const fu_real *m, fu_real *K, fu_real *K_frame);
+void planar_modal_attachment_pair_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K);
 
 /* slide_beam24_rigid: sliding joint of a rigid rider on a beam24 cable */
 void slide_beam24_rigid_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
@@ -614,7 +614,7 @@ typedef struct {
     void (*damping_force)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
     void (*damping_tangent)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real rate, fu_real *K);
     void (*dissipation)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *P);
-    void (*algorithmic_force)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *known, fu_real *f, fu_real *dE);
+    void (*algorithmic_force)(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real weight, const fu_real *relaxed_strain, fu_real *f, fu_real *dE);
 } fu_law_kernels;
 
 /* What the engine needs of a body. */
@@ -645,11 +645,11 @@ typedef struct {
     void (*pair_tangent)(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, const fu_real *X_kl, fu_real *D, fu_real *K);
     void (*kinetic_energy)(const fu_real *b, const fu_real *w, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *X, const fu_real *X1, fu_real X11, fu_real *T);
     void (*potential_energy)(const fu_real *b, const fu_real *g, fu_real mass, const fu_real *S, fu_real *V);
-    void (*anchor)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *w, const fu_real *u1, const fu_real *theta1, fu_real *p, fu_real *axes, fu_real *P, fu_real *T, fu_real *velocity, fu_real *omega, fu_real *bias, fu_real *omega_bias);
-    void (*anchor_mode)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, fu_real *P, fu_real *T);
-    void (*anchor_force)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *f, const fu_real *m, fu_real *K);
-    void (*anchor_mode_force)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *f, const fu_real *m, fu_real *K, fu_real *K_frame);
-    void (*anchor_pair_force)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K);
+    void (*attachment)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *w, const fu_real *u1, const fu_real *theta1, fu_real *p, fu_real *axes, fu_real *P, fu_real *T, fu_real *velocity, fu_real *omega, fu_real *bias, fu_real *omega_bias);
+    void (*attachment_mode)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, fu_real *P, fu_real *T);
+    void (*attachment_force)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *f, const fu_real *m, fu_real *K);
+    void (*attachment_mode_force)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *f, const fu_real *m, fu_real *K, fu_real *K_frame);
+    void (*attachment_pair_force)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K);
 } fu_modal_kernels;
 
 /* What the engine needs of a slide. */

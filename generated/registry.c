@@ -475,11 +475,11 @@ static const fu_modal_kernels modals[] = {
      modal_pair_tangent,
      modal_kinetic_energy,
      modal_potential_energy,
-     modal_anchor,
-     modal_anchor_mode,
-     modal_anchor_force,
-     modal_anchor_mode_force,
-     modal_anchor_pair_force
+     modal_attachment,
+     modal_attachment_mode,
+     modal_attachment_force,
+     modal_attachment_mode_force,
+     modal_attachment_pair_force
     },
     {"planar_modal",
      2,
@@ -492,11 +492,11 @@ static const fu_modal_kernels modals[] = {
      planar_modal_pair_tangent,
      planar_modal_kinetic_energy,
      planar_modal_potential_energy,
-     planar_modal_anchor,
-     planar_modal_anchor_mode,
-     planar_modal_anchor_force,
-     planar_modal_anchor_mode_force,
-     planar_modal_anchor_pair_force
+     planar_modal_attachment,
+     planar_modal_attachment_mode,
+     planar_modal_attachment_force,
+     planar_modal_attachment_mode_force,
+     planar_modal_attachment_pair_force
     }
 };
 
@@ -1914,25 +1914,25 @@ static void call_modal_potential_energy(const fu_real *const *a, fu_real *const 
 {
     modal_potential_energy(a[0], a[1], *a[2], a[3], out[0]);
 }
-static void call_modal_anchor(const fu_real *const *a, fu_real *const *out)
+static void call_modal_attachment(const fu_real *const *a, fu_real *const *out)
 {
-    modal_anchor(a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7]);
+    modal_attachment(a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7]);
 }
-static void call_modal_anchor_mode(const fu_real *const *a, fu_real *const *out)
+static void call_modal_attachment_mode(const fu_real *const *a, fu_real *const *out)
 {
-    modal_anchor_mode(a[0], a[1], a[2], a[3], a[4], out[0], out[1]);
+    modal_attachment_mode(a[0], a[1], a[2], a[3], a[4], out[0], out[1]);
 }
-static void call_modal_anchor_force(const fu_real *const *a, fu_real *const *out)
+static void call_modal_attachment_force(const fu_real *const *a, fu_real *const *out)
 {
-    modal_anchor_force(a[0], a[1], a[2], a[3], a[4], out[0]);
+    modal_attachment_force(a[0], a[1], a[2], a[3], a[4], out[0]);
 }
-static void call_modal_anchor_mode_force(const fu_real *const *a, fu_real *const *out)
+static void call_modal_attachment_mode_force(const fu_real *const *a, fu_real *const *out)
 {
-    modal_anchor_mode_force(a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1]);
+    modal_attachment_mode_force(a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1]);
 }
-static void call_modal_anchor_pair_force(const fu_real *const *a, fu_real *const *out)
+static void call_modal_attachment_pair_force(const fu_real *const *a, fu_real *const *out)
 {
-    modal_anchor_pair_force(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], out[0]);
+    modal_attachment_pair_force(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], out[0]);
 }
 static void call_planar_modal_inertia_force(const fu_real *const *a, fu_real *const *out)
 {
@@ -1970,25 +1970,25 @@ static void call_planar_modal_potential_energy(const fu_real *const *a, fu_real 
 {
     planar_modal_potential_energy(a[0], a[1], *a[2], a[3], out[0]);
 }
-static void call_planar_modal_anchor(const fu_real *const *a, fu_real *const *out)
+static void call_planar_modal_attachment(const fu_real *const *a, fu_real *const *out)
 {
-    planar_modal_anchor(a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7]);
+    planar_modal_attachment(a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7]);
 }
-static void call_planar_modal_anchor_mode(const fu_real *const *a, fu_real *const *out)
+static void call_planar_modal_attachment_mode(const fu_real *const *a, fu_real *const *out)
 {
-    planar_modal_anchor_mode(a[0], a[1], a[2], a[3], a[4], out[0], out[1]);
+    planar_modal_attachment_mode(a[0], a[1], a[2], a[3], a[4], out[0], out[1]);
 }
-static void call_planar_modal_anchor_force(const fu_real *const *a, fu_real *const *out)
+static void call_planar_modal_attachment_force(const fu_real *const *a, fu_real *const *out)
 {
-    planar_modal_anchor_force(a[0], a[1], a[2], a[3], a[4], out[0]);
+    planar_modal_attachment_force(a[0], a[1], a[2], a[3], a[4], out[0]);
 }
-static void call_planar_modal_anchor_mode_force(const fu_real *const *a, fu_real *const *out)
+static void call_planar_modal_attachment_mode_force(const fu_real *const *a, fu_real *const *out)
 {
-    planar_modal_anchor_mode_force(a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1]);
+    planar_modal_attachment_mode_force(a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1]);
 }
-static void call_planar_modal_anchor_pair_force(const fu_real *const *a, fu_real *const *out)
+static void call_planar_modal_attachment_pair_force(const fu_real *const *a, fu_real *const *out)
 {
-    planar_modal_anchor_pair_force(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], out[0]);
+    planar_modal_attachment_pair_force(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], out[0]);
 }
 static void call_slide_beam24_rigid_constraint(const fu_real *const *a, fu_real *const *out)
 {
@@ -2677,11 +2677,11 @@ const fu_kernel fu_kernels[] = {
     {"modal_pair_tangent", call_modal_pair_tangent},
     {"modal_kinetic_energy", call_modal_kinetic_energy},
     {"modal_potential_energy", call_modal_potential_energy},
-    {"modal_anchor", call_modal_anchor},
-    {"modal_anchor_mode", call_modal_anchor_mode},
-    {"modal_anchor_force", call_modal_anchor_force},
-    {"modal_anchor_mode_force", call_modal_anchor_mode_force},
-    {"modal_anchor_pair_force", call_modal_anchor_pair_force},
+    {"modal_attachment", call_modal_attachment},
+    {"modal_attachment_mode", call_modal_attachment_mode},
+    {"modal_attachment_force", call_modal_attachment_force},
+    {"modal_attachment_mode_force", call_modal_attachment_mode_force},
+    {"modal_attachment_pair_force", call_modal_attachment_pair_force},
     {"planar_modal_inertia_force", call_planar_modal_inertia_force},
     {"planar_modal_mass_matrix", call_planar_modal_mass_matrix},
     {"planar_modal_inertia_tangent", call_planar_modal_inertia_tangent},
@@ -2691,11 +2691,11 @@ const fu_kernel fu_kernels[] = {
     {"planar_modal_pair_tangent", call_planar_modal_pair_tangent},
     {"planar_modal_kinetic_energy", call_planar_modal_kinetic_energy},
     {"planar_modal_potential_energy", call_planar_modal_potential_energy},
-    {"planar_modal_anchor", call_planar_modal_anchor},
-    {"planar_modal_anchor_mode", call_planar_modal_anchor_mode},
-    {"planar_modal_anchor_force", call_planar_modal_anchor_force},
-    {"planar_modal_anchor_mode_force", call_planar_modal_anchor_mode_force},
-    {"planar_modal_anchor_pair_force", call_planar_modal_anchor_pair_force},
+    {"planar_modal_attachment", call_planar_modal_attachment},
+    {"planar_modal_attachment_mode", call_planar_modal_attachment_mode},
+    {"planar_modal_attachment_force", call_planar_modal_attachment_force},
+    {"planar_modal_attachment_mode_force", call_planar_modal_attachment_mode_force},
+    {"planar_modal_attachment_pair_force", call_planar_modal_attachment_pair_force},
     {"slide_beam24_rigid_constraint", call_slide_beam24_rigid_constraint},
     {"slide_beam24_rigid_terms", call_slide_beam24_rigid_terms},
     {"slide_beam24_rigid_residual", call_slide_beam24_rigid_residual},

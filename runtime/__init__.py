@@ -11,15 +11,16 @@ from .errors import (
     ResultFileError,
     SceneError,
     UnknownResultError,
+    check_renamed,
 )
 from .parts.end_stops import Buffer, HardStop
 from .parts.friction import Friction
 from .parts.material import Material
 from .parts.section import Circle, GeneralSection, Rectangle, Tube
 from .parts.signal import Harmonic, Pulse, Ramp, TableSignal
-from .results.run import Run, load_run
+from .results.run import Run
 from .scene import Scene
-from .scene_file import bundled_scenes, load_scene
+from .scene_file import bundled_scenes, load_run, load_scene
 
 __all__ = [
     "Buffer",
@@ -56,4 +57,5 @@ def __getattr__(name: str) -> Any:
         from importlib.metadata import version
 
         return version("funicular")
+    check_renamed(f"module {__name__!r}", name, __all__)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

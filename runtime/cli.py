@@ -1,4 +1,4 @@
-"""The command line. Each command imports what it needs itself, so that all of them start at once."""
+"""The command line. What a command needs is imported when it is called, so that all of them start at once."""
 
 from __future__ import annotations
 
@@ -15,17 +15,40 @@ import typer
 if TYPE_CHECKING:
     from .results.run import Run
 
-app = typer.Typer(
-    help="Very flexible cables and whatever slides along them.",
-    no_args_is_help=True,
-    add_completion=False,
-    pretty_exceptions_enable=False,
-)
+app = typer.Typer(no_args_is_help=True, pretty_exceptions_enable=False)
 
 EXIT_INTERRUPTED = 130
 Libraries = Annotated[list[Path] | None, typer.Option(
     "--library", metavar="DIR", help="your own elements that the scene may load, machine code; repeatable")]
+
+
+def _bundled(incomplete: str) -> list[str]:
+    """Names of bundled scenes that begin so, for completion; where there is none, the shell completes paths."""
+    from funicular.scene_file import bundled_scenes
+
+    return [name for name in bundled_scenes() if name.startswith(incomplete)]
+
+
+SceneName = Annotated[str, typer.Argument(metavar="SCENE", help="a scene file, or the name of a bundled scene",
+                                          autocompletion=_bundled)]
 Names = Annotated[list[str] | None, typer.Argument(metavar="[NAME]...", help="only these; all if none is given")]
+
+
+def _print_version(wanted: bool) -> None:
+    """Print name and version, and end the command."""
+    if wanted:
+        from funicular import __version__
+
+        print(f"funicular {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[bool, typer.Option("--version", callback=_print_version, is_eager=True,
+                                          help="print the version and exit")] = False,
+) -> None:
+    """Very flexible cables and whatever slides along them."""
 
 
 @contextmanager
@@ -56,7 +79,7 @@ def _told_without_traceback() -> Iterator[None]:
 
 @app.command()
 def run(
-    scene: Annotated[str, typer.Argument(metavar="SCENE", help="a scene file, or the name of a bundled scene")],
+    scene: SceneName,
     output: Annotated[
         Path | None, typer.Option("-o", "--output", help="netCDF file to write (default: SCENE.nc, here)")
     ] = None,
@@ -79,7 +102,7 @@ def run(
     error, 130 after Ctrl-C.
     """
     from .errors import ConvergenceError, EndOfCableError
-    from .results.run import check_writable
+    from .results.files import check_writable
     from .scene_file import load_scene
 
     with _told_without_traceback():
@@ -130,7 +153,7 @@ def _report(run: Run, path: Path, pictures: Path | None, forces: bool) -> None:
 
 @app.command()
 def bench(
-    scene: Annotated[str, typer.Argument(metavar="SCENE", help="a scene file, or the name of a bundled scene")],
+    scene: SceneName,
     integrators: Annotated[str | None, typer.Option(help="names with commas between (default: all)")] = None,
     tols: Annotated[str, typer.Option(help="tolerances")] = "1e-2,1e-3,1e-4,1e-5",
     elements: Annotated[str, typer.Option(help="meshes: x2 is twice the scene's elements, 24 is 24 a cable")] = "x1,x2",
@@ -151,7 +174,7 @@ def bench(
 
     from .bench.bench import bench, grid
     from .bench.report import print_table, save
-    from .results.run import check_writable
+    from .results.files import check_writable
     from .scene_file import load_scene
 
     with _told_without_traceback():
@@ -198,7 +221,7 @@ def derive(
     if (spec is None) != (out is None) or (spec is not None and (names or check)):
         raise typer.BadParameter("--spec FILE and --out DIR go together, and with nothing else")
     if spec is None:
-        from funicular.derive.codegen.drift import main
+        from funicular.derive.pipeline import main
 
         raise typer.Exit(main(names or [], check))
     from funicular.derive.user_elements.command import main as make_library

@@ -5,8 +5,6 @@ The engine is C and not Cython because `cimport` does not work across the mapped
 generated kernels and the engine is a C header.
 """
 
-import os
-
 import numpy as np
 
 from cpython.exc cimport PyErr_CheckSignals
@@ -15,6 +13,7 @@ from cpython.pycapsule cimport PyCapsule_GetPointer
 from scipy.linalg cimport cython_lapack
 
 from funicular.generated import kernels
+from funicular.operating_system import machine_memory
 
 include "engine/cython/engine.pxi"
 

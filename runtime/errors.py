@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import os
+import re
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from difflib import get_close_matches
-from typing import TYPE_CHECKING
+from typing import Any
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable
+RENAMED = {"join": "tie", "joins": "ties", "General": "GeneralSection", "Table": "TableSignal",
+           "second_moment_yy": "second_moment_about_z", "second_moment_zz": "second_moment_about_y",
+           "rotary_moment_yy": "rotary_moment_about_z", "rotary_moment_zz": "rotary_moment_about_y"}
+"""What older versions called parts, keywords, tables of scene files and attributes, and what they are called now."""
 
-    from .results.run import Run
-    from .solve.static import Equilibrium
+INTEGRALS = {"about_z": ", the integral of y²", "about_y": ", the integral of z²"}
+"""What a moment is whose name says about which axis it is; the older names said which coordinate is squared."""
 
 _MOST_SHOWN = 150
 """Characters of a path's start and end in a message."""
@@ -42,8 +47,8 @@ class SceneError(FunicularError, ValueError):
 class _StoppedError(FunicularError):
     """A run that stopped early."""
 
-    def __init__(self, message: str, run: Run):
-        """run: the results up to then."""
+    def __init__(self, message: str, run: Any):
+        """run: the results up to then, a `funicular.Run`."""
         super().__init__(message)
         self.run = run
 
@@ -59,8 +64,8 @@ class ConvergenceError(_StoppedError):
 class EquilibriumError(FunicularError):
     """No static equilibrium was reached; ``state`` holds the last one on the way, at ``load_fraction`` of the loads."""
 
-    def __init__(self, message: str, state: Equilibrium, load_fraction: float):
-        """state: the last equilibrium; load_fraction: the part of the loads that it carries, 0 to 1."""
+    def __init__(self, message: str, state: Any, load_fraction: float):
+        """state: the last `Scene.equilibrium`; load_fraction: the part of the loads that it carries, 0 to 1."""
         super().__init__(message)
         self.state, self.load_fraction = state, load_fraction
 
@@ -73,6 +78,16 @@ class UnknownResultError(FunicularError, KeyError):
     """A run holds no result of that name."""
 
 
+@contextmanager
+def enough_memory() -> Iterator[None]:
+    """Turn a MemoryError of what is inside into a SceneError."""
+    try:
+        yield
+    except MemoryError:
+        raise SceneError("scene", "takes more memory than this machine has",
+                         "take fewer elements, fewer bodies and slides, or a larger output_step") from None
+
+
 def shown_path(path: str | os.PathLike) -> str:
     """A path for a message: what does not print is escaped, and the middle of a very long one is left out."""
     text = os.fspath(path)
@@ -81,8 +96,24 @@ def shown_path(path: str | os.PathLike) -> str:
 
 
 def near(name: str, known: Iterable[str]) -> str:
-    """The remedy for a name that is not known: the nearest known one, or the list of them."""
+    """The remedy for a name that is not known: what it is called now, the nearest known one, or the list of them."""
     known = list(known)
+    if (new := new_name(name)) in known:
+        return f'it is called "{new}" now{INTEGRALS.get(new[-7:], "")}'
     if matches := get_close_matches(str(name), known, n=1):
         return f'did you mean "{matches[0]}"?'
     return "known: " + ", ".join(known) if known else "there is none yet"
+
+
+def new_name(name: str) -> str:
+    """What an older version's name is now, also where a number, or a quantity of a result, follows it; else itself."""
+    if name in RENAMED:
+        return RENAMED[name]
+    numbered = re.fullmatch(r"([a-z]+)(_\d+(?:\..+)?)", str(name))
+    return RENAMED.get(numbered[1], numbered[1]) + numbered[2] if numbered else name
+
+
+def check_renamed(owner: str, name: str, known: Iterable[str]) -> None:
+    """Raise AttributeError that names the new name of an attribute which an older version had; owner: of what."""
+    if name in RENAMED and RENAMED[name] in set(known):
+        raise AttributeError(f"{owner} has no attribute {name!r}: {near(name, [RENAMED[name]])}")

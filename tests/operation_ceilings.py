@@ -153,13 +153,13 @@ CEILINGS = {
     },
     "modal": {
         "inertia_force": 312, "mass_matrix": 105, "inertia_tangent": 675, "mode_force": 137, "mode_mass": 66,
-        "mode_tangent": 459, "pair_tangent": 55, "kinetic_energy": 135, "potential_energy": 74, "anchor": 836,
-        "anchor_mode": 151, "anchor_force": 183, "anchor_mode_force": 310, "anchor_pair_force": 164
+        "mode_tangent": 459, "pair_tangent": 55, "kinetic_energy": 135, "potential_energy": 74, "attachment": 836,
+        "attachment_mode": 151, "attachment_force": 183, "attachment_mode_force": 310, "attachment_pair_force": 164
     },
     "planar_modal": {
         "inertia_force": 71, "mass_matrix": 13, "inertia_tangent": 80, "mode_force": 31, "mode_mass": 7,
-        "mode_tangent": 94, "pair_tangent": 14, "kinetic_energy": 32, "potential_energy": 13, "anchor": 107,
-        "anchor_mode": 11, "anchor_force": 9, "anchor_mode_force": 18, "anchor_pair_force": 10
+        "mode_tangent": 94, "pair_tangent": 14, "kinetic_energy": 32, "potential_energy": 13, "attachment": 107,
+        "attachment_mode": 11, "attachment_force": 9, "attachment_mode_force": 18, "attachment_pair_force": 10
     },
     "slide_beam24_rigid": {"constraint": 599, "terms": 1646, "residual": 209, "tangent": 286, "discrete_gradient": 397},
     "slide_cable12_rigid": {

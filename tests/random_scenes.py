@@ -6,7 +6,7 @@ import warnings
 import funicular as fu
 import numpy as np
 from funicular.errors import FunicularError
-from funicular.scene_file import _toml
+from funicular.parts.scene_text import as_toml
 from hypothesis import strategies as st
 
 NESTED: list = []
@@ -218,7 +218,7 @@ def texts(draw):
     """The text of a scene file, with nonsense for one of its values."""
     tables = tomllib.loads(draw(scenes(spoilt=False))[1].to_toml())
     _spoil(draw, tables)
-    return "\n".join(f"{name} = {_toml(value)}" for name, value in tables.items()) + "\n"
+    return "\n".join(f"{name} = {as_toml(value)}" for name, value in tables.items()) + "\n"
 
 
 def _spoil(draw, into: dict | list) -> None:

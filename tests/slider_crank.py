@@ -1,4 +1,4 @@
-"""The flexible slider-crank of the IVP test set (Simeon 1996) from the kernels of a planar modal body: D7 of CASES.md.
+"""The flexible slider-crank of the IVP test set (Simeon 1996) from the kernels of a planar modal body.
 
 The crank turns at a constant rate, so that the rod's frame is carried by its end; the rod's far end slides along x
 and carries the slider. Unknown are the rod's angle and four modal coordinates: two sines across, and the displacements

@@ -15,7 +15,9 @@ pytestmark = pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
 
 
 class Oscillator:
-    """u'' = -omega^2 u with h = 1 as algorithmic_dissipation.c has it; state: u, v, g. Its energy, with that stored."""
+    """u'' = -omega^2 u with h = 1 as algorithmic_dissipation.c takes it; state: u, v, g. Its energy with the stored
+    part.
+    """
 
     def __init__(self, spectral_radius: float, omega: float):
         lag, viscosity, inertia, weight = EnergyMomentum(spectral_radius).parameters

@@ -1,4 +1,4 @@
-"""Cables in motion, against two independent formulations (CASES S1, D0; tests/reference)."""
+"""Cables in motion, against two independent formulations (cases S1, D0; tests/reference)."""
 
 from functools import partial
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Published cases of elements (CASES 1 to 4), found by scenes: tests/benchmarks/published has them with their sources.
+"""Published cases of elements (E, B, D and S), found by scenes: tests/benchmarks/published has them with their sources.
 
 Errors are relative to the scales there. Bounds are two to three times what was measured: what is left is the mesh,
 unless a comment says otherwise.

@@ -3,13 +3,14 @@
 import re
 import sys
 import warnings
+from importlib.metadata import version
 from types import ModuleType
 
 import pytest
 from fake_recording import fake_recording
 from funicular import ConvergenceError, EndOfCableError, FunicularWarning, load_run, load_scene
 from funicular.cli import app
-from funicular.model.build import build
+from funicular.results import recording
 from typer.testing import CliRunner
 
 END = 'slide "trolley": reached the end of cable "wire" at t = 0.4 s'
@@ -17,8 +18,8 @@ END = 'slide "trolley": reached the end of cable "wire" at t = 0.4 s'
 
 @pytest.fixture
 def engine(monkeypatch, tmp_path):
-    """A stand-in for funicular.model; runs take place in an empty directory."""
-    module = ModuleType("funicular.model.build")
+    """A stand-in for funicular.solve.run, whose recordings are hand-made; runs take place in an empty directory."""
+    module = ModuleType("funicular.solve.run")
     module.outcome = {}
     module.calls = []
 
@@ -27,8 +28,9 @@ def engine(monkeypatch, tmp_path):
         on_progress(settings.duration / 2)
         return fake_recording(scene, **module.outcome)
 
-    module.simulate, module.build = simulate, build
-    monkeypatch.setitem(sys.modules, "funicular.model.build", module)
+    module.simulate = simulate
+    monkeypatch.setitem(sys.modules, "funicular.solve.run", module)
+    monkeypatch.setattr(recording, "recorded", lambda recorded, *_: recorded)
     monkeypatch.chdir(tmp_path)
     return module
 
@@ -212,3 +214,23 @@ def test_messages_of_scene_and_engine_are_kept(engine):
     scene.messages.append("moved")
     with warnings.catch_warnings(action="error"):
         assert scene.run().report["messages"] == ["moved", "the start was made consistent"]
+
+
+def test_version():
+    result = funicular("--version")
+    assert (result.exit_code, result.stdout) == (0, f"funicular {version('funicular')}\n")
+
+
+@pytest.mark.parametrize(("words", "offered"), [
+    ("ru", ["run"]),
+    ("run paper52_m", ["paper52_modal"]),
+    ("run mine", []),  # the shell then completes paths
+    ("run --to", ["--tol"]),
+])
+def test_completion(words, offered):
+    """What a shell gets that asks for the end of the last word."""
+    asked = {"_FUNICULAR_COMPLETE": "complete_bash", "COMP_WORDS": f"funicular {words}",
+             "COMP_CWORD": str(len(words.split()))}
+    result = CliRunner().invoke(app, env=asked, prog_name="funicular")
+    assert result.exit_code == 0
+    assert result.stdout.split() == offered

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from funicular import EndOfCableError, load_run, load_scene
 
-COMMAND = [sys.executable, "-m", "funicular.cli"]
+COMMAND = [sys.executable, "-m", "funicular"]
 
 
 def funicular(*args: str, cwd) -> subprocess.CompletedProcess:

@@ -7,7 +7,8 @@ import funicular as fu
 import numpy as np
 import pytest
 from funicular.derive.elements import ELEMENTS
-from funicular.derive.verify.states import element_state, reference, rotation
+from funicular.derive.verify.samples.element import element_state
+from funicular.derive.verify.samples.shapes import reference, rotation
 from funicular.generated import kernels
 from funicular.model.constants import element_constants, section_points
 from funicular.parts.section_stiffness import section_stiffness
@@ -89,7 +90,7 @@ def test_a_ring_is_free_of_stress_wherever_it_lies(name, law):
     dim, random, S = ELEMENTS[name].dim, np.random.default_rng(1), some_stiffness(name, law)
     l = 2 * np.pi / 6
     for e0 in ring(name, 6):
-        A = element_constants(kernels, name, law, l, S, e0)
+        A = element_constants(None, name, law, l, S, e0)
         force = getattr(kernels, f"{name}_{law}_elastic_force")
         assert np.abs(force(l, e0, A)).max() < 1e-16 * E * 0.01
         turned = e0 @ rotation(random, dim).T + np.outer(ELEMENTS[name].is_position, random.normal(size=dim))
@@ -103,7 +104,7 @@ def test_with_a_straight_shape_it_is_the_straight_law(name, law):
     element, S, straight = ELEMENTS[name], some_stiffness(name, law), law.removesuffix("_curved")
     state = element_state(element, np.random.default_rng(7))
     l, e, e0 = float(state["l"]), state["e"], reference(element, float(state["l"]))
-    given = {suffix: (l, e, element_constants(kernels, name, suffix, l, S, *shape))
+    given = {suffix: (l, e, element_constants(None, name, suffix, l, S, *shape))
              for suffix, shape in ((law, [e0]), (straight, []))}
     for kernel in ("energy", "elastic_force", "elastic_tangent"):
         ours, theirs = (getattr(kernels, f"{name}_{suffix}_{kernel}")(*args) for suffix, args in given.items())
@@ -119,7 +120,7 @@ def test_damping_is_stiffness_times_the_time_but_for_height_over_radius(name):
     """Eigenvalues of the damping matrix over the stiffness, at rest, rigid motions left out."""
     S = section_stiffness("continuum", fu.Rectangle(height=0.05, width=0.05), SOFT, ELEMENTS[name].dim)
     l, e0 = 2 * np.pi / 16, ring(name, 16)[1]
-    A = element_constants(kernels, name, "continuum_curved", l, S, e0)
+    A = element_constants(None, name, "continuum_curved", l, S, e0)
     K = getattr(kernels, f"{name}_continuum_curved_elastic_tangent")(l, e0, A)
     straight = A[: getattr(kernels, f"{name}_continuum_stiffness")(l, S).size]  # whose damping kernels the engine takes
     C = getattr(kernels, f"{name}_continuum_damping_tangent")(l, e0, 0 * e0, straight, 1.0, 1.0)

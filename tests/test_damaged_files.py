@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import xarray
 from funicular import FunicularError, FunicularWarning, ResultFileError, load_run
-from funicular.results import netcdf
+from funicular.results import netcdf_header
 from funicular.results.checkpoints import Checkpoint
 from funicular.results.checksums import row_checksums
 from funicular.results.netcdf import File
@@ -145,10 +145,10 @@ def test_each_bit_of_a_row_changes_its_checksum():
 def with_right_checksum(data: bytes) -> bytes:
     """A file whose header was changed, with the checksum that is then right, where it can still be parsed."""
     try:
-        _, _, places, entries = netcdf._parse(data)
+        _, _, places, entries = netcdf_header.parsed(data)
         first = min(entry.begin for entry in entries.values() if entry.in_rows)
         at, size = places["header_checksum"]
-        return data[:at] + netcdf._header_checksum(data[:first], places).encode() + data[at + size :]
+        return data[:at] + netcdf_header.header_checksum(data[:first], places).encode() + data[at + size :]
     except (ValueError, LookupError, struct.error, UnicodeDecodeError, OverflowError):
         return data
 

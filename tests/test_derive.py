@@ -6,22 +6,23 @@ import os
 import subprocess
 import sys
 import time
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import pytest
+from funicular.derive import pipeline
 from funicular.derive.catalogue import families
-from funicular.derive.codegen import drift
-from funicular.derive.codegen import provenance as sources
+from funicular.derive.codegen import drift, provenance
 from funicular.derive.codegen import rendering as emit
+from funicular.derive.codegen.family import Family, FamilyError
 from funicular.derive.codegen.program import Program
-from funicular.derive.spec import Family, FamilyError
 from funicular.derive.verify.compiled import compiler
+from funicular.kernels.elements import of_manifest
 from operation_ceilings import CEILINGS
 
 
 @dataclass
-class DirectionalDerivative:
+class Derivation:
     """Generated files from the specs, processor seconds that they took, and hashes of another process's."""
 
     files: dict[str, str]
@@ -34,13 +35,13 @@ def hashes(files: dict[str, str]) -> str:
 
 
 @pytest.fixture(scope="module")
-def derivation() -> DirectionalDerivative:
-    script = "from funicular.derive import drift; from test_derive import hashes; print(hashes(drift.generate()))"
+def derivation() -> Derivation:
+    script = "from funicular.derive import pipeline; from test_derive import hashes; print(hashes(pipeline.generate()))"
     other = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True,
                              cwd=Path(__file__).parent, env={**os.environ, "PYTHONHASHSEED": "4242"})
     start = time.process_time()
-    files = drift.generate()
-    return DirectionalDerivative(files, time.process_time() - start, other.communicate()[0].strip())
+    files = pipeline.generate()
+    return Derivation(files, time.process_time() - start, other.communicate()[0].strip())
 
 
 @pytest.fixture(scope="module")
@@ -59,11 +60,11 @@ def copy(tmp_path, monkeypatch, derived) -> Path:
 @pytest.fixture
 def remembered(monkeypatch, derived):
     """A whole check without a new derivation."""
-    monkeypatch.setattr(drift, "generate", lambda names=None, show=False: dict(derived))
+    monkeypatch.setattr(pipeline, "generate", lambda names=None, show=False: dict(derived))
 
 
 def test_checked_in_files_agree_with_the_specs(remembered, capsys):
-    assert drift.main([], check=True) == 0, capsys.readouterr().out
+    assert pipeline.main([], check=True) == 0, capsys.readouterr().out
 
 
 def test_everything_is_derived_within_a_minute_of_one_core(derivation):
@@ -124,7 +125,7 @@ def test_what_a_build_and_an_import_leave_is_no_drift(copy, remembered):
                  "__pycache__/__init__.cpython-312.pyc"):
         (copy / name).parent.mkdir(exist_ok=True)
         (copy / name).write_text("")
-    assert drift.extra() == []
+    assert drift.extra(families()) == []
 
 
 @pytest.mark.parametrize(("damage", "told", "mended"), [
@@ -137,17 +138,17 @@ def test_what_a_build_and_an_import_leave_is_no_drift(copy, remembered):
     (_no_manifest, ("differs: generated/manifest.json",), True),
 ], ids=lambda v: v.__name__.strip("_") if callable(v) else "")
 def test_check_names_what_is_wrong_and_the_command_that_mends_it(copy, remembered, capsys, damage, told, mended):
-    assert drift.main([], check=True) == 0
+    assert pipeline.main([], check=True) == 0
     damage(copy)
     before = contents(copy)
     capsys.readouterr()
-    assert drift.main([], check=True) == 1
+    assert pipeline.main([], check=True) == 1
     out, err = capsys.readouterr()
     assert all(text in out for text in told), out
     assert ("`funicular derive` mends it" in err) == mended
     assert contents(copy) == before, "a check writes nothing"
-    assert drift.main([]) == 0
-    assert drift.main([], check=True) == (0 if mended else 1)
+    assert pipeline.main([]) == 0
+    assert pipeline.main([], check=True) == (0 if mended else 1)
 
 
 def test_a_name_derives_and_writes_that_family_alone(copy, monkeypatch):
@@ -158,30 +159,30 @@ def test_a_name_derives_and_writes_that_family_alone(copy, monkeypatch):
     seen = []
     derive = emit.derive
     monkeypatch.setattr(emit, "derive", lambda family: seen.append(family.name) or derive(family))
-    assert drift.main(["rigid"]) == 0
+    assert pipeline.main(["rigid"]) == 0
     assert seen == ["rigid"]
     assert rigid.read_text() == good
     assert beam.read_text() == "damaged too"
 
 
 def test_a_name_keeps_the_other_families_as_the_manifest_has_them(copy, derived):
-    drift.main(["rigid"])
+    pipeline.main(["rigid"])
     manifest, whole = json.loads((copy / "manifest.json").read_text()), json.loads(derived["manifest.json"])
     assert manifest == whole
     del manifest["families"]["slide_beam24_rigid"]
     (copy / "manifest.json").write_text(json.dumps(manifest))
-    drift.main(["rigid"])
+    pipeline.main(["rigid"])
     assert "slide_beam24_rigid" not in (copy / "kernels.h").read_text(), "a family not derived yet stays out"
 
 
 def test_check_of_a_name_gives_the_command_with_the_name(copy, capsys):
     (copy / "rigid.c").write_text("damaged")
-    assert drift.main(["rigid"], check=True) == 1
+    assert pipeline.main(["rigid"], check=True) == 1
     assert "`funicular derive rigid` mends it" in capsys.readouterr().err
 
 
 def test_an_unknown_name_gets_the_near_ones(capsys):
-    assert drift.main(["beam42"]) == 1
+    assert pipeline.main(["beam42"]) == 1
     assert 'no spec "beam42"; did you mean beam24' in capsys.readouterr().err
 
 
@@ -192,7 +193,7 @@ def test_a_folder_that_cannot_be_written_is_told(copy, monkeypatch, capsys):
         raise PermissionError(13, "Permission denied", "rigid.c")
 
     monkeypatch.setattr(Path, "write_text", refuse)
-    assert drift.main(["rigid"]) == 1
+    assert pipeline.main(["rigid"]) == 1
     assert "rigid.c" in capsys.readouterr().err
 
 
@@ -214,14 +215,26 @@ def test_kernels_of_a_role_that_differ_are_refused_or_declared():
 
     square, box = family("square", "a"), family("box", "ab")
     with pytest.raises(FamilyError, match=r'role "shape": .* kernel area .* square has \(fu_real a, fu_real \*A\), '
-                                        r"box has \(fu_real a, fu_real b, fu_real \*A\).* Family.own"):
+                                        r"box has \(fu_real a, fu_real b, fu_real \*A\).* Family.outside_table"):
         emit.render([square, box], [], print)
     with pytest.raises(FamilyError, match=r"other has \(none\)"):
         emit.render([square, replace(family("other", "a"), programs=[])], [], print)
-    apart = [family("square", "a", own=("area",)), family("box", "ab", own=("area",))]
+    apart = [family("square", "a", outside_table=("area",)), family("box", "ab", outside_table=("area",))]
     header = emit.render(apart, [], print)["kernels.h"]
     assert "void square_area(fu_real a, fu_real *A);" in header
     assert "(*area)" not in header
+
+
+def test_a_scene_knows_of_a_law_what_its_spec_says(derived):
+    """The traits of the specs are those of the manifest, and the runtime reads all of them."""
+    elements = json.loads(derived["manifest.json"])["elements"]
+    for family in families().values():
+        if family.role == "law":
+            known = of_manifest({"elements": elements})[family.element.name].laws[family.law]
+            said = asdict(family.traits) | {"stiffness_of": family.stiffness_of,
+                                            "discrete_gradient": "discrete_force" not in family.missing}
+            assert asdict(known) == said
+            assert known.straight in {"", *family.element.laws}
 
 
 def test_the_manifest_holds_the_hashes_of_the_files(derived):
@@ -238,16 +251,19 @@ def test_the_manifest_holds_the_hashes_of_the_files(derived):
 
 
 def test_the_spec_hash_covers_all_that_decides_a_family():
-    beam = set(sources.deciding(families()["beam24"].modules))
-    assert beam >= {"elements/beam24.py", "element_kernels.py", "moments.py", "spec.py", "stages.py", "printer.py",
-                    "codegen/rendering.py", "codegen/templates/family.c.jinja"}
-    law = set(sources.deciding(families()["cable12_green_exact"].modules))
-    assert law >= {"elements/cable12.py", "law_kernels.py", "laws/cable.py", "gram.py", "gram_tangent.py", "moments.py"}
-    assert not any(name.startswith(("gram", "laws")) for name in beam)
+    beam = set(provenance.deciding(families()["beam24"].modules))
+    assert beam >= {"elements/beam24.py", "elements/kernels.py", "algebra/section_integrals.py", "spec.py",
+                    "codegen/program.py", "codegen/c_printer.py", "codegen/rendering.py",
+                    "codegen/templates/family.c.jinja"}
+    law = set(provenance.deciding(families()["cable12_green_exact"].modules))
+    assert law >= {"elements/cable12.py", "laws/kernels.py", "laws/cable/cable.py", "algebra/gram.py",
+                   "algebra/gram_tangent.py", "algebra/section_integrals.py"}
+    assert not any(name.startswith(("algebra/gram", "laws")) for name in beam)
     assert {"laws/__init__.py", "laws/stress_free.py"} <= law, "a package and its module, by one import"
-    slide = set(sources.deciding(families()["slide_beam24_rigid"].modules))
-    assert slide >= {"joints/slide.py", "elements/beam24.py", "bodies/rigid.py", "frames.py", "stages.py"}
-    assert "joints/slide.py" not in beam | law
+    slide = set(provenance.deciding(families()["slide_beam24_rigid"].modules))
+    assert slide >= {"couplings/slide.py", "elements/beam24.py", "bodies/rigid.py", "algebra/tangent_frame.py",
+                     "codegen/program.py"}
+    assert "couplings/slide.py" not in beam | law
     assert not any(name.startswith("verify") for name in beam | law | slide)
 
 

@@ -8,7 +8,8 @@ from funicular.derive.catalogue import families
 from funicular.derive.elements import ELEMENTS
 from funicular.derive.laws.continuum.continuum import Form
 from funicular.derive.spec import ASSUMED_LAWS, CABLE_LAWS, Element, l, x, y, z
-from funicular.derive.verify.states import element_state, loads, reference, rotation, section
+from funicular.derive.verify.samples.element import element_state, loads
+from funicular.derive.verify.samples.shapes import reference, rotation, section
 from funicular.generated import kernels
 from funicular.kernels.elements import manifest
 from funicular.model.constants import element_constants
@@ -58,7 +59,7 @@ class Elastic:
             S = S if self.element.dim == 3 else S[[0, 1, 5, 6]]
         else:
             S = cable_stiffness(law, area, EI)
-        self.A = element_constants(kernels, name, law, self.l, S, *at_rest(name, law, self.l))
+        self.A = element_constants(None, name, law, self.l, S, *at_rest(name, law, self.l))
 
     def __call__(self, name: str):
         return kernel(self._family, name)
@@ -306,7 +307,7 @@ def test_nodal_conditions_that_do_not_fix_the_basis_are_refused():
 
 
 def test_beam24_mass_as_published():
-    """CASES E1."""
+    """Case E1 of tests/benchmarks/published."""
     m = kernels.beam24_mass(1.0, 7850.0, section(0.1, 0.1))
     row = [29.1571428571429, 4.11190476190476, 0, 0, 10.0928571428571, -2.42976190476190, 0, 0]
     np.testing.assert_allclose(m[0], row, rtol=2e-14)

@@ -7,21 +7,29 @@ from types import ModuleType, SimpleNamespace
 import pytest
 from fake_recording import fake_recording
 from funicular import EquilibriumError, Scene, SceneError, load_scene
+from funicular.results import recording
+from funicular.results.equilibrium import Equilibrium
+
+
+class State(Equilibrium):
+    """A state of rest that nothing was solved for."""
+
+    def __init__(self):
+        pass
+
+    def check_fits(self, scene):
+        pass
 
 
 @pytest.fixture
 def solvers(monkeypatch):
-    """Stand-ins for the modules that search, find modes and run, and what they were called with."""
+    """Stand-ins for the modules of funicular.solve, and what they were called with."""
     calls = SimpleNamespace(static=[], modal=[], model=[])
-    static, modal, model = (ModuleType(f"funicular.{name}") for name in ("solve.static", "solve.modes", "model.build"))
+    static, modal, model = (ModuleType(f"funicular.solve.{name}") for name in ("static", "modes", "run"))
 
-    class Equilibrium:
-        def check_fits(self, scene):
-            pass
-
-    def equilibrium(scene, settings, start):
+    def equilibrium(scene, settings, start, made):
         calls.static.append(settings)
-        return Equilibrium()
+        return State()
 
     def modes(scene, n, about):
         calls.modal.append((n, about))
@@ -31,9 +39,10 @@ def solvers(monkeypatch):
         calls.model.append((settings.initial, start))
         return fake_recording(scene)
 
-    static.Equilibrium, static.equilibrium, modal.modes, model.simulate = Equilibrium, equilibrium, modes, simulate
+    static.equilibrium, modal.modes, model.simulate = equilibrium, modes, simulate
     for module in (static, modal, model):
         monkeypatch.setitem(sys.modules, module.__name__, module)
+    monkeypatch.setattr(recording, "recorded", lambda recorded, *_: recorded)
     return calls
 
 

@@ -6,7 +6,7 @@ import funicular as fu
 import numpy as np
 import pytest
 from funicular.model.build import build
-from funicular.model.redundant_constraints import redundant, settle
+from funicular.model.redundant_constraints import drop_redundant_rows, redundant
 from funicular.parts.settings import RunSettings
 from funicular.solve.diagnosis import damping, stopped, unexplained
 
@@ -45,7 +45,7 @@ def test_a_state_without_a_compliance(S):
 @pytest.mark.parametrize("S", [np.nan, None])
 def test_a_start_without_a_compliance(S):
     model = build(two_hinges())
-    assert settle(model, failed(model, S)) == []
+    assert drop_redundant_rows(model, failed(model, S)) == []
 
 
 def test_a_failure_without_a_cause():

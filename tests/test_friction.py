@@ -5,9 +5,8 @@ Tolerances without another reason are what the wire's own motion leaves (see wir
 
 import numpy as np
 import pytest
-from funicular import Buffer, Friction, HardStop, Material, Ramp, Rectangle, Scene, SceneError, TableSignal
+from funicular import Buffer, Friction, HardStop, Material, Ramp, Rectangle, Scene, SceneError, TableSignal, load_run
 from funicular.results import streaming
-from funicular.results.run import load_run
 from scenery import add_cable, largest
 from test_streaming import Killed, content, failing
 from wires import MASS, SLOPE, G, block, told, unbalanced, wire

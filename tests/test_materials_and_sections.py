@@ -95,8 +95,8 @@ def test_rotary_inertia_apart_from_the_stiffness():
 
     expected = np.pi / 2 * np.sqrt(8e10 / 7850)
     assert turning() == pytest.approx(expected, rel=2e-3)
-    assert turning(rotary_moment_yy=16e-9) == pytest.approx(expected / 4, rel=2e-3)
-    assert turning(rotary_moment_yy=12e-9, rotary_moment_zz=20e-9) == pytest.approx(expected / 4, rel=2e-3)
+    assert turning(rotary_moment_about_z=16e-9) == pytest.approx(expected / 4, rel=2e-3)
+    assert turning(rotary_moment_about_z=12e-9, rotary_moment_about_y=20e-9) == pytest.approx(expected / 4, rel=2e-3)
 
 
 def test_rotary_inertia_slows_bending():
@@ -105,7 +105,7 @@ def test_rotary_inertia_slows_bending():
 
     def lowest(rotary):
         section = GeneralSection(area=1e-2, second_moment_about_z=1e-8, torsion_constant=2e-8, shear_factors=(1, 1),
-                          rotary_moment_yy=rotary)
+                          rotary_moment_about_z=rotary)
         scene = Scene(gravity=(0, 0, 0))
         beam = scene.cable("wire", start=(0, 0, 0), end=(1, 0, 0), elements=32, element="beam12p", law="structural",
                            section=section, material=material)
@@ -119,8 +119,8 @@ def test_rotary_inertia_slows_bending():
 def test_rotary_inertia_in_a_file():
     scene = cable(section=GeneralSection(area=1e-4, second_moment_about_z=1e-9, torsion_constant=2e-9,
                                          shear_factors=(1, 1),
-                                  rotary_moment_zz=3e-9))
-    assert "rotary_moment_zz = 3e-09" in scene.to_toml()
+                                  rotary_moment_about_y=3e-9))
+    assert "rotary_moment_about_y = 3e-09" in scene.to_toml()
     from funicular.scene_file import loads
 
     assert loads(scene.to_toml(), "here").to_toml() == scene.to_toml()
@@ -129,4 +129,5 @@ def test_rotary_inertia_in_a_file():
 def test_a_cable_has_no_rotary_inertia():
     with pytest.raises(SceneError, match=r"section\.rotary_moment is given, but cable12 has no rotary inertia; leave "
                                          'it out, or take element="beam24"'):
-        cable(element="cable12", law=None, section=GeneralSection(area=1, second_moment_about_z=1, rotary_moment_yy=2))
+        cable(element="cable12", law=None,
+              section=GeneralSection(area=1, second_moment_about_z=1, rotary_moment_about_z=2))

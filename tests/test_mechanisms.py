@@ -1,4 +1,4 @@
-"""Mechanisms: published benchmarks (CASES.md, T1 to T3), loops that are over-constrained, gaps at the start."""
+"""Mechanisms: published benchmarks, loops that are over-constrained, gaps at the start."""
 
 import numpy as np
 import pytest

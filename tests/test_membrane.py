@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import taut_rope
 from funicular import Circle, FunicularWarning, Material, Ramp, Scene, SceneError
-from funicular.derive.verify.states import reference, rotation
+from funicular.derive.verify.samples.shapes import reference, rotation
 from funicular.generated import kernels
 from funicular.kernels.elements import built_in
 from funicular.parts.section_stiffness import STABILISATION, section_stiffness

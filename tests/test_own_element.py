@@ -12,6 +12,7 @@ from pathlib import Path
 import funicular
 import numpy as np
 import pytest
+from funicular import load_run
 from funicular.cli import app
 from funicular.derive.catalogue import families
 from funicular.derive.elements.cable18 import CABLE18
@@ -22,7 +23,6 @@ from funicular.generated import kernels
 from funicular.kernels.elements import built_in, gauge, manifest
 from funicular.kernels.libraries import LibraryError, manifest_digest
 from funicular.kernels.libraries import load as load_library
-from funicular.results.run import load_run
 from funicular.scene_file import load_scene, loads
 from funicular.view.plot import save_plots
 from pages import page
@@ -45,13 +45,13 @@ MINE = Element(
 '''
 LAW = '''
 import sympy as sp
-from funicular.derive.laws.cable import Cable
+from funicular.derive.laws.cable.cable import Cable
 
 
 class Own(Cable):
     """A cable with the green strain and the linear curvature, but for what stands below."""
 
-    name, like = "own", "green_linear"
+    name, stiffness_of = "own", "green_linear"
 
     def __init__(self, gram):
         super().__init__(gram, "green", "linear")
@@ -239,7 +239,8 @@ def test_a_law_that_cannot_be_is_told_its_property(tmp_path, law, told, capsys):
 
 def test_a_law_without_a_name(tmp_path):
     file = spec(tmp_path, law="    pass\n")
-    file.write_text(file.read_text().replace('name, like = "own", "green_linear"', 'like = "green_linear"'))
+    text = file.read_text()
+    file.write_text(text.replace('name, stiffness_of = "own", "green_linear"', 'stiffness_of = "green_linear"'))
     assert "law Own has no class attribute name" in refused(file, tmp_path / "library")
 
 

@@ -5,7 +5,7 @@ import pytest
 from funicular import load_scene
 from paper52 import KINDS, apart, scene
 
-# CASES.md S2, an independent formulation: the ball at t, the slide at the end
+# an independent formulation: the ball at t, the slide at the end
 BALL = {0.5: (0.64119495, -0.52848962), 1.0: (1.06010457, -0.52851147), 1.5: (1.39133466, -0.49815146)}
 SLIDE = (1.35843121, 0.00076473)
 

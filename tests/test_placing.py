@@ -89,7 +89,7 @@ def test_joins_that_hold_what_is_held(scene):
         scene.tie("rope", s=0, to="beam", at=2)
     with refused('tie "tie_2": the nodes are one and the same'):
         scene.tie("rope", s=0, to="rope", at=0)
-    with refused('join "corner": the nodes are 2 m apart, at (0, 0, 0) and (2, 0, 0) m; '
+    with refused('tie "corner": the nodes are 2 m apart, at (0, 0, 0) and (2, 0, 0) m; '
                  "draw both cables through the same point"):
         scene.tie("beam", s=0, to="rope", at=0, name="corner")
     scene.cable("third", start=(2, 0, 0), end=(2, 2, 0), elements=1, section=Circle(radius=0.1), material=SOFT,

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from funicular.derive.catalogue import families
 from funicular.derive.elements import ELEMENTS
-from funicular.derive.verify.states import SEEDS, element_state, loads, states
+from funicular.derive.verify.samples import SEEDS, states
+from funicular.derive.verify.samples.element import element_state, loads
 from funicular.generated import kernels
 
 PAIRS = [("cable8p", "cable12"), ("beam12p", "beam24")]

@@ -15,7 +15,7 @@ SETTINGS = RunSettings(duration=1.0)
 @pytest.fixture
 def run():
     scene = load_scene("paper51")
-    return Run.from_recording(fake_recording(scene), scene, SETTINGS)
+    return Run.from_recording(fake_recording(scene), scene, SETTINGS, Scene.from_toml)
 
 
 def test_files(run, tmp_path):
@@ -101,7 +101,7 @@ def test_a_scene_without_a_slide(tmp_path):
     recording.slides, recording.bodies = {}, {}
     scene.slides.clear()
     scene.bodies.clear()
-    written = save_plots(Run.from_recording(recording, scene, SETTINGS), tmp_path)
+    written = save_plots(Run.from_recording(recording, scene, SETTINGS, Scene.from_toml), tmp_path)
     assert [p.name for p in written] == ["shape.png", "energy.png"]
 
 
@@ -114,4 +114,4 @@ def test_a_run_that_stopped_at_once(tmp_path):
         for arrays in group.values():
             arrays |= {k: v[:1] for k, v in arrays.items() if k not in ("node_s", "vector_names")}
     recording.energy = {k: v[:1] for k, v in recording.energy.items()}
-    assert len(save_plots(Run.from_recording(recording, scene, SETTINGS), tmp_path)) == 4
+    assert len(save_plots(Run.from_recording(recording, scene, SETTINGS, Scene.from_toml), tmp_path)) == 4

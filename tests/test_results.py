@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray
 from fake_recording import fake_recording
-from funicular import ResultFileError, UnknownResultError, load_run, load_scene
+from funicular import ResultFileError, Scene, UnknownResultError, load_run, load_scene
 from funicular.parts.settings import RunSettings
 from funicular.results.netcdf import File
 from funicular.results.run import Run
@@ -50,7 +50,7 @@ def recording():
 
 @pytest.fixture
 def run(recording):
-    return Run.from_recording(recording, load_scene("paper51"), RunSettings(duration=1.0, tol=1e-5))
+    return Run.from_recording(recording, load_scene("paper51"), RunSettings(duration=1.0, tol=1e-5), Scene.from_toml)
 
 
 def test_names_and_shapes(run, recording):
@@ -158,7 +158,7 @@ def test_supports_joins_and_springs_have_results(recording):
     recording.clamps, recording.motions, recording.ties = {"wire@0.5": turn}, {"wire@1": turn}, {"corner": turn}
     recording.springs = {"tie": {"tension": np.zeros(101), "length": np.ones(101)}}
     recording.energy["external"] = np.zeros(101)
-    run = Run.from_recording(recording, load_scene("paper51"), RunSettings(duration=1.0))
+    run = Run.from_recording(recording, load_scene("paper51"), RunSettings(duration=1.0), Scene.from_toml)
     units = {name: run.variables[name].units for name in run.keys() if name not in recording.energy}
     assert {"wire@0.5.force": "N", "wire@0.5.moment": "N m", "wire@1.moment": "N m", "corner.force": "N",
             "tie.tension": "N", "tie.length": "m", "energy.external": "J"}.items() <= units.items()

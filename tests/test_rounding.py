@@ -16,7 +16,7 @@ from funicular.derive.verify import command as verify
 from funicular.derive.verify.inputs import KINDS, Input, inputs
 from funicular.derive.verify.numbers import Numbers, exact, real
 from funicular.derive.verify.rounding import ENTRY, NORM, measure
-from funicular.derive.verify.states import states
+from funicular.derive.verify.samples import states
 from funicular.generated import kernels
 
 

@@ -119,18 +119,18 @@ def test_unnamed_parts_take_the_next_number(scene):
 def test_a_free_name_is_found_in_few_looks(scene, monkeypatch):
     """2,000 unnamed forces took 71 s: each looked at the names of all parts as many times as there were forces."""
     scene.rigid_body("A", mass=1, inertia=(1, 1, 1), position=(0, 0, 0))
-    looks, look = [], Scene._part_named
-    monkeypatch.setattr(Scene, "_part_named", lambda *a: (looks.append(a), look(*a))[1])
+    looks, look = [], Scene.part_named
+    monkeypatch.setattr(Scene, "part_named", lambda *a: (looks.append(a), look(*a))[1])
     for _ in range(500):
         scene.force("A", value=(0, 0, 1))
     assert len(looks) < 500 * 20
 
 
 def test_supports_look_only_at_what_is_on_their_cable(scene, monkeypatch):
-    import funicular.placing as placing
+    from funicular.parts import places
 
-    looks, look = [], placing.node_of
-    monkeypatch.setattr(placing, "node_of", lambda *a: (looks.append(a), look(*a))[1])
+    looks, look = [], places.node_of
+    monkeypatch.setattr(places, "node_of", lambda *a: (looks.append(a), look(*a))[1])
     wire = scene.cables["wire"]
     for k in range(50):
         scene.add(wire.model_copy(update={"name": f"wire_{k}"}))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from funicular.derive.elements import ELEMENTS
-from funicular.derive.verify.states import reference, rotation, section
+from funicular.derive.verify.samples.shapes import reference, rotation, section
 from funicular.generated import kernels
 from funicular.model.constants import element_constants
 from test_elements import CABLES, LAWS, arc, at_rest, cable_stiffness
@@ -83,7 +83,7 @@ class Cantilever:
         return [slice(k * self.step, k * self.step + self.size) for k in range(self.n)]
 
     def solve(self):
-        A = element_constants(kernels, self.element.name, self.law, self.l, self.S, *self.at_rest)
+        A = element_constants(None, self.element.name, self.law, self.l, self.S, *self.at_rest)
         force, tangent = kernel(self.family, "elastic_force"), kernel(self.family, "elastic_tangent")
         for part in np.linspace(0.1, 1, 10):
             for _ in range(30):

@@ -24,7 +24,7 @@ def poisson_split():
 
 
 def test_poisson_split_as_published():
-    """CASES E1: node 2 moved by 1 mm in z; force on node 1 in x and z, and none in y."""
+    """Case E1 of tests/benchmarks/published: node 2 moved by 1 mm in z; force on node 1 in x and z, and none in y."""
     e = straight()
     e[4, 2] = 0.001
     f = kernels.beam24_continuum_elastic_force(1.0, e, poisson_split())

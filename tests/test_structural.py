@@ -4,7 +4,7 @@ import funicular as fu
 import numpy as np
 import pytest
 from funicular.derive.elements import ELEMENTS
-from funicular.derive.verify.states import reference, rotation
+from funicular.derive.verify.samples.shapes import reference, rotation
 from funicular.generated import kernels
 
 

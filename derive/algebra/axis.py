@@ -21,8 +21,8 @@ class Axis:
         self._xi = program.define("xi", self.x * self._inverse)
 
     def coordinates(self) -> np.ndarray:
-        """Input e."""
-        return self.program.input("e", (self.element.n_vectors, self.element.dim), "m, 1", "nodal vectors (eq 1)")
+        """Declare the input e (vectors, dim) and return it."""
+        return self.program.input("e", (self.element.n_vectors, self.element.dim), "m, 1", "nodal vectors e, eq 1")
 
     def shape(self, by: str = "") -> np.ndarray:
         """N_k(x, 0, 0), or derivatives there by the coordinates `by`: powers of l times polynomials in x/l."""
@@ -37,7 +37,7 @@ class Axis:
         return self.program.define(name, scale * self.program.define(f"P{name[1:]}", polynomial))
 
     def vector(self, name: str, shape: np.ndarray, e: np.ndarray) -> np.ndarray:
-        """Sum of shape functions times nodal vectors, positions counted from the first node.
+        """Return the sum of shape functions times nodal vectors, positions counted from the first node.
 
         So no digits are lost far from the origin; derivatives of the shape functions do not see the difference.
         """

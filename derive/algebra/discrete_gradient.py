@@ -56,7 +56,7 @@ class DiscreteGradient:
         return now if now == then else (now + then) / 2
 
     def means(self, name: str, vector: np.ndarray) -> np.ndarray:
-        """A vector of mean values."""
+        """Return a vector of mean values."""
         return self.program.vector(name, [self.mean(x) for x in vector])
 
     def gradient(self, expr: sp.Expr, by: Sequence[sp.Symbol], constant: Sequence[sp.Symbol] = ()) -> list[sp.Expr]:
@@ -67,16 +67,16 @@ class DiscreteGradient:
         return [_Along(self, symbol, by, constant)(expr) for symbol in by]
 
     def moves(self, symbol: sp.Symbol) -> sp.Expr | None:
-        """What a symbol differs from by a constant."""
+        """Return what a symbol differs from by a constant."""
         return self._moves.get(symbol)
 
 
 class _Along:
     """Discrete derivatives by one symbol, the others of `by` held."""
 
-    def __init__(self, secant: DiscreteGradient, symbol: sp.Symbol, by: Sequence[sp.Symbol],
+    def __init__(self, discrete: DiscreteGradient, symbol: sp.Symbol, by: Sequence[sp.Symbol],
                  constant: Sequence[sp.Symbol]):
-        self.secant, self.tag = secant, symbol.name
+        self.discrete, self.tag = discrete, symbol.name
         self.known: dict[sp.Symbol, sp.Expr] = {s: sp.Integer(s == symbol) for s in by}
         self.known.update(dict.fromkeys(constant, sp.S.Zero))
 
@@ -88,25 +88,25 @@ class _Along:
         if expr.is_Mul:
             return self._product(expr.args)
         if expr.is_Pow:
-            return self._power(expr, *self.secant.pair(_root(expr)))
+            return self._power(expr, *self.discrete.pair(_root(expr)))
         return sp.S.Zero
 
     def _symbol(self, symbol: sp.Symbol) -> sp.Expr:
         if symbol not in self.known:
-            expr, value = self.secant.moves(symbol), sp.S.Zero
+            expr, value = self.discrete.moves(symbol), sp.S.Zero
             if expr is not None and expr.is_Pow and abs(expr.exp) in (1, sp.Rational(1, 2)):
-                now, then = self.secant.pair(symbol)  # the value itself: no second root or quotient
+                now, then = self.discrete.pair(symbol)  # the value itself: no second root or quotient
                 value = self._power(expr, *((now, then) if expr.exp > 0 else (1 / now, 1 / then)))
             elif expr is not None:
                 value = self(expr)
-            self.known[symbol] = self.secant.program.define(f"D_{symbol.name}_{self.tag}", value)
+            self.known[symbol] = self.discrete.program.define(f"D_{symbol.name}_{self.tag}", value)
         return self.known[symbol]
 
     def _product(self, factors: Sequence[sp.Expr]) -> sp.Expr:
         product, change = sp.S.One, sp.S.Zero
         for factor in factors:
             moved = self(factor)
-            change = self.secant.mean(factor) * change + (self.secant.mean(product) * moved if moved != 0 else 0)
+            change = self.discrete.mean(factor) * change + (self.discrete.mean(product) * moved if moved != 0 else 0)
             product = product * factor
         return change
 
@@ -130,8 +130,8 @@ def _root(expr: sp.Expr) -> sp.Expr:
 
 
 def staged(program: Program, vectors: np.ndarray) -> tuple[Program, np.ndarray]:
-    """A program for `DiscreteGradient` with the symbols of `program`, whose one input c has the shape of these vectors;
-    and c.
+    """Return a program for `DiscreteGradient` with the symbols of `program`, whose one input c has the shape of these
+    vectors; and c.
     """
     law = Program("law", "a law at one state", "")
     law.symbols.update(program.symbols)

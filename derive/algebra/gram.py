@@ -20,7 +20,7 @@ import sympy as sp
 
 from ..codegen.program import Program
 from ..spec import Element, l, x, y, z
-from . import section_integrals as moments
+from . import section_integrals as integrals
 
 DIRECTIONS = "xyz"
 
@@ -33,12 +33,12 @@ class Gram:
         ring_basis, names = [], []
         for monomial in element.basis:
             a, b, c = sp.Poly(monomial, x, y, z).monoms()[0]
-            section = moments.Y**b * moments.Z**c
+            section = integrals.Y**b * integrals.Z**c
             if b == c == 0 and a > 0:  # the axis: psi' = P_{a-1}, so that r_x is a Legendre series
-                psi = _antiderivative(moments.legendre(a - 1))
+                psi = _antiderivative(integrals.legendre(a - 1))
                 names.append(f"t{a - 1}")
             else:
-                psi = section * moments.legendre(a)
+                psi = section * integrals.legendre(a)
                 names.append("y" * b + "z" * c + str(a))
             ring_basis.append(psi)
         self.psi = ring_basis[1:]
@@ -60,7 +60,7 @@ class Gram:
     @cached_property
     def gradient(self) -> list[list]:
         """F = sum_m c_m (x) gradient[m]: derivatives of psi_m by x, y, z in the ring."""
-        by = [moments.d_dx, lambda p: p.diff(moments.Y), lambda p: p.diff(moments.Z)]
+        by = [integrals.d_dx, lambda p: p.diff(integrals.Y), lambda p: p.diff(integrals.Z)]
         return [[by[i](p) for i in range(self.element.dim)] for p in self.psi]
 
     @cached_property
@@ -70,7 +70,7 @@ class Gram:
         return [int(a == b and self.names[a] in axis) for a, b in self.pairs]
 
     def differences(self, program: Program, e: np.ndarray, w: sp.Expr, tag: str = "") -> np.ndarray:
-        """Stage: nodal vectors e (n, dim) to strain vectors (m, dim), through chords (r_k - r_1) w, w = 1/l."""
+        """Return the strain vectors (m, dim) of nodal vectors e (n, dim), through chords (r_k - r_1) w, w = 1/l."""
         d = [program.vector(f"chord{tag}{k}" if v else "", (e[k] - e[0]) * w) if v else e[k]
              for k, v in enumerate(self.element.is_position)]
         return np.array([
@@ -79,12 +79,12 @@ class Gram:
             for m, name in enumerate(self.names)])
 
     def gram(self, program: Program, c: np.ndarray) -> list[sp.Expr]:
-        """Stage: G - G0 over the pairs."""
+        """Return G - G0 over the pairs."""
         return [program.define(f"G_{self.pair(p)}", c[a].dot(c[b]) - self.reference[p])
                 for p, (a, b) in enumerate(self.pairs)]
 
     def gram_rate(self, program: Program, c: np.ndarray, rate: np.ndarray) -> list[sp.Expr]:
-        """Stage: dG/dt over the pairs."""
+        """Return dG/dt over the pairs."""
         return [program.define(f"dG_{self.pair(p)}", c[a].dot(rate[b]) + rate[a].dot(c[b]))
                 for p, (a, b) in enumerate(self.pairs)]
 
@@ -96,14 +96,14 @@ class Gram:
         return c[b] if a == m else c[a] if b == m else None
 
     def vector_forces(self, program: Program, c: np.ndarray, u: Sequence[sp.Expr]) -> np.ndarray:
-        """Stage: f_m = sum_p u_p dG_p/dc_m."""
+        """Return f_m = sum_p u_p dG_p/dc_m."""
         terms = [[u[p] * g for p in range(len(self.pairs)) if (g := self.by_vector(c, p, m)) is not None]
                  for m in range(len(self.names))]
         return np.array([program.vector(f"f_{name}", sum(t)) for name, t in zip(self.names, terms, strict=True)])
 
     def nodal_forces(self, program: Program, f: np.ndarray, w: sp.Expr) -> np.ndarray:
-        """Stage: forces on strain vectors to forces on nodal vectors, f_d = T' f_c."""
-        nodal = []
+        """Return the forces on nodal vectors (n, dim) from forces f on strain vectors, f_d = T' f_c, in N and N m."""
+        nodal: list = []
         for k, position in enumerate(self.element.is_position):
             column = sum(self.scaled[m][k] * f[m] for m in range(len(f)) if self.scaled[m][k] != 0)
             nodal.append(program.vector(f"f_{self.element.names[k]}", column * w if position else column))
@@ -118,17 +118,17 @@ class Gram:
                 for m in range(len(self.names))]
 
     def pair(self, p: int) -> str:
-        """Name of a Gram pair."""
+        """Return the name of a Gram pair."""
         a, b = self.pairs[p]
         return self.names[a] + self.names[b]
 
 
 def _antiderivative(p):
     """Integral from the element's start of a polynomial in X, times dx/dX = l/2."""
-    integral = sum((moments.RING(c / (k[0] + 1)) * moments.X ** (k[0] + 1) for k, c in p.terms()),
-                   moments.RING(0))
-    at_start = sum((c * (-1) ** k[0] for k, c in integral.terms()), moments.RING(0))
-    return (integral - at_start) * moments.L / 2
+    integral = sum((integrals.RING(c / (k[0] + 1)) * integrals.X ** (k[0] + 1) for k, c in p.terms()),
+                   integrals.RING(0))
+    at_start = sum((c * (-1) ** k[0] for k, c in integral.terms()), integrals.RING(0))
+    return (integral - at_start) * integrals.L / 2
 
 
 def _to_sympy(p) -> sp.Expr:

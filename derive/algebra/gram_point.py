@@ -7,14 +7,16 @@ from collections.abc import Sequence
 import numpy as np
 import sympy as sp
 
-from . import section_integrals as moments
+from . import section_integrals as integrals
 from .gram import Gram
 
 Expansion = dict[tuple[int, int], np.ndarray]
 
 
 def expansion(polynomials: Sequence, c: np.ndarray, X: sp.Expr, w: sp.Expr) -> Expansion:
-    """Sum of ring polynomials times strain vectors as a polynomial in y and z: {(power of y, power of z): vector}."""
+    """Return the sum of ring polynomials times strain vectors as a polynomial in y and z: {(power of y, power of z):
+    vector}.
+    """
     found: Expansion = {}
     for p, vector in zip(polynomials, c, strict=True):
         for (y, z), factor in by_section(p, X, w).items():
@@ -23,16 +25,16 @@ def expansion(polynomials: Sequence, c: np.ndarray, X: sp.Expr, w: sp.Expr) -> E
 
 
 def axis(gram: Gram, c: np.ndarray, X: sp.Expr, w: sp.Expr, order: int) -> np.ndarray:
-    """Derivative of the centreline by x, `order` times."""
+    """Return the derivative of the centreline by x, `order` times."""
     polynomials = [columns[0] for columns in gram.gradient]
     for _ in range(order - 1):
-        polynomials = [moments.d_dx(p) for p in polynomials]
+        polynomials = [integrals.d_dx(p) for p in polynomials]
     zero = np.full(gram.element.dim, sp.S.Zero)
     return expansion(polynomials, c, X, w).get((0, 0), zero)
 
 
 def by_section(p, X: sp.Expr, w: sp.Expr) -> dict[tuple[int, int], sp.Expr]:
-    """Factors, Horner's way in X and with one power of w = 1/l each, by the powers of y and z."""
+    """Return the factors, Horner's way in X and with one power of w = 1/l each, by the powers of y and z."""
     series: dict[tuple[int, int], dict[int, sp.Expr]] = {}
     for (x, y, z, l, u), c in p.terms():
         powers = series.setdefault((y, z), {}).setdefault(u - l, {})

@@ -16,50 +16,65 @@ Moduli = Mapping[tuple[int, int], sp.Expr]
 
 def blocks(gram: Gram, program: Program, c: np.ndarray, b: np.ndarray, moduli: Moduli,
            u: Sequence[sp.Expr]) -> np.ndarray:
-    """Stages: B(c)' A B(b) + u (x) I over strain vectors -> (n, n, dim, dim), B(c) = dG/dc, A by its non-zero entries.
+    """Return B(c)' A B(b) + u (x) I over strain vectors -> (n, n, dim, dim), B(c) = dG/dc, A by its non-zero entries.
 
     With b = c this is the elastic tangent; with b = tau (dc/dt + rate c) that of the damping force.
     """
     n, dim, symmetric = len(gram.names), gram.element.dim, c is b
+    resultants = _resultants(gram, program, b, moduli)
+    program.stage("B' A B + u (x) I: blocks over strain vectors")
+    block = np.zeros((n, n, dim, dim), dtype=object)
+    for m in range(n):
+        for k in range(m if symmetric else 0, n):
+            p = gram.pairs.index((min(m, k), max(m, k)))
+            stress = np.eye(dim, dtype=int) * (2 * u[p] if m == k else u[p])
+            name = f"K_{gram.names[m]}_{gram.names[k]}"
+            block[m, k] = _named(program, name, _outer(gram, c, resultants, m, k) + stress, symmetric and m == k)
+            if symmetric:
+                block[k, m] = block[m, k].T
+    return block
+
+
+def _resultants(gram: Gram, program: Program, b: np.ndarray, moduli: Moduli) -> dict[tuple[int, int], np.ndarray]:
+    """Return A B(b) by (Gram pair, strain vector), each (dim,), zeros left out."""
     program.stage("A B: stress resultants per strain vector")
-    t = {}
+    found = {}
     for p in range(len(gram.pairs)):
-        for m in range(n):
+        for m in range(len(gram.names)):
             alike: dict[sp.Expr, np.ndarray] = {}
             for q in range(len(gram.pairs)):
                 g = gram.by_vector(b, q, m)
                 if g is not None and (p, q) in moduli:
                     alike[moduli[p, q]] = alike.get(moduli[p, q], 0) + g
             if alike:
-                t[p, m] = program.vector(f"t_{gram.pair(p)}_{gram.names[m]}", sum(k * v for k, v in alike.items()))
-    program.stage("B' A B + u (x) I: blocks over strain vectors")
-    block = np.zeros((n, n, dim, dim), dtype=object)
-    for m in range(n):
-        for k in range(m if symmetric else 0, n):
-            outer = np.zeros((dim, dim), dtype=object)
-            for p in range(len(gram.pairs)):
-                g = gram.by_vector(c, p, m)
-                if g is not None and (p, k) in t:
-                    outer = outer + np.outer(g, t[p, k])
-            p = gram.pairs.index((min(m, k), max(m, k)))
-            outer = outer + np.eye(dim, dtype=int) * (2 * u[p] if m == k else u[p])
-            for i in range(dim):
-                for j in range(dim):
-                    if symmetric and m == k and j < i:
-                        continue
-                    block[m, k, i, j] = program.define(
-                        f"K_{gram.names[m]}_{gram.names[k]}_{DIRECTIONS[i]}{DIRECTIONS[j]}", outer[i, j])
-            if symmetric:
-                if m == k:
-                    for i in range(dim):
-                        for j in range(i):
-                            block[m, k, i, j] = block[m, k, j, i]
-                block[k, m] = block[m, k].T
-    return block
+                name = f"t_{gram.pair(p)}_{gram.names[m]}"
+                found[p, m] = program.vector(name, sum(k * v for k, v in alike.items()))
+    return found
+
+
+def _outer(gram: Gram, c: np.ndarray, resultants: Mapping[tuple[int, int], np.ndarray], m: int, k: int) -> np.ndarray:
+    """Return the block (dim, dim) of B(c)' A B(b) of the strain vectors m and k."""
+    dim = gram.element.dim
+    total = np.zeros((dim, dim), dtype=object)
+    for p in range(len(gram.pairs)):
+        g = gram.by_vector(c, p, m)
+        if g is not None and (p, k) in resultants:
+            total = total + np.outer(g, resultants[p, k])
+    return total
+
+
+def _named(program: Program, name: str, block: np.ndarray, symmetric: bool) -> np.ndarray:
+    """Return a block (dim, dim) with its entries named, those below the diagonal of a symmetric one after the others'.
+    """
+    named = np.zeros(block.shape, dtype=object)
+    for i, j in np.ndindex(*block.shape):
+        if not (symmetric and j < i):
+            named[i, j] = program.define(f"{name}_{DIRECTIONS[i]}{DIRECTIONS[j]}", block[i, j])
+    return np.triu(named) + np.triu(named, 1).T if symmetric else named
 
 
 def nodal_tangent(gram: Gram, program: Program, block: np.ndarray, w: sp.Expr, symmetric: bool) -> np.ndarray:
-    """Stages: T' K T over nodal coordinates -> (n, n); the first position is minus the sum of the others.
+    """Return T' K T over nodal coordinates -> (n, n); the first position is minus the sum of the others.
 
     Blocks are over the directions of space, or (1, 1) where all directions have the same.
     """
@@ -88,7 +103,7 @@ def nodal_tangent(gram: Gram, program: Program, block: np.ndarray, w: sp.Expr, s
 
 
 def from_others(element: Element, program: Program, K: np.ndarray, symmetric: bool) -> np.ndarray:
-    """Stage: rows and columns of the first position from the others: blocks (k, k, dim, dim) -> (n, n)."""
+    """Return the tangent (n, n) from blocks (k, k, dim, dim): the first position takes minus the sum of the others."""
     position, count, dim = element.is_position, element.n_vectors, K.shape[-1]
     others = [k for k in range(1, count) if position[k]]
     program.stage("the first position: rigid translation makes no force")

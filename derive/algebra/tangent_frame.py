@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import sympy as sp
 
@@ -9,7 +11,7 @@ from ..codegen.program import Program
 
 
 def unit(program: Program, name: str, vector: np.ndarray) -> np.ndarray:
-    """vector / |vector|."""
+    """Return vector / |vector|, named in the program."""
     inverse = program.define(f"inv_{name}", 1 / program.define(f"len_{name}", sp.sqrt(vector.dot(vector))))
     return program.vector(name, inverse * vector)
 
@@ -21,30 +23,31 @@ def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
-def spatial(vector: np.ndarray) -> np.ndarray:
-    """In three dimensions."""
+def spatial(vector: np.ndarray | Sequence) -> np.ndarray:
+    """Return a vector of the plane or of space with three components."""
     return np.concatenate([vector, np.full(3 - len(vector), sp.S.Zero)])
 
 
 def tangent_frame(program: Program, tangent: np.ndarray, director: np.ndarray | None) -> np.ndarray:
-    """A_t = [i j k] (eq 18): i along the tangent, k normal to tangent and director.
+    """Return A_t = [i j k], by columns: i along the tangent, k normal to tangent and director.
 
     In the plane [i j], whatever the director; in space without one, [i] is all that the tangent fixes. Eq 16 prints
     k = i x r_y/|r_y|, of unit length only where r_y is perpendicular to i: here the product is normalised. Singular
     where the director is along the tangent.
     """
+    # i = dr/ds (eq 13) with ds = |r_x| dx (eq 14), so that i = r_x/|r_x| (eq 15)
     i = unit(program, "i", tangent)
     if len(tangent) == 2:
         return np.stack([i, cross(np.array([1]), i)], axis=1)
     if director is None:
         return i[:, None]
-    k = unit(program, "k", program.vector("m", cross(i, director)))
-    j = program.vector("j", cross(k, i))
-    return np.stack([i, j, k], axis=1)
+    k = unit(program, "k", program.vector("m", cross(i, director)))  # (eq 16)
+    j = program.vector("j", cross(k, i))  # (eq 17)
+    return np.stack([i, j, k], axis=1)  # (eq 18)
 
 
 def turning(p: Program, A_t: np.ndarray, tangent: np.ndarray, director: np.ndarray | None = None) -> list[np.ndarray]:
-    """Rotation rate of the frame for each entry of tangent and director.
+    """Return the rotation rate of the frame for each entry of tangent and director.
 
     Not from derivatives of i: these are what is left of 1 - i_x^2, without digits where i is along an axis.
     """

@@ -5,22 +5,22 @@ A body (bodies/) gives its configuration and the derivations along its velocitie
 
 from __future__ import annotations
 
-from types import ModuleType
-
 import numpy as np
 
 from ..algebra.tangent_frame import cross
 from ..codegen.program import DirectionalDerivative, Program
+from .body import Body, Rider
 
 
-def build(body: ModuleType) -> list[Program]:
-    """Every kernel of a body."""
+def build(body: Body) -> list[Program]:
+    """Return the programs of every kernel of a body."""
     return [point(body), point_force(body), frame(body), inertia_force(body), inertia_tangent(body),
             kinetic_energy(body), discrete_point(body)]
 
 
-def _position(p: Program, body: ModuleType, b: np.ndarray, u: np.ndarray):
-    """Stage: p, with the axes and the derivations by translation and rotation."""
+def _position(p: Program, body: Body, b: np.ndarray, u: np.ndarray):
+    """Return A (dim, dim), the position p of the point u (dim,) in m, and the derivatives by translation and rotation.
+    """
     p.stage("position")
     A = body.axes(p, b)
     at = p.vector("p", body.origin(b) + body.arm(p, A, u))
@@ -35,8 +35,8 @@ def _jacobian(p: Program, at: np.ndarray, by: list[DirectionalDerivative]) -> np
     return p_q
 
 
-def point(body: ModuleType) -> Program:
-    """R + A u, along the motion."""
+def point(body: Body) -> Program:
+    """Return the kernel of the position R + A u, its Jacobian, velocity and acceleration bias."""
     p = Program(f"{body.NAME}_point", "position, Jacobian, velocity and acceleration bias of a point", body.SOURCE)
     b, u, w = body.configuration(p), body.attachment(p), body.velocity(p)
     A, at, by = _position(p, body, b, u)
@@ -48,8 +48,8 @@ def point(body: ModuleType) -> Program:
     return p
 
 
-def point_force(body: ModuleType) -> Program:
-    """p_q' f and its derivative."""
+def point_force(body: Body) -> Program:
+    """Return the kernel of the derivative of p_q' f, what a force f on a point puts on the body."""
     p = Program(f"{body.NAME}_point_force", "position and Jacobian of a point, derivative of the force p_q' f",
                 body.SOURCE)
     b, u = body.configuration(p), body.attachment(p)
@@ -63,8 +63,8 @@ def point_force(body: ModuleType) -> Program:
     return p
 
 
-def frame(body: ModuleType) -> Program:
-    """The body's axes, and what a moment on them does."""
+def frame(body: Body) -> Program:
+    """Return the kernel of the body's axes, their turn, and the derivative of a moment on them."""
     p = Program(f"{body.NAME}_frame", "axes, their turn, and the derivative of a moment on them", body.SOURCE)
     b = body.configuration(p)
     turns = body.N_VELOCITY - body.DIM
@@ -84,7 +84,7 @@ def frame(body: ModuleType) -> Program:
 class Step:
     """Input b_next and stages: the turn theta of a body over a step, and axes half-way."""
 
-    def __init__(self, p: Program, body: ModuleType, b: np.ndarray):
+    def __init__(self, p: Program, body: Rider, b: np.ndarray):
         self.b_next = p.input("b_next", body.N_CONFIGURATION, "m, 1", "b at the end of the step")
         p.stage("attitudes at both ends of the step")
         self.ends = [body.axes(p, b), body.axes(p, self.b_next)]
@@ -97,39 +97,40 @@ class Step:
         return np.concatenate([np.eye(len(arm), dtype=int), turns], axis=1)
 
 
-def discrete_point(body: ModuleType) -> Program:
-    """P."""
+def discrete_point(body: Body) -> Program:
+    """Return the kernel of the Jacobian P of a point over a step psi: p_next - p = P psi."""
     p = Program(f"{body.NAME}_discrete_point", "Jacobian of a point over a step psi: p_next - p = P psi",
                 f"{body.SOURCE}; Simo & Wong, Int. J. Numer. Meth. Eng. 31 (1991) 19-52")
     b, u = body.configuration(p), body.attachment(p)
     step = Step(p, body, b)
     p.stage("mean arm")
-    arm = p.vector("mean_arm", sum(body.arm(p, A, u) for A in step.ends) / 2)
+    first, last = (body.arm(p, A, u) for A in step.ends)
+    arm = p.vector("mean_arm", (first + last) / 2)
     p.output("P", step.jacobian(arm), "1, m",
              "by translation and Cayley vector; P' f is the force f on the point along axes half-way")
     return p
 
 
-def _inertia(p: Program, body: ModuleType):
+def _inertia(p: Program, body: Body):
     mass = p.input("mass", (), "kg", "mass")
     J = p.input("J", (3, 3), "kg m^2", "inertia about the mass centre in body axes, symmetric")
     return mass, body.turning_inertia(J)
 
 
-def _mass_matrix(body: ModuleType, mass, J: np.ndarray) -> np.ndarray:
+def _mass_matrix(body: Body, mass, J: np.ndarray) -> np.ndarray:
     M = np.zeros((body.N_VELOCITY, body.N_VELOCITY), dtype=object)
     M[: body.DIM, : body.DIM], M[body.DIM :, body.DIM :] = mass * np.eye(body.DIM, dtype=int), J
     return M
 
 
-def _gyroscopic(p: Program, body: ModuleType, J: np.ndarray, w: np.ndarray) -> np.ndarray:
-    """Stage: the inertia force at zero accelerations."""
+def _gyroscopic(p: Program, body: Body, J: np.ndarray, w: np.ndarray) -> np.ndarray:
+    """Return the inertia force at zero accelerations (velocities,), N and N m."""
     p.stage("gyroscopic moment")
     return np.concatenate([np.zeros(body.DIM, dtype=int), body.gyroscopic_moment(p, J, w[body.DIM :])])
 
 
-def inertia_force(body: ModuleType) -> Program:
-    """M w' and the gyroscopic moment."""
+def inertia_force(body: Body) -> Program:
+    """Return the kernel of the inertia force: m R'' in N, and J omega' + omega x J omega in N m."""
     p = Program(f"{body.NAME}_inertia_force", "m R'' and J omega' + omega x J omega", "M q'' of eq 12")
     mass, J = _inertia(p, body)
     w, a = body.velocity(p), p.input("a", body.N_VELOCITY, "m/s^2, rad/s^2", "accelerations R'', omega'")
@@ -138,8 +139,8 @@ def inertia_force(body: ModuleType) -> Program:
     return p
 
 
-def inertia_tangent(body: ModuleType) -> Program:
-    """M, and what the gyroscopic moment adds."""
+def inertia_tangent(body: Body) -> Program:
+    """Return the kernel of the mass matrix M and of the derivative D of the inertia force by the velocity."""
     p = Program(f"{body.NAME}_inertia_tangent", "mass matrix and derivative of the inertia force by velocity",
                 "derivative of M q''")
     mass, J = _inertia(p, body)
@@ -152,8 +153,8 @@ def inertia_tangent(body: ModuleType) -> Program:
     return p
 
 
-def kinetic_energy(body: ModuleType) -> Program:
-    """Of translation and rotation."""
+def kinetic_energy(body: Body) -> Program:
+    """Return the kernel of the kinetic energy of translation and rotation, J."""
     p = Program(f"{body.NAME}_kinetic_energy", "kinetic energy", "eq 3 for a rigid body")
     mass, J = _inertia(p, body)
     w = body.velocity(p)

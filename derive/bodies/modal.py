@@ -18,38 +18,38 @@ s = int rho phi and Y, Y1, Y2 = int rho phi u^T, phi u'^T, phi u''^T.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from types import ModuleType
 
 import numpy as np
 
 from ..algebra.tangent_frame import cross
 from ..codegen.program import DirectionalDerivative, Program
 from . import planar_rigid, rigid
+from .body import Body
 
-FRAMES = {"modal": rigid, "planar_modal": planar_rigid}
+FRAMES: dict[str, Body] = {"modal": rigid, "planar_modal": planar_rigid}
 SOURCE = "paper eq 12; Shabana, Dynamics of Multibody Systems, 2013, ch. 5"
 
 
 def skew(omega: np.ndarray) -> np.ndarray:
-    """omega~; in the plane of one component."""
+    """Return omega~, with omega~ u = omega x u; omega has one component in the plane."""
     if len(omega) == 1:
         return np.array([[0, -omega[0]], [omega[0], 0]])
     return np.array([[0, -omega[2], omega[1]], [omega[2], 0, -omega[0]], [-omega[1], omega[0], 0]])
 
 
 def vector_product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """a x b; in the plane its one component."""
+    """Return a x b; in the plane this is its one component."""
     return cross(a, b) if len(a) == 3 else np.array([a[0] * b[1] - a[1] * b[0]])
 
 
 def axial(M: np.ndarray) -> np.ndarray:
-    """a x b of M = a b^T, and of sums of such."""
+    """Return a x b of M = a b^T, or of a sum of such products."""
     pairs = [(0, 1)] if len(M) == 2 else [(1, 2), (2, 0), (0, 1)]
     return np.array([M[i, j] - M[j, i] for i, j in pairs])
 
 
 def contraction(a: np.ndarray, b: np.ndarray):
-    """sum_ij a_ij b_ij."""
+    """Return the sum over i, j of a_ij b_ij."""
     return a.ravel().dot(b.ravel())
 
 
@@ -63,7 +63,7 @@ class Moments:
 
     @classmethod
     def given(cls, p: Program, dim: int, rates: int = 3) -> Moments:
-        """As inputs, of the fields with so many of their rates."""
+        """Declare the moments of the fields, with so many of their rates, as inputs and return them."""
         fields = ("u", "u'", "u''")[:rates]
         mass = p.input("mass", (), "kg", "mass")
         first = [p.input(f"S{k or ''}", dim, "kg m", f"int rho {field}") for k, field in enumerate(fields)]
@@ -80,13 +80,13 @@ class ModeMoments:
 
     @classmethod
     def given(cls, p: Program, dim: int) -> ModeMoments:
-        """As inputs."""
+        """Declare the moments of a mode as inputs and return them."""
         first = p.input("s", dim, "kg m", "int rho phi of the mode")
         return cls(first, [p.input(f"Y{k or ''}", (dim, dim), "kg m^2", f"int rho phi {field}^T")
                            for k, field in enumerate(("u", "u'", "u''"))])
 
     def of_body(self, rate: int) -> Moments:
-        """What the body's moments grow by as eta (rate 0) or eta' (rate 1) of the mode grows by one."""
+        """Return what the body's moments grow by as eta (rate 0) or eta' (rate 1) of the mode grows by one."""
         none, with_u = np.zeros_like(self.first), self.second[0].T
         first, second = [none] * 3, [np.zeros_like(with_u)] * 3
         first[rate], second[rate] = self.first, with_u
@@ -98,7 +98,7 @@ class ModeMoments:
 class Motion:
     """Inputs b, w, a, g; stages: the axes, a0, omega~ and W."""
 
-    def __init__(self, p: Program, frame: ModuleType):
+    def __init__(self, p: Program, frame: Body):
         dim = frame.DIM
         self.program, self.frame = p, frame
         self.b, self.w = frame.configuration(p), frame.velocity(p)
@@ -113,17 +113,17 @@ class Motion:
         self.W = np.array([p.vector(f"W{i + 1}", row) for i, row in enumerate(W)])
 
     def by_velocity(self, values: np.ndarray) -> np.ndarray:
-        """Derivatives by w."""
+        """Return the derivatives of values by w, along a new last axis."""
         return np.stack([DirectionalDerivative(self.program, f"d_w{k}", {symbol: 1}).array(values)
                          for k, symbol in enumerate(self.w)], axis=-1)
 
     def by_configuration(self, values: np.ndarray) -> np.ndarray:
-        """Derivatives by translation and rotation."""
+        """Return the derivatives of values by translation and rotation, along a new last axis."""
         return np.stack([d.array(values) for d in self.frame.tangents(self.program, self.b, self.A)], axis=-1)
 
 
 def body_force(motion: Motion, of: Moments) -> np.ndarray:
-    """Rows of the frame: force in global axes, moment about the origin in body axes."""
+    """Return the rows of the frame: force in global axes in N, moment about the origin in body axes in N m."""
     S, S1, S2 = of.first
     X, X1, X2 = of.second
     force = motion.W.dot(S) + 2 * motion.spin.dot(S1) + S2
@@ -132,6 +132,6 @@ def body_force(motion: Motion, of: Moments) -> np.ndarray:
 
 
 def mode_force(motion: Motion, of: ModeMoments):
-    """Row of a mode."""
+    """Return the row of a mode, N."""
     Y, Y1, Y2 = of.second
     return (of.first.dot(motion.origin) + contraction(motion.W, Y) + 2 * contraction(motion.spin, Y1) + Y2.trace())

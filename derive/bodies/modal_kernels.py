@@ -6,11 +6,10 @@ kernels of a mode for each, those of a pair for each pair.
 
 from __future__ import annotations
 
-from types import ModuleType
-
 import numpy as np
 
 from ..codegen.program import DirectionalDerivative, Program
+from .body import Body
 from .modal import (
     SOURCE,
     ModeMoments,
@@ -25,15 +24,16 @@ from .modal import (
 )
 
 
-def build(name: str, frame: ModuleType) -> list[Program]:
-    """Every kernel of a modal body on a frame."""
+def build(name: str, frame: Body) -> list[Program]:
+    """Return the programs of every kernel of a modal body on a frame."""
     return [make(name, frame) for make in (
         inertia_force, mass_matrix, inertia_tangent, mode_force_, mode_mass, mode_tangent, pair_tangent,
-        kinetic_energy, potential_energy, anchor, anchor_mode, anchor_force, anchor_mode_force, anchor_pair_force)]
+        kinetic_energy, potential_energy, attachment, attachment_mode, attachment_force, attachment_mode_force,
+        attachment_pair_force)]
 
 
-def inertia_force(name: str, frame: ModuleType) -> Program:
-    """The frame's rows."""
+def inertia_force(name: str, frame: Body) -> Program:
+    """Return the kernel of the inertia force less weight in the frame's rows."""
     p = Program(f"{name}_inertia_force", "inertia and weight of a modal body: force, moment about its origin",
                 SOURCE)
     motion = Motion(p, frame)
@@ -42,8 +42,8 @@ def inertia_force(name: str, frame: ModuleType) -> Program:
     return p
 
 
-def mass_matrix(name: str, frame: ModuleType) -> Program:
-    """M_rr, undeformed or not."""
+def mass_matrix(name: str, frame: Body) -> Program:
+    """Return the kernel of the frame's block M_rr of the mass matrix (eq 12): (6, 6), in the plane (3, 3)."""
     p = Program(f"{name}_mass_matrix", "M_rr: the frame's part of the mass matrix", "paper eq 12")
     dim = frame.DIM
     b, of = frame.configuration(p), Moments.given(p, dim, rates=1)
@@ -58,8 +58,8 @@ def mass_matrix(name: str, frame: ModuleType) -> Program:
     return p
 
 
-def inertia_tangent(name: str, frame: ModuleType) -> Program:
-    """Their derivatives by the frame."""
+def inertia_tangent(name: str, frame: Body) -> Program:
+    """Return the kernel of the derivatives of inertia_force by the frame's motion."""
     p = Program(f"{name}_inertia_tangent", "derivatives of inertia_force by the frame's motion", SOURCE)
     motion = Motion(p, frame)
     force = body_force(motion, Moments.given(p, frame.DIM))
@@ -69,8 +69,8 @@ def inertia_tangent(name: str, frame: ModuleType) -> Program:
     return p
 
 
-def mode_force_(name: str, frame: ModuleType) -> Program:
-    """The row of a mode."""
+def mode_force_(name: str, frame: Body) -> Program:
+    """Return the kernel of the inertia force less weight in the row of a mode."""
     p = Program(f"{name}_mode_force", "inertia and weight of a mode", SOURCE)
     motion = Motion(p, frame)
     force = mode_force(motion, ModeMoments.given(p, frame.DIM))
@@ -78,8 +78,8 @@ def mode_force_(name: str, frame: ModuleType) -> Program:
     return p
 
 
-def mode_mass(name: str, frame: ModuleType) -> Program:
-    """A column of M_rf."""
+def mode_mass(name: str, frame: Body) -> Program:
+    """Return the kernel of a mode's column of M_rf, of eq 12."""
     p = Program(f"{name}_mode_mass", "column of a mode in M_rf: what couples its acceleration with the frame's",
                 "paper eq 12")
     dim = frame.DIM
@@ -90,8 +90,8 @@ def mode_mass(name: str, frame: ModuleType) -> Program:
     return p
 
 
-def mode_tangent(name: str, frame: ModuleType) -> Program:
-    """What couples a mode with the frame."""
+def mode_tangent(name: str, frame: Body) -> Program:
+    """Return the kernel of the derivatives that couple a mode with the frame."""
     p = Program(f"{name}_mode_tangent", "derivatives of a mode's force by the frame's motion, and the other way round",
                 SOURCE)
     motion = Motion(p, frame)
@@ -105,8 +105,8 @@ def mode_tangent(name: str, frame: ModuleType) -> Program:
     return p
 
 
-def pair_tangent(name: str, frame: ModuleType) -> Program:
-    """What couples modes."""
+def pair_tangent(name: str, frame: Body) -> Program:
+    """Return the kernel of the derivatives that couple two modes."""
     p = Program(f"{name}_pair_tangent", "derivatives of mode k's force by the motion of mode l", SOURCE)
     motion = Motion(p, frame)
     dim = frame.DIM
@@ -116,8 +116,8 @@ def pair_tangent(name: str, frame: ModuleType) -> Program:
     return p
 
 
-def kinetic_energy(name: str, frame: ModuleType) -> Program:
-    """int rho v.v/2, v = A'R' + omega~ u + u'."""
+def kinetic_energy(name: str, frame: Body) -> Program:
+    """Return the kernel of the kinetic energy int rho v.v/2 in J, with v = A'R' + omega~ u + u'."""
     p = Program(f"{name}_kinetic_energy", "kinetic energy", "eq 3 for a modal body")
     dim = frame.DIM
     b, w = frame.configuration(p), frame.velocity(p)
@@ -134,8 +134,8 @@ def kinetic_energy(name: str, frame: ModuleType) -> Program:
     return p
 
 
-def potential_energy(name: str, frame: ModuleType) -> Program:
-    """- g . int rho p."""
+def potential_energy(name: str, frame: Body) -> Program:
+    """Return the kernel of the potential energy of gravity, -g . int rho p, in J."""
     p = Program(f"{name}_potential_energy", "potential energy of gravity", SOURCE)
     dim = frame.DIM
     b = frame.configuration(p)
@@ -154,7 +154,7 @@ class Point:
     orthonormal without a root or a limit: C = 1 + (theta~ + theta~ theta~/2)/(1 + theta^2/4).
     """
 
-    def __init__(self, p: Program, frame: ModuleType):
+    def __init__(self, p: Program, frame: Body):
         dim = frame.DIM
         self.program, self.frame, self.turns = p, frame, frame.N_VELOCITY - dim
         self.b = frame.configuration(p)
@@ -166,7 +166,7 @@ class Point:
         self.at = frame.origin(self.b) + frame.arm(p, self.A, self.u)
 
     def section(self) -> np.ndarray:
-        """A C, by columns the axes of the section."""
+        """Return A C, by columns the axes of the section."""
         tilde = skew(self.theta)
         return self.A.dot(np.eye(len(tilde), dtype=int) + self.scale * (tilde + tilde.dot(tilde) / 2))
 
@@ -175,46 +175,46 @@ class Point:
         return self.scale * (rate + (vector_product(self.theta, rate) / 2 if self.turns == 3 else 0))
 
     def turned(self, vector: np.ndarray) -> np.ndarray:
-        """A turn in body axes along global ones."""
+        """Return the components along global axes of a turn given in body axes."""
         return self.A.dot(vector) if self.turns == 3 else vector
 
     def turned_back(self, vector: np.ndarray) -> np.ndarray:
-        """A turn along global axes in body axes."""
+        """Return the components in body axes of a turn given along global axes."""
         return self.A.T.dot(vector) if self.turns == 3 else vector
 
     def mode(self, suffix: str = "") -> tuple[np.ndarray, np.ndarray]:
-        """Inputs phi, psi: a mode at the point."""
+        """Declare phi and psi, a mode at the point, as inputs and return them."""
         p = self.program
         return (p.input(f"phi{suffix}", len(self.u), "1", "displacement there by a unit of the mode, in body axes"),
                 p.input(f"psi{suffix}", self.turns, "rad/m", "turn there by a unit of the mode, in body axes"))
 
     def loads(self) -> tuple[np.ndarray, np.ndarray]:
-        """Inputs f, m."""
+        """Declare f and m, force and moment on the point, as inputs and return them."""
         p = self.program
         return (p.input("f", len(self.u), "N", "force on the point, held fixed"),
                 p.input("m", self.turns, "N m", "moment on it, held fixed"))
 
     def frame_force(self, f: np.ndarray, m: np.ndarray) -> np.ndarray:
-        """Rows of the frame of P' f + T' m."""
+        """Return the rows of the frame of P' f + T' m, N and N m."""
         return np.concatenate([f, vector_product(self.u, self.A.T.dot(f)) + self.turned_back(m)])
 
     def mode_force(self, phi: np.ndarray, psi: np.ndarray, f: np.ndarray, m: np.ndarray):
-        """Row of a mode of P' f + T' m."""
+        """Return the row of a mode of P' f + T' m, N."""
         return phi.dot(self.A.T.dot(f)) + self.relative(psi).dot(self.turned_back(m))
 
     def by_frame(self, values: np.ndarray) -> np.ndarray:
-        """Derivatives by translation and rotation."""
+        """Return the derivatives of values by translation and rotation, along a new last axis."""
         return np.stack([d.array(values) for d in self.frame.tangents(self.program, self.b, self.A)], axis=-1)
 
     def by_mode(self, phi: np.ndarray, psi: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Derivatives by eta of a mode."""
+        """Return the derivatives of values by eta of a mode."""
         along = dict(zip([*self.u, *self.theta], [*phi, *psi], strict=True))
         return DirectionalDerivative(self.program, "d_eta", along).array(values)
 
 
-def anchor(name: str, frame: ModuleType) -> Program:
-    """p, axes; P, T by the frame; velocities and biases."""
-    p = Program(f"{name}_anchor", "a point and its axes: dp = P dq, d(axes) = (T dq)~ axes, with rates", SOURCE)
+def attachment(name: str, frame: Body) -> Program:
+    """Return the kernel of a point and its axes: positions, Jacobians P and T by the frame, velocities and biases."""
+    p = Program(f"{name}_attachment", "a point and its axes: dp = P dq, d(axes) = (T dq)~ axes, with rates", SOURCE)
     point = Point(p, frame)
     w = frame.velocity(p)
     u1 = p.input("u1", frame.DIM, "m/s", "rate of u")
@@ -238,9 +238,9 @@ def anchor(name: str, frame: ModuleType) -> Program:
     return p
 
 
-def anchor_mode(name: str, frame: ModuleType) -> Program:
-    """Columns of P and T."""
-    p = Program(f"{name}_anchor_mode", "columns of a mode in P and T", SOURCE)
+def attachment_mode(name: str, frame: Body) -> Program:
+    """Return the kernel of the columns of P and T of a mode."""
+    p = Program(f"{name}_attachment_mode", "columns of a mode in P and T", SOURCE)
     point = Point(p, frame)
     phi, psi = point.mode()
     p.output("P", point.A.dot(phi), "1", "dp by eta")
@@ -248,9 +248,9 @@ def anchor_mode(name: str, frame: ModuleType) -> Program:
     return p
 
 
-def anchor_force(name: str, frame: ModuleType) -> Program:
-    """K of the frame."""
-    p = Program(f"{name}_anchor_force", "derivatives of the frame's rows of P' f + T' m by the frame", SOURCE)
+def attachment_force(name: str, frame: Body) -> Program:
+    """Return the kernel of the derivative of the frame's rows of P' f + T' m by the frame."""
+    p = Program(f"{name}_attachment_force", "derivatives of the frame's rows of P' f + T' m by the frame", SOURCE)
     point = Point(p, frame)
     force = point.frame_force(*point.loads())
     p.stage("derivatives")
@@ -258,10 +258,10 @@ def anchor_force(name: str, frame: ModuleType) -> Program:
     return p
 
 
-def anchor_mode_force(name: str, frame: ModuleType) -> Program:
-    """K between frame and mode."""
-    p = Program(f"{name}_anchor_mode_force", "derivatives of P' f + T' m: the mode's row by the frame, and the reverse",
-                SOURCE)
+def attachment_mode_force(name: str, frame: Body) -> Program:
+    """Return the kernel of the derivatives of P' f + T' m that couple the frame and a mode."""
+    p = Program(f"{name}_attachment_mode_force",
+                "derivatives of P' f + T' m: the mode's row by the frame, and the reverse", SOURCE)
     point = Point(p, frame)
     phi, psi = point.mode()
     f, m = point.loads()
@@ -272,9 +272,9 @@ def anchor_mode_force(name: str, frame: ModuleType) -> Program:
     return p
 
 
-def anchor_pair_force(name: str, frame: ModuleType) -> Program:
-    """K between modes."""
-    p = Program(f"{name}_anchor_pair_force", "derivative of mode k's row of P' f + T' m by eta of mode l", SOURCE)
+def attachment_pair_force(name: str, frame: Body) -> Program:
+    """Return the kernel of the derivatives of P' f + T' m that couple two modes."""
+    p = Program(f"{name}_attachment_pair_force", "derivative of mode k's row of P' f + T' m by eta of mode l", SOURCE)
     point = Point(p, frame)
     phi, psi = point.mode()
     phi_l, psi_l = point.mode("_l")

@@ -16,59 +16,59 @@ DOC, SOURCE = "planar rigid body", "paper eq 12 (q_r) in the plane"
 
 
 def configuration(program: Program) -> np.ndarray:
-    """Input b: position of the mass centre and unit complex number."""
+    """Declare the input b, position of the mass centre and unit complex number, and return it."""
     return program.input("b", N_CONFIGURATION, "m, 1", "position of the mass centre, cosine and sine of the angle")
 
 
 def velocity(program: Program) -> np.ndarray:
-    """Input w: velocity of the mass centre and angular velocity."""
+    """Declare the input w, velocity of the mass centre and angular velocity, and return it."""
     return program.input("w", N_VELOCITY, "m/s, rad/s", "velocity of the mass centre, angular velocity")
 
 
 def attachment(program: Program) -> np.ndarray:
-    """Input u: a point of the body."""
+    """Declare the input u, a point of the body, and return it."""
     return program.input("u", DIM, "m", "point in body axes from the mass centre")
 
 
 def axes(program: Program, b: np.ndarray) -> np.ndarray:
-    """A, body to global axes."""
+    """Return A (2, 2), from body to global axes."""
     return np.array([[b[2], -b[3]], [b[3], b[2]]])
 
 
 def rate(b: np.ndarray, A: np.ndarray, w: np.ndarray) -> dict[sp.Symbol, sp.Expr]:
-    """Value on b of the derivation along the velocity w."""
+    """Return the rates of b at the velocity w."""
     return dict(zip(b, [*w[:2], *(w[2] * A[:, 1])], strict=True))
 
 
 def tangents(program: Program, b: np.ndarray, A: np.ndarray) -> list[DirectionalDerivative]:
-    """The three derivations: two translations and the rotation."""
+    """Return the three derivatives: by two translations and the rotation."""
     units = np.eye(N_VELOCITY, dtype=int)
     return [DirectionalDerivative(program, f"d_{name}", rate(b, A, units[k]))
             for k, name in enumerate(("X", "Y", "th"))]
 
 
 def origin(b: np.ndarray) -> np.ndarray:
-    """R."""
+    """Return the position R of the mass centre, (2,), m."""
     return b[:2]
 
 
 def arm(program: Program, A: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """Stage: A u, the point from the origin."""
+    """Return A u, the point as seen from the origin in global axes, (2,), m."""
     return program.vector("arm", A.dot(u))
 
 
 def step_turn(program: Program, b: np.ndarray, A: np.ndarray, b_next: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Stage: theta = 2 tan(half the turn), with A_next u - A u = theta x (A + A_next) u/2, and the axis across."""
+    """Return theta = 2 tan(half the turn), with A_next u - A u = theta x (A + A_next) u/2, and the axis across."""
     sine = program.define("turn_sine", b[2] * b_next[3] - b[3] * b_next[2])
     theta = program.define("theta", 2 * sine / (1 + program.define("turn_cosine", b[2:].dot(b_next[2:]))))
     return np.array([theta]), np.array([[1]])
 
 
 def turning_inertia(J: np.ndarray) -> np.ndarray:
-    """The part of the inertia that the rotations of this body meet."""
+    """Return the part of the inertia that the rotations of this body meet."""
     return J[2:, 2:]
 
 
 def gyroscopic_moment(program: Program, J: np.ndarray, omega: np.ndarray) -> np.ndarray:
-    """None in the plane."""
+    """Return zero: in the plane there is no gyroscopic moment."""
     return np.zeros(1, dtype=int)

@@ -24,40 +24,40 @@ class Point:
     N_VELOCITY: int
 
     def configuration(self, program: Program) -> np.ndarray:
-        """Input b: where the arm starts."""
+        """Declare the input b, where the arm starts, and return it."""
         return program.input("b", self.DIM, "m", "origin of what carries the point")
 
     def velocity(self, program: Program) -> np.ndarray:
-        """Input w: velocity of the point."""
+        """Declare the input w, velocity of the point, and return it."""
         return program.input("w", self.DIM, "m/s", "velocity of the point")
 
     def attachment(self, program: Program) -> np.ndarray:
-        """Input u: the point from its origin."""
+        """Declare the input u, the point as seen from its origin, and return it."""
         return program.input("u", self.DIM, "m", "point from the origin, in global axes")
 
     def axes(self, program: Program, b: np.ndarray) -> None:
-        """None: a point has no attitude."""
+        """Return None: a point has no attitude."""
 
     def rate(self, b: np.ndarray, A: None, w: np.ndarray) -> dict[sp.Symbol, sp.Expr]:
-        """Value on b of the derivation along the velocity w."""
+        """Return the rates of b at the velocity w."""
         return dict(zip(b, w, strict=True))
 
     def tangents(self, program: Program, b: np.ndarray, A: None) -> list[DirectionalDerivative]:
-        """Derivations along the axes."""
+        """Return the derivatives along the axes."""
         units = np.eye(self.DIM, dtype=int)
         return [DirectionalDerivative(program, f"d_{AXES[k].upper()}", self.rate(b, A, units[k]))
                 for k in range(self.DIM)]
 
     def origin(self, b: np.ndarray) -> np.ndarray:
-        """Where the arm starts."""
+        """Return where the arm starts, (dim,), m."""
         return b
 
     def arm(self, program: Program, A: None, u: np.ndarray) -> np.ndarray:
-        """The point from there."""
+        """Return the point as seen from there, (dim,), m."""
         return u
 
     def step_turn(self, program: Program, b: np.ndarray, A: None, b_next: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """No turn, about no axes."""
+        """Return no turn, about no axes."""
         return np.zeros(3 if self.DIM == 3 else 1, dtype=int), np.zeros((self.DIM, 0), dtype=int)
 
 

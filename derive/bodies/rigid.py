@@ -18,57 +18,57 @@ DOC, SOURCE = "rigid body", "paper eq 12 (q_r); Haug 1989, ch. 9"
 
 
 def configuration(program: Program) -> np.ndarray:
-    """Input b: position of the mass centre and unit quaternion (w, x, y, z)."""
+    """Declare the input b, position of the mass centre and unit quaternion (w, x, y, z), and return it."""
     return program.input("b", N_CONFIGURATION, "m, 1", "position of the mass centre, unit quaternion w x y z")
 
 
 def velocity(program: Program) -> np.ndarray:
-    """Input w: velocity of the mass centre and angular velocity."""
+    """Declare the input w, velocity of the mass centre and angular velocity in body axes, and return it."""
     return program.input("w", N_VELOCITY, "m/s, rad/s", "velocity of the mass centre, body-axis angular velocity")
 
 
 def attachment(program: Program) -> np.ndarray:
-    """Input u: a point of the body."""
+    """Declare the input u, a point of the body, and return it."""
     return program.input("u", 3, "m", "point in body axes from the mass centre")
 
 
 def rotation(q: np.ndarray) -> np.ndarray:
-    """A(q), body to global axes."""
+    """Return A(q) (3, 3), from body to global axes."""
     w, v = q[0], q[1:]
     skew = np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
     return np.eye(3, dtype=int) + 2 * (w * skew + skew.dot(skew))
 
 
 def axes(program: Program, b: np.ndarray) -> np.ndarray:
-    """Stage: A."""
+    """Return A (3, 3), from body to global axes, its entries named."""
     return np.array([program.vector(f"A{i + 1}", row) for i, row in enumerate(rotation(b[3:]))])
 
 
 def rate(b: np.ndarray, A: np.ndarray, w: np.ndarray) -> dict[sp.Symbol, sp.Expr]:
-    """Value on R and A of the derivation along the velocity w: R' and A omega~."""
+    """Return the rates of R and A at the velocity w: R' and A omega~."""
     turning = np.array([cross(row, w[3:]) for row in A])
     return dict(zip([*b[:3], *A.ravel()], [*w[:3], *turning.ravel()], strict=True))
 
 
 def tangents(program: Program, b: np.ndarray, A: np.ndarray) -> list[DirectionalDerivative]:
-    """The six derivations: three translations, three rotations about body axes."""
+    """Return the six derivatives: by three translations and three rotations about body axes."""
     units = np.eye(N_VELOCITY, dtype=int)
     return [DirectionalDerivative(program, f"d_{name}", rate(b, A, units[k]))
             for k, name in enumerate(("X", "Y", "Z", "th1", "th2", "th3"))]
 
 
 def origin(b: np.ndarray) -> np.ndarray:
-    """R."""
+    """Return the position R of the mass centre, (3,), m."""
     return b[:3]
 
 
 def arm(program: Program, A: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """Stage: A u, the point from the origin."""
+    """Return A u, the point as seen from the origin in global axes, (3,), m."""
     return program.vector("arm", A.dot(u))
 
 
 def step_turn(program: Program, b: np.ndarray, A: np.ndarray, b_next: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Stage: theta with A_next u - A u = theta x (A + A_next) u/2, and axes half-way by columns.
+    """Return theta with A_next u - A u = theta x (A + A_next) u/2, and axes half-way by columns.
 
     A_next = A cay(Theta), Theta/2 the vector of the relative quaternion over its scalar, theta = A Theta. Along the
     columns of A (I + Theta~/2) the balance of A J omega is inertia_force as it stands, at the mean velocity Theta/h.
@@ -81,10 +81,10 @@ def step_turn(program: Program, b: np.ndarray, A: np.ndarray, b_next: np.ndarray
 
 
 def turning_inertia(J: np.ndarray) -> np.ndarray:
-    """The part of the inertia that the rotations of this body meet."""
+    """Return the part of the inertia that the rotations of this body meet."""
     return J
 
 
 def gyroscopic_moment(program: Program, J: np.ndarray, omega: np.ndarray) -> np.ndarray:
-    """Stage: omega x J omega."""
+    """Return omega x J omega, (3,), N m."""
     return program.vector("gyro", cross(omega, program.vector("h", J.dot(omega))))

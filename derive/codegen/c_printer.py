@@ -76,5 +76,5 @@ _PRINTER = KernelPrinter({"order": "lex"})
 
 
 def c_expression(expr: sp.Expr) -> str:
-    """One C expression."""
+    """Return the C text of an expression."""
     return _PRINTER.doprint(expr)

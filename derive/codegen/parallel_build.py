@@ -38,7 +38,7 @@ def c_files(module: str) -> list[str]:
 
 
 class ParallelBuild(build_ext):
-    """build_ext of pyproject.toml."""
+    """The command build_ext that pyproject.toml names."""
 
     def finalize_options(self) -> None:
         """Add to each module the C files that are there."""
@@ -72,7 +72,7 @@ class ParallelBuild(build_ext):
             super().build_extensions()
 
     def _has_openmp(self, option: str) -> bool:
-        """Whether a program with it compiles and links."""
+        """Return whether a program with it compiles and links."""
         with tempfile.TemporaryDirectory() as folder:
             source = Path(folder) / "openmp.c"
             source.write_text("#include <omp.h>\nint main(void) { return omp_get_max_threads() < 1; }\n")

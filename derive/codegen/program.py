@@ -30,7 +30,7 @@ class Argument:
 
     @property
     def size(self) -> int:
-        """Number of scalars."""
+        """Return the number of scalars in it."""
         return int(np.prod(self.shape, dtype=int))
 
 
@@ -89,7 +89,7 @@ class Program:
         self.definition[symbol] = expr if derivative_of is None else derivative_of
         return symbol
 
-    def once(self, name: str, expr: sp.Expr) -> sp.Expr:
+    def define_once(self, name: str, expr: sp.Expr) -> sp.Expr:
         """Give an expression a name, the first time; later the same name."""
         symbol = sp.Symbol(name)
         return symbol if self.definition.get(symbol) == expr else self.define(name, expr)
@@ -117,7 +117,7 @@ class Program:
         return count
 
     def unused(self) -> list[str]:
-        """Names of the inputs that nothing depends on."""
+        """Return the names of the inputs that nothing depends on."""
         used = {s for stage in self.stages for _, e in stage.definitions for s in e.free_symbols}
         used |= {s for v in self.values.values() for e in v.ravel() for s in e.free_symbols}
         return [a.name for a in self.inputs if used.isdisjoint(np.atleast_1d(self.symbols[a.name]).ravel())]
@@ -162,7 +162,7 @@ def _count(expr: sp.Expr, count: dict[str, int]) -> None:
 
 
 def _is_below(expr: sp.Expr) -> bool:
-    """Whether it stands below the line of a fraction."""
+    """Return whether it stands below the line of a fraction."""
     return bool(expr.is_Pow and expr.exp.is_Rational and expr.exp < 0)
 
 
@@ -178,7 +178,7 @@ class DirectionalDerivative:
         self.known: dict[sp.Symbol, sp.Expr] = {s: sp.sympify(v) for s, v in on.items()}
 
     def __call__(self, expr: sp.Expr) -> sp.Expr:
-        """The derivative of an expression, in terms of the program's symbols."""
+        """Return the derivative of an expression, in terms of the program's symbols."""
         expr = sp.sympify(expr)
         total = sp.S.Zero
         for symbol in sorted(expr.free_symbols, key=lambda s: s.name):
@@ -210,7 +210,7 @@ class DirectionalDerivative:
         return np.vectorize(self, otypes=[object])(values)
 
 
-def jacobian(program: Program, values: np.ndarray, wrt: Sequence[sp.Symbol],
+def jacobian(program: Program, values: np.ndarray, wrt: Sequence[sp.Symbol] | np.ndarray,
              constant: Sequence[sp.Symbol] = ()) -> np.ndarray:
     """Partial derivatives of `values` (n,) by the symbols `wrt` (m,) taken as independent -> (n, m).
 

@@ -15,7 +15,7 @@ TEMPLATE = "codegen/templates/family.c.jinja"
 
 
 def deciding(roots: Iterable[str]) -> tuple[str, ...]:
-    """Files that decide a family whose specs are the modules `roots`, in order of first mention."""
+    """Return the files that decide a family whose specs are the modules `roots`, in order of first mention."""
     found: dict[str, None] = {}
     waiting = [*roots, *PRINTING]
     while waiting:

@@ -8,13 +8,13 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from importlib import metadata
 
 import jinja2
 
-from ..spec import Family, FamilyError
 from .c_printer import c_expression
+from .family import Family, FamilyError
 from .program import Argument, Program
 from .provenance import deciding, spec_hash
 
@@ -111,7 +111,7 @@ def tables(every: list[Derived], layout: dict | None = None) -> dict[str, Table]
         for derived in members:
             has = _signatures(derived)
             for kernel, parameters in layout[role]["kernels"].items():
-                if kernel not in derived.family.elsewhere and has.get(kernel) != parameters:
+                if kernel not in derived.family.not_own and has.get(kernel) != parameters:
                     raise FamilyError(f"kernel {derived.family.name}_{kernel} must take ({parameters}), but "
                                       + (f"takes ({has[kernel]})" if kernel in has else "there is none"))
     return {role: Table(of, **layout[role]) for role, of in roles.items()}
@@ -183,15 +183,23 @@ def manifest(every: list[Derived], files: dict[str, str], like: dict | None = No
 
 
 def _element(family: Family, every: list[Derived]) -> dict:
-    """What a scene needs to know of an element; `laws`: each with the one whose section stiffness it takes."""
+    """Return what a scene needs to know of an element; `laws`: each with what it is, see `LawTraits`."""
     element = family.element
-    laws = {d.family.law: d.family.like for d in every if d.family.role == "law" and d.family.element is element}
+    assert element is not None
+    laws = {d.family.law: _law(d.family) for d in every if d.family.role == "law" and d.family.element is element}
     return {"nodal_vectors": list(element.nodal_vectors), "dim": element.dim, "director": element.director,
             "laws": laws}
 
 
+def _law(family: Family) -> dict:
+    """Return what a scene needs to know of a law: its traits, and the law whose section stiffness it takes."""
+    assert family.traits is not None
+    return {"stiffness_of": family.stiffness_of, **asdict(family.traits),
+            "discrete_gradient": "discrete_force" not in family.missing}
+
+
 def signature(program: Program | Recorded) -> str:
-    """C parameters."""
+    """Return the C parameters of a kernel, inputs before outputs."""
     inputs = [f"fu_real {a.name}" if a.shape == () else f"const fu_real *{a.name}" for a in program.inputs]
     return ", ".join([*inputs, *(f"fu_real *{a.name}" for a in program.outputs)])
 
@@ -219,24 +227,24 @@ def _shared(members: list[Derived]) -> dict[str, str]:
 
     Raises FamilyError where two families do not agree on them.
     """
-    first = min(members, key=lambda member: len(member.family.elsewhere))
+    first = min(members, key=lambda member: len(member.family.not_own))
     kernels = _signatures(first)
     for other in members:
         theirs = _signatures(other)
-        for suffix in {**kernels, **theirs}.keys() - other.family.elsewhere:
+        for suffix in {**kernels, **theirs}.keys() - other.family.not_own:
             here, there = kernels.get(suffix, "none"), theirs.get(suffix, "none")
             if here != there:
                 raise FamilyError(f'role "{first.family.role}": the engine\'s table needs the kernel {suffix} of every '
                                 f"family with the same parameters; {first.family.name} has ({here}), "
                                 f"{other.family.name} has ({there}): derive all families where it is new, or list it "
-                                "in Family.own to keep it out of the table")
+                                "in Family.outside_table to keep it out of the table")
     return kernels
 
 
 def _signatures(derived: Derived) -> dict[str, str]:
     """C parameters by kernel, of those that belong in the table."""
     every = {p.name.removeprefix(derived.family.name + "_"): signature(p) for p in derived.programs}
-    return {suffix: text for suffix, text in every.items() if suffix not in derived.family.own}
+    return {suffix: text for suffix, text in every.items() if suffix not in derived.family.outside_table}
 
 
 def _call(program: Program | Recorded) -> str:

@@ -16,7 +16,7 @@ TURNS = {3: 3, 2: 1}
 
 
 def build(dim: int) -> list[Program]:
-    """The kernels of the frame in space or in the plane, where b is not looked at."""
+    """Return the kernels of the frame in space, or in the plane, where b is not used."""
     return [axes(dim), motion(dim), moment(dim)]
 
 
@@ -30,19 +30,19 @@ class _Frame:
         self.b = p.input("b", dim, "1", "vector in the plane of i and j; not used in the plane")
         p.stage("frame")
         director = [self.b] if dim == 3 else []
-        self.A = tangent_frame(p, self.a, *(director or [None]))
+        self.A = tangent_frame(p, self.a, director[0] if director else None)
         p.stage("its turn by the vectors")
         T = turning(p, self.A, self.a, *director)
         still = [np.zeros(TURNS[dim], dtype=int)] * (2 * dim - len(T))
         self.T = np.stack([*T, *still], axis=1)
 
     def entries(self) -> list:
-        """a, then b."""
+        """Return the entries of a, then those of b."""
         return [*self.a, *self.b]
 
 
 def axes(dim: int) -> Program:
-    """A and T."""
+    """Return the kernel of the frame A and of its turn T by the entries of both vectors."""
     f = _Frame("axes", dim, "frame of two vectors, and its turn by them")
     f.program.output("A", f.A, "1", "columns i j k")
     f.program.output("T", f.T, "rad", "dA = (T d(a, b))~ A")
@@ -50,7 +50,7 @@ def axes(dim: int) -> Program:
 
 
 def motion(dim: int) -> Program:
-    """omega, and its rate where accelerations are those given."""
+    """Return the kernel of omega, and of its rate at given accelerations of the vectors."""
     f = _Frame("motion", dim, "angular velocity and acceleration of the frame")
     p = f.program
     rates = [p.input(f"{name}_rate", dim, "1/s", f"rate of {name}") for name in "ab"]
@@ -66,7 +66,7 @@ def motion(dim: int) -> Program:
 
 
 def moment(dim: int) -> Program:
-    """T' m and its derivative."""
+    """Return the kernel of T' m, what a moment puts on the vectors, and of its derivative."""
     f = _Frame("moment", dim, "what a moment on the frame puts on the vectors, and the derivative of that")
     p = f.program
     m = p.input("m", TURNS[dim], "N m", "moment in global axes, held fixed")
@@ -79,5 +79,5 @@ def moment(dim: int) -> Program:
 
 
 def spun(omega: np.ndarray, A: np.ndarray) -> np.ndarray:
-    """Rate of axes that turn with omega, in global axes."""
+    """Return the rate of axes that turn with omega, both in global axes."""
     return np.stack([cross(omega, column) for column in A.T], axis=1)

@@ -16,7 +16,7 @@ from ..codegen.program import DirectionalDerivative, Program
 from .frame import TURNS, spun
 
 
-class Pair:
+class TwoFrames:
     """Inputs of a kernel: the gap, the axes of both frames, and what drives the joint."""
 
     def __init__(self, program: Program, dim: int):
@@ -27,45 +27,48 @@ class Pair:
         self.c = program.input("c", 3, "m or rad, 1, 1", "what drives the joint (else unused), its cosine and sine")
 
     def along(self, tag: str, gap, turn_1, turn_2, more: dict | None = None) -> DirectionalDerivative:
-        """The derivation that moves the gap and turns both frames."""
+        """Return the derivative along a motion that moves the gap and turns both frames."""
         on = dict(zip(self.gap, gap, strict=True)) | (more or {})
         for A, turn in ((self.A1, turn_1), (self.A2, turn_2)):
             on |= dict(zip(A.ravel(), spun(np.array(turn), A).ravel(), strict=True))
         return DirectionalDerivative(self.program, tag, on)
 
     def moves(self) -> list[DirectionalDerivative]:
-        """By the gap, by the turn of the first frame, by that of the second."""
+        """Return the derivatives by the gap, by the turn of the first frame, by that of the second."""
         n = self.dim + 2 * self.turns
-        return [self.along(f"d{k}", *np.split(unit, [self.dim, self.dim + self.turns]))
-                for k, unit in enumerate(np.eye(n, dtype=int))]
+        found = []
+        for k, unit in enumerate(np.eye(n, dtype=int)):
+            gap, turn_1, turn_2 = np.split(unit, [self.dim, self.dim + self.turns])
+            found.append(self.along(f"d{k}", gap, turn_1, turn_2))
+        return found
 
 
-def _meet(p: Pair) -> list[sp.Expr]:
+def _meet(p: TwoFrames) -> list[sp.Expr]:
     return [*p.gap]
 
 
 def _offset(axes: str) -> Callable:
-    """The second point stays at zero along these axes of the first frame."""
+    """Return the equations that keep the second point at zero along these axes of the first frame."""
     return lambda p: [p.gap.dot(p.A1[:, "xyz".index(a)]) for a in axes]
 
 
 def _across(*pairs: str) -> Callable:
-    """An axis of the first frame stays normal to one of the second: "xz" for x of the first and z of the second."""
-    return lambda p: [p.A1[:, "xyz".index(a)].dot(p.A2[:, "xyz".index(b)]) for a, b in pairs]
+    """Return the equations that keep axes of both frames normal: "xz" is x of the first and z of the second."""
+    return lambda p: [p.A1[:, "xyz".index(a)].dot(p.A2[:, "xyz".index(b)]) for a, b in map(tuple, pairs)]
 
 
 def _moved(axis: str) -> Callable:
-    """The second point is at c along this axis of the first frame."""
+    """Return the equation that keeps the second point at c along this axis of the first frame."""
     return lambda p: [p.gap.dot(p.A1[:, "xyz".index(axis)]) - p.c[0]]
 
 
-def _turned(p: Pair) -> list[sp.Expr]:
+def _turned(p: TwoFrames) -> list[sp.Expr]:
     """Sine of the second frame's angle, from x of the first towards y, less c: one solution within half a turn."""
     x = p.A2[:, 0]
     return [p.A1[:, 1].dot(x) * p.c[1] - p.A1[:, 0].dot(x) * p.c[2]]
 
 
-def _distant(p: Pair) -> list[sp.Expr]:
+def _distant(p: TwoFrames) -> list[sp.Expr]:
     return [p.program.define("distance", sp.sqrt(p.gap.dot(p.gap))) - p.c[0]]
 
 
@@ -94,28 +97,28 @@ JOINTS = {3: {"spherical": [_meet],
 
 
 def rows(dim: int, name: str) -> int:
-    """Number of equations."""
-    return len(_equations(Pair(Program(name, "", ""), dim), name))
+    """Return the number of equations of a joint."""
+    return len(_equations(TwoFrames(Program(name, "", ""), dim), name))
 
 
-def _equations(pair: Pair, name: str) -> np.ndarray:
-    pair.program.stage("equations of the joint")
-    every = [e for equations in JOINTS[pair.dim][name] for e in equations(pair)]
-    return np.array([pair.program.define(f"phi_{k}", e) for k, e in enumerate(every)])
+def _equations(frames: TwoFrames, name: str) -> np.ndarray:
+    frames.program.stage("equations of the joint")
+    every = [e for equations in JOINTS[frames.dim][name] for e in equations(frames)]
+    return np.array([frames.program.define(f"phi_{k}", e) for k, e in enumerate(every)])
 
 
 def build(dim: int, name: str) -> list[Program]:
-    """The kernels of a joint."""
+    """Return the kernels of a joint."""
     return [force(dim, name), motion(dim, name)]
 
 
 def force(dim: int, name: str) -> Program:
-    """phi, its Jacobian J, and the derivative of J' f."""
+    """Return the kernel of phi, its Jacobian J, and the derivative of J' f."""
     p = Program(f"joint_{name}_force", "equations, their derivatives, and those of the force J' f", "eq 19, 28")
-    pair = Pair(p, dim)
-    phi = _equations(pair, name)
+    frames = TwoFrames(p, dim)
+    phi = _equations(frames, name)
     f = p.input("f", len(phi), "N, N m", "multipliers, held fixed")
-    by = pair.moves()
+    by = frames.moves()
     p.stage("derivatives")
     J = np.stack([d.array(phi) for d in by], axis=1)
     p.stage("force")
@@ -128,19 +131,20 @@ def force(dim: int, name: str) -> Program:
 
 
 def motion(dim: int, name: str) -> Program:
-    """What stays of phi' and phi'' at rest and without accelerations."""
+    """Return the kernel of what stays of phi' at rest, and of phi'' without accelerations: -gamma (eq 10)."""
     p = Program(f"joint_{name}_motion", "derivatives of the equations in time", "eq 33")
-    pair = Pair(p, dim)
-    phi = _equations(pair, name)
+    frames = TwoFrames(p, dim)
+    phi = _equations(frames, name)
     gap_rate = p.input("gap_rate", dim, "m/s", "rate of the gap")
-    turns = [p.input(f"omega{k}", pair.turns, "rad/s", f"angular velocity of frame {k}, global axes") for k in (1, 2)]
+    turn_1, turn_2 = (p.input(f"omega{k}", frames.turns, "rad/s", f"angular velocity of frame {k}, global axes")
+                      for k in (1, 2))
     c_rate = p.input("c_rate", 2, "m/s or rad/s, and per s", "rate of c and its rate")
-    c, rest = pair.c, np.zeros(dim, dtype=int)
+    c, rest = frames.c, np.zeros(dim, dtype=int)
     driving = dict(zip(c, c_rate[0] * np.array([1, -c[2], c[1]]), strict=True)) | {c_rate[0]: c_rate[1]}
     p.stage("derivatives in time")
-    still = np.zeros(pair.turns, dtype=int)
-    driven = pair.along("dc", rest, still, still, driving)
-    moved = pair.along("dt", gap_rate, *turns, driving)
+    still = np.zeros(frames.turns, dtype=int)
+    driven = frames.along("dc", rest, still, still, driving)
+    moved = frames.along("dt", gap_rate, turn_1, turn_2, driving)
     p.output("phi_t", driven.array(phi), "m/s, 1/s", "rate at rest: what drives the joint")
     p.output("Q_d", moved.array(moved.array(phi)), "m/s^2, 1/s^2", "second rate at zero accelerations")
     return p

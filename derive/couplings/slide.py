@@ -8,7 +8,6 @@ Cable and rider are both planar, with C = (C_l, C_m), or both spatial.
 from __future__ import annotations
 
 from functools import partial
-from types import ModuleType
 
 import numpy as np
 
@@ -16,7 +15,7 @@ from ..algebra.axis import Axis
 from ..algebra.discrete_gradient import STATES, DiscreteGradient
 from ..algebra.tangent_frame import cross, tangent_frame
 from ..bodies import kernels as body_kernels
-from ..bodies.point import Point
+from ..bodies.body import Rider
 from ..codegen.program import DirectionalDerivative, Program, jacobian
 from ..spec import Element
 
@@ -25,9 +24,9 @@ _C_DOC = "constraint in the tangent frame: C_l, then C_m across the cable"
 
 
 class Slide:
-    """Symbols that every kernel of the joint starts from: inputs, derivations and r_p = r - p (eq 19)."""
+    """Symbols that every kernel of the joint starts from: inputs, derivatives and r_p = r - p."""
 
-    def __init__(self, program: Program, element: Element, rider: ModuleType | Point):
+    def __init__(self, program: Program, element: Element, rider: Rider):
         self.program, self.element, self.rider = program, element, rider
         self.entries = ENTRIES[element.dim]
         self.axis = Axis(program, element)
@@ -45,7 +44,7 @@ class Slide:
         self.r_p = program.vector("r_p", gap + (self.r - arm))
 
     def _director(self) -> tuple[np.ndarray, list]:
-        """What gives a spatial frame its normal, and its entries that move with e.
+        """Return what gives a spatial frame its normal, and its entries that move with e.
 
         A slope of the element, or a direction from outside, held fixed: only the direction of the two normals hangs
         on it, not the plane that they span. A planar frame needs neither; the input stays, so that all slides are
@@ -60,7 +59,7 @@ class Slide:
         return director, [*director]
 
     def constraint(self) -> np.ndarray:
-        """C = A_t' r_p (eq 20), with the cut (r_p, r_x, director) through which it is differentiated."""
+        """Return C = A_t' r_p (dim,), m, with the cut (r_p, r_x, director) through which it is differentiated."""
         self.program.stage("tangent and director")
         self.t = self.by_s.array(self.r)
         director, moving = self._director()
@@ -74,48 +73,49 @@ class Slide:
         return self.C
 
     def named(self, name: str, values: np.ndarray, suffix: str = "") -> np.ndarray:
-        """Define the entries of something like C."""
+        """Return the entries of something like C, named in the program."""
         return np.array([self.program.define(f"{name}{entry}{suffix}", value)
                          for entry, value in zip(self.entries, values, strict=True)])
 
     def by_arc_length(self) -> np.ndarray:
-        """C_s (eq 22). dr_p/ds = r_x is along i: along j and k it is zero, and would be nothing but rounding."""
+        """Return C_s (dim,). dr_p/ds = r_x is along i: along j and k it is zero, and would be nothing but rounding."""
         dim = len(self.r_p)
         C_s = self.C_cut[:, dim:].dot(self.by_s.array(np.array(self.cut[dim:], dtype=object)))
         C_s[0] += self.A_t[:, 0].dot(self.t)
         return C_s
 
     def through_cut(self, derivation: DirectionalDerivative) -> np.ndarray:
-        """Derivative of C along a derivation, by the chain rule through the cut."""
+        """Return the variation of C along a motion (eq 22), by the chain rule through the cut: (dim,)."""
         return self.C_cut.dot(derivation.array(np.array(self.cut, dtype=object)))
 
 
-def build(element: Element, rider: ModuleType | Point) -> list[Program]:
-    """The kernels of the slide of a rider on a cable of this element."""
+def build(element: Element, rider: Rider) -> list[Program]:
+    """Return the kernels of the slide of a rider on a cable of this element."""
     name = f"slide_{element.name}_{rider.NAME}"
     return [kernel(name, element, rider) for kernel in (_constraint, _terms, _residual, _tangent, _discrete_gradient)]
 
 
-def _constraint(name: str, element: Element, rider: ModuleType | Point) -> Program:
+def _constraint(name: str, element: Element, rider: Rider) -> Program:
     p = Program(f"{name}_constraint", "C, C_s and the Newton step for s", "eq 19-22")
     slide = Slide(p, element, rider)
     C = slide.constraint()
-    p.stage("C_s (eq 22)")
+    p.stage("C_s, eq 23")
     C_s = slide.by_arc_length()
     p.output("C", C, "m", _C_DOC)
     p.output("C_s", C_s, "1", "derivative of C by s")
+    # C_L = C_l fixes s, and C_M = (C_m1, C_m2) stays (eq 21)
     p.output("s_step", [-C[0] / p.define("C_ls", C_s[0])], "m", "Newton step of C_l(s) = 0")
-    p.output("A_t", slide.A_t, "1", "tangent frame, columns i j (k) (eq 18)")
+    p.output("A_t", slide.A_t, "1", "tangent frame, columns i j (k), eq 18")
     return p
 
 
-def _terms(name: str, element: Element, rider: ModuleType | Point) -> Program:
+def _terms(name: str, element: Element, rider: Rider) -> Program:
     p = Program(f"{name}_terms", "terms of the equations of motion with the slide", "eq 20-37")
     slide = Slide(p, element, rider)
     v = p.input("v", slide.e.shape, "m/s, 1/s", "rates of the nodal vectors")
     w = slide.rider.velocity(p)
     C = slide.constraint()
-    p.stage("C_s and C_q (eq 22-23)")
+    p.stage("C_s and C_q (eq 23)")
     C_s = slide.named("C_s", slide.by_arc_length())
     by_q = slide.by_e + slide.by_rider
     C_q = np.stack([slide.named("C_q", slide.through_cut(d), f"_{k}") for k, d in enumerate(by_q)], axis=1)
@@ -132,45 +132,47 @@ def _terms(name: str, element: Element, rider: ModuleType | Point) -> Program:
     Q_d = slide.named("Q_d", along.array(along.array(C)))
     p.stage("H (eq 31) and W (eq 37)")
     H = C_q[1:] + np.outer(C_s[1:], G)
-    W = -Q_d[1:] + C_s[1:] * inverse * Q_d[0]
+    W = -Q_d[1:] + C_s[1:] * inverse * Q_d[0]  # what is left of C_M'' by eliminating s'' (eq 35)
     p.output("C", C, "m", _C_DOC)
     p.output("C_q", C_q, "1, m", "derivatives of C by the nodal vectors, then the rider")
     p.output("C_s", C_s, "1", "derivative of C by s")
-    p.output("G", G, "1, m", "ds = G dq (eq 24)")
-    p.output("s_rate", [s_rate], "m/s", "rate of s (eq 25)")
-    p.output("Q_d", Q_d, "m/s^2", "second derivative of C at zero accelerations (eq 33)")
-    p.output("H", H, "1, m", "Jacobian of the constraints that stay (eq 31)")
-    p.output("W", W, "m/s^2", "H q'' = W (eq 36-37)")
-    # eq 34 prints the last term with the wrong sign: s'' = -Q_dl/C_sl + G q''
-    p.output("s_bias", [-inverse * Q_d[0]], "m/s^2", "s'' - G q'' (eq 34, sign mended)")
+    p.output("G", G, "1, m", "ds = G dq, eq 24")
+    p.output("s_rate", [s_rate], "m/s", "rate of s, eq 25")
+    p.output("Q_d", Q_d, "m/s^2", "second derivative of C at zero accelerations, eq 33")
+    p.output("H", H, "1, m", "Jacobian of the constraints that stay, eq 31")
+    p.output("W", W, "m/s^2", "H q'' = W (eq 36)")
+    # s'' = -Q_dl/C_sl + G q'' (eq 34): the paper prints the last term with the wrong sign
+    p.output("s_bias", [-inverse * Q_d[0]], "m/s^2", "s'' - G q'', eq 34 with its sign corrected")
     return p
 
 
-def _lagrangian(p: Program, element: Element, rider: ModuleType | Point):
+def _lagrangian(p: Program, element: Element, rider: Rider):
     """phi = r_p, its Jacobian by (e, rider, s), and the gradient of f . phi.
 
     The integrator carries s and the whole force f on the joint as unknowns instead of C_M and its multipliers:
-    f . r_x = 0, the s-entry of the gradient, is eq 30's statement that the force along the tangent is nil. Same
-    solutions and no frame in the Newton matrix, which is symmetric but for the rider's rotations (their bracket).
+    f . r_x = 0, the s-entry of the gradient, says that the multiplier of C_L drops out (eq 30), so that there is no
+    force along the tangent. Same solutions and no frame in the Newton matrix, which is symmetric but for the rider's
+    rotations (their bracket).
     """
     slide = Slide(p, element, rider)
     f = p.input("f", element.dim, "N", "force of the joint on the rider")
     p.stage("Jacobian of phi")
+    # d phi = phi_q dq + phi_s ds (eq 27)
     J = np.stack([d.array(slide.r_p) for d in (*slide.by_e, *slide.by_rider, slide.by_s)], axis=1)
     p.stage("gradient of f . phi")
-    g = np.array([p.define(f"g_{k}", f.dot(column)) for k, column in enumerate(J.T)])
+    g = np.array([p.define(f"g_{k}", f.dot(column)) for k, column in enumerate(J.T)])  # entry by entry (eq 29)
     return slide, J, g
 
 
-def _residual(name: str, element: Element, rider: ModuleType | Point) -> Program:
+def _residual(name: str, element: Element, rider: Rider) -> Program:
     p = Program(f"{name}_residual", "phi and the gradient of f . phi by (e, rider, s)", "eq 19, 28-30")
     slide, _, g = _lagrangian(p, element, rider)
     p.output("phi", slide.r_p, "m", "r(s) - p")
-    p.output("g", g, "N, N m", "gradient of f . phi")
+    p.output("g", g, "N, N m", "gradient of f . phi, what the slide adds to M q'' - Q and to the row of s (eq 28)")
     return p
 
 
-def _tangent(name: str, element: Element, rider: ModuleType | Point) -> Program:
+def _tangent(name: str, element: Element, rider: Rider) -> Program:
     p = Program(f"{name}_tangent", "derivatives of phi and of the gradient of f . phi", "eq 19, 28-30")
     slide, J, g = _lagrangian(p, element, rider)
     p.stage("derivative of the gradient")
@@ -180,7 +182,7 @@ def _tangent(name: str, element: Element, rider: ModuleType | Point) -> Program:
     return p
 
 
-def _discrete_gradient(name: str, element: Element, rider: ModuleType | Point) -> Program:
+def _discrete_gradient(name: str, element: Element, rider: Rider) -> Program:
     """G (de, psi, ds) = phi_next - phi - theta x (phi_next + phi)/2, theta the rider's turn: zero on the joint.
 
     With N~ = (N(s) + N(s_next))/2 and the divided difference D = N[s, s_next] of the shape functions
@@ -198,12 +200,12 @@ def _discrete_gradient(name: str, element: Element, rider: ModuleType | Point) -
     length = p.input("l", (), "m", "length of the element")
     x = p.input("x", (), "m", "arc-length from the element's first node")
     x_next = p.input("x_next", (), "m", "x at the end of the step")
-    e = p.input("e", (element.n_vectors, element.dim), "m, 1", "nodal vectors (eq 1)")
+    e = p.input("e", (element.n_vectors, element.dim), "m, 1", "nodal vectors e, eq 1")
     e_next = p.input("e_next", e.shape, "m, 1", "nodal vectors at the end of the step")
-    secant = DiscreteGradient(p, law, {axis.length: (length, length), axis.x: (x, x_next)})
+    discrete = DiscreteGradient(p, law, {axis.length: (length, length), axis.x: (x, x_next)})
     p.stage("mean shape functions, and their divided differences")
-    mean = np.array([p.define(f"mean_N_{node}", secant.mean(n)) for node, n in zip(element.names, N, strict=True)])
-    slope = np.array([p.define(f"D_N_{node}", *secant.gradient(n, [axis.x]))
+    mean = np.array([p.define(f"mean_N_{node}", discrete.mean(n)) for node, n in zip(element.names, N, strict=True)])
+    slope = np.array([p.define(f"D_N_{node}", *discrete.gradient(n, [axis.x]))
                       for node, n in zip(element.names, N, strict=True)])
     b = rider.configuration(p)
     step = body_kernels.Step(p, rider, b)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import sympy as sp
 
-from ..algebra import section_integrals as moments
+from ..algebra import section_integrals as integrals
 from ..codegen.program import Program
 from ..spec import Element, l, x, y, z
 from . import load_kernels
@@ -15,19 +15,19 @@ def _ring(expr: sp.Expr):
     """A polynomial in x, y, z, 1/l of the spec, in the ring of `moments`."""
     w = sp.Symbol("w", positive=True)
     poly = sp.Poly(sp.expand(expr.subs(l, 1 / w)), x, y, z, w, 1 / w)
-    xi = moments.L * (1 + moments.X) / 2
-    return sum((moments.RING(c) * xi**a * moments.Y**b * moments.Z**d * moments.W**n * moments.L**m
-                for (a, b, d, n, m), c in poly.terms()), moments.RING(0))
+    xi = integrals.L * (1 + integrals.X) / 2
+    return sum((integrals.RING(c) * xi**a * integrals.Y**b * integrals.Z**d * integrals.W**n * integrals.L**m
+                for (a, b, d, n, m), c in poly.terms()), integrals.RING(0))
 
 
 def _integral(p, length, section) -> sp.Expr:
-    """Integral of a ring polynomial over the element, in kernel symbols."""
+    """Return the integral of a ring polynomial over the element, in the kernel's symbols."""
     return sum((sp.Rational(int(c.numerator), int(c.denominator)) * length**power * section[m]
-                for (m, power), c in sorted(moments.over_element(p).items())), sp.S.Zero)
+                for (m, power), c in sorted(integrals.over_element(p).items())), sp.S.Zero)
 
 
 def build(element: Element) -> list[Program]:
-    """Every kernel of an element that no law enters."""
+    """Return the programs of every kernel of an element that no law enters."""
     shape = [_ring(n) for n in element.shape_functions]
     return [mass(element, shape), gravity(element, shape), inertia_force(element, shape), position(element),
             *load_kernels.build(element)]
@@ -42,15 +42,15 @@ def _length(program: Program) -> sp.Symbol:
 
 
 def _section(program: Program) -> np.ndarray:
-    return program.input("section", len(moments.SECTION), moments.SECTION_UNITS, moments.SECTION_DOC)
+    return program.input("section", len(integrals.SECTION), integrals.SECTION_UNITS, integrals.SECTION_DOC)
 
 
-def _coordinates(program: Program, element: Element, name="e", unit="m, 1", doc="nodal vectors (eq 1)"):
+def _coordinates(program: Program, element: Element, name="e", unit="m, 1", doc="nodal vectors e, eq 1"):
     return program.input(name, (element.n_vectors, element.dim), unit, doc)
 
 
 def mass(element: Element, shape) -> Program:
-    """eq 4: M = m (x) I."""
+    """Return the kernel of m (vectors, vectors) in kg, kg m, kg m^2: the mass matrix is M = m (x) I (eq 4)."""
     p = _program(element, "mass", "mass matrix m of M = m (x) I", "eq 4")
     length, density, section = _length(p), p.input("density", (), "kg/m^3", "density"), _section(p)
     p.stage("integrals of N_j N_k")
@@ -65,7 +65,7 @@ def mass(element: Element, shape) -> Program:
 
 
 def gravity(element: Element, shape) -> Program:
-    """Generalised force of a constant gravity field."""
+    """Return the kernel of the generalised force of constant gravity, (vectors, dim), N and N m."""
     p = _program(element, "gravity", "generalised force of constant gravity", "Q_e of eq 9")
     length, density, section = _length(p), p.input("density", (), "kg/m^3", "density"), _section(p)
     g = p.input("g", element.dim, "m/s^2", "gravity")
@@ -77,23 +77,23 @@ def gravity(element: Element, shape) -> Program:
 
 
 def inertia_force(element: Element, shape) -> Program:
-    """M a with M = m (x) I, zeros of m left out."""
+    """Return the kernel of M a with M = m (x) I; it leaves out the zeros of m."""
     p = _program(element, "inertia_force", "M a", "M e'' of eq 9")
     n = element.n_vectors
     m = p.input("m", (n, n), "kg, kg m, kg m^2", f"mass matrix from {element.name}_mass")
     a = _coordinates(p, element, "a", "m/s^2, 1/s^2", "accelerations of the nodal vectors")
-    filled = [[bool(moments.over_element(shape[j] * shape[k])) for k in range(n)] for j in range(n)]
+    filled = [[bool(integrals.over_element(shape[j] * shape[k])) for k in range(n)] for j in range(n)]
     p.output("f", [sum(m[j, k] * a[k] for k in range(n) if filled[j][k]) for j in range(n)], "N, N m", "M a")
     return p
 
 
 def _horner(n: sp.Expr, power: int, xi: sp.Symbol) -> sp.Expr:
-    """A shape function as l^power times a polynomial in xi with whole coefficients: monomials in x cancel."""
+    """Return a shape function as l^power times a polynomial in xi with whole coefficients: monomials in x cancel."""
     return l**power * sp.horner(sp.expand(n.subs(x, xi * l) / l**power), xi)
 
 
 def position(element: Element) -> Program:
-    """eq 2."""
+    """Return the kernel of the shape functions N (vectors,) and of the position r = S e (eq 2), m."""
     p = _program(element, "position", "shape functions and position of a point", "eq 2")
     length = _length(p)
     at = p.input("at", 3, "m", "local coordinates x, y, z")

@@ -1,4 +1,4 @@
-"""The kernels of loads at a point of an element's centreline: what they hold on to, and how they turn with it."""
+"""The kernels of loads at a point of an element's centreline: where they act, and how they turn with it."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from ..spec import Element
 
 
 def build(element: Element) -> list[Program]:
-    """The load kernels of an element."""
+    """Return the load kernels of an element."""
     return [on_axis(element), slopes(element), follower_force(element), moment(element)]
 
 
 def on_axis(element: Element) -> Program:
-    """eq 2 on the centreline."""
+    """Return the kernel of the shape functions and their slopes on the centreline."""
     p = Program(f"{element.name}_on_axis", "shape functions and slopes of a point of the centreline", "eq 2")
     axis = Axis(p, element)
     p.stage("shape functions")
@@ -26,7 +26,7 @@ def on_axis(element: Element) -> Program:
 
 
 def slopes(element: Element) -> Program:
-    """What a frame that goes along the centreline is made of: r_x, r_y, r_z there, and how they change with x."""
+    """Return the kernel of what a frame along the centreline is made of: r_x, r_y, r_z and their derivatives by x."""
     p = Program(f"{element.name}_slopes", "slopes of a point of the centreline, and their derivatives by x", "eq 13-16")
     axis = Axis(p, element)
     p.stage("derivatives of the shape functions")
@@ -36,7 +36,7 @@ def slopes(element: Element) -> Program:
 
 
 def follower_force(element: Element) -> Program:
-    """f = N' A_t c."""
+    """Return the kernel of f = N' A_t c, of a force that turns with the tangent frame, and of its derivative."""
     p = Program(f"{element.name}_follower_force", "generalised force of a force that turns with the tangent frame",
                 "N' A_t c, A_t of eq 18")
     axis = Axis(p, element)
@@ -47,7 +47,7 @@ def follower_force(element: Element) -> Program:
     shapes = [axis.shape(c) for c in slopes]
     tangent, *director = [axis.vector(f"r{c}", n, e) for c, n in zip(slopes, shapes, strict=True)]
     p.stage("tangent frame (eq 13-18) and force")
-    A_t = tangent_frame(p, tangent, *(director or [None]))
+    A_t = tangent_frame(p, tangent, director[0] if director else None)
     c = p.input("c", A_t.shape[1], "N", f"components along {' '.join('ijk'[: A_t.shape[1]])} of the tangent frame")
     force = p.vector("F", A_t.dot(c))
     p.stage("rotation of the frame by tangent and director, derivatives of the force")
@@ -57,7 +57,9 @@ def follower_force(element: Element) -> Program:
 
 
 def turning_slopes(element: Element) -> list[str]:
-    """The slopes, by x, y, z, that say how a section turns: those across, and the tangent where they are too few."""
+    """Return the slopes, by x, y, z, that say how a section turns: those across, and the tangent where they are too
+    few.
+    """
     across = [c for c in "yz" if f"r_{c}" in element.nodal_vectors]
     return across if len(across) >= element.dim - 1 else ["x", *across]
 
@@ -115,12 +117,12 @@ def _on_two(p: Program, M: np.ndarray, a: np.ndarray, b: np.ndarray):
     return forces, bent + jacobian(p, np.concatenate(turned), np.concatenate([a, b]))
 
 
-def _generalised(p: Program, element: Element, holds, forces, shapes, by_vectors: np.ndarray) -> None:
-    """Outputs f = holds' forces, and K from the forces' derivatives by the vectors shapes e."""
+def _generalised(p: Program, element: Element, acting, forces, shapes, by_vectors: np.ndarray) -> None:
+    """Output f = acting' forces, and K from the forces' derivatives by the vectors shapes e."""
     p.stage("derivatives of the forces by e")
     force = np.concatenate(forces)
-    holds, shapes = (np.kron(np.array(n), np.eye(element.dim, dtype=int)) for n in (holds, shapes))
+    acting, shapes = (np.kron(np.array(n), np.eye(element.dim, dtype=int)) for n in (acting, shapes))
     by_e = np.array([[p.define(f"d{component}_de{m}", entry) for m, entry in enumerate(row)]
                      for component, row in zip(force, by_vectors.dot(shapes), strict=True)])
-    p.output("f", holds.T.dot(force).reshape(element.n_vectors, element.dim), "N, N m", "generalised force")
-    p.output("K", holds.T.dot(by_e), "N/m, N, N m", "derivatives of f by e, not symmetric")
+    p.output("f", acting.T.dot(force).reshape(element.n_vectors, element.dim), "N, N m", "generalised force")
+    p.output("K", acting.T.dot(by_e), "N/m, N, N m", "derivatives of f by e, not symmetric")

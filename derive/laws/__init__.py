@@ -1,44 +1,56 @@
-"""Elastic laws: energies as functions of Gram products, by name."""
+"""Elastic laws by name: energies as functions of Gram products, and what each law is."""
 
 from collections.abc import Callable
 from functools import partial
 
-from ..spec import ASSUMED_LAWS, CABLE_LAWS
-from .cable.assumed import AssumedCable
-from .cable.cable import Cable
-from .cable.curved import CurvedCable
-from .continuum.continuum import Continuum
-from .continuum.curved import CurvedContinuum
+from ..spec import ASSUMED_LAWS, CABLE_LAWS, LawTraits
+from .cable import assumed, cable
+from .cable import curved as curved_cable
+from .continuum import continuum
+from .continuum import curved as curved_continuum
+from .structural import structural
+
+CURVED_CABLE_LAWS = ("green_exact_curved", "engineering_exact_curved")
 
 
 def _measures(law: str) -> dict[str, str]:
-    """Strain and curvature of a cable's law by its name."""
+    """Return strain and curvature of a cable's law, which its name begins with."""
     strain, curvature, *_ = law.split("_")
     return {"strain": strain, "curvature": curvature}
 
 
-LAWS = ({"continuum": Continuum, "continuum_curved": CurvedContinuum}
-        | {name: partial(Cable, **_measures(name)) for name in CABLE_LAWS}
-        | {name: partial(AssumedCable, **_measures(name)) for name in ASSUMED_LAWS}
-        | {name: partial(CurvedCable, **_measures(name))
-           for name in ("green_exact_curved", "engineering_exact_curved")})
+_CABLES: list[tuple[tuple[str, ...], Callable, Callable]] = [
+    (CABLE_LAWS, cable.Cable, cable.traits), (ASSUMED_LAWS, assumed.AssumedCable, assumed.traits),
+    (CURVED_CABLE_LAWS, curved_cable.CurvedCable, curved_cable.traits)]
 
-DAMPED_LIKE = {"continuum_curved": "continuum"} | {
-    f"{strain}_{other}": f"{strain}_exact"
-    for strain in ("green", "engineering") for other in ("linear", "exact_curved", "exact_assumed", "linear_assumed")}
-"""The law whose damping kernels another takes; its constants lead the other's A."""
+LAWS: dict[str, Callable] = {continuum.NAME: continuum.Continuum,
+                             curved_continuum.NAME: curved_continuum.CurvedContinuum}
+"""What makes a law from the Gram products of an element."""
+
+TRAITS: dict[str, LawTraits] = {continuum.NAME: continuum.TRAITS, curved_continuum.NAME: curved_continuum.TRAITS,
+                                structural.NAME: structural.TRAITS}
+"""What each law is; the structural one has kernels of its own, without Gram products."""
+
+for names, law, traits in _CABLES:
+    LAWS |= {name: partial(law, **_measures(name)) for name in names}
+    TRAITS |= {name: traits(**_measures(name)) for name in names}
 
 
 def law_name(law: str | type) -> str:
-    """Name of an entry of an element's `laws`."""
-    return law if isinstance(law, str) else law.name
+    """Return the name of an entry of an element's `laws`."""
+    return law if isinstance(law, str) else getattr(law, "name")  # noqa: B009 (a class of the user's has it)
 
 
-def law_like(law: str | type) -> str:
-    """The law in LAWS whose section stiffness an entry of an element's `laws` takes."""
-    return law if isinstance(law, str) else law.like
+def stiffness_of(law: str | type) -> str:
+    """Return the law of this package whose section stiffness an entry of an element's `laws` takes."""
+    return law if isinstance(law, str) else getattr(law, "stiffness_of")  # noqa: B009
+
+
+def law_traits(law: str | type) -> LawTraits:
+    """Return what an entry of an element's `laws` is; a law of the user's is what the one of `stiffness_of` is."""
+    return TRAITS[stiffness_of(law)]
 
 
 def law_class(law: str | type) -> Callable:
-    """What makes the law of an entry of an element's `laws` from Gram products."""
+    """Return what makes the law of an entry of an element's `laws` from Gram products."""
     return LAWS[law] if isinstance(law, str) else law

@@ -5,6 +5,8 @@ Signatures are the same for every law; A holds what the law calls its constants.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import sympy as sp
 
@@ -15,7 +17,7 @@ from ..algebra.gram_tangent import nodal_tangent
 from ..algebra.tangent_frame import spatial, tangent_frame, unit
 from ..codegen.program import Program
 from ..spec import Element
-from . import LAWS, law_class, law_name, stress_free
+from . import LAWS, law_class, law_name, law_traits, stress_free
 
 DAMPING = ("damping_force", "damping_tangent", "dissipation")
 DISCRETE = ("discrete_force", "step_stiffness")
@@ -23,26 +25,27 @@ ALGORITHMIC = ("algorithmic_force",)
 RETARDATION = ("tau", (), "s", "retardation time of the Kelvin-Voigt law")
 
 
-def lacks(law: str | type) -> tuple[str, ...]:
-    """Kernels that a law does not give: a discrete gradient of its energy, a measure of strain for a step."""
+def missing(law: str | type) -> tuple[str, ...]:
+    """Return the kernels that a law does not give: a discrete gradient of its energy, a measure of strain for a step.
+    """
     return tuple(kernel for kernels, method in ((DISCRETE, "discrete_forces"), (ALGORITHMIC, "algorithmic_forces"))
                  for kernel in kernels if not hasattr(_class(law), method))
 
 
 def facts(element: Element, law: str | type) -> dict[str, int]:
-    """What the engine needs to know of a law's rates of strain."""
-    return {"rates": 0, "spins": 0} if lacks(law) else _class(law).rates(element)
+    """Return what the engine needs to know of a law's rates of strain: how many, and whether a spin is one."""
+    return {"rates": 0, "spins": 0} if missing(law) else _class(law).rates(element)
 
 
-def _class(law: str | type) -> type | None:
-    found = LAWS.get(law) if isinstance(law, str) else law
+def _class(law: str | type) -> Any:
+    found: Any = LAWS.get(law) if isinstance(law, str) else law
     return getattr(found, "func", found)
 
 
 def build(element: Element, law: str | type, damping: bool = True) -> list[Program]:
-    """Every kernel of a law on an element; those of damping where it does not take another law's."""
-    missing = lacks(law)
-    discrete, damped = ([kernel for kernel in kernels if kernel not in missing]
+    """Return every kernel of a law on an element; those of damping where it does not take another law's."""
+    left_out = missing(law)
+    discrete, damped = ([kernel for kernel in kernels if kernel not in left_out]
                         for kernels in (DISCRETE, (*DAMPING, *ALGORITHMIC) if damping else ()))
     kernels = Kernels(element, law)
     return [kernels.set_up(), kernels.energy(), kernels.elastic_force(), kernels.elastic_tangent(),
@@ -55,11 +58,12 @@ class Kernels:
     def __init__(self, element: Element, law: str | type):
         self.element, self.gram = element, Gram(element)
         self.law, self.name = law_class(law)(self.gram), f"{element.name}_{law_name(law)}"
+        self.traits = law_traits(law)
 
     def _program(self, kernel: str, doc: str, source: str) -> Program:
         return Program(f"{self.name}_{kernel}", doc, f"{source}; {self.law.source}")
 
-    def _coordinates(self, program: Program, name="e", unit="m, 1", doc="nodal vectors (eq 1)") -> np.ndarray:
+    def _coordinates(self, program: Program, name="e", unit="m, 1", doc="nodal vectors e, eq 1") -> np.ndarray:
         return program.input(name, (self.element.n_vectors, self.element.dim), unit, doc)
 
     def _strain(self, program: Program) -> tuple:
@@ -94,20 +98,20 @@ class Kernels:
         return w, A, *given, self.gram.differences(program, e, w), self.gram.differences(program, v, w, "d")
 
     def set_up(self) -> Program:
-        """The law's constants."""
+        """Return the kernel of the law's constants A."""
         p = self._program(self.law.set_up_kernel, "constants of the law from the stiffness of the section", "eq 7")
         self.law.set_up(p)
         return p
 
     def energy(self) -> Program:
-        """eq 7."""
+        """Return the kernel of the elastic energy U of eq 7, J."""
         p = self._program("energy", "elastic energy", "eq 7")
         w, A, c = self._strain(p)
         p.output("U", [self.law.energy(p, A, c, w)], "J", "elastic energy")
         return p
 
     def elastic_force(self) -> Program:
-        """eq 8, as dU/de = -Q_k."""
+        """Return the kernel of the force dU/de, which is -Q_k of eq 8."""
         p = self._program("elastic_force", "dU/de, minus the elastic force Q_k", "eq 8")
         w, A, c = self._strain(p)
         p.output("f", self._nodal(p, self.law.forces(p, A, c, w), w), "N, N m", "dU/de")
@@ -131,7 +135,7 @@ class Kernels:
         return p
 
     def elastic_tangent(self) -> Program:
-        """Second derivative of the energy."""
+        """Return the kernel of the second derivative of the energy, d2U/de2."""
         p = self._program("elastic_tangent", "d2U/de2", "derivative of eq 8")
         w, A, c = self._strain(p)
         K = nodal_tangent(self.gram, p, self.law.tangent(p, A, c, w), w, symmetric=True)
@@ -156,7 +160,7 @@ class Kernels:
         return p
 
     def dissipation(self) -> Program:
-        """Power that the damping force takes out."""
+        """Return the power that the damping force takes out."""
         p = self._program("dissipation", "power dissipated by the damping force", "v . Q_d of eq 9")
         w, A, tau, c, dc = self._rates(p)
         p.output("P", [sp.sympify(self.law.dissipation(p, A, tau, c, dc, w))], "W", "dissipated power, never negative")
@@ -164,22 +168,23 @@ class Kernels:
 
     def algorithmic_force(self) -> Program:
         """Of a step with algorithmic dissipation: of stresses that its integrator makes of changes of strain."""
-        p = self._program("algorithmic_force", "force of the stress D (weight dE - known), dE the strain that v makes",
+        p = self._program("algorithmic_force",
+                          "force of the stress D (weight dE - relaxed_strain), dE the strain that v makes",
                           "D of Q_d of eq 9")
-        w, A, weight, known, c, dc = self._rates(
+        w, A, weight, relaxed_strain, c, dc = self._rates(
             p, ("weight", (), "1", "of the strains that v makes"),
-            ("known", (self.law.rates(self.element)["rates"],), "1, 1/m", "strains, taken off"))
-        f, dE = self.law.algorithmic_forces(p, A, weight, known, c, dc, w)
+            ("relaxed_strain", (self.law.rates(self.element)["rates"],), "1, 1/m", "strains, taken off"))
+        f, dE = self.law.algorithmic_forces(p, A, weight, relaxed_strain, c, dc, w)
         p.output("f", self._nodal(p, f, w), "N, N m", "force; its power with v is that of the stress with dE")
         p.output("dE", dE, "1, 1/m", "strains: one a point and component, or over Gram pairs")
         return p
 
     def section_forces(self) -> Program:
-        """What passes through the section at x from the side of greater x."""
+        """Return what passes through the section at x from the side of greater x."""
         p = self._program("section_forces", "force and moment resultants of a section", "eq 6-8 at a section")
         length, x = p.input("l", (), "m", "length of the element"), p.input("x", (), "m", "arc-length from its start")
         e, S = self._coordinates(p), self.law.section_stiffness(p)
-        e0 = [stress_free.shape(p, self.element)] if self.law.curved else []
+        e0 = [stress_free.shape(p, self.element)] if self.traits.takes_shape else []
         p.stage("strain vectors")
         w = p.define("w", 1 / length)
         X = p.define("X", 2 * w * x - 1)
@@ -195,7 +200,7 @@ class Kernels:
         return p
 
     def _axes(self, program: Program, c: np.ndarray, X: sp.Expr, w: sp.Expr) -> np.ndarray:
-        """Rows t, y, z in space; z is out of the plane of a planar element."""
+        """Return the rows t, y, z in space; z is out of the plane of a planar element."""
         tangent = program.vector("t", axis(self.gram, c, X, w, 1))
         if self.element.dim == 2:
             i = unit(program, "i", tangent)

@@ -9,5 +9,5 @@ from ..spec import Element
 
 
 def shape(program: Program, element: Element) -> np.ndarray:
-    """Input e0 (vectors, dim)."""
+    """Declare the input e0 (vectors, dim), the stress-free nodal vectors, and return it."""
     return program.input("e0", (element.n_vectors, element.dim), "m, 1", "nodal vectors of the stress-free shape")

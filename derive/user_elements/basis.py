@@ -10,7 +10,7 @@ from itertools import pairwise
 import sympy as sp
 from funicular.errors import near
 
-from ..laws import LAWS, law_like, law_name
+from ..laws import LAWS, TRAITS, law_name, stiffness_of
 from ..spec import Element, l, x, y, z
 from .load import SpecError, taken
 
@@ -83,28 +83,40 @@ def _vectors(element: Element) -> Iterator[tuple[str, str]]:
 
 
 def _monomials(element: Element) -> Iterator[tuple[str, str]]:
-    allowed = (x, y, z)[: element.dim]
-    found = []
-    for k, given in enumerate(element.basis):
-        f, here = sp.sympify(given), f"basis[{k}] = {given}"
-        strange = sorted(map(str, f.free_symbols - {x, y, z}))
-        if strange:
-            yield (f"r is not linear in the nodal vectors: {here} depends on {', '.join(strange)}, but the basis "
-                   "must be the same in every configuration", f"give monomials of {', '.join(map(str, allowed))} alone")
-        if not f.is_polynomial(x, y, z):
-            yield f"{here} is not a polynomial", f"give monomials of {', '.join(map(str, allowed))}"
-        poly = sp.Poly(f, x, y, z)
-        if len(poly.terms()) != 1 or poly.LC() != 1:
-            yield (f"{here} is not a monomial; r is any combination of the basis, so sums and factors say nothing more",
-                   "list the monomials that it is made of")
-        powers = poly.monoms()[0]
-        if element.dim == 2 and powers[2]:
-            yield f"{here} has z, but dim is 2", ""
+    """Yield what is wrong with the monomials of the basis, one by one and together."""
+    found: list[tuple[int, int, int]] = []
+    for number, given in enumerate(element.basis):
+        f, here = sp.sympify(given), f"basis[{number}] = {given}"
+        yield from _monomial(f, here, element.dim)
+        powers = sp.Poly(f, x, y, z).monoms()[0]
         if powers in found:
             yield f"{here} stands twice in the basis", "leave one out"
-        if sum(powers[1:]) > SECTION_DEGREE["element"]:
-            yield f"{here} is of degree {sum(powers[1:])} across the section; section moments serve up to degree 2", ""
         found.append(powers)
+    yield from _span(found)
+
+
+def _monomial(f: sp.Expr, here: str, dim: int) -> Iterator[tuple[str, str]]:
+    """Yield what is wrong with a function of the basis, which `here` names."""
+    allowed = (x, y, z)[:dim]
+    strange = sorted(map(str, f.free_symbols - {x, y, z}))
+    if strange:
+        yield (f"r is not linear in the nodal vectors: {here} depends on {', '.join(strange)}, but the basis "
+               "must be the same in every configuration", f"give monomials of {', '.join(map(str, allowed))} alone")
+    if not f.is_polynomial(x, y, z):
+        yield f"{here} is not a polynomial", f"give monomials of {', '.join(map(str, allowed))}"
+    poly = sp.Poly(f, x, y, z)
+    if len(poly.terms()) != 1 or poly.LC() != 1:
+        yield (f"{here} is not a monomial; r is any combination of the basis, so sums and factors say nothing more",
+               "list the monomials that it is made of")
+    powers = poly.monoms()[0]
+    if dim == 2 and powers[2]:
+        yield f"{here} has z, but dim is 2", ""
+    if sum(powers[1:]) > SECTION_DEGREE["element"]:
+        yield f"{here} is of degree {sum(powers[1:])} across the section; section moments serve up to degree 2", ""
+
+
+def _span(found: list[tuple[int, int, int]]) -> Iterator[tuple[str, str]]:
+    """Yield what the span of monomials with these powers of x, y, z lacks."""
     if (0, 0, 0) not in found:
         yield "no rigid motion: the basis has no constant, so that the element cannot be moved", "add 1 as the first"
     if (1, 0, 0) not in found:
@@ -121,41 +133,51 @@ def _monomials(element: Element) -> Iterator[tuple[str, str]]:
 
 
 def _laws(element: Element) -> Iterator[tuple[str, str]]:
+    """Yield what is wrong with the laws: their names, and what they need of the basis."""
     if not element.laws:
         yield "there is no law", 'give laws=("green_exact",), say'
     for law in element.laws:
         if isinstance(law, str) and law not in LAWS:
             yield f'law "{law}" is not known', near(law, LAWS)
         if not isinstance(law, str):
-            name, like = getattr(law, "name", None), getattr(law, "like", None)
-            if not isinstance(name, str) or not re.fullmatch(r"[a-z][a-z0-9_]*", name):
-                yield f"law {law!r} must have a name of small letters, digits and _, got {name!r}", 'write name = "..."'
-            if like not in LAWS:
-                yield (f'law "{name}" must say in `like` the law of funicular whose section stiffness it takes, '
-                       f"got {like!r}", "known: " + ", ".join(LAWS))
+            yield from _own_law(law)
     names = [law_name(law) for law in element.laws]
     if len(set(names)) < len(names) or any(n in LAWS and not isinstance(law, str)
                                            for n, law in zip(names, element.laws, strict=True)):
         yield f"a law stands twice, or has the name of one of funicular's: {', '.join(names)}", "give another name"
-    across = {v for v in (y, z) if any(sp.sympify(f).has(v) for f in element.basis)}
     for law in element.laws:
-        name, like = law_name(law), law_like(law)
-        if like.startswith(("green_", "engineering_")):
-            if across:
-                more = ", ".join(sorted(map(str, across)))
-                yield (f"law {name} knows the centreline alone, but the basis has {more}: "
-                       "nothing resists the deformation of the section", "take the law continuum")
-            continue
-        if len(across) < element.dim - 1:
-            missing = ", ".join(str(v) for v in (y, z)[: element.dim - 1] if v not in across)
-            yield f"law {name} needs the section's deformation, but the basis has no {missing}", "take a law of cables"
-        for f in element.basis:
-            if sum(sp.Poly(f, x, y, z).monoms()[0][1:]) > SECTION_DEGREE["continuum"]:
-                yield f"law {name} takes a basis linear across the section, but this one has {f}", ""
+        yield from _law_on_basis(element, law)
+
+
+def _own_law(law: type) -> Iterator[tuple[str, str]]:
+    """Yield what a class of the user's lacks to be a law."""
+    name, borrowed = getattr(law, "name", None), getattr(law, "stiffness_of", None)
+    if not isinstance(name, str) or not re.fullmatch(r"[a-z][a-z0-9_]*", name):
+        yield f"law {law!r} must have a name of small letters, digits and _, got {name!r}", 'write name = "..."'
+    if borrowed not in LAWS:
+        yield (f'law "{name}" must say in `stiffness_of` the law of funicular whose section stiffness it '
+               f"takes, got {borrowed!r}", "known: " + ", ".join(LAWS))
+
+
+def _law_on_basis(element: Element, law: str | type) -> Iterator[tuple[str, str]]:
+    """Yield what keeps a law from the element's basis."""
+    name, across = law_name(law), {v for v in (y, z) if any(sp.sympify(f).has(v) for f in element.basis)}
+    if TRAITS[stiffness_of(law)].kind == "cable":
+        if across:
+            more = ", ".join(sorted(map(str, across)))
+            yield (f"law {name} knows the centreline alone, but the basis has {more}: "
+                   "nothing resists the deformation of the section", "take the law continuum")
+        return
+    if len(across) < element.dim - 1:
+        missing = ", ".join(str(v) for v in (y, z)[: element.dim - 1] if v not in across)
+        yield f"law {name} needs the section's deformation, but the basis has no {missing}", "take a law of cables"
+    for f in element.basis:
+        if sum(sp.Poly(f, x, y, z).monoms()[0][1:]) > SECTION_DEGREE["continuum"]:
+            yield f"law {name} takes a basis linear across the section, but this one has {f}", ""
 
 
 def _functionals(element: Element) -> Iterator[tuple[str, str]]:
-    """Nodal conditions of a class derived from Element: each must be linear in the function."""
+    """Yield the nodal conditions that are not linear in the function, of a class derived from Element."""
     basis = [sp.sympify(f) for f in element.basis]
     for f, g in pairwise(basis):
         alone, both = element.nodal_conditions([f, g]), element.nodal_conditions([2 * f + 3 * g])
@@ -165,7 +187,7 @@ def _functionals(element: Element) -> Iterator[tuple[str, str]]:
 
 
 def _conditions(element: Element) -> Iterator[tuple[str, str]]:
-    """The nodal conditions must fix the basis: which of them depend on others, and what stays undetermined."""
+    """Yield why the nodal conditions do not fix the basis: which of them depend on others, what stays undetermined."""
     basis = [sp.sympify(f) for f in element.basis]
     conditions = element.nodal_conditions(basis)
     rows, columns = conditions.shape
@@ -181,7 +203,7 @@ def _conditions(element: Element) -> Iterator[tuple[str, str]]:
 
 
 def _combination(vector: sp.Matrix, of) -> str:
-    """Sum of a null vector's entries times what they stand for."""
+    """Return the sum of a null vector's entries times what they stand for."""
     terms = [(sp.factor(c), name) for c, name in zip(vector, of, strict=True) if c != 0]
     lead = terms[0][0]
     return str(sp.Add(*(sp.cancel(c / lead) * (name if isinstance(name, sp.Basic) else sp.Symbol(name))

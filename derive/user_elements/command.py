@@ -13,10 +13,10 @@ from rich.console import Console
 from rich.table import Table
 
 from ..codegen import rendering as emit
-from ..codegen import timing
+from ..codegen.family import Family, LawFamily
 from ..laws import law_name
 from ..laws.kernels import Kernels
-from ..spec import Family
+from ..verify import timing
 from ..verify.command import examined
 from ..verify.compiled import CompilerError, compile_units, compiler
 from ..verify.report import WIDE, Report
@@ -95,20 +95,22 @@ def _make(spec: Path, families: dict[str, Family], work: Path, out: Path, consol
 
 def _derived(spec: Path, family: Family) -> emit.Derived:
     """Derive a family; what the user's own code raises, and what the law lacks, is told with its place."""
+    assert family.element is not None  # a user's families are those of elements
     place = f'{spec}: element "{family.element.name}"' + (f', law "{family.law}"' if family.law else "")
     with load.blaming(spec, place):
-        if family.role != "law":
+        if not isinstance(family, LawFamily):
             return emit.derive(family)
         law = next(law for law in family.element.laws if law_name(law) == family.law)
         energy.check_arithmetic([Kernels(family.element, law).energy()], place)  # first: a kink may have no derivatives
-        made = emit.derived(family, family.build())
-        energy.check_arithmetic(made.programs, place)
-        energy.check_law(family, made.programs, place)
+        programs = family.build()
+        made = emit.derived(family, programs)  # without what no output needs
+        energy.check_arithmetic(programs, place)
+        energy.check_law(family, programs, place)
         return made
 
 
 def _table(kernels: dict, times: dict[str, list[float]], sizes: dict[str, int], report: Report) -> Table:
-    """Kernels with operations, bytes of code, errors and time."""
+    """Return the kernels with operations, bytes of code, errors and time."""
     table = Table(title="Errors are relative to the output's largest entry; times are of one thread",
                   title_justify="left", box=box.SIMPLE_HEAD)
     for name in ("kernel", "operations", "bytes of code", "rounding", "50 digits", "µs a call"):

@@ -6,15 +6,18 @@ are those of verification (two bent elements and the straight reference), the la
 
 from __future__ import annotations
 
+from typing import Any
+
 import mpmath
 import numpy as np
 import sympy as sp
 
+from ..codegen.family import LawFamily
 from ..codegen.program import Program
-from ..spec import Family
 from ..verify import numbers as verify_numbers
 from ..verify.exact import DIGITS
-from ..verify.states import reference, rotation, states
+from ..verify.samples import states
+from ..verify.samples.shapes import reference, rotation
 from .load import SpecError
 
 SAMPLES = ("bent element 1", "bent element 2", "the straight reference", "the straight reference, turned")
@@ -24,7 +27,7 @@ TOLERANCE = 1e-8  # differences at 50 digits keep ten more of a smooth energy, a
 
 
 def check_arithmetic(programs: list[Program], place: str) -> None:
-    """Kernels are sums, products, quotients and square roots: raise SpecError for anything else."""
+    """Raise SpecError for a kernel that has more than sums, products, quotients and square roots."""
     for program in programs:
         exprs = [e for stage in program.stages for _, e in stage.definitions]
         exprs += [e for value in program.values.values() for e in value.ravel()]
@@ -39,7 +42,7 @@ def check_arithmetic(programs: list[Program], place: str) -> None:
                                     "kernels have +, -, *, / and square roots")
 
 
-def check_law(family: Family, programs: list[Program], place: str) -> None:
+def check_law(family: LawFamily, programs: list[Program], place: str) -> None:
     """Raise SpecError for the first property that the law's kernels lack, with kernel and sample."""
     with mpmath.workdps(DIGITS):
         _Trial(family, programs, place).run()
@@ -48,7 +51,7 @@ def check_law(family: Family, programs: list[Program], place: str) -> None:
 class _Trial:
     """The law's kernels at 50 digits over the samples."""
 
-    def __init__(self, family: Family, programs: list[Program], place: str):
+    def __init__(self, family: LawFamily, programs: list[Program], place: str):
         self.family, self.place = family, place
         self.k = verify_numbers.exact(family.name, programs)
         self.states = self._samples()
@@ -65,8 +68,8 @@ class _Trial:
     def _fail(self, kernel: str, sample: str, cause: str, remedy: str = "") -> None:
         raise SpecError(self.place, f"{cause}: kernel {self.family.name}_{kernel}, at {sample}", remedy)
 
-    def value(self, kernel: str, output: str, s, **changes) -> np.ndarray | None:
-        """An output, None where it is no finite real number."""
+    def value(self, kernel: str, output: str, s, **changes) -> Any:
+        """Return an output, None where it is no finite real number."""
         try:
             value = self.k(kernel, s, **changes)[output]
         except (ZeroDivisionError, ValueError):
@@ -103,9 +106,9 @@ class _Trial:
                 moved = self.value("energy", "U", s, e=e)
                 # the matrix of the rotation is orthogonal to 1e-16
                 if moved is None or abs(moved[0] - U[0]) > 1e-12 * self.scale:
-                    told = "not a number" if moved is None else f"{float(moved[0]):.6g} J"
+                    after = "not a number" if moved is None else f"{float(moved[0]):.6g} J"
                     self._fail("energy", sample, f"the energy is not objective: a rigid {motion} changes it from "
-                               f"{float(U[0]):.6g} J to {told}", "make it of the Gram products that a law is given")
+                               f"{float(U[0]):.6g} J to {after}", "make it of the Gram products that a law is given")
 
     def _stress_free(self) -> None:
         e = self.k.array(reference(self.family.element, float(self.states[0]["l"].item())))
@@ -138,7 +141,7 @@ class _Trial:
                                    "make it of squares, or round the corner off")
 
     def _one_sided(self, sample: str, s, j: int, name: str) -> list[tuple]:
-        """First and second differences of the energy by coordinate j, before and after the sample."""
+        """Return the first and second differences of the energy by coordinate j, before and after the sample."""
         direction = np.zeros(s["e"].size, dtype=int)
         direction[j] = 1
         U = {}

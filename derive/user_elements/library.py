@@ -13,8 +13,8 @@ from funicular.kernels.libraries import LibraryError, manifest_digest, read_mani
 
 from ..codegen import rendering as emit
 from ..codegen.drift import MANIFEST
+from ..codegen.family import Family
 from ..codegen.rendering import Derived
-from ..spec import Family
 from ..verify.compiled import compiler
 from .load import SpecError
 
@@ -34,7 +34,7 @@ def check_destination(out: Path) -> None:
 
 
 def recorded(out: Path) -> dict | None:
-    """The manifest of the library in a directory, None where there is none."""
+    """Return the manifest of the library in a directory, None where there is none."""
     try:
         return read_manifest(out)[1]
     except LibraryError:
@@ -42,7 +42,7 @@ def recorded(out: Path) -> dict | None:
 
 
 def is_current(out: Path, families: list[Family]) -> bool:
-    """Whether a directory's library is what these families make with the tools at hand."""
+    """Return whether a directory's library is what these families make with the tools at hand."""
     content = recorded(out)
     if (content is None or content["library"].get("digest") != manifest_digest(content)
             or content["tools"] != emit.tools() or content["interface"] != manifest()["interface"]):
@@ -55,7 +55,7 @@ def is_current(out: Path, families: list[Family]) -> bool:
 
 
 def render(every: list[Derived]) -> dict[str, str]:
-    """Text of a library's C files and header by name."""
+    """Return the text of a library's C files and header by name."""
     return emit.render(every, [d.family.name for d in every], lambda _: None, like=manifest()["tables"])
 
 

@@ -11,7 +11,8 @@ from pathlib import Path
 from funicular.errors import FunicularError
 
 from ..catalogue import families, of_element
-from ..spec import Element, Family
+from ..codegen.family import Family
+from ..spec import Element
 
 
 class SpecError(FunicularError):
@@ -23,7 +24,7 @@ class SpecError(FunicularError):
 
 
 def elements(file: Path) -> list[Element]:
-    """The elements that a file defines, in order. Raises SpecError with the line of what stops it."""
+    """Return the elements that a file defines, in order. Raises SpecError with the line of what stops it."""
     try:
         code = compile(file.read_text(encoding="utf-8"), str(file), "exec")
     except (OSError, UnicodeDecodeError) as error:
@@ -35,7 +36,7 @@ def elements(file: Path) -> list[Element]:
     space = {"__name__": f"funicular_spec_{file.stem}", "__file__": str(file)}
     with blaming(file, str(file)):
         exec(code, space)
-    found = list({id(value): value for value in space.values() if isinstance(value, Element)}.values())
+    found: list[Element] = list({id(value): value for value in space.values() if isinstance(value, Element)}.values())
     if not found:
         raise SpecError(str(file), "defines no element",
                         "write NAME = Element(...) in it, with Element of funicular.derive.spec")
@@ -43,7 +44,7 @@ def elements(file: Path) -> list[Element]:
 
 
 def own_families(file: Path) -> dict[str, Family]:
-    """The families of a file's elements by name: those that an element of this package has."""
+    """Return the families of a file's elements by name: those that an element of this package has."""
     found = {}
     for element in elements(file):
         for family in of_element(element):
@@ -53,13 +54,13 @@ def own_families(file: Path) -> dict[str, Family]:
 
 
 def taken() -> set[str]:
-    """Names that the families of this package have."""
+    """Return the names that the families of this package have."""
     return set(families())
 
 
 @contextmanager
 def blaming(file: Path, place: str) -> Iterator[None]:
-    """An exception of the file's own code becomes a SpecError with its line there."""
+    """Turn an exception of the file's own code into a SpecError with its line there."""
     try:
         yield
     except SpecError:

@@ -1,9 +1,9 @@
 """`funicular verify`: every derivative in the generated C, tried by independent methods, rounding, and the invariances.
 
-The files of generated/ are compiled as they stand: a sign changed by hand shows at once. Relations are in
-verify/relations/element.py and verify/relations/slide.py, methods and their ceilings in verify/methods.py, rounding and
-its ceilings in
-verify/rounding.py; families come from the list in catalogue.py, so a new element or rider is covered by being there.
+The files of generated/ are compiled as they stand: a sign changed by hand shows at once. Relations, invariances,
+references and samples are packages with a file for each role. Methods and their ceilings are in verify/methods.py,
+rounding and its ceilings in verify/rounding.py. Families come from the list in catalogue.py, so a new element or rider
+is covered by being there.
 """
 
 from __future__ import annotations
@@ -22,19 +22,18 @@ import mpmath
 import numpy as np
 
 from ..catalogue import families, named
-from ..codegen import rendering as emit
 from ..codegen.drift import folder
+from ..codegen.family import Family
 from ..codegen.program import Program
-from ..spec import Family
 from . import numbers as verify_numbers
 from .compiled import CompilerError, Library
 from .exact import DIGITS
-from .invariances.element import invariances
+from .invariances import invariances
 from .methods import Finding, examine
-from .relations.element import relations
+from .relations import relations
 from .report import Report
 from .rounding import Rounding, roundings
-from .states import states
+from .samples import states
 
 Item = Finding | Rounding | tuple[str, float, float]
 
@@ -48,7 +47,7 @@ class Subject:
     libraries: dict[str, Library]
 
     def kinds(self) -> dict[str, verify_numbers.Numbers]:
-        """The three evaluators; waits for the compiler."""
+        """Return the three evaluators; waits for the compiler."""
         name = self.family.name
         return {"exact": verify_numbers.exact(name, self.programs),
                 "real": verify_numbers.real(name, self.programs, self.libraries["real"].load()),
@@ -57,14 +56,14 @@ class Subject:
 
 def prepare(family: Family, generated: Path, work: Path) -> Subject:
     """Derive a family and start compiling its generated file."""
-    programs = emit.derive(family).programs
+    programs = [program.prune() for program in family.build()]
     libraries = {kind: Library(family.name, programs, generated, work, dtype)
                  for kind, dtype in (("real", float), ("complex", complex))}
     return Subject(family, programs, libraries)
 
 
 def uncovered(family: Family, programs: list[Program]) -> list[str]:
-    """Outputs that no relation is about."""
+    """Return the outputs that no relation is about."""
     known = {(f"{family.name}_{r.kernel}", r.output) for r in relations(family)}
     return [f"{p.name}: {a.name}" for p in programs for a in p.outputs if (p.name, a.name) not in known]
 
@@ -86,7 +85,10 @@ def verify(subject: Subject) -> Iterator[Item]:
 
 
 def main(names: list[str], generated: Path | None = None) -> int:
-    """The command; returns its exit code. `generated` is the folder of the C files, this installation's by default."""
+    """Verify the named families, or all, and return the exit code of the command.
+
+    `generated` is the folder of the C files, this installation's by default.
+    """
     start = time.perf_counter()
     try:
         wanted = named(names) if names else families()
@@ -118,7 +120,7 @@ def examined(wanted: list[Family], generated: Path, catalogue: Catalogue = famil
 
 def _results(wanted: list[Family], generated: Path, catalogue: Catalogue,
              progress: Callable[[], None]) -> dict[str, tuple[list[str], list[Item]]]:
-    """What `_examined` returns, by family in the order wanted; one process a core, the longest files first."""
+    """Return what `_examined` returns, by family in the order wanted; one process a core, the longest files first."""
     names = [family.name for family in wanted]
     found = {}
     workers = min(os.cpu_count() or 1, len(names))
@@ -145,7 +147,7 @@ def _size(path: Path) -> int:
 
 
 def _examined(name: str, generated: Path, catalogue: Catalogue) -> tuple[list[str], list[Item]]:
-    """Outputs of a family that no relation is about, findings and invariances."""
+    """Return the outputs of a family that no relation is about, findings and invariances."""
     # what a broken kernel returns is a finding, not a warning
     with (tempfile.TemporaryDirectory(prefix="funicular-verify-") as work, mpmath.workdps(DIGITS),
           np.errstate(all="ignore")):

@@ -14,6 +14,7 @@ import sysconfig
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -25,7 +26,7 @@ class CompilerError(Exception):
 
 
 def compiler() -> list[str]:
-    """The C compiler: $CC, then the one that built this Python, then cc, gcc, clang.
+    """Return the C compiler: $CC, then the one that built this Python, then cc, gcc, clang.
 
     Raises CompilerError where there is none.
     """
@@ -65,7 +66,7 @@ class Library:
         command = [*compiler(), "-O0", "-w", "-fPIC", "-shared", *define, f"-I{generated}", "-o", str(self._path),
                    str(generated / f"{family}.c"), str(shim), "-lm"]
         self._process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
-        self._functions: dict[str, ctypes._CFuncPtr] = {}
+        self._functions: dict[str, Any] = {}
 
     def _shim(self) -> str:
         lines = ['#include "kernels.h"']
@@ -87,13 +88,15 @@ class Library:
         return self
 
     def __call__(self, name: str, inputs: Iterable[np.ndarray]) -> dict[str, np.ndarray]:
-        """Outputs of a kernel by name; every call has fresh arrays, with not-a-number where nothing was written."""
+        """Return the outputs of a kernel by name; every call has fresh arrays, with not-a-number where nothing was
+        written.
+        """
         program = self.programs[name]
-        arrays = [np.ascontiguousarray(v, dtype=self.dtype) for v in inputs]
+        arrays: list[np.ndarray] = [np.ascontiguousarray(v, dtype=self.dtype) for v in inputs]
         for argument, array in zip(program.inputs, arrays, strict=True):
             if array.size != argument.size:
                 raise ValueError(f"{name}: {argument.name} must have shape {argument.shape}, got {array.shape}")
-        outputs = {a.name: np.full(a.shape, np.nan, dtype=self.dtype) for a in program.outputs}
+        outputs: dict[str, np.ndarray] = {a.name: np.full(a.shape, np.nan, dtype=self.dtype) for a in program.outputs}
         pointers = [a.ctypes.data for a in (*arrays, *outputs.values())]
         self._functions[name]((ctypes.c_void_p * len(pointers))(*pointers))
         return outputs

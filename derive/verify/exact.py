@@ -52,7 +52,7 @@ class ExactProgram:
         return space["kernel"]
 
     def __call__(self, inputs: Iterable[np.ndarray]) -> dict[str, np.ndarray]:
-        """Outputs by name, as arrays of mpmath numbers."""
+        """Return the outputs by name, as arrays of mpmath numbers."""
         self._function = self._function or self._compile()
         arguments = [v.item() if a.shape == () else list(v.ravel())
                      for a, v in zip(self.program.inputs, map(np.asarray, inputs), strict=True)]

@@ -16,10 +16,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..spec import Element, Family
+from ..codegen.family import Family
+from ..spec import Element
 from .motion import RIDERS
 from .numbers import State
-from .states import SEEDS, director, following, on_axis, reference, rotation
+from .samples import SEEDS
+from .samples.shapes import director, on_axis, reference, rotation
+from .samples.step import following
 
 KINDS = ("ordinary", "tiny strain", "large rotation", "far origin")
 TINY, FAR = 1e-9, 1e4
@@ -35,12 +38,12 @@ class Input:
     sizes: State
 
     def changed(self, sample: State) -> set[str]:
-        """Names of the values in which it differs from a sample."""
+        """Return the names of the values in which it differs from a sample."""
         return {name for name in self.state if self.state[name] is not sample.get(name)}
 
 
 def inputs(family: Family, samples: list[State]) -> Iterator[tuple[Input, State]]:
-    """Every input with the sample that it was made from."""
+    """Yield every input with the sample that it was made from."""
     for number, sample in enumerate(samples[: len(SEEDS)]):  # the one after these is at rest along the axes
         random = np.random.default_rng(number)
         yield Input("ordinary", sample, sample), sample
@@ -86,7 +89,7 @@ def _turned(family: Family, s: State, random: np.random.Generator) -> dict[str, 
 
 
 def _arc(element: Element, l: float) -> np.ndarray:
-    """The straight element bent to an arc in the plane x y."""
+    """Return the straight element bent to an arc in the plane x y."""
     e, per_node = reference(element, l), len(element.nodal_vectors)
     for k, ratio in enumerate(element.node_ratios):
         angle = BEND * (float(ratio) - 0.5)
@@ -101,10 +104,10 @@ def _arc(element: Element, l: float) -> np.ndarray:
 def _far(family: Family, s: State, random: np.random.Generator) -> dict[str, np.ndarray]:
     offset = random.normal(size=_dim(family))
     offset *= FAR * float(s.get("l", 1.0)) / np.linalg.norm(offset)
-    changes = {}
+    changes: dict[str, np.ndarray] = {}
     if family.element:
         shift = np.outer(np.array(family.element.is_position, dtype=float), offset)
-        changes = {name: s[name] + shift for name in ("e", "e0", "e_next") if name in s}
+        changes = {str(name): s[name] + shift for name in ("e", "e0", "e_next") if name in s}
     if family.rider:
         rider = RIDERS[family.rider]
         motion = np.zeros(rider.n_velocity)
@@ -114,4 +117,4 @@ def _far(family: Family, s: State, random: np.random.Generator) -> dict[str, np.
 
 
 def _dim(family: Family) -> int:
-    return family.dim or (family.element.dim if family.element else RIDERS[family.rider].dim)
+    return family.dim or (family.element.dim if family.element else RIDERS[family.rider or ""].dim)

@@ -51,12 +51,13 @@ class Relation:
     of: Callable[[Numbers, State], object] | None = None
 
     def value(self, numbers: Numbers, state: State) -> np.ndarray:
-        """What is verified, flat."""
+        """Return what is verified, flat."""
         value = self.of(numbers, state) if self.of else numbers(self.kernel, state)[self.output]
         return np.asarray(value).ravel()
 
     def along(self, numbers: Numbers, state: State, t) -> np.ndarray:
-        """The paths' values at t -> (any, n)."""
+        """Return the paths' values at t -> (any, n)."""
+        assert self.path is not None  # it is only where a finding has come from another process
         return np.stack([np.asarray(self.path(numbers, state, t, j)).ravel() for j in range(self.n)], axis=-1)
 
 
@@ -72,7 +73,7 @@ class Finding:
     step: float | None = None
 
     def ceiling(self, method: str) -> float:
-        """The error that a method may show here."""
+        """Return the error that a method may show here."""
         return CEILINGS[method, self.relation.order]
 
     @property
@@ -81,7 +82,7 @@ class Finding:
         return [m for m, error in self.errors.items() if not error <= self.ceiling(m)]
 
     def plain(self) -> Finding:
-        """The same without the functions, which do not pass between processes."""
+        """Return the same without the functions, which do not pass between processes."""
         return replace(self, relation=replace(self.relation, path=None, of=None))
 
     @property
@@ -90,7 +91,7 @@ class Finding:
         return self.samples[(self.failed or ["50 digits"])[0]][0][0]
 
     def place(self, entry: int) -> str:
-        """K[3, 17]."""
+        """Return the name of an entry of the output, such as K[3, 17]."""
         if self.shape is None:
             return f"of {self.relation.output}"
         return f"{self.relation.output}[{', '.join(str(int(i)) for i in np.unravel_index(entry, self.shape))}]"
@@ -147,15 +148,15 @@ def _complex(relation: Relation, numbers: Numbers, values: State) -> np.ndarray:
 
 
 def _central(relation: Relation, numbers: Numbers, values: State) -> tuple[np.ndarray, float]:
-    """The difference that changes least from its neighbour's step, and that step."""
+    """Return the difference that changes least from its neighbour's step, and that step."""
     s = numbers.state(values)
     weights = _FIRST if relation.order == 1 else _SECOND
-    tried = [sum(w * relation.along(numbers, s, k * h) for k, w in weights).ravel() / h**relation.order
+    tried = [np.asarray(sum(w * relation.along(numbers, s, k * h) for k, w in weights)).ravel() / h**relation.order
              for h in _STEPS]
     best = _least_change(tried)
     return tried[best], _STEPS[best]
 
 
 def _least_change(tried: list[np.ndarray]) -> int:
-    """Which of a sequence changes least to the next."""
+    """Return which of a sequence changes least to the next."""
     return int(np.argmin([float(np.abs(a - b).max()) for a, b in pairwise(tried)]))

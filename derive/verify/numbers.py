@@ -8,21 +8,24 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import mpmath
 import numpy as np
 
 from ..codegen.program import Program
+from .exact import ExactProgram
 
 EPS = float(np.finfo(float).eps)
-State = Mapping[str, np.ndarray]
+State = dict[str, Any]
+"""Values by the kernels' argument names: arrays of floats, of complex numbers, or of mpmath numbers."""
 
 
 class Numbers:
     """Kernels of one family in one kind of number; kernels go by their name without the family's."""
 
-    def __init__(self, family: str, programs: list[Program], call: Callable, functions, convert: Callable,
+    def __init__(self, family: str, programs: Sequence[Any], call: Callable, functions, convert: Callable,
                  eps: float = EPS):
         self.programs = {p.name.removeprefix(f"{family}_"): p for p in programs}
         self._call, self._convert = call, convert
@@ -30,33 +33,31 @@ class Numbers:
         self.sqrt, self.sin, self.cos = functions.sqrt, functions.sin, functions.cos
 
     def state(self, values: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """A state of floats in this kind of number."""
+        """Return a state of floats in this kind of number."""
         return {name: self.array(v) for name, v in values.items()}
 
     def array(self, values) -> np.ndarray:
-        """An array of floats in this kind of number, exactly."""
+        """Return an array of floats in this kind of number, exactly."""
         return self._convert(np.asarray(values))
 
     def __call__(self, kernel: str, state: State, **changes) -> dict[str, np.ndarray]:
-        """Outputs of a kernel at a state, some of its values changed."""
+        """Return the outputs of a kernel at a state, some of its values changed."""
         program = self.programs[kernel]
         return self._call(program.name, [changes.get(a.name, state.get(a.name)) for a in program.inputs])
 
 
-def real(family: str, programs: list[Program], library) -> Numbers:
-    """Doubles, in compiled C."""
+def real(family: str, programs: Sequence[Any], library) -> Numbers:
+    """Return the kernels in doubles, from compiled C."""
     return Numbers(family, programs, library, math, lambda v: v.astype(float))
 
 
 def complex_(family: str, programs: list[Program], library) -> Numbers:
-    """Complex doubles, in compiled C."""
+    """Return the kernels in complex doubles, from compiled C."""
     return Numbers(family, programs, library, cmath, lambda v: v.astype(complex))
 
 
 def exact(family: str, programs: list[Program]) -> Numbers:
-    """50 digits, from the SymPy expressions."""
-    from .exact import ExactProgram
-
+    """Return the kernels at 50 digits, from the SymPy expressions."""
     kernels = {p.name: ExactProgram(p) for p in programs}
     convert = np.vectorize(mpmath.mpf, otypes=[object])
     return Numbers(family, programs, lambda name, inputs: kernels[name](inputs), mpmath.mp, convert,

@@ -32,7 +32,7 @@ class Report:
 
     @contextmanager
     def progress(self, total: int) -> Iterator[Callable[[], None]]:
-        """A bar on a terminal, nothing when piped; yields what moves it on."""
+        """Yield what advances a bar on a terminal; there is no bar when piped."""
         console = Console(stderr=True)
         with Progress(console=console, disable=not console.is_terminal, transient=True) as bar:
             task = bar.add_task("verify", total=total)
@@ -53,12 +53,12 @@ class Report:
 
     @property
     def failures(self) -> int:
-        """How many findings, outputs, roundings and invariances are not as they must be."""
+        """Return how many findings, outputs, roundings and invariances are not as they must be."""
         return len(self._failed) + len(self.uncovered) + len(self._rounded) + len(self._broken)
 
     @property
     def first_failure(self) -> str:
-        """The first of them in a line."""
+        """Return the first failure in a line."""
         for f in self._failed:
             return f"{f.kernel}: {f.place(f.worst_entry)} is not {f.relation.text} ({', '.join(f.failed)})"
         for output in self.uncovered:
@@ -87,7 +87,7 @@ class Report:
         for finding in self._failed:
             self._detail(finding)
         for output in self.uncovered:
-            self.out.print(f"{output}: no relation verifies this output; add one in verify/relations/element.py")
+            self.out.print(f"{output}: no relation verifies this output; add one in verify/relations")
         for r in self._rounded:
             self.out.print(f"{r.kernel}: {r.place} loses digits on input of the kind {r.kind}: {r.computed:.16g} is "
                            f"off by {r.error:.2g}, {r.entry:.2g} times what rounded inputs allow, may be {ENTRY:.0f}; "
@@ -127,8 +127,8 @@ class Report:
             table.add_row(_verdict(ok), kernel, *(entries.get(kind, "-") for kind in KINDS), f"{norm:.2g}",
                           f"{worst.place}, {worst.kind}", style=None if ok else "red")
         table.add_section()
-        worst = [max((r.entry for r in self.roundings if r.kind == kind), default=0.0) for kind in KINDS]
-        table.add_row("", "worst", *(f"{w:.2g}" for w in worst),
+        largest = [max((r.entry for r in self.roundings if r.kind == kind), default=0.0) for kind in KINDS]
+        table.add_row("", "worst", *(f"{w:.2g}" for w in largest),
                       f"{max((r.norm for r in self.roundings), default=0.0):.2g}")
         return table
 
@@ -164,7 +164,7 @@ def _table(title: str, left: list[str], right: list[str], last: list[str]) -> Ta
 
 
 def _once(name: str, last: str, failed: object) -> str:
-    """A name stands at its first row, and wherever something failed."""
+    """Return a name at its first row and wherever something failed, else nothing."""
     return name if failed or name != last else ""
 
 

@@ -22,8 +22,8 @@ from dataclasses import dataclass
 import mpmath
 import numpy as np
 
+from ..codegen.family import Family
 from ..codegen.program import Program
-from ..spec import Family
 from .inputs import Input, inputs
 from .numbers import EPS, Numbers, State
 
@@ -48,12 +48,12 @@ class Rounding:
 
     @property
     def failed(self) -> bool:
-        """Whether it is above a ceiling, or not a number."""
+        """Return whether it is above a ceiling, or not a number."""
         return not (self.entry <= ENTRY and self.norm <= NORM)
 
 
 def roundings(family: Family, kinds: dict[str, Numbers], samples: list[State]) -> Iterator[Rounding]:
-    """The worst of each kernel by kind of input; kinds that make no difference to a kernel are left out."""
+    """Yield the worst of each kernel by kind of input; kinds that make no difference to a kernel are left out."""
     every = list(inputs(family, samples))
     for kernel, program in kinds["exact"].programs.items():
         arguments = {a.name for a in program.inputs}

@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ..checks.placement import node_of
 from ..errors import SceneError, near
 from ..kernels.libraries import kernels_of
-from ..results.run import QUANTITIES
-
-if TYPE_CHECKING:
-    from ..results.run import Run
-    from ..scene import Scene
+from ..parts.scene_data import SceneData
+from ..results.quantities import QUANTITIES
+from ..results.run import Run
 
 ENERGIES = ("energy.kinetic", "energy.elastic", "energy.potential")
 PLACES = ("tip", "middle")
 
 
-def default_outputs(scene: Scene) -> list[str]:
+def default_outputs(scene: SceneData) -> list[str]:
     """Where bodies and slides are, and of each cable the end, or its middle where the end is held."""
     held = {node_of(scene, support) for support in scene.supports}
     places = [f"{name}.{'middle' if (name, cable.elements) in held else 'tip'}"
@@ -27,7 +23,7 @@ def default_outputs(scene: Scene) -> list[str]:
     return [f"{name}.position" for name in scene.bodies] + [f"{name}.s" for name in scene.slides] + places
 
 
-def check_output(scene: Scene, name: str) -> None:
+def check_output(scene: SceneData, name: str) -> None:
     """Raises SceneError where the scene gives no such output."""
     known = known_outputs(scene)
     if name not in known and _place(scene, name) is None:
@@ -35,7 +31,7 @@ def check_output(scene: Scene, name: str) -> None:
                          + " or a place of a cable in m, such as " + f'"{next(iter(scene.cables), "wire")}@0.5"')
 
 
-def known_outputs(scene: Scene) -> list[str]:
+def known_outputs(scene: SceneData) -> list[str]:
     """Names of outputs, but for places of cables given by their arc-length."""
     parts = {"bodies": scene.bodies, "slides": scene.slides, "springs": scene.springs}
     results = [f"{name}.{quantity}" for group, named in parts.items() for name in named
@@ -43,7 +39,7 @@ def known_outputs(scene: Scene) -> list[str]:
     return results + [f"{name}.{place}" for name in scene.cables for place in PLACES] + list(ENERGIES)
 
 
-def _place(scene: Scene, name: str) -> tuple[str, float] | None:
+def _place(scene: SceneData, name: str) -> tuple[str, float] | None:
     """Cable and arc-length of a place such as wire.tip or wire@0.5; None where it is none."""
     cable, _, place = name.rpartition(".") if name.endswith(PLACES) else name.rpartition("@")
     if cable not in scene.cables:
@@ -58,7 +54,7 @@ def _place(scene: Scene, name: str) -> tuple[str, float] | None:
     return (cable, s) if 0 <= s <= length else None
 
 
-def unit(scene: Scene, name: str) -> str:
+def unit(scene: SceneData, name: str) -> str:
     """The unit of an output."""
     if name in ENERGIES:
         return "J"
@@ -68,7 +64,7 @@ def unit(scene: Scene, name: str) -> str:
     return next(group[quantity][1] for group in QUANTITIES.values() if quantity in group)
 
 
-def trajectory(scene: Scene, run: Run, name: str) -> np.ndarray:
+def trajectory(scene: SceneData, run: Run, name: str) -> np.ndarray:
     """(time, components): an output of a run of ``scene``."""
     if name in run:
         return run[name].reshape(len(run.time), -1)

@@ -7,13 +7,18 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rich import box
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
 from ..errors import ResultFileError
+from ..view.plot import STYLE
 from .bench import COUNTS, Bench, Row
 from .outputs import unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from rich.console import Console
 
 LINES, MARKERS = ("-", "--", ":", "-."), "osD^v"
 
@@ -36,10 +41,6 @@ def statements(result: Bench) -> list[str]:
 
 def print_table(result: Bench, console: Console) -> None:
     """Rows and statements, on a terminal."""
-    from rich import box
-    from rich.markup import escape
-    from rich.table import Table
-
     table = Table(box=box.SIMPLE, padding=0, pad_edge=False)
     table.add_column("integrator", no_wrap=True)
     table.add_column("mesh", no_wrap=True)
@@ -107,10 +108,8 @@ def save(result: Bench, directory: Path, name: str) -> list[Path]:
 
 def draw(result: Bench, path: Path) -> None:
     """The picture of a result."""
-    from matplotlib import rc_context
+    from matplotlib import rc_context  # for those who want the picture
     from matplotlib.figure import Figure
-
-    from ..view.plot import STYLE
 
     with rc_context(STYLE):
         figure = Figure(figsize=(7, 4.6))
@@ -122,7 +121,7 @@ def draw(result: Bench, path: Path) -> None:
 
 def draw_on(axes: Axes, result: Bench) -> None:
     """Time error over CPU seconds, a colour an integrator and a line style a mesh; mesh errors across."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # as above
 
     meshes = list(result.references)
     for colour, integrator in enumerate(result.grid.integrators):

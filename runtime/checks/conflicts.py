@@ -2,28 +2,25 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ..errors import SceneError
 from ..parts.attachment import Attachment
 from ..parts.cable import EXACT
 from ..parts.joint import DRIVEN, LINES, POINTS, Joint
+from ..parts.places import Node, joined, point_of, support_of
+from ..parts.scene_data import SceneData
 from ..parts.support import Motion, Support
 from ..parts.validation import show
-from .placement import HELD, Node, holder, joined, point_of
-
-if TYPE_CHECKING:
-    from ..scene import Scene
+from .placement import HELD
 
 
-def check_supports(scene: Scene, joint: Joint) -> None:
+def check_supports(scene: SceneData, joint: Joint) -> None:
     """No support or join may hold a node to what the joint holds it to."""
     for end, other in ((joint.a, joint.b), (joint.b, joint.a)):
         if (node := _node(scene, end)) is None:
             continue
-        support = holder(scene, node)
+        support = support_of(scene, node)
         if other.on is None and support is not None and _holds_position(support):
             raise SceneError(joint.where, f"holds {called(end)} to the ground, but it is {HELD[support.kind]} already",
                              "leave one of them out")
@@ -37,13 +34,13 @@ def _holds_position(support: Support) -> bool:
     return not isinstance(support, Motion) or (support.displacement is not None and None not in support.displacement)
 
 
-def _node(scene: Scene, end: Attachment) -> Node | None:
+def _node(scene: SceneData, end: Attachment) -> Node | None:
     if end.on not in scene.cables or (node := scene.cables[end.on].node_at(end.s)) is None:
         return None
     return end.on, node
 
 
-def check_other_joints(scene: Scene, joint: Joint, near: float) -> None:
+def check_other_joints(scene: SceneData, joint: Joint, near: float) -> None:
     """Of joints between the same two bodies none is beside a weld, and no two hold or drive the same.
 
     near: points nearer than this, in m, are the same.
@@ -56,7 +53,8 @@ def check_other_joints(scene: Scene, joint: Joint, near: float) -> None:
                 break
 
 
-def _clash(scene: Scene, joint: Joint, other: Joint, ends: tuple[Attachment, Attachment], near: float) -> str | None:
+def _clash(scene: SceneData, joint: Joint, other: Joint, ends: tuple[Attachment, Attachment],
+           near: float) -> str | None:
     """What is wrong with two joints between the same two bodies; ``ends`` are the other's, in the order of joint's."""
     between = f"{called(joint.a)} and {called(joint.b)}"
     if "weld" in (joint.pair, other.pair):
@@ -74,7 +72,7 @@ def _clash(scene: Scene, joint: Joint, other: Joint, ends: tuple[Attachment, Att
     return None
 
 
-def move_as_one(scene: Scene, one: Attachment, other: Attachment) -> bool:
+def move_as_one(scene: SceneData, one: Attachment, other: Attachment) -> bool:
     """Whether two ends are on one body, both on the ground, or at one place of a cable."""
     return one.on == other.on and (one.s is None or abs(one.s - other.s) <= EXACT * scene.cables[one.on].length)
 

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from ..parts.attachment import Attachment
 from ..parts.cable import Cable
 from ..parts.joint import Joint
+from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
-
-if TYPE_CHECKING:
-    from ..scene import Scene
 
 
 class JointAxes(NamedTuple):
@@ -62,7 +60,7 @@ def _unit(vector: np.ndarray) -> np.ndarray:
     return vector / np.linalg.norm(vector)
 
 
-def end_frame(scene: Scene, end: Attachment, up=None) -> np.ndarray:
+def end_frame(scene: SceneData, end: Attachment, up=None) -> np.ndarray:
     """(3, 3): the frame of a complete end; ``up`` completes that of a cable without section axes."""
     if end.on is None:
         return np.eye(3)
@@ -72,12 +70,12 @@ def end_frame(scene: Scene, end: Attachment, up=None) -> np.ndarray:
     return section_frame(cable, end.s) if draws_section(cable) else cable_frame(cable, end.s, up)
 
 
-def joint_axes(scene: Scene, joint: Joint) -> JointAxes:
+def joint_axes(scene: SceneData, joint: Joint) -> JointAxes:
     """The axes of a joint of the scene in the frames of its ends."""
     return JointAxes(*(end_frame(scene, end, joint.up).T @ joint.axes for end in (joint.a, joint.b)))
 
 
-def slide_axes(scene: Scene, slide: Slide) -> JointAxes:
+def slide_axes(scene: SceneData, slide: Slide) -> JointAxes:
     """The axes that a slide of frame "tangent" or "section" keeps together: a in the cable's frame, b in the rider's.
 
     z along the tangent, x along the height, y along the width. With roll "held" the cable's frame is that of

@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..errors import FunicularWarning, SceneError
 from ..kernels.elements import built_in
-from ..parts.attachment import Attachment
 from ..parts.cable import EXACT
 from ..parts.joint import DRIVEN, LINES, POINTS, UNITS, Joint
+from ..parts.places import point_of
+from ..parts.scene_data import SceneData
 from ..parts.validation import show
 from .conflicts import called, check_other_joints, check_supports, move_as_one
 from .frames import cable_frame, has_section
-from .placement import placed_attachment, point_of
-
-if TYPE_CHECKING:
-    from ..scene import Scene
+from .placement import placed_between
 
 MOVABLE = 1e-3
 """Ends nearer to each other than this part of the scene's size are brought together at the start."""
@@ -27,12 +24,12 @@ UPRIGHT = 1e-3
 """A tangent nearer than this (sine of the angle) to up leaves the frame undefined."""
 
 
-def placed_joint(scene: Scene, joint: Joint) -> Joint:
+def placed_joint(scene: SceneData, joint: Joint) -> Joint:
     """The joint with its ends, axis and length complete, sure to be one that its ends can hold; tells of a gap."""
-    a, b = (placed_attachment(scene, getattr(joint, name), joint.where, f"{name}: ") for name in ("a", "b"))
-    if move_as_one(scene, a, b):
-        raise SceneError(joint.where, f"joins {called(a)} to itself", "give it two ends")
-    joint = joint.model_copy(update={"a": a, "b": b} | _completed(scene, joint, a, b))
+    joint = placed_between(scene, joint)
+    if move_as_one(scene, joint.a, joint.b):
+        raise SceneError(joint.where, f"joins {called(joint.a)} to itself", "give it two ends")
+    joint = joint.model_copy(update=_completed(scene, joint))
     _check_frames(scene, joint)
     check_other_joints(scene, joint, EXACT * scene_size(scene, joint))
     check_joint(scene, joint)
@@ -44,7 +41,7 @@ def placed_joint(scene: Scene, joint: Joint) -> Joint:
     return joint
 
 
-def check_joint(scene: Scene, joint: Joint) -> None:
+def check_joint(scene: SceneData, joint: Joint) -> None:
     """The ends of a complete joint have to be where it holds them, but for a small gap, and not held there already."""
     check_supports(scene, joint)
     gap, where = _gap(scene, joint)
@@ -54,7 +51,7 @@ def check_joint(scene: Scene, joint: Joint) -> None:
                          f"{most:.3g} m is closed")
 
 
-def check_drive(scene: Scene, joint: Joint) -> None:
+def check_drive(scene: SceneData, joint: Joint) -> None:
     """A run that starts as drawn must not begin with a jump."""
     if not joint.is_driven:
         return
@@ -69,7 +66,7 @@ def check_drive(scene: Scene, joint: Joint) -> None:
                          f"{show(start, UNITS[name])}", 'let it start there, or start with initial="equilibrium"')
 
 
-def _completed(scene: Scene, joint: Joint, a: Attachment, b: Attachment) -> dict:
+def _completed(scene: SceneData, joint: Joint) -> dict:
     """What is left out and follows from the scene."""
     if joint.pair == "revolute" and joint.axis is None:
         if scene.dim == 3:
@@ -77,7 +74,7 @@ def _completed(scene: Scene, joint: Joint, a: Attachment, b: Attachment) -> dict
         return {"axis": (0.0, 0.0, 1.0)}
     if joint.pair != "distance":
         return {}
-    points = point_of(scene, a), point_of(scene, b)
+    points = point_of(scene, joint.a), point_of(scene, joint.b)
     distance = float(np.linalg.norm(points[1] - points[0]))
     if not distance > 1e-12 * (1 + np.abs(points).max()):
         raise SceneError(joint.where, f"both ends are at {show(points[0], 'm')}: its direction is lost",
@@ -85,14 +82,14 @@ def _completed(scene: Scene, joint: Joint, a: Attachment, b: Attachment) -> dict
     return {"length": distance} if joint.length is None and joint.distance is None else {}
 
 
-def scene_size(scene: Scene, joint: Joint) -> float:
+def scene_size(scene: SceneData, joint: Joint) -> float:
     """The largest extent in m of what is in the scene."""
     points = [point_of(scene, joint.a), point_of(scene, joint.b)]
     points += [body.point((0.0, 0.0, 0.0)) for body in scene.bodies.values()]
     return max(float(np.linalg.norm(np.ptp(points, axis=0))), *(cable.length for cable in scene.cables.values()), 0.0)
 
 
-def _gap(scene: Scene, joint: Joint) -> tuple[float, str]:
+def _gap(scene: SceneData, joint: Joint) -> tuple[float, str]:
     """How far in m the ends are from where the joint holds them, and a sentence on it."""
     a, b = point_of(scene, joint.a), point_of(scene, joint.b)
     apart, at = b - a, f"a at {show(a)} and b at {show(b, 'm')}"
@@ -107,7 +104,7 @@ def _gap(scene: Scene, joint: Joint) -> tuple[float, str]:
     return abs(distance - length), f"its ends are {distance:.6g} m apart at the start, and not {length:.6g} m, {at}"
 
 
-def _check_frames(scene: Scene, joint: Joint) -> None:
+def _check_frames(scene: SceneData, joint: Joint) -> None:
     """A cable without section axes has a tangent to give, and no more unless up completes it."""
     bare = False
     for name in ("a", "b"):

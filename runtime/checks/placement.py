@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,20 +12,16 @@ from ..parts.attachment import Attachment
 from ..parts.cable import EXACT, Cable
 from ..parts.load import DistributedForce, Force, Moment
 from ..parts.modal_body import ModalBody
+from ..parts.places import Node, joined, node_of, point_of, support_of
+from ..parts.scene_data import SceneData
 from ..parts.spring import Spring
 from ..parts.support import Support, Tie
 from ..parts.validation import Part, show
 
-if TYPE_CHECKING:
-    from ..scene import Scene
-
 HELD = {"pin": "pinned", "clamp": "clamped", "motion": "moved as prescribed"}
 
-Node = tuple[str, int]
-"""A node of a cable: the cable's name and the node's number."""
 
-
-def cable_at(scene: Scene, name: str, place: str, s: float, keyword: str = "s") -> Cable:
+def cable_at(scene: SceneData, name: str, place: str, s: float, keyword: str = "s") -> Cable:
     """The cable ``name``, on which ``s`` must lie."""
     if name not in scene.cables:
         raise SceneError(place, f'there is no cable "{name}"', near(name, scene.cables))
@@ -36,7 +31,7 @@ def cable_at(scene: Scene, name: str, place: str, s: float, keyword: str = "s") 
     return cable
 
 
-def node_at(scene: Scene, name: str, place: str, s: float, keyword: str = "s") -> Node:
+def node_at(scene: SceneData, name: str, place: str, s: float, keyword: str = "s") -> Node:
     """The node of the cable ``name`` at ``s``; there must be one."""
     cable = cable_at(scene, name, place, s, keyword)
     node = cable.node_at(s)
@@ -52,70 +47,39 @@ def node_at(scene: Scene, name: str, place: str, s: float, keyword: str = "s") -
         f"nodes {'near it ' if len(cable.node_s) > 12 else ''}are at " + ", ".join(f"{s:.9g}" for s in nodes) + " m")
 
 
-def node_of(scene: Scene, support: Support) -> Node:
-    """The node that a support of the scene holds."""
-    return support.cable, scene.cables[support.cable].node_at(support.s)
-
-
-def ends_of(scene: Scene, join: Tie) -> tuple[Node, Node]:
-    """The nodes that a join of the scene ties: that of its cable, and the other one."""
-    return ((join.cable, scene.cables[join.cable].node_at(join.s)), (join.to, scene.cables[join.to].node_at(join.at)))
-
-
-def joined(scene: Scene, node: Node, without: Tie | None = None) -> set[Node]:
-    """All nodes that joins, but for ``without``, tie to ``node``, itself included."""
-    found, new = {node}, [node]
-    while new:
-        at = new.pop()
-        for join in scene.ties.values():
-            if at[0] not in (join.cable, join.to):
-                continue
-            pair = set(ends_of(scene, join))
-            if join is not without and at in pair:
-                new += pair - found
-                found |= pair
-    return found
-
-
-def holder(scene: Scene, node: Node) -> Support | None:
-    """What holds ``node`` or one that is joined to it."""
-    nodes = joined(scene, node)
-    cables = {cable for cable, _ in nodes}
-    return next((s for s in scene.supports if s.cable in cables and node_of(scene, s) in nodes), None)
-
-
-def check_support(scene: Scene, support: Support) -> None:
-    """A support needs a node that nothing holds yet."""
+def placed_support(scene: SceneData, support: Support) -> Support:
+    """Return the support, sure to be on a node that nothing holds yet."""
     node = node_at(scene, support.cable, support.where, support.s)
-    if (other := holder(scene, node)) is None:
-        return
+    if (other := support_of(scene, node)) is None:
+        return support
     if node_of(scene, other) == node:
         raise SceneError(support.where, f"the node at s = {show(support.s, 'm')} is already {HELD[other.kind]}")
     raise SceneError(support.where, f"the node at s = {show(support.s, 'm')} is joined to that at {other.label}, which "
                      f"is already {HELD[other.kind]}")
 
 
-def check_tie(scene: Scene, join: Tie) -> None:
-    """A join needs two nodes at one place, not joined yet, of which at most one is held."""
-    one = node_at(scene, join.cable, join.where, join.s)
-    other = node_at(scene, join.to, join.where, join.at, "at")
+def placed_tie(scene: SceneData, tie: Tie) -> Tie:
+    """Return the tie, sure to be of two nodes at one place that are not joined yet, of which at most one is held."""
+    one = node_at(scene, tie.cable, tie.where, tie.s)
+    other = node_at(scene, tie.to, tie.where, tie.at, "at")
     if other in joined(scene, one):
-        raise SceneError(join.where, f"the nodes are {'one and the same' if one == other else 'already joined'}")
-    a, b = scene.cables[join.cable], scene.cables[join.to]
-    gap = float(np.linalg.norm(a.point(join.s) - b.point(join.at)))
+        raise SceneError(tie.where, f"the nodes are {'one and the same' if one == other else 'already joined'}")
+    a, b = scene.cables[tie.cable], scene.cables[tie.to]
+    gap = float(np.linalg.norm(a.point(tie.s) - b.point(tie.at)))
     if gap > EXACT * max(a.length, b.length):
-        raise SceneError(join.where, f"the nodes are {gap:.6g} m apart, at {show(a.point(join.s))} and "
-                         f"{show(b.point(join.at), 'm')}", "draw both cables through the same point")
-    holders = holder(scene, one), holder(scene, other)
+        raise SceneError(tie.where, f"the nodes are {gap:.6g} m apart, at {show(a.point(tie.s))} and "
+                         f"{show(b.point(tie.at), 'm')}", "draw both cables through the same point")
+    holders = support_of(scene, one), support_of(scene, other)
     if all(holders):
-        raise SceneError(join.where, f"both nodes are held already, by the {holders[0].where} and the "
+        raise SceneError(tie.where, f"both nodes are held already, by the {holders[0].where} and the "
                          f"{holders[1].where}", "leave one of them out")
-    if join.rotation == "rigid" and _shears_the_end(a, join.s, b, join.at):
-        message = (f"{join.where}: the join shares the slopes of both cables, so that a moment on one shears the last "
+    if tie.rotation == "rigid" and _shears_the_end(a, tie.s, b, tie.at):
+        message = (f"{tie.where}: the join shares the slopes of both cables, so that a moment on one shears the last "
                    "element of the other: the corner is too soft, the more so the shorter the elements are; "
                    'take scene.joint("weld", ...) instead, with up for an element without section axes')
         scene.messages.append(message)
         warnings.warn(message, FunicularWarning, stacklevel=4)
+    return tie
 
 
 def _shears_the_end(a: Cable, s: float, b: Cable, at: float) -> bool:
@@ -131,7 +95,7 @@ def _shears_the_end(a: Cable, s: float, b: Cable, at: float) -> bool:
                                float(np.linalg.norm(np.cross(a.axes_at(s)[0], b.axes_at(at)[0]))) > EXACT)
 
 
-def placed_load(scene: Scene, load: Force | DistributedForce | Moment) -> Part:
+def placed_load(scene: SceneData, load: Force | DistributedForce | Moment) -> Part:
     """The load with its place complete, and sure to be one that the element can carry."""
     if isinstance(load, DistributedForce):
         cable = cable_at(scene, load.cable, load.where, load.start or 0.0, "start")
@@ -170,7 +134,7 @@ def _check_without_section(load: Part, cable: Cable) -> None:
             f"possible is one along the tangent, (F, 0, 0), or take {with_axes}")
 
 
-def placed_attachment(scene: Scene, end: Attachment, where: str, prefix: str = "") -> Attachment:
+def placed_attachment(scene: SceneData, end: Attachment, where: str, prefix: str = "") -> Attachment:
     """Where on a cable or a body something acts, complete."""
     if end.on is None:
         return end
@@ -197,19 +161,19 @@ def placed_attachment(scene: Scene, end: Attachment, where: str, prefix: str = "
     raise SceneError(where, f'{prefix}there is no cable or body "{end.on}"', near(end.on, known))
 
 
-def point_of(scene: Scene, end: Attachment) -> np.ndarray:
-    """(3,): where a complete end starts, in m."""
-    if end.on is None:
-        return np.array(end.at)
-    return scene.bodies[end.on].point(end.at) if end.on in scene.bodies else scene.cables[end.on].point(end.s)
+def placed_between(scene: SceneData, part: Part) -> Part:
+    """Return a part with its attachments complete."""
+    attachments = {name: value for name, value in part if isinstance(value, Attachment)}
+    return part.model_copy(update={name: placed_attachment(scene, value, part.where, f"{name}: ")
+                                   for name, value in attachments.items()}) if attachments else part
 
 
-def placed_spring(scene: Scene, spring: Spring) -> Spring:
+def placed_spring(scene: SceneData, spring: Spring) -> Spring:
     """The spring with its ends and its length complete."""
-    a, b = (placed_attachment(scene, getattr(spring, name), spring.where, f"{name}: ") for name in ("a", "b"))
-    points = point_of(scene, a), point_of(scene, b)
+    spring = placed_between(scene, spring)
+    points = point_of(scene, spring.a), point_of(scene, spring.b)
     distance = float(np.linalg.norm(points[1] - points[0]))
     if not distance > 1e-12 * (1 + np.abs(points).max()):
         raise SceneError(spring.where, f"both ends are at {show(points[0], 'm')}: its direction is lost",
                          "join the points, or hold them apart at the start")
-    return spring.model_copy(update={"a": a, "b": b, "length": distance if spring.length is None else spring.length})
+    return spring.model_copy(update={"length": distance}) if spring.length is None else spring

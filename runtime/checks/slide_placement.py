@@ -3,28 +3,26 @@
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..errors import FunicularWarning, SceneError
 from ..parts.cable import EXACT, Cable
 from ..parts.end_stops import Buffer
+from ..parts.places import point_of
 from ..parts.rigid_body import RigidBody
+from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
 from ..parts.validation import show
 from .frames import cable_frame, has_section
 from .joint_placement import check_up, elements_with_sections
-from .placement import cable_at, placed_attachment, point_of
-
-if TYPE_CHECKING:
-    from ..scene import Scene
+from .placement import cable_at, placed_attachment
 
 MOVABLE = 1e-3
 """A rider nearer to its cable than this part of the cable's length is moved onto it at the start."""
 
 
-def placed_slide(scene: Scene, slide: Slide) -> Slide:
+def placed_slide(scene: SceneData, slide: Slide) -> Slide:
     """The slide with its places and its up complete, its rider on the cable."""
     if slide.body in scene.cables and slide.body_s is None:
         raise SceneError(slide.where, f'cable "{slide.body}" rides and needs the arc-length of its point',
@@ -45,7 +43,7 @@ def placed_slide(scene: Scene, slide: Slide) -> Slide:
     return slide
 
 
-def check_on_cable(scene: Scene, slide: Slide) -> None:
+def check_on_cable(scene: SceneData, slide: Slide) -> None:
     """A rider has to be on its cable still, after others moved it."""
     gap, where = _gap(scene, slide)
     if gap > (EXACT if slide.body_s is None else MOVABLE) * scene.cables[slide.along].length:
@@ -53,7 +51,7 @@ def check_on_cable(scene: Scene, slide: Slide) -> None:
                          "each")
 
 
-def _check_rider(scene: Scene, slide: Slide) -> None:
+def _check_rider(scene: SceneData, slide: Slide) -> None:
     if slide.body == slide.along:
         raise SceneError(slide.where, f'cable "{slide.along}" rides itself', "let another cable ride, or a body")
     for other in scene.slides.values():
@@ -70,7 +68,7 @@ def _check_rider(scene: Scene, slide: Slide) -> None:
                              f'"{other.name}" does', "leave one of the drives out")
 
 
-def _framed(scene: Scene, slide: Slide, cable: Cable) -> Slide:
+def _framed(scene: SceneData, slide: Slide, cable: Cable) -> Slide:
     """The slide with up complete, sure that cable and rider have the vectors that its frame needs."""
     if slide.frame == "point":
         return slide
@@ -105,7 +103,7 @@ def _check_drive(slide: Slide, cable: Cable) -> None:
                          f"{show(slide.s, 'm')}", "let both start at one place")
 
 
-def _gap(scene: Scene, slide: Slide) -> tuple[float, str]:
+def _gap(scene: SceneData, slide: Slide) -> tuple[float, str]:
     """The distance in m from the rider's point to its place on the cable, and a sentence on it."""
     point = point_of(scene, slide.rider)
     gap = float(np.linalg.norm(point - scene.cables[slide.along].point(slide.s)))
@@ -113,7 +111,7 @@ def _gap(scene: Scene, slide: Slide) -> tuple[float, str]:
     return gap, f'{rider} is {gap:.6g} m away from cable "{slide.along}" at s = {slide.s:.9g} m'
 
 
-def _seat(scene: Scene, slide: Slide, cable: Cable) -> None:
+def _seat(scene: SceneData, slide: Slide, cable: Cable) -> None:
     """Bring the rider's point onto the cable by a small move, refuse a large one."""
     gap, where = _gap(scene, slide)
     if gap <= EXACT * cable.length:

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ..parts.scene_data import SceneData
 from ..parts.signal import Signal
 from ..parts.support import Motion
 from ..parts.validation import show
-from ..scene import Scene
 
 SMALL = 1e-4
 """Of the largest rate in the run: a jump that is smaller sends a shock that is nothing beside the motion."""
@@ -17,7 +17,7 @@ SAMPLES = 200
 """Instants of the run at which rates are looked at."""
 
 
-def velocity_jumps(scene: Scene, duration: float) -> list[str]:
+def velocity_jumps(scene: SceneData, duration: float) -> list[str]:
     """Return a message for each motion whose velocity jumps as the run starts, or within its duration, s."""
     found = []
     for motion in scene.motions:
@@ -49,7 +49,7 @@ def jumps_of_rate(signal: Signal) -> list[tuple[float, float]]:
     return list(zip(breaks[1:-1].tolist(), (coefficients[1:, 1] - before).tolist(), strict=True))
 
 
-def _rates(scene: Scene, motion: Motion) -> Iterator[tuple[str, Signal, float, str]]:
+def _rates(scene: SceneData, motion: Motion) -> Iterator[tuple[str, Signal, float, str]]:
     """Name, signal and the node's own rate at t = 0, with its unit, of all that a motion prescribes."""
     cable = scene.cables[motion.cable]
     node, names = cable.node_at(motion.s), cable.kind_of_element.nodal_vectors

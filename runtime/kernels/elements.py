@@ -12,21 +12,49 @@ MANIFEST = "manifest.json"
 
 
 @dataclass(frozen=True)
-class ElementKind:
-    """Nodal vectors in the order of the coordinates, dimension, director, and laws.
+class LawTraits:
+    """What an elastic law is, as the manifest tells.
 
-    ``laws`` maps each law to the one of this package whose section stiffness it takes; the first is the default.
+    stiffness_of       the law of this package whose section stiffness it takes: itself, but for a law of the user's
+    kind               "cable" (of the axis alone), "continuum" or "structural" (of the whole section)
+    strain, curvature  the measures of a cable: "green" or "engineering", "exact" or "linear"; else empty
+    membrane           how a cable represents its axial strain: "full" or "assumed"; else empty
+    straight           where the law is for a curved stress-free shape: the law for a straight one; else empty
+    takes_shape        whether its kernels take the stress-free shape
+    damped_like        the law whose damping it has; empty where it has its own
+    discrete_gradient  whether its energy has one, which the integrator "energy" needs
     """
+
+    stiffness_of: str
+    kind: str
+    strain: str
+    curvature: str
+    membrane: str
+    straight: str
+    takes_shape: bool
+    damped_like: str
+    discrete_gradient: bool
+
+
+@dataclass(frozen=True)
+class ElementKind:
+    """Nodal vectors in the order of the coordinates, dimension, director, and laws; the first law is the default."""
 
     nodal_vectors: tuple[str, ...]
     dim: int
     director: str
-    laws: dict[str, str]
+    laws: dict[str, LawTraits]
 
     @property
     def is_cable(self) -> bool:
         """Whether its laws know the section by its axial and bending stiffness alone."""
-        return all(like.startswith(("green_", "engineering_")) for like in self.laws.values())
+        return all(law.kind == "cable" for law in self.laws.values())
+
+    def law_for_curved_shape(self, law: str) -> str | None:
+        """The law that stands for a law where the stress-free shape is curved; None if the element has none."""
+        if law in self.laws and self.laws[law].takes_shape:
+            return law
+        return next((name for name, traits in self.laws.items() if traits.straight == law), None)
 
 
 @cache
@@ -37,7 +65,8 @@ def manifest() -> dict:
 
 def of_manifest(content: dict) -> dict[str, ElementKind]:
     """The elements of a manifest by name."""
-    return {name: ElementKind(tuple(e["nodal_vectors"]), e["dim"], e["director"], e["laws"])
+    return {name: ElementKind(tuple(e["nodal_vectors"]), e["dim"], e["director"],
+                              {law: LawTraits(**traits) for law, traits in e["laws"].items()})
             for name, e in content["elements"].items()}
 
 
@@ -47,13 +76,10 @@ def built_in() -> dict[str, ElementKind]:
     return of_manifest(manifest())
 
 
-def of_library(library: str | None) -> dict[str, ElementKind]:
-    """The elements of a library by name, of this package for None. Raises LibraryError."""
-    if library is None:
-        return built_in()
-    from .libraries import load
-
-    return load(library).elements
+@cache
+def built_in_laws() -> dict[str, LawTraits]:
+    """The laws of this package by name."""
+    return {law: traits for kind in built_in().values() for law, traits in kind.laws.items()}
 
 
 def gauge(vectors: tuple[str, ...], length: float, y: float, z: float) -> Iterator[float]:

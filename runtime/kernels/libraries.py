@@ -15,10 +15,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import ValidationError
 
 from ..errors import FunicularError, SceneError, shown_path
 from . import elements
@@ -59,48 +58,6 @@ def check_allowed(asked: str, allowed: Iterable[str | os.PathLike], place: str) 
                          f'libraries=["{asked}"], on the command line with --library {asked}')
 
 
-class _Described(BaseModel):
-    model_config = ConfigDict(strict=True, defer_build=True)
-
-
-class _Shared(_Described):
-    spec: str
-    file: str
-    sha256: str
-    digest: str = ""
-
-
-class _Argument(_Described):
-    name: str
-    shape: list[int]
-
-
-class _Kernel(_Described):
-    doc: str
-    source: str
-    inputs: list[_Argument]
-    outputs: list[_Argument]
-
-
-class _Element(_Described):
-    nodal_vectors: list[str]
-    dim: Literal[2, 3]
-    director: str
-    laws: dict[str, str]
-
-
-class _Manifest(_Described):
-    """What a library's manifest must have to be loaded."""
-
-    interface: str
-    library: _Shared
-    elements: dict[str, _Element]
-    kernels: dict[str, _Kernel]
-    tools: dict[str, str]
-    families: dict[str, dict]
-    files: dict[str, str]
-
-
 def manifest_digest(content: dict) -> str:
     """sha256 of a library's manifest, but for the digest in it."""
     bare = content | {"library": {name: value for name, value in content["library"].items() if name != "digest"}}
@@ -115,7 +72,9 @@ def read_manifest(directory: Path) -> tuple[bytes, dict]:
         raise LibraryError(f'"{shown_path(directory)}" is none: {MANIFEST} cannot be read ({error.strerror})',
                            "make one with " + COMMAND.format(spec="FILE", out=shown_path(directory))) from None
     try:
-        _Manifest.model_validate_json(text)
+        from .manifest import Manifest  # its models would take a tenth of the time of `import funicular`
+
+        Manifest.model_validate_json(text)
         return text, json.loads(text)
     except (ValidationError, ValueError, RecursionError):
         raise LibraryError(f'"{directory}" is none: its {MANIFEST} is not that of a library',
@@ -193,11 +152,16 @@ def load(directory: str | os.PathLike) -> Library:
     return _loaded[str(path)][1]
 
 
+def of_library(library: str | None) -> dict[str, ElementKind]:
+    """The elements of a library by name, of this package for None. Raises LibraryError."""
+    return elements.built_in() if library is None else load(library).elements
+
+
 def kernels_of(library: str | None):
     """Where the kernels of a library are, of this package for None, as attributes by name. Raises LibraryError."""
     if library is not None:
         return load(library).kernels
-    from funicular.generated import kernels
+    from funicular.generated import kernels  # machine code of 2 MB: a scene may be described without it
 
     return kernels
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..kernels.elements import manifest
-from ..kernels.libraries import kernels_of
+from ..kernels.libraries import kernels_of, of_library
 from ..parts.cable import Cable
 from ..parts.section_stiffness import section_stiffness
 
@@ -23,20 +23,23 @@ def constants(cable: Cable, axial: float = 1.0) -> np.ndarray:
     """(1, n), or (elements, n) where they differ because the stress-free shape is curved; axial: a factor of EA, of a
     cable's law alone.
     """
-    kernels, length = kernels_of(cable.library), cable.length / cable.elements
+    length = cable.length / cable.elements
     S = section_stiffness(cable.stiffness_law, cable.section, cable.material, cable.dim)
     if axial != 1.0:
         S = S * [axial, 1.0, axial][: len(S)]  # of EA, EI, and EA of the upper modes of an assumed strain
     reference = cable.reference
     shapes = [None] if reference is None else reference if cable.is_curved else reference[:1]
-    return np.array([element_constants(kernels, cable.element, cable.kernel_law, length, S, e0) for e0 in shapes])
+    return np.array([element_constants(cable.library, cable.element, cable.kernel_law, length, S, e0) for e0 in shapes])
 
 
-def element_constants(kernels, element: str, law: str, length: float, S: np.ndarray,
+def element_constants(library: str | None, element: str, law: str, length: float, S: np.ndarray,
                       e0: np.ndarray | None = None) -> np.ndarray:
-    """(n,): A of one element; e0 (nodal vectors, dim) is its stress-free shape, for laws that take it."""
-    if hasattr(kernels, f"{element}_{law}_stiffness_at"):
-        straight = getattr(kernels, f"{element}_{law.removesuffix('_curved')}_stiffness")
+    """(n,): A of one element of a library, or of this package; e0 (nodal vectors, dim) is its stress-free shape, for
+    laws that take it.
+    """
+    kernels, traits = kernels_of(library), of_library(library)[element].laws[law]
+    if traits.kind == "continuum" and traits.straight:
+        straight = getattr(kernels, f"{element}_{traits.straight}_stiffness")
         return np.concatenate([straight(length, S),
                                *integral_over_volume(getattr(kernels, f"{element}_{law}_stiffness_at"), length, e0, S)])
     return getattr(kernels, f"{element}_{law}_stiffness")(length, *([] if e0 is None else [e0]), S)

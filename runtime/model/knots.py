@@ -9,13 +9,11 @@ steps. Steps of a fixed length keep their grid, but for knots where the rate of 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from .build import Model
-    from .loads import SignalModel
+from .loads import SignalModel
+from .model import Model
 
 HIGHER, ACCELERATION, RATE = range(3)
 """What jumps: nothing that the motion follows at once, the acceleration of what a signal drives, its rate; the order of

@@ -9,8 +9,8 @@ import numpy as np
 from ..checks.placement import placed_attachment
 from ..parts import DistributedForce, Force, Moment
 from ..parts.attachment import Attachment
+from ..parts.scene_data import SceneData
 from ..parts.signal import Constant, value_at
-from ..scene import Scene
 from .attachments import AttachmentBuilder, AttachmentModel
 
 CABLE_FOLLOWER, CABLE_MOMENT, BODY_FORCE, BODY_FOLLOWER, BODY_MOMENT = range(5)
@@ -76,12 +76,13 @@ class PointForceModel:
     mass: float
 
 
+
 class Actions:
     """Translates the loads and springs of a scene."""
 
-    def __init__(self, scene: Scene, holder: AttachmentBuilder):
-        self.scene, self.holder, self.cables = scene, holder, holder.cables
-        self.cable_index, self.body_index = holder.cable_index, holder.body_index
+    def __init__(self, scene: SceneData, attachments: AttachmentBuilder):
+        self.scene, self.attachments, self.cables = scene, attachments, attachments.cables
+        self.cable_index, self.body_index = attachments.cable_index, attachments.body_index
         self.signals: list[SignalModel] = []
         self.dead: list[DeadLoad] = []
         self.turning: list[LoadModel] = []
@@ -104,16 +105,16 @@ class Actions:
         if isinstance(load, DistributedForce):
             self._distributed(load, number, value)
         elif load.on in self.cable_index:
-            points = [(*self.holder.element(load.on, load.s), 1.0)]
+            points = [(*self.attachments.element(load.on, load.s), 1.0)]
             if isinstance(load, Moment):
                 self._turning(CABLE_MOMENT, number, load.on, points, value)
             else:
                 self._along_cable(load.on, number, points, value, load.follower)
         else:
             kind = BODY_MOMENT if isinstance(load, Moment) else BODY_FOLLOWER if load.follower else BODY_FORCE
-            anchor = Attachment(on=load.on, s=load.s, at=getattr(load, "at", None))
-            end = self.holder.end(placed_attachment(self.scene, anchor, load.where))
-            self.turning.append(LoadModel(kind, number, end.body, 0, 0.0, end.u, tuple(value), end.spot))
+            attachment = Attachment(on=load.on, s=load.s, at=getattr(load, "at", None))
+            on = self.attachments.model(placed_attachment(self.scene, attachment, load.where))
+            self.turning.append(LoadModel(kind, number, on.body, 0, 0.0, on.u, tuple(value), on.spot))
 
     def _distributed(self, load: DistributedForce, number: int, value: np.ndarray) -> None:
         model = self.cables[self.cable_index[load.cable]]
@@ -148,6 +149,6 @@ class Actions:
 
     def point_force(self, part, unknown: int) -> PointForceModel:
         """Return the model of a spring or the like, whose force is unknown number `unknown` beyond the dofs."""
-        ends = [self.holder.end(part.a), self.holder.end(part.b)]
+        ends = [self.attachments.model(part.a), self.attachments.model(part.b)]
         return PointForceModel(part.kind, part.name, ends, self.scene.dim, unknown, part.parameters, part.is_damped,
                                max(end.mass for end in ends))

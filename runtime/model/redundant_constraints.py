@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from scipy.linalg import solve_triangular
 
 from ..errors import SceneError
-
-if TYPE_CHECKING:
-    from .build import Model
+from .model import Model
 
 SAME, NEARLY = 1e-12, 1e-8
 """Of the compliance of an equation: what is left of it where others hold the same; or nearly, if a run failed."""
@@ -22,7 +18,7 @@ WAY, RETURN = 1e-3, 1e-8
 """How far a mechanism is moved, as a part of its size, to see whether an equation follows there, too; and how well."""
 
 
-def settle(model: Model, engine) -> list[str]:
+def drop_redundant_rows(model: Model, engine) -> list[str]:
     """Leave out equations of joints that follow from those of others, and tell of it; for an engine not yet started.
 
     What follows is seen where the scene is drawn and, since a mechanism may pass a position where it is free to go two
@@ -30,7 +26,7 @@ def settle(model: Model, engine) -> list[str]:
     a scene without these equations. Raises SceneError where slides, or what drives joints, hold the same, and for a
     start in a singular position.
     """
-    riders = [(joint.rider.body, joint.rider.cable) for joint in model.slides]
+    riders = [(slide.rider.body, slide.rider.cable) for slide in model.slides]
     if not model.joints and len(set(riders)) == len(riders):
         return []  # slides of different bodies never do: each acts on its own body, whose mass is not zero
     if not engine.prepare():
@@ -39,25 +35,27 @@ def settle(model: Model, engine) -> list[str]:
     if S is None:
         return []  # here, too
     spare = _spare(model)
-    if held := [owner[k] for k, own in enumerate(np.diag(S)) if own == 0 and k not in spare]:
-        raise SceneError("scene", f"is over-constrained: {_listed(held)} between places that supports hold already",
+    if locked := [owner[k] for k, own in enumerate(np.diag(S)) if own == 0 and k not in spare]:
+        raise SceneError("scene", f"is over-constrained: {_listed(locked)} between places that supports hold already",
                          "leave that out, or the supports")
     follows = _following(S)
     if not follows:
         return []
-    idle = [_left_out(model, row, others, owner) for row, others in follows.items()]
-    for k, row in idle:
+    dropped = [_left_out(model, row, others, owner) for row, others in follows.items()]
+    for k, row in dropped:
         model.joints[k].redundant_rows.add(row)
-    engine.redundant_rows(idle)
-    _check_that_they_follow(model, engine, idle, _listed([owner[k] for row in follows for k in (*follows[row], row)]))
-    told = []
-    for k in dict.fromkeys(k for k, _ in idle):
-        link = model.joints[k]
-        own = range(link.multiplier, link.multiplier + link.rows)
+    engine.redundant_rows(dropped)
+    _check_that_they_follow(model, engine, dropped,
+                            _listed([owner[k] for row in follows for k in (*follows[row], row)]))
+    messages = []
+    for k in dict.fromkeys(k for k, _ in dropped):
+        joint = model.joints[k]
+        own = range(joint.multiplier, joint.multiplier + joint.rows)
         names = _listed([owner[other] for row in own for other in follows.get(row, ()) if other not in own])
-        told.append(f"over-constrained: {len(link.redundant_rows)} of the {link.rows} equations of {owner[own[0]]} "
-                    f"follow from those of {names} and are left out, without force or moment of their own")
-    return told
+        messages.append(f"over-constrained: {len(joint.redundant_rows)} of the {joint.rows} equations of "
+                        f"{owner[own[0]]} follow from those of {names} and are left out, without force or moment of "
+                        "their own")
+    return messages
 
 
 def _left_out(model: Model, row: int, others: list[int], owner: list[str]) -> tuple[int, int]:
@@ -65,20 +63,20 @@ def _left_out(model: Model, row: int, others: list[int], owner: list[str]) -> tu
     names = _listed([owner[k] for k in (*others, row)])
     if _driven(model) & {row, *others}:
         raise SceneError("scene", f"is over-constrained: {names} drive or hold the same", "leave one of them out")
-    for k, link in enumerate(model.joints):
-        if 0 <= row - link.multiplier < link.rows and link.slide is None:
-            return k, row - link.multiplier
+    for k, joint in enumerate(model.joints):
+        if 0 <= row - joint.multiplier < joint.rows and joint.slide is None:
+            return k, row - joint.multiplier
     raise SceneError("scene", f"is over-constrained: {names} hold the same",
                      "leave one of them out, or hold the body at other points")
 
 
-def _check_that_they_follow(model: Model, engine, idle: list[tuple[int, int]], names: str) -> None:
-    """Raise SceneError unless the idle rows are kept, the others being so, at the start and a small way from there."""
+def _check_that_they_follow(model: Model, engine, dropped: list[tuple[int, int]], names: str) -> None:
+    """Raise SceneError unless dropped rows are kept where the others are, at the start and a small way from there."""
     size = engine.extent
     unit = np.where(model.weight == 1, size, np.minimum(size / model.weight, 1.0))
     way = WAY * unit * np.random.default_rng(0).uniform(-1, 1, model.n_dof)
     at_start, beside = (engine.wander(along) for along in (np.zeros(model.n_dof), way))
-    gap, error = (np.inf if left is None else max(abs(left[at]) for at in idle) for left in (at_start, beside))
+    gap, error = (np.inf if left is None else max(abs(left[at]) for at in dropped) for left in (at_start, beside))
     if gap > RETURN * min(size, 1.0):
         raise SceneError("scene", f"is over-constrained: {names} hold the same, but do not fit together: {gap:.3g} (m "
                          "or rad) are left between them", "leave one of them out, or draw them without gaps")
@@ -97,9 +95,9 @@ def redundant(model: Model, engine, ratio: float = NEARLY) -> str:
     used = np.flatnonzero(np.diag(S) > 0)
     scale = 1 / np.sqrt(np.diag(S)[used])
     values, vectors = np.linalg.eigh(scale[:, None] * S[np.ix_(used, used)] * scale)
-    idle = values < ratio * values[-1]
+    nearly_free = values < ratio * values[-1]
     owner = _owners(model)
-    return _listed([owner[k] for k, part in zip(used, np.linalg.norm(vectors[:, idle], axis=1), strict=True)
+    return _listed([owner[k] for k, part in zip(used, np.linalg.norm(vectors[:, nearly_free], axis=1), strict=True)
                     if part > 1e-3])
 
 
@@ -142,9 +140,9 @@ def _owners(model: Model) -> list[str]:
     for slide in model.slides:
         count = slide.max_multipliers
         names[slide.multiplier : slide.multiplier + count] = [f'slide "{slide.name}"'] * count
-    for link in model.joints:
-        kind = "joint" if link.slide is None else "slide"
-        names[link.multiplier : link.multiplier + link.rows] = [f'{kind} "{link.name}"'] * link.rows
+    for joint in model.joints:
+        kind = "joint" if joint.slide is None else "slide"
+        names[joint.multiplier : joint.multiplier + joint.rows] = [f'{kind} "{joint.name}"'] * joint.rows
     return names
 
 
@@ -156,8 +154,8 @@ def _spare(model: Model) -> set[int]:
 
 def _driven(model: Model) -> set[int]:
     """The multipliers of what signals drive: the last of each joint's."""
-    return ({joint.multiplier + joint.max_multipliers - 1 for joint in model.slides if joint.drive >= 0}
-            | {link.multiplier + link.rows - 1 for link in model.joints if link.signal >= 0})
+    return ({slide.multiplier + slide.max_multipliers - 1 for slide in model.slides if slide.drive >= 0}
+            | {joint.multiplier + joint.rows - 1 for joint in model.joints if joint.signal >= 0})
 
 
 def _listed(names: list[str]) -> str:

@@ -17,7 +17,7 @@ from scipy.sparse import coo_array, csr_array, triu
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from ..errors import SceneError
-from ..scene import Scene
+from ..parts.scene_data import SceneData
 
 PARALLEL = 1e-9
 """Tangents whose cross product is smaller than this are parallel."""
@@ -316,7 +316,7 @@ def _counted(touches: csr_array, number: np.ndarray, n_band: int) -> Numbering:
     return Numbering(number, n_band, width, chains, factor + SOLVES * (2 * width * n_band + coupled + m**2))
 
 
-def supports(scene: Scene, nodes: dict[str, list[Node]], signal) -> Supports:
+def supports(scene: SceneData, nodes: dict[str, list[Node]], signal) -> Supports:
     """The scene's supports and joins; nodes: of each cable; signal(s): number of a signal."""
     made = Supports()
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Annotated, Any
 
 from pydantic import PlainValidator
 
-from .validation import Part, Vector, finite, number, shown, vector, xyz
+from .validation import Part, Vector, finite, number, show, shown, vector, xyz
 
 
 class Attachment(Part):
@@ -23,6 +24,11 @@ class Attachment(Part):
         """As a scene file has it: [x, y, z], "A", ["A", [x, y, z]] or ["wire", s]."""
         place = self.s if self.s is not None else self.at
         return place if self.on is None else self.on if place is None else [self.on, place]
+
+    def off_plane(self) -> Iterator[str]:
+        """See `Part.off_plane`."""
+        if self.at is not None and self.at[2]:
+            yield show(self.at, "m")
 
 
 def _anchor(value: Any) -> Attachment:

@@ -10,27 +10,16 @@ import numpy as np
 from pydantic import PlainValidator, ValidationInfo, model_validator
 
 from ..errors import near
-from ..kernels.elements import ElementKind, built_in, of_library
-from . import curves
+from ..kernels.element_line import ElementLine
+from ..kernels.elements import ElementKind, LawTraits
+from ..kernels.libraries import of_library, resolved
+from . import cable_laws, curves
 from .material import Material
-from .section import AnySection, Circle, GeneralSection, Tube
-from .section_stiffness import KERNEL_LAWS, kernel_law
-from .validation import Count, Name, Part, Vector, one_of, positive, show, shown, xyz
-
-EXACT = 1e-9
-"""Lengths that differ by this part of the cable's length are taken as equal."""
-
-MEMBRANES = ("full", "assumed", "reduced")
-"""How an element of a cable represents its axial strain, see `Cable`; the first is the default."""
+from .section import AnySection, Circle, Tube
+from .validation import EXACT, Count, Name, Part, Vector, one_of, positive, show, shown, xyz
 
 FOLLOWS = 0.5
 """An element's slope along the curve that it stands for must be this part of the curve's everywhere."""
-
-
-def possible_laws(kind: ElementKind) -> list[str]:
-    """The laws that a cable of such elements can be given."""
-    laws = [law for law in kind.laws if not law.endswith("_curved")]
-    return laws + [law for law, kernels in KERNEL_LAWS.items() if kernels in laws]
 
 
 def _library(value: Any) -> str | None:
@@ -39,8 +28,6 @@ def _library(value: Any) -> str | None:
         return None
     if not isinstance(value, str | os.PathLike):
         raise ValueError(f"must be a directory, got {shown(value)}")
-    from ..kernels.libraries import resolved
-
     directory = resolved(value)
     of_library(directory)
     return directory
@@ -93,17 +80,19 @@ class Cable(Part):
     """
 
     kind: ClassVar[str] = "cable"
+    group: ClassVar[str] = "cables"
     name: Name
     start: Annotated[Vector | None, xyz("m")] = None
     end: Annotated[Vector | None, xyz("m")] = None
     points: Annotated[tuple[tuple[float, ...], ...] | None, PlainValidator(_points)] = None
+    curve: Callable | None = None  # kept as points, see `_settled`
     elements: Count
     library: Annotated[str | None, PlainValidator(_library)] = None
     element: Annotated[str, PlainValidator(_element)] = "beam24"
     law: str = None
     strain: Annotated[str | None, one_of(("green", "engineering"), optional=True)] = None
     curvature: Annotated[str | None, one_of(("exact", "linear"), optional=True)] = None
-    membrane: Annotated[str | None, one_of(MEMBRANES, optional=True)] = None
+    membrane: Annotated[str | None, one_of(cable_laws.MEMBRANES, optional=True)] = None
     section: AnySection
     material: Material
     up: Annotated[Vector, xyz()] = (0.0, 1.0, 0.0)
@@ -135,7 +124,7 @@ class Cable(Part):
         element = data.get("element", "beam24")
         kind = known.get(element) if isinstance(element, str) else None
         if kind is not None:
-            data["law"] = _law(kind, data)
+            data["law"] = cable_laws.chosen(kind, data)
         return data
 
     @model_validator(mode="after")
@@ -161,11 +150,11 @@ class Cable(Part):
             if point[2] != 0:
                 where = f"point {number + 1}" if self.points else ("start", "end")[number]
                 raise ValueError(f"{self.element} is planar, but {where} leaves the plane z = 0: {show(point, 'm')}",
-                                 "draw it with z = 0, or take " + _others(3))
+                                 "draw it with z = 0, or take " + cable_laws.others(3))
         if self.velocity[2] != 0 or any(self.angular_velocity[:2]):
             raise ValueError(f"{self.element} is planar, but it starts with velocity {show(self.velocity, 'm/s')} and "
                              f"angular_velocity {show(self.angular_velocity, 'rad/s')}",
-                             "let it move in the plane z = 0 and turn about z, or take " + _others(3))
+                             "let it move in the plane z = 0 and turn about z, or take " + cable_laws.others(3))
         if self.up[2] != 0:
             raise ValueError(f"{self.element} is planar, but up leaves the plane z = 0: {show(self.up)}",
                              "leave it out: the height lies in the plane")
@@ -213,46 +202,8 @@ class Cable(Part):
 
     @model_validator(mode="after")
     def _law_suits(self) -> Cable:
-        kind = self.kind_of_element
-        if self.is_curved and self.kernel_law not in kind.laws:
-            curved = {name: [law for law in possible_laws(other) if _kernel_law(law, True) in other.laws]
-                      for name, other in built_in().items()}
-            able = [f"{name} ({', '.join(laws)})" for name, laws in curved.items() if laws]
-            raise ValueError(f'{self.element} with law "{self.law}" is stress-free only where it is straight, but '
-                             "it is drawn curved", 'take rest="straight", or one of ' + ", ".join(able))
-        if self.dim == 3 and kernel_law(self.stiffness_law) == "continuum" and self.material.is_incompressible:
-            raise ValueError(f'law "{self.law}" needs a poisson_ratio below 0.5, at which Lamé\'s λ is infinite, got '
-                             f"{self.material.poisson():.9g}", 'take law="structural", which needs E and G alone')
-        section = self.section
-        given = {keyword for keyword in ("torsion_constant", "shear_factors")
-                 if getattr(section, f"given_{keyword}") is not None}
-        if kind.is_cable:
-            self._refuse_unequal_bending()
-            if given:
-                raise ValueError(f"section.{min(given)} is given, but {self.element} has neither shear nor torsion",
-                                 "leave it out, or take " + _others(kind.dim, cable=False))
-            if isinstance(section, GeneralSection) and section.has_rotary:
-                raise ValueError(f"section.rotary_moment is given, but {self.element} has no rotary inertia",
-                                 "leave it out, or take " + _others(kind.dim, cable=False))
-        elif self.law == "structural":
-            needed = {"shear_factors"} | ({"torsion_constant"} if kind.dim == 3 else set())
-            if isinstance(section, GeneralSection) and (missing := needed - given):
-                raise ValueError(f'law "structural" needs section.{min(missing)}, which a general section does not '
-                                 "tell", "give it to the section")
-        elif isinstance(section, GeneralSection):
-            raise ValueError(f'law "{self.law}" integrates over the shape of the section, which a general section does '
-                             "not tell", 'take law="structural", a rectangle, circle or tube, or '
-                             + _others(kind.dim, cable=True))
-        elif self.law == "continuum" and given:
-            raise ValueError(f'section.{min(given)} is given, but law "continuum" computes its own from the shape',
-                             'leave it out, or take law="poisson_split" or "structural"')
+        cable_laws.check(self)
         return self
-
-    def _refuse_unequal_bending(self) -> None:
-        across = self.section.second_moment_about_z, self.section.second_moment_about_y
-        if self.dim == 3 and abs(across[0] - across[1]) > EXACT * max(across):
-            raise ValueError(f"{self.element} has one bending stiffness: its section needs equal second moments, "
-                             f"got {show(across, 'm⁴')}", 'take a square, a circle or a tube, or element="beam24"')
 
     @property
     def kind_of_element(self) -> ElementKind:
@@ -266,13 +217,18 @@ class Cable(Part):
 
     @property
     def kernel_law(self) -> str:
-        """Name of the law among the element's kernels; those that end in ``_curved``, and structural, take e0."""
-        return _kernel_law(self.law, self.is_curved)
+        """Name of the law among the element's kernels."""
+        return cable_laws.name_of_kernels(self.kind_of_element, self.law, self.is_curved)
+
+    @property
+    def _traits(self) -> LawTraits:
+        return self.kind_of_element.laws[self.kernel_law]
 
     @property
     def stiffness_law(self) -> str:
-        """Name of the law whose stiffness of the section it takes, see `stiffness.section_stiffness`."""
-        return self.kind_of_element.laws.get(self.law, self.law)
+        """Name of the law whose stiffness of the section it takes, see `section_stiffness`."""
+        laws = self.kind_of_element.laws
+        return laws[self.law].stiffness_of if self.law in laws else self.law
 
     @property
     def _way(self) -> tuple[tuple[float, ...], ...]:
@@ -314,44 +270,31 @@ class Cable(Part):
         """
         if self._shape.straight:
             return self._shape.point(s * self.stretch)
-        return self._off_axis(s, 0.0)
+        return self._as_drawn.point(s)
 
     def slope(self, s: float) -> np.ndarray:
         """(3,): r_x at arc-length ``s``, as the elements draw it."""
         if self._shape.straight:
             return self.stretch * self._shape.tangent(0.0)
-        length, x, e = self._element_at(s)
-        _, N_x = self._kernel("on_axis")(length, x)
-        return np.pad(N_x @ e, (0, 3 - self.dim))
+        return self._as_drawn.slope(s)
 
     def height(self, s: float) -> np.ndarray:
         """(3,): along the section's height at ``s``: r_y as the elements draw it, the axis there if they have none."""
         if self._shape.straight or not self.kind_of_element.director:
             return self.axes_at(s)[1]
-        return self._off_axis(s, y=1.0) - self._off_axis(s)
+        return self._as_drawn.point(s, y=1.0) - self._as_drawn.point(s)
 
     def width(self, s: float) -> np.ndarray:
         """(3,): along the section's width at ``s``: r_z as the elements draw it, the axis there if they have none."""
         if self._shape.straight or "r_z" not in self.kind_of_element.nodal_vectors:
             return self.axes_at(s)[2]
-        return self._off_axis(s, z=1.0) - self._off_axis(s)
+        return self._as_drawn.point(s, z=1.0) - self._as_drawn.point(s)
 
-    def _off_axis(self, s: float, y: float = 0.0, z: float = 0.0) -> np.ndarray:
-        """(3,): the point at height ``y`` and width ``z`` of the section at ``s``, in m."""
-        length, x, e = self._element_at(s)
-        _, r = self._kernel("position")(length, np.array([x, y, z]), e)
-        return np.pad(r, (0, 3 - self.dim))
-
-    def _element_at(self, s: float) -> tuple[float, float, np.ndarray]:
-        """Length of the element that holds ``s``, x in it, and its nodal vectors (2 vectors, dim)."""
-        length = self.length / self.elements
-        element = int(np.clip(np.floor(s / length), 0, self.elements - 1))
-        return length, s - element * length, np.concatenate(self.nodal_vectors[element : element + 2])[:, : self.dim]
-
-    def _kernel(self, name: str) -> Callable:
-        from ..kernels.libraries import kernels_of
-
-        return getattr(kernels_of(self.library), f"{self.element}_{name}")
+    @property
+    def _as_drawn(self) -> ElementLine:
+        """Its elements at the start, which know what is between the nodes."""
+        return ElementLine(self.library, self.element, self.length / self.elements,
+                           self.nodal_vectors[..., : self.dim])
 
     def axes_at(self, s) -> np.ndarray:
         """(..., 3, 3): unit vectors along axis, height and width, as rows, at arc-lengths ``s`` as drawn."""
@@ -388,7 +331,7 @@ class Cable(Part):
     @property
     def reference(self) -> np.ndarray | None:
         """(elements, 2 vectors, dim): stress-free nodal vectors of each element; None where the law takes none."""
-        if not self.is_curved and self.stiffness_law != "structural":
+        if not self._traits.takes_shape:
             return None
         rest = self.rest_nodal_vectors[..., : self.dim]
         return np.concatenate([rest[:-1], rest[1:]], axis=1)
@@ -417,44 +360,3 @@ class Cable(Part):
         node = round(s / self.length * self.elements)
         on_node = 0 <= node <= self.elements and abs(self.node_s[node] - s) <= EXACT * self.length
         return node if on_node else None
-
-
-def _law(kind: ElementKind, data: dict) -> str:
-    """The law of a cable from what it is given; ValueError if the element has no such law."""
-    element = data.get("element", "beam24")
-    law, strain, curvature, membrane = (data.get(name) for name in ("law", "strain", "curvature", "membrane"))
-    possible = possible_laws(kind)
-    if law is None and not (strain or curvature or membrane):
-        return possible[0]
-    if not isinstance(law, str | None):
-        raise ValueError(f"law must be a name, got {shown(law)}", "possible: " + ", ".join(possible))
-    if not all(isinstance(measure, str | None) for measure in (strain, curvature, membrane)):
-        return possible[0]  # the checks of strain, curvature and membrane refuse it
-    if strain or curvature or membrane:
-        if not kind.is_cable:
-            raise ValueError(f"strain, curvature and membrane are for cable elements, {element} is a beam",
-                             "leave them out, or take " + _others(kind.dim, cable=True))
-        by_measures = f"{strain or 'green'}_{curvature or 'exact'}"
-        if (membrane or MEMBRANES[0]) != "full":
-            by_measures += f"_{membrane or MEMBRANES[0]}"
-        if law not in (None, by_measures):
-            raise ValueError(f'law "{law}" disagrees with strain, curvature and membrane', "give the one or the others")
-        law = by_measures
-    if law not in possible:
-        known = ({strain or "green", curvature or "exact"} <= {"green", "engineering", "exact", "linear"}
-                 and (membrane or "full") in MEMBRANES)
-        if not known:  # the checks of strain and curvature say it better
-            return law
-        raise ValueError(f'law "{law}" is not possible for {element}', "possible: " + ", ".join(possible))
-    return law
-
-
-def _kernel_law(law: str, curved: bool) -> str:
-    law = kernel_law(law)
-    return f"{law}_curved" if curved and law != "structural" else law
-
-
-def _others(dim: int, *, cable: bool | None = None) -> str:
-    """Elements to take instead, for a remedy."""
-    names = [f'"{name}"' for name, kind in built_in().items() if kind.dim == dim and cable in (None, kind.is_cable)]
-    return "element=" + " or ".join(names)

@@ -86,6 +86,7 @@ class Spline:
 
     def __init__(self, points: np.ndarray):
         """points: (n, 3) in m, n of 3 or more, neighbours different."""
+        # SciPy would double the time of `import funicular`; straight cables do without.
         from scipy.interpolate import Akima1DInterpolator, CubicSpline
 
         self.points = np.array(points, dtype=float)
@@ -197,7 +198,7 @@ def sample(curve: Callable[[float], Iterable[float]], least: int) -> np.ndarray:
     Evenly spaced where it is smooth; else closer where its curvature or its speed jumps. ValueError where it has no
     tangent.
     """
-    from scipy.interpolate import CubicSpline
+    from scipy.interpolate import CubicSpline  # as above
 
     def at(u: float) -> tuple[float, ...]:
         try:
@@ -224,7 +225,7 @@ def sample(curve: Callable[[float], Iterable[float]], least: int) -> np.ndarray:
 
 def _closer(at: Callable[[float], tuple[float, ...]], u: np.ndarray) -> np.ndarray:
     """Points of a function, closer to each other where their spline over the chords is not yet near to it."""
-    from scipy.interpolate import CubicSpline
+    from scipy.interpolate import CubicSpline  # as above
 
     known = np.array([at(v) for v in u])
     extent = np.ptp(known, axis=0).max()

@@ -32,6 +32,7 @@ class Event(Part):
     """
 
     kind: ClassVar[str] = "event"
+    group: ClassVar[str] = "events"
     name: Name | None = None
     quantity: Annotated[str | None, PlainValidator(_text)] = None
     s: Annotated[float, finite("m")] | None = None

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Annotated, ClassVar
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from .attachment import AnyAttachment
+from .plane import across, in_plane
 from .signal import AnySignal, Integral, Signal
 from .validation import Name, Part, Vector, direction, one_of, positive
 
@@ -50,6 +52,8 @@ class Joint(Part):
     """
 
     kind: ClassVar[str] = "joint"
+    group: ClassVar[str] = "joints"
+    positional: ClassVar[tuple[str, ...]] = ("kind", "a", "b")
     pair: Annotated[str, one_of(KINDS)] = Field(alias="kind")
     name: Name | None = None
     a: AnyAttachment
@@ -125,6 +129,18 @@ class Joint(Part):
             return np.column_stack([np.cross(y, z), y, z])
         x = _across(np.array(self.second_axis), z)
         return np.column_stack([x, np.cross(z, x), z])
+
+    def off_plane(self) -> Iterator[str]:
+        """See `Part.off_plane`."""
+        yield from super().off_plane()
+        if self.pair == "universal":
+            yield "a universal joint"
+        elif self.pair in LINES:
+            yield from across("axis", self.axis)
+            if self.pair == "cylindrical" and self.is_driven:
+                yield "a turn about the axis"
+        elif self.axis is not None:
+            yield from in_plane("axis", self.axis, self.axis)
 
 
 def _across(vector: np.ndarray, axis: np.ndarray) -> np.ndarray:

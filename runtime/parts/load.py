@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Annotated, ClassVar
 
 from pydantic import model_validator
 
+from .plane import across, in_plane
 from .signal import AnySignal, Constant
 from .validation import Flag, Name, Part, Reference, Vector, finite, show, xyz
 
@@ -30,11 +32,18 @@ class Force(Load):
     """
 
     kind: ClassVar[str] = "force"
+    group: ClassVar[str] = "loads"
+    positional: ClassVar[tuple[str, ...]] = ("on",)
     on: Reference
     s: Place | None = None
     at: Annotated[Vector, xyz("m")] | None = None
     value: Annotated[Vector, xyz("N")]
     follower: Flag = False
+
+    def off_plane(self) -> Iterator[str]:
+        """See `Part.off_plane`."""
+        yield from across("value", self.value, "N")
+        yield from across("at", self.at, "m")
 
 
 class DistributedForce(Load):
@@ -44,6 +53,8 @@ class DistributedForce(Load):
     """
 
     kind: ClassVar[str] = "distributed_force"
+    group: ClassVar[str] = "loads"
+    positional: ClassVar[tuple[str, ...]] = ("cable",)
     cable: Reference
     value: Annotated[Vector, xyz("N/m")]
     start: Place | None = None
@@ -56,6 +67,10 @@ class DistributedForce(Load):
             raise ValueError(f"stop must be beyond start {show(self.start, 'm')}, got {show(self.stop, 'm')}")
         return self
 
+    def off_plane(self) -> Iterator[str]:
+        """See `Part.off_plane`."""
+        return across("value", self.value, "N/m")
+
 
 class Moment(Load):
     """A moment of ``value`` (N m), along the ground's axes, on a section of a cable or on a body.
@@ -64,6 +79,12 @@ class Moment(Load):
     """
 
     kind: ClassVar[str] = "moment"
+    group: ClassVar[str] = "loads"
+    positional: ClassVar[tuple[str, ...]] = ("on",)
     on: Reference
     s: Place | None = None
     value: Annotated[Vector, xyz("N m")]
+
+    def off_plane(self) -> Iterator[str]:
+        """See `Part.off_plane`."""
+        return in_plane("value", self.value, self.value, "N m")

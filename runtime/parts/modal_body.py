@@ -3,21 +3,22 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable, Iterator
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
-from pydantic import PlainValidator, model_validator
+from pydantic import PlainValidator, PrivateAttr, model_validator
 
+from ..errors import SceneError
 from ..rotations import rotate
-from .cable import EXACT, Cable
+from .body_shape import Shape, of_file
+from .cable import Cable
 from .material import Material
+from .plane import across, in_plane
 from .rigid_body import Quaternion, unit_quaternion
 from .section import AnySection
-from .validation import Count, Flag, Name, Part, Vector, not_negative, one_of, show, shown, xyz
-
-if TYPE_CHECKING:
-    from ..model.body_modes import Shape
+from .validation import EXACT, Count, Flag, Name, Part, Vector, not_negative, one_of, show, shown, xyz
 
 
 def _path(value: Any) -> str | None:
@@ -49,7 +50,10 @@ class ModalBody(Part):
     m/s, angular_velocity in body axes in rad/s. A run starts undeformed.
     """
 
+    _of_mesh: Callable[[ModalBody], Shape] | None = PrivateAttr(None)
+
     kind: ClassVar[str] = "modal_body"
+    group: ClassVar[str] = "bodies"
     name: Name
     start: Annotated[Vector | None, xyz("m")] = None
     end: Annotated[Vector | None, xyz("m")] = None
@@ -105,10 +109,22 @@ class ModalBody(Part):
 
     @cached_property
     def shape(self) -> Shape:
-        """Its modes and inertia."""
-        from ..model.body_modes import of_file, of_mesh
+        """Its modes and inertia: those of its file, or of its mesh, which a scene has made when it is asked for them.
 
-        return of_mesh(self) if self.data is None else of_file(self.data, self.orthogonal)
+        Raises SceneError for a mesh of a body that is in no scene.
+        """
+        if self.data is not None:
+            return of_file(self.data, self.orthogonal)
+        if self._of_mesh is None:
+            raise SceneError(self.where, "has no modes yet: a scene makes them of its mesh",
+                             "add it to a scene, and take what `Scene.add` returns")
+        return self._of_mesh(self)
+
+    def with_modes_by(self, of_mesh: Callable[[ModalBody], Shape]) -> ModalBody:
+        """Return a copy that has the modes of its mesh made by ``of_mesh``, once, when they are first asked for."""
+        copy = self.model_copy()
+        copy._of_mesh = of_mesh
+        return copy
 
     @property
     def modes_in_words(self) -> str:
@@ -175,6 +191,16 @@ class ModalBody(Part):
         """(3, 3) in kg m², about the frame's origin, undeformed."""
         X = self.shape.X[0, 0]
         return X.trace() * np.eye(3) - X
+
+    def off_plane(self) -> Iterator[str]:
+        """See `Part.off_plane`."""
+        position, orientation = self.frame
+        yield from across("position", position, "m")
+        yield from in_plane("orientation", orientation[1:], orientation)
+        if self.shape.modes[..., 2].any():
+            yield f"mode {1 + int(np.argmax(self.shape.modes[..., 2].any(axis=1)))}"
+        yield from across("velocity", self.velocity, "m/s")
+        yield from in_plane("angular_velocity", self.angular_velocity, self.angular_velocity, "rad/s")
 
 
 def quaternion(A: np.ndarray) -> np.ndarray:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from pydantic import PlainValidator
 
 from ..rotations import rotate
-from .cable import EXACT
-from .validation import Name, Part, Vector, positive, show, vector, xyz
+from .plane import across, in_plane
+from .validation import EXACT, Name, Part, Vector, positive, show, vector, xyz
 
 Quaternion = tuple[float, float, float, float]
 
@@ -57,6 +58,7 @@ class RigidBody(Part):
     """
 
     kind: ClassVar[str] = "rigid_body"
+    group: ClassVar[str] = "bodies"
     name: Name
     mass: Annotated[float, positive("kg")]
     inertia: Annotated[tuple[Vector, Vector, Vector], PlainValidator(_inertia)]
@@ -78,3 +80,11 @@ class RigidBody(Part):
     def point(self, at: Vector) -> np.ndarray:
         """(3,): where the body's point ``at`` (m, body axes) starts, in m."""
         return np.array(self.position) + rotate(self.orientation, at)
+
+    def off_plane(self) -> Iterator[str]:
+        """See `Part.off_plane`."""
+        yield from across("position", self.position, "m")
+        yield from in_plane("orientation", self.orientation[1:], self.orientation)
+        yield from across("centre", self.centre, "m")
+        yield from across("velocity", self.velocity, "m/s")
+        yield from in_plane("angular_velocity", self.angular_velocity, self.angular_velocity, "rad/s")

@@ -11,7 +11,7 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from pydantic import Field, PlainValidator, model_validator
 
-from ..errors import SceneError, near
+from ..errors import SceneError, check_renamed, near
 from .validation import Part, positive, show, shown, vector
 
 Length = Annotated[float, positive("m")]
@@ -40,6 +40,11 @@ class Section(Part):
     shape: ClassVar[str]
     given_torsion_constant: TorsionConstant | None = Field(None, alias="torsion_constant")
     given_shear_factors: ShearFactors | None = Field(None, alias="shear_factors")
+
+    def __getattr__(self, name: str) -> Any:
+        """Refuse an attribute that there is not; of an older version's, say what it is called now."""
+        check_renamed(f"{type(self).__name__!r} object", name, dir(type(self)))
+        return super().__getattr__(name)
 
     def moments(self) -> np.ndarray:
         """The even moments up to order 4.
@@ -164,22 +169,23 @@ class GeneralSection(Section):
     """A section known by its constants alone, for cables and for structural beams.
 
     area in m²; second_moment_about_z (∫y²dA) and second_moment_about_y in m⁴, equal if only one is given; for beams
-    torsion_constant in m⁴ and shear_factors (ky, kz). rotary_moment_yy and rotary_moment_zz in m⁴, for beams: what
-    times the density is the rotary inertia per length in kg m, of a section whose mass is elsewhere than its stiffness;
-    equal if only one is given, the second moments if none is.
+    torsion_constant in m⁴ and shear_factors (ky, kz). rotary_moment_about_z and rotary_moment_about_y in m⁴, for
+    beams: what times the density is the rotary inertia per length in kg m about that axis, of a section whose mass is
+    elsewhere than its stiffness; equal if only one is given, the second moments if none is.
     """
 
     shape: ClassVar[str] = "general"
     area_: Annotated[float, positive("m²")] = Field(alias="area")
-    yy: Annotated[float, positive("m⁴")] = Field(alias="second_moment_about_z")
-    zz: Annotated[float, positive("m⁴")] = Field(default_factory=lambda data: data["yy"], alias="second_moment_about_y")
-    rotary_yy: Annotated[float, positive("m⁴")] | None = Field(None, alias="rotary_moment_yy")
-    rotary_zz: Annotated[float, positive("m⁴")] | None = Field(None, alias="rotary_moment_zz")
+    about_z: Annotated[float, positive("m⁴")] = Field(alias="second_moment_about_z")
+    about_y: Annotated[float, positive("m⁴")] = Field(default_factory=lambda data: data["about_z"],
+                                                      alias="second_moment_about_y")
+    rotary_about_z: Annotated[float, positive("m⁴")] | None = Field(None, alias="rotary_moment_about_z")
+    rotary_about_y: Annotated[float, positive("m⁴")] | None = Field(None, alias="rotary_moment_about_y")
 
     @model_validator(mode="after")
     def _twists_less_than_a_disc(self) -> GeneralSection:
         """Warping only ever lowers J below the polar moment."""
-        constant, polar = self.given_torsion_constant, self.yy + self.zz
+        constant, polar = self.given_torsion_constant, self.about_z + self.about_y
         if constant is not None and constant > polar * (1 + 1e-9):
             raise ValueError("torsion_constant must not exceed second_moment_about_z + second_moment_about_y = "
                              f"{polar:.6g} m⁴, got {constant:.6g} m⁴")
@@ -187,19 +193,19 @@ class GeneralSection(Section):
 
     def moments(self) -> np.ndarray:
         """See `Section.moments`; not known, hence NaN, are those of order 4."""
-        return np.array([self.area_, self.yy, self.zz, nan, nan, nan])
+        return np.array([self.area_, self.about_z, self.about_y, nan, nan, nan])
 
     @property
     def has_rotary(self) -> bool:
         """Whether its rotary inertia is given apart from its stiffness."""
-        return self.rotary_yy is not None or self.rotary_zz is not None
+        return self.rotary_about_z is not None or self.rotary_about_y is not None
 
     def mass_moments(self) -> np.ndarray:
         """See `Section.mass_moments`."""
         if not self.has_rotary:
             return self.moments()
-        yy, zz = self.rotary_yy or self.rotary_zz, self.rotary_zz or self.rotary_yy
-        return np.array([self.area_, yy, zz, nan, nan, nan])
+        about_z, about_y = self.rotary_about_z or self.rotary_about_y, self.rotary_about_y or self.rotary_about_z
+        return np.array([self.area_, about_z, about_y, nan, nan, nan])
 
 
 def _ring_shear_factors(poisson_ratio: float, inner: float) -> tuple[float, float]:

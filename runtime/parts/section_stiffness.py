@@ -1,14 +1,17 @@
 """Stiffness of a section, S of the kernels `stiffness`: what an elastic law takes of section and material.
 
-A further law is one function and one entry in `_LAWS`.
+A further law is one function and one entry in `_BY_KIND`, or in `VARIANTS` if it runs on the kernels of another one.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
+from ..kernels.elements import built_in_laws
 from .material import Material
 from .section import Section
 
@@ -16,19 +19,41 @@ from .section import Section
 def section_stiffness(law: str, section: Section, material: Material, dim: int = 3) -> np.ndarray:
     """S of an elastic law.
 
-    law: a name in ``derive/laws``, or "poisson_split"; dim: 2 for a planar element, else 3.
+    law: of this package, or one of `variants`; dim: 2 for a planar element, else 3.
     Returns, in N times even powers of m: (2,) [EA, EI] for cables, (3,) with an assumed axial strain, see `_assumed`;
     for a continuum (9, 6) or, planar, (4, 6): the
     integrals over the section of D11, D22, D33, D12, D13, D23, G12, G13, G23 (planar: D11, D22, D12, G12) times
     1, y², z², y⁴, y²z², z⁴; for structural (9,) or, planar, (4,), see `_structural`.
     """
-    return _LAWS.get(law, _cable)(section, material, dim)
+    if law in variants():
+        return variants()[law].stiffness(section, material, dim)
+    traits = built_in_laws()[law]
+    return _BY_KIND[traits.kind, traits.membrane](section, material, dim)
 
 
-CABLE_LAWS = tuple(f"{strain}_{curvature}" for strain in ("green", "engineering") for curvature in ("exact", "linear"))
+@dataclass(frozen=True)
+class Variant:
+    """A law that runs on the kernels of another one: it differs by the stiffness of the section alone.
 
-KERNEL_LAWS = {"poisson_split": "continuum"} | {f"{law}_reduced": f"{law}_assumed" for law in CABLE_LAWS}
-"""Laws that run on the kernels of another one: they differ by the stiffness of the section alone."""
+    kernel_law: the law whose kernels it takes; membrane: how a cable represents its axial strain.
+    """
+
+    kernel_law: str
+    stiffness: Callable[[Section, Material, int], np.ndarray]
+    membrane: str = ""
+
+
+@cache
+def variants() -> dict[str, Variant]:
+    """The variants by name: "poisson_split", and for each assumed strain of a cable the reduced one."""
+    reduced = {law_of_measures(traits.strain, traits.curvature, "reduced"): Variant(law, _reduced, "reduced")
+               for law, traits in built_in_laws().items() if traits.membrane == "assumed"}
+    return {"poisson_split": Variant("continuum", _poisson_split)} | reduced
+
+
+def law_of_measures(strain: str, curvature: str, membrane: str) -> str:
+    """The name of a cable's law by its measures."""
+    return "_".join([strain, curvature, *([membrane] if membrane != "full" else [])])
 
 
 STABILISATION = 0.01
@@ -37,7 +62,12 @@ STABILISATION = 0.01
 
 def kernel_law(law: str) -> str:
     """The law whose kernels a law runs on."""
-    return KERNEL_LAWS.get(law, law)
+    return variants()[law].kernel_law if law in variants() else law
+
+
+def is_reduced(law: str) -> bool:
+    """Whether a cable's law has a reduced axial strain."""
+    return law in variants() and variants()[law].membrane == "reduced"
 
 
 def _cable(section: Section, material: Material, dim: int) -> np.ndarray:
@@ -106,6 +136,7 @@ def _elasticity(material: Material, dim: int) -> np.ndarray:
     return np.array([lam + 2 * mu, lam + 2 * mu, lam, mu])
 
 
-_LAWS: dict[str, Callable[[Section, Material, int], np.ndarray]] = {
-    "continuum": _continuum, "poisson_split": _poisson_split, "structural": _structural,
-    **{f"{law}_assumed": _assumed for law in CABLE_LAWS}, **{f"{law}_reduced": _reduced for law in CABLE_LAWS}}
+_BY_KIND: dict[tuple[str, str], Callable[[Section, Material, int], np.ndarray]] = {
+    ("continuum", ""): _continuum, ("structural", ""): _structural, ("cable", "full"): _cable,
+    ("cable", "assumed"): _assumed}
+"""By kind of the law and membrane, see `LawTraits`."""

@@ -141,7 +141,7 @@ class TableSignal(Signal):
         if self.interpolation == "linear":
             coefficients[1:-1, 1] = np.diff(values) / np.diff(time)
         else:
-            from scipy.interpolate import CubicSpline
+            from scipy.interpolate import CubicSpline  # would double the time of `import funicular`
 
             coefficients[1:-1, :4] = CubicSpline(time, values).c[::-1].T
         return breaks, coefficients

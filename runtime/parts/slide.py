@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, model_validator
@@ -9,6 +10,7 @@ from pydantic import Field, model_validator
 from .attachment import Attachment
 from .end_stops import CableEnd, Stop
 from .friction import Friction
+from .plane import across
 from .signal import AnySignal, Integral, Signal
 from .validation import Name, Part, Reference, Vector, direction, finite, one_of, xyz
 
@@ -31,6 +33,8 @@ class Slide(Part):
     """
 
     kind: ClassVar[str] = "slide"
+    group: ClassVar[str] = "slides"
+    positional: ClassVar[tuple[str, ...]] = ("body",)
     body: Reference
     body_s: Annotated[float, finite("m")] | None = None
     along: Reference
@@ -80,3 +84,7 @@ class Slide(Part):
     def prescribed(self) -> Signal | None:
         """s over time in m, where it is driven."""
         return self.drive if self.velocity is None else Integral(rate=self.velocity, start=self.s)
+
+    def off_plane(self) -> Iterator[str]:
+        """See `Part.off_plane`."""
+        return across("at", self.at, "m")

@@ -19,6 +19,8 @@ class Spring(Part):
     """
 
     kind: ClassVar[str] = "spring"
+    group: ClassVar[str] = "springs"
+    positional: ClassVar[tuple[str, ...]] = ("a", "b")
     name: Name | None = None
     a: AnyAttachment
     b: AnyAttachment

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar
 
 from pydantic import PlainValidator, model_validator
 
-from .signal import Signal, signal
+from .plane import in_plane
+from .signal import Constant, Signal, signal
 from .validation import Name, Part, Reference, Vector, finite, one_of, shown, vector
 
 
@@ -38,6 +40,8 @@ class Pin(Support):
     """Holds the position of a cable's node at ``s`` (m) where it starts; its slopes stay free."""
 
     kind: ClassVar[str] = "pin"
+    group: ClassVar[str] = "pins"
+    positional: ClassVar[tuple[str, ...]] = ("cable",)
 
 
 class Clamp(Support):
@@ -48,6 +52,8 @@ class Clamp(Support):
     """
 
     kind: ClassVar[str] = "clamp"
+    group: ClassVar[str] = "clamps"
+    positional: ClassVar[tuple[str, ...]] = ("cable",)
     hold: Annotated[str, one_of(("section", "all"))] = "section"
 
 
@@ -128,6 +134,8 @@ class Motion(Support):
     """
 
     kind: ClassVar[str] = "motion"
+    group: ClassVar[str] = "motions"
+    positional: ClassVar[tuple[str, ...]] = ("cable",)
     displacement: Annotated[Displacement | None, PlainValidator(_displacement)] = None
     rotation: Annotated[Rotation | None, PlainValidator(_rotation)] = None
 
@@ -136,6 +144,13 @@ class Motion(Support):
         if self.displacement is None and self.rotation is None:
             raise ValueError("has neither displacement nor rotation", "give one of them, or both")
         return self
+
+    def off_plane(self) -> Iterator[str]:
+        """See `Part.off_plane`."""
+        if self.displacement is not None and self.displacement[2] not in (None, Constant(constant=0.0)):
+            yield "displacement z"
+        if self.rotation is not None:
+            yield from in_plane("rotation about", self.rotation.axis, self.rotation.axis)
 
 
 class Tie(Part):
@@ -148,6 +163,8 @@ class Tie(Part):
     """
 
     kind: ClassVar[str] = "tie"
+    group: ClassVar[str] = "ties"
+    positional: ClassVar[tuple[str, ...]] = ("cable",)
     name: Name | None = None
     cable: Reference
     s: Annotated[float, finite("m")]

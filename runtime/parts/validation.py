@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 import reprlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from numbers import Integral, Real
 from typing import Annotated, Any, ClassVar
 
@@ -27,6 +27,9 @@ OTHER_LIMITS = (1e-30, 1e30)
 
 MOST = 1_000_000
 """The largest count: elements of a cable, modes, iterations."""
+
+EXACT = 1e-9
+"""Lengths that differ by this part of a cable's length, or of a body's size, are taken as equal."""
 
 LONGEST_NAME = 100
 """Characters; with the name of a quantity behind it, it has to be a name in a netCDF file, too."""
@@ -242,6 +245,12 @@ class Part(BaseModel, metaclass=_TranslatingType):
     kind: ClassVar[str] = ""
     """What messages call it; the class name when empty."""
 
+    group: ClassVar[str] = ""
+    """The attribute of a scene that holds such parts."""
+
+    positional: ClassVar[tuple[str, ...]] = ("name",)
+    """Keywords that the scene's method for such parts takes without their names, too."""
+
     @classmethod
     def place(cls, data: dict) -> str:
         """How messages name the part made of ``data``."""
@@ -253,10 +262,21 @@ class Part(BaseModel, metaclass=_TranslatingType):
         """What a part is made with: the keywords, and the names of the fields that hold them."""
         return {field.alias or name: name for name, field in cls.model_fields.items()}
 
+    @classmethod
+    def is_named(cls) -> bool:
+        """Whether such parts have names, by which a scene and its results know them."""
+        return "name" in cls.model_fields
+
     @property
     def where(self) -> str:
         """How messages name this part."""
         return self.place(dict(self))
+
+    def off_plane(self) -> Iterator[str]:
+        """Yield its quantities that leave the plane z = 0, in words: by default those of the parts in it."""
+        for name, value in self:
+            if isinstance(value, Part):
+                yield from (f"{name} {quantity}" for quantity in value.off_plane())
 
     @model_validator(mode="before")
     @classmethod

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..kernels.libraries import kernels_of
 from ..model.attachments import CARRIED, UP, AttachmentModel
 from ..model.loads import GAUSS
+from ..model.model import CableModel, Model
+from ..model.states import attachment_points, spatial
 from ..parts import DistributedForce, Moment
+from ..parts.scene_data import SceneData
 from ..rotations import rotate
-from .recording import end_points, spatial
-
-if TYPE_CHECKING:
-    from ..model.build import CableModel, Model
-    from ..scene import Scene
 
 
 @dataclass
@@ -87,7 +84,7 @@ def rows(kernel, n: int, *given):
 class CableActions:
     """Collects what acts on cables between nodes. Gravity, inertia and what is given to nodes are not in it."""
 
-    def __init__(self, scene: Scene, model: Model, at: Instants):
+    def __init__(self, scene: SceneData, model: Model, at: Instants):
         self.scene, self.model, self.at, self.dim = scene, model, at, model.dim
         self.times, self.gravity = len(at.time), at.weight * np.array(scene.gravity)[: self.dim]
         self.points: dict[int, list[Action]] = {}
@@ -187,7 +184,7 @@ class CableActions:
     def _end_point(self, end: AttachmentModel) -> np.ndarray:
         """(T, 3): where an end is."""
         if end.body < 0:
-            return end_points(self.model, end, self.at.q)
+            return attachment_points(self.model, end, self.at.q)
         body = self.model.bodies[end.body]
         arm = body.centre + end.u
         if end.spot is not None:

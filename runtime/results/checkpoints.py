@@ -72,3 +72,18 @@ class Checkpoint(NamedTuple):
             return cls(Facts.model_validate(json.loads(facts)), state)
         except (ValueError, RecursionError):
             raise DamagedCheckpointError("is damaged") from None
+
+
+def checkpoint_of(path: Path) -> Path:
+    """The checkpoint beside the file of a run."""
+    return path.with_name(f"{path.name}.state")
+
+
+def add_events(report: dict, path: Path) -> None:
+    """Put into the report of a run that has not come to its end what events have found up to its checkpoint."""
+    try:
+        report["events"] = Checkpoint.read(checkpoint_of(path)).facts.events
+    except (OSError, DamagedCheckpointError):
+        report["events"] = []
+        report["messages"].append(f"what events have found is not known: there is no whole checkpoint "
+                                  f"{checkpoint_of(path).name}")

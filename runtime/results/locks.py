@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-import fcntl
+import errno
 import os
 from pathlib import Path
 
-_NEW = os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC
+from .. import operating_system
+from ..operating_system import BYTES, NO_LINK
+
+_NEW = os.O_RDWR | os.O_CREAT | BYTES | NO_LINK
 _MODE = 0o666
 
 
@@ -33,6 +36,8 @@ def claimed(path: str | os.PathLike) -> int:
         try:
             descriptor, is_new = os.open(path, _NEW | os.O_EXCL, _MODE), True
         except FileExistsError:
+            if not NO_LINK and Path(path).is_symlink():
+                raise OSError(errno.ELOOP, os.strerror(errno.ELOOP), os.fspath(path)) from None
             descriptor, is_new = os.open(path, _NEW, _MODE), False
         try:
             if not lock(descriptor) and not is_new:
@@ -48,7 +53,7 @@ def claimed(path: str | os.PathLike) -> int:
 def lock(descriptor: int) -> bool:
     """Lock an open file; False where the file system has no locks. Raises Taken."""
     try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        operating_system.lock(descriptor)
     except BlockingIOError:
         raise Taken from None
     except OSError:

@@ -8,59 +8,35 @@ variables and attributes for other readers. Format: NetCDF Classic Format Specif
 
 from __future__ import annotations
 
-import json
-import math
 import os
 import struct
 import weakref
 from collections.abc import Iterator, Mapping
-from typing import NamedTuple
 
 import numpy as np
 
-from .checksums import row_checksums, text_checksum
+from ..operating_system import BYTES, read_at, read_into, write_at
+from .checksums import row_checksums
 from .locks import created
+from .netcdf_header import (
+    COUNT_AT,
+    HEADER_CHECKSUM,
+    NOT_YET,
+    Entry,
+    Variable,
+    header_checksum,
+    header_of,
+    parsed,
+    report_line,
+    size_of,
+)
 
-MAGIC = b"CDF\x02"
-COUNT_AT = len(MAGIC)
-"""Where the number of rows stands in the header, four bytes."""
-
-_DIMENSION, _VARIABLE, _ATTRIBUTE = 10, 11, 12
-_CHAR, _INT, _DOUBLE = 2, 4, 6
-_TYPES = {1: ">i1", _CHAR: "S1", 3: ">i2", _INT: ">i4", 5: ">f4", _DOUBLE: ">f8"}
 _BLOCK = 1 << 22
 """Bytes that are read at once."""
 MOST_HEADER, MOST_ROW = 1 << 28, 1 << 31
 """Bytes that a header and a row may have."""
 
 ROW_CHECKSUM = "row_checksum"
-HEADER_CHECKSUM = "header_checksum"
-_NOT_YET = "00000000"
-"""In the place of a text's checksum while that is computed."""
-_REPORT_CHECKSUM = '{"checksum": "'
-"""How a line of the report begins that has one."""
-
-
-class Variable(NamedTuple):
-    """An array with the names of its dimensions, its unit and what it is."""
-
-    dims: tuple[str, ...]
-    values: np.ndarray
-    units: str
-    long_name: str
-
-
-class Entry(NamedTuple):
-    """A variable as the header describes it; `begin` is where it starts, in bytes: in the file, or in a row."""
-
-    dims: tuple[str, ...]
-    shape: tuple[int, ...]
-    attributes: dict[str, str | np.ndarray]
-    dtype: np.dtype
-    in_rows: bool
-    begin: int
-
-
 class File:
     """An open file of results; rows are counted from 0, and only `write` and `truncate` change their number."""
 
@@ -72,15 +48,15 @@ class File:
         self.path = os.fspath(path)
         self.descriptor = descriptor
         if descriptor is None:
-            self.descriptor = os.open(path, (os.O_RDWR if writable else os.O_RDONLY) | os.O_CLOEXEC)
+            self.descriptor = os.open(path, (os.O_RDWR if writable else os.O_RDONLY) | BYTES)
         self.close = weakref.finalize(self, os.close, self.descriptor)
         size = os.fstat(self.descriptor).st_size
         self.rows, self.attributes, places, self.entries = self._head(size)
         self._report_at = places.get("report", (0, 0))
         records = {name: entry for name, entry in self.entries.items() if entry.in_rows}
         self._first = first = min((entry.begin for entry in records.values()), default=size)
-        row_bytes = max((entry.begin + _bytes(entry) - first for entry in records.values()), default=0)
-        ends = [entry.begin + _bytes(entry) for entry in self.entries.values() if not entry.in_rows]
+        row_bytes = max((entry.begin + size_of(entry) - first for entry in records.values()), default=0)
+        ends = [entry.begin + size_of(entry) for entry in self.entries.values() if not entry.in_rows]
         if row_bytes > MOST_ROW or max([first + self.rows * row_bytes, *ends]) > size:
             raise ValueError("the file ends too early")
         self._row = np.dtype({
@@ -90,15 +66,15 @@ class File:
         self.left_out = np.zeros(0, int)
         self.has_checksums = ROW_CHECKSUM in records and HEADER_CHECKSUM in places
         if HEADER_CHECKSUM in places:
-            head = os.pread(self.descriptor, min(first, MOST_HEADER), 0)
-            if _header_checksum(head, places) != self.attributes[HEADER_CHECKSUM]:
+            head = read_at(self.descriptor, min(first, MOST_HEADER), 0)
+            if header_checksum(head, places) != self.attributes[HEADER_CHECKSUM]:
                 raise ValueError("the header is damaged: it has another checksum")
 
     def _head(self, size: int) -> tuple[int, dict, dict[str, tuple[int, int]], dict[str, Entry]]:
         length = _BLOCK
         while True:
             try:
-                return _parse(os.pread(self.descriptor, length, 0))
+                return parsed(read_at(self.descriptor, length, 0))
             except (struct.error, IndexError, KeyError, OverflowError, UnicodeDecodeError) as error:
                 if length >= min(size, MOST_HEADER):
                     raise ValueError("the header is damaged") from error
@@ -113,7 +89,7 @@ class File:
         """All values of a variable, in this machine's order of bytes; texts as str. Not of rows that are left out."""
         entry = self.entries[name]
         if not entry.in_rows:
-            raw = os.pread(self.descriptor, _bytes(entry), entry.begin)
+            raw = read_at(self.descriptor, size_of(entry), entry.begin)
             values = np.frombuffer(raw, entry.dtype).reshape(entry.shape)
             return _texts(values) if entry.dtype.kind == "S" else values.astype(entry.dtype.newbyteorder("="))
         values = np.empty((self.rows - len(self.left_out), *entry.shape), entry.dtype.newbyteorder("="))
@@ -141,7 +117,8 @@ class File:
         block = np.empty(min(rows, max(1, _BLOCK // max(1, self.row_bytes))), self._row)
         for start in range(0, rows, len(block)):
             part = block[: rows - start]
-            if os.preadv(self.descriptor, [part.view("u1")], self._first + start * self.row_bytes) != part.nbytes:
+            at = self._first + start * self.row_bytes
+            if read_into(self.descriptor, memoryview(part.view("u1")), at) != part.nbytes:
                 raise OSError(f"{self.path}: was cut short while it was read")
             yield start, part
 
@@ -196,12 +173,12 @@ class File:
         begin, size = self._report_at
         old = self.attributes["report"]
         used = len(old[: old.rfind("\n") + 1].encode())
-        line = _line(text)
+        line = report_line(text)
         if used + len(line) > size:
             return False
         self._put(line + b" " * (size - used - len(line)), begin + used)
         self._put(b" " * used, begin)
-        self.attributes["report"] = os.pread(self.descriptor, size, begin).decode()
+        self.attributes["report"] = read_at(self.descriptor, size, begin).decode()
         return True
 
     def _check_follows(self, first: int) -> None:
@@ -215,38 +192,8 @@ class File:
     def _put(self, data, at: int) -> None:
         left = memoryview(data)
         while len(left):
-            done = os.pwrite(self.descriptor, left, at)
+            done = write_at(self.descriptor, left, at)
             left, at = left[done:], at + done
-
-
-def _line(text: str) -> bytes:
-    """A JSON object as a line of the report, with its checksum as first entry."""
-    bare = f'{_REPORT_CHECKSUM}{_NOT_YET}", {text[1:]}'
-    checksum = f"{text_checksum(bare.encode()):08x}"
-    return f'{_REPORT_CHECKSUM}{checksum}", {text[1:]}\n'.encode()
-
-
-def last_report(text: str, has_checksum: bool) -> dict:
-    """What the last whole line of the attribute `report` says, or all of it where it is not in lines.
-
-    Raises ValueError where it is damaged.
-    """
-    lines = text.split("\n")
-    line = (lines[:-1] or lines)[-1].strip(" ")
-    if has_checksum:
-        begin = len(_REPORT_CHECKSUM)
-        end = begin + len(_NOT_YET)
-        bare = line[:begin] + _NOT_YET + line[end:]
-        if not line.startswith(_REPORT_CHECKSUM) or line[begin:end] != f"{text_checksum(bare.encode()):08x}":
-            raise ValueError("the report is damaged: it has another checksum")
-    try:
-        report = json.loads(line)
-    except RecursionError:
-        raise ValueError("the report is damaged") from None
-    if not isinstance(report, dict):
-        raise ValueError("the report is damaged")
-    report.pop("checksum", None)
-    return report
 
 
 class Stored(Mapping[str, Variable]):
@@ -285,144 +232,16 @@ def create(path: str | os.PathLike, coords: Mapping[str, Variable], variables: M
     file of that path which is open already, and becomes this one.
     """
     checksum = Variable(("time",), np.zeros(0), "1", "checksum of the row")
-    header = _header({**coords, **variables, ROW_CHECKSUM: checksum},
-                     {**attributes, HEADER_CHECKSUM: _NOT_YET, "report": _line(report) + b" " * room})
-    places = _parse(header)[2]
+    header = header_of({**coords, **variables, ROW_CHECKSUM: checksum},
+                     {**attributes, HEADER_CHECKSUM: NOT_YET, "report": report_line(report) + b" " * room})
+    places = parsed(header)[2]
     at, size = places[HEADER_CHECKSUM]
-    header = header[:at] + _header_checksum(header, places).encode() + header[at + size :]
+    header = header[:at] + header_checksum(header, places).encode() + header[at + size :]
     descriptor = created(path) if descriptor is None else descriptor
     os.ftruncate(descriptor, 0)
     with open(descriptor, "wb", closefd=False) as file:
         file.write(header)
     return File(path, descriptor=descriptor)
-
-
-def _header_checksum(head: bytes, places: Mapping[str, tuple[int, int]]) -> str:
-    """Of all before the first row, but for the number of rows, the report's text and the checksum itself."""
-    checksum, at = 0, 0
-    for begin, size in sorted([(COUNT_AT, 4), places[HEADER_CHECKSUM], places.get("report", (COUNT_AT, 0))]):
-        checksum, at = text_checksum(head[at:begin], checksum), begin + size
-    return f"{text_checksum(head[at:], checksum):08x}"
-
-
-def _header(variables: dict[str, Variable], attributes: dict) -> bytes:
-    """The header, and behind it the variables that are not over time."""
-    sizes, entries, fixed = {"time": 0}, {}, {}
-    for name, variable in variables.items():
-        values, dims = variable.values, variable.dims
-        labels = {"units": variable.units, "long_name": variable.long_name}
-        if values.dtype.kind == "U":  # characters along one more dimension, as xarray writes them, too
-            texts = np.char.encode(values, "utf-8")
-            values = texts.view("S1").reshape(*texts.shape, texts.itemsize)
-            dims = (*dims, f"string{texts.itemsize}")
-            labels["_Encoding"] = "utf-8"
-        sizes |= {dim: size for dim, size in zip(dims, values.shape, strict=True) if dim != "time"}
-        entries[name] = (dims, labels, _CHAR if values.dtype.kind == "S" else _DOUBLE)
-        if dims[:1] != ("time",):
-            fixed[name] = _padded(values.astype(_TYPES[entries[name][2]]).tobytes())
-    number = {dim: k for k, dim in enumerate(sizes)}
-    size = {name: np.dtype(_TYPES[kind]).itemsize * int(np.prod([sizes[d] for d in dims if d != "time"], dtype=int))
-            for name, (dims, _, kind) in entries.items()}
-
-    def head(begins: dict[str, int]) -> bytes:
-        written = [_text(name) + struct.pack(">i", len(dims)) + b"".join(struct.pack(">i", number[d]) for d in dims)
-                   + _attributes(labels)
-                   + struct.pack(">iIq", kind, min(-(-size[name] // 4) * 4, 2**32 - 4), begins.get(name, 0))
-                   for name, (dims, labels, kind) in entries.items()]
-        dimensions = [_text(dim) + struct.pack(">i", length) for dim, length in sizes.items()]
-        return (MAGIC + struct.pack(">i", 0) + _list(_DIMENSION, dimensions) + _attributes(attributes)
-                + _list(_VARIABLE, written))
-
-    at, begins = len(head({})), {}
-    for name in [*fixed, *(name for name in entries if name not in fixed)]:
-        begins[name] = at
-        at += -(-size[name] // 4) * 4
-    return head(begins) + b"".join(fixed.values())
-
-
-def _padded(data: bytes) -> bytes:
-    return data + bytes(-len(data) % 4)
-
-
-def _text(text: str) -> bytes:
-    data = text.encode()
-    return struct.pack(">i", len(data)) + _padded(data)
-
-
-def _list(tag: int, items: list[bytes]) -> bytes:
-    return struct.pack(">ii", tag if items else 0, len(items)) + b"".join(items)
-
-
-def _attributes(attributes: Mapping[str, str | bytes | int]) -> bytes:
-    items = []
-    for name, value in attributes.items():
-        if isinstance(value, int):
-            items.append(_text(name) + struct.pack(">iii", _INT, 1, value))
-        else:
-            data = value if isinstance(value, bytes) else value.encode()
-            items.append(_text(name) + struct.pack(">ii", _CHAR, len(data)) + _padded(data))
-    return _list(_ATTRIBUTE, items)
-
-
-def _parse(header: bytes) -> tuple[int, dict, dict[str, tuple[int, int]], dict[str, Entry]]:
-    """Number of rows, attributes, their places and sizes, variables.
-
-    Raises ValueError, and what struct and dicts raise, where the header is damaged or longer than what is given.
-    """
-    at = len(MAGIC)
-    if header[:at] != MAGIC:
-        raise ValueError("it does not begin as the classic format with 64-bit offsets does")
-
-    def ints(count: int = 1) -> tuple[int, ...]:
-        nonlocal at
-        found = struct.unpack_from(f">{count}i", header, at)
-        at += 4 * count
-        return found
-
-    def data(size: int) -> bytes:
-        nonlocal at
-        found = header[at : at + size]
-        if size < 0 or len(found) < size:
-            raise IndexError
-        at += -(-size // 4) * 4
-        return found
-
-    def attributes() -> tuple[dict, dict]:
-        found, places = {}, {}
-        for _ in range(ints(2)[1]):
-            name = data(*ints()).decode()
-            kind, count = ints(2)
-            dtype = np.dtype(_TYPES[kind])
-            places[name] = at, count
-            value = data(dtype.itemsize * count)
-            found[name] = value.decode() if kind == _CHAR else np.frombuffer(value, dtype)
-        return found, places
-
-    def known(value: int, most: int) -> int:
-        if not 0 <= value <= most:
-            raise ValueError("the header is damaged")
-        return value
-
-    rows = known(*ints(), 2**31)
-    dims = [(data(*ints()).decode(), known(*ints(), 2**31)) for _ in range(ints(2)[1])]
-    general, places = attributes()
-    entries = {}
-    for _ in range(ints(2)[1]):
-        name = data(*ints()).decode()
-        along = [dims[known(k, len(dims) - 1)] for k in ints(known(*ints(), len(dims)))]
-        labels, _ = attributes()
-        kind, _ = ints(2)
-        (begin,) = struct.unpack_from(">q", header, at)
-        at += 8
-        in_rows = bool(along) and along[0][1] == 0
-        shape = tuple(size for _, size in along[in_rows:])
-        known(begin, 2**62)
-        entries[name] = Entry(tuple(dim for dim, _ in along), shape, labels, np.dtype(_TYPES[kind]), in_rows, begin)
-    return rows, general, places, entries
-
-
-def _bytes(entry: Entry) -> int:
-    return entry.dtype.itemsize * math.prod(entry.shape)
 
 
 def _texts(characters: np.ndarray) -> np.ndarray:

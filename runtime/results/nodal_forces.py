@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import block_diag, coo_array, csc_array, kron
 from scipy.sparse.linalg import splu
 
+from ..model.model import CableModel, Model
+from ..parts.scene_data import SceneData
 from .cable_loads import CableActions, Instants, element_coordinates, rows
-
-if TYPE_CHECKING:
-    from ..model.build import CableModel, Model
-    from ..scene import Scene
 
 
 @dataclass
@@ -30,7 +27,7 @@ class ElementForces:
     e: np.ndarray
 
 
-def element_forces(scene: Scene, model: Model, at: Instants, actions: CableActions, cable: int,
+def element_forces(scene: SceneData, model: Model, at: Instants, actions: CableActions, cable: int,
                    at_rest: bool) -> ElementForces:
     """Those of cable number `cable`; at_rest: without accelerations."""
     tied = [cable] if at_rest else tied_cables(scene, model, cable)
@@ -43,7 +40,7 @@ def element_forces(scene: Scene, model: Model, at: Instants, actions: CableActio
     return ElementForces(given, inertia, element_coordinates(of, at.q))
 
 
-def tied_cables(scene: Scene, model: Model, cable: int) -> list[int]:
+def tied_cables(scene: SceneData, model: Model, cable: int) -> list[int]:
     """Numbers of the cables that joins tie to one, itself included: their accelerations go together."""
     found, new = {model.cables[cable].name}, [model.cables[cable].name]
     while new:

@@ -1,86 +1,50 @@
-"""Results of a run: labelled arrays with units, and their files."""
+"""Results of a run: labelled arrays with units, energy balance, forces in sections."""
 
 from __future__ import annotations
 
-import errno
-import json
 import os
 import threading
 import warnings
 from collections.abc import Iterable, Mapping
 from functools import cached_property
-from operator import methodcaller
-from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict
 
-from ..errors import FunicularWarning, ResultFileError, UnknownResultError, near, shown_path
-from .locks import Taken, created, lock
-from .netcdf import ROW_CHECKSUM, File, Stored, Variable, create, last_report
+from ..errors import FunicularWarning, ResultFileError, UnknownResultError, near
+from ..parts.cable import Cable
+from ..parts.scene_data import SceneData
+from ..parts.scene_text import dumps
+from ..parts.settings import RunSettings
+from .files import WITH_CHECKSUMS, check_free, check_writable, create_file, file_text, over_time
+from .netcdf import Stored
+from .netcdf_header import Variable
+from .quantities import ENERGIES, labelled
 
 if TYPE_CHECKING:
+    # These bring SciPy or xarray along: `import funicular` does without.
     import xarray
 
-    from ..model.build import Model
-    from ..parts.cable import Cable
-    from ..parts.settings import RunSettings
-    from ..scene import Scene
+    from ..model.model import Model
+    from .recording import Recording
 
-FILE_FORMAT = 3
-"""Raised when a reader of older files could misread new ones."""
-WITH_CHECKSUMS = 3
-"""From this format on files have them; older ones are read all the same, with a warning."""
 _BLOCK = 1 << 22
 """Bytes that are written at once."""
 
 
-_XYZ, _TIME = ("time", "xyz"), ("time",)
+class ReadScene(Protocol):
+    """Makes a scene of the text of its file; results are handed one, since scenes stand above them."""
 
-_SUPPORT = {"force": (_XYZ, "N", "force on the cable"), "moment": (_XYZ, "N m", "moment on the cable")}
+    def __call__(self, text: str, origin: str, *, libraries: Iterable[str | os.PathLike] = ()) -> SceneData:
+        """Return the scene; origin: what error messages call the text. Raises SceneError."""
 
-QUANTITIES = {
-    "bodies": {
-        "position": (_XYZ, "m", "position of the body's origin"),
-        "orientation": (("time", "wxyz"), "1", "unit quaternion from body axes to the ground's"),
-        "velocity": (_XYZ, "m/s", "velocity of the body's origin"),
-        "angular_velocity": (_XYZ, "rad/s", "angular velocity in body axes"),
-        "acceleration": (_XYZ, "m/s2", "acceleration of the body's origin"),
-        "angular_acceleration": (_XYZ, "rad/s2", "angular acceleration in body axes"),
-    },
-    "slides": {
-        "s": (_TIME, "m", "undeformed arc-length of the rider's place"),
-        "s_rate": (_TIME, "m/s", "rate of s"),
-        "s_acceleration": (_TIME, "m/s2", "second rate of s"),
-        "force": (_XYZ, "N", "force on the rider"),
-        "multiplier": (("time", "normal"), "N", "multipliers of the two constraints across the cable"),
-        "traction": (_TIME, "N", "force on the rider along the cable; of a driven slide its drive's power over s_rate"),
-        "moment": (_XYZ, "N m", "moment on the rider, of a slide that ties its axes to the cable's frame"),
-        "residual": (_TIME, "m", "distance of the rider's point to the cable"),
-    },
-    "pins": {"force": _SUPPORT["force"]},
-    "clamps": _SUPPORT,
-    "motions": _SUPPORT,
-    "ties": _SUPPORT,
-    "joints": {
-        "force": (_XYZ, "N", "force on what carries the end b, at that end"),
-        "moment": (_XYZ, "N m", "moment on what carries the end b, about that end"),
-        "residual": (_TIME, "1", "largest of its equations, in m or of cosines"),
-    },
-    "springs": {
-        "force": (_XYZ, "N", "force on the first end"),
-        "tension": (_TIME, "N", "force with which the ends are drawn together"),
-        "length": (_TIME, "m", "distance of the ends"),
-    },
-}
-ENERGIES = {
-    "kinetic": "kinetic energy",
-    "elastic": "elastic energy",
-    "potential": "potential energy of gravity",
-    "dissipated": "energy lost to damping, friction and impacts since the start",
-    "external": "work of loads other than gravity, of drives and of prescribed motions since the start",
-}
+
+class SceneText(NamedTuple):
+    """A scene as text, what reads it, and directories of elements that it may load then."""
+
+    toml: str
+    read: ReadScene
+    libraries: Iterable[str | os.PathLike] = ()
 
 
 class EnergyBalance(NamedTuple):
@@ -98,19 +62,18 @@ class EnergyBalance(NamedTuple):
 class Run:
     """Results by name: ``run["A.position"]`` is a NumPy array (time, 3); `keys` lists the names."""
 
-    def __init__(self, variables: Mapping[str, Variable], coords: dict[str, Variable], report: dict, scene_toml: str,
-                 libraries: Iterable[str | os.PathLike] = ()):
-        """report: how the run went, status, message and messages among it; scene_toml: the scene as text.
+    def __init__(self, variables: Mapping[str, Variable], coords: dict[str, Variable], report: dict,
+                 scene_text: SceneText):
+        """report: how the run went, status, message and messages among it; scene_text: the scene that was run.
 
         report["us_per_step"] tells what each slide and joint takes of a step in µs, without solving for its forces.
-        libraries: directories of elements that the scene may load when it is read back from its text.
         """
-        self.variables, self.coords = variables, coords
-        self.report, self.scene_toml, self.libraries = report, scene_toml, libraries
+        self.variables, self.coords, self.report, self._scene_text = variables, coords, report, scene_text
 
     @classmethod
-    def from_recording(cls, recording, scene: Scene, settings: RunSettings) -> Run:
-        """Label what `funicular.model.simulate` recorded."""
+    def from_recording(cls, recording: Recording, scene: SceneData, settings: RunSettings,
+                       read_scene: ReadScene) -> Run:
+        """Label what was recorded of a run; read_scene: makes the scene of its text again."""
         variables, coords = labelled(recording)
         report = {
             **recording.report,
@@ -119,7 +82,7 @@ class Run:
             "messages": [*scene.messages, *recording.report.get("messages", [])],
             "settings": settings.model_dump(),
         }
-        return cls(variables, coords, report, scene.to_toml(), scene.libraries)
+        return cls(variables, coords, report, SceneText(dumps(scene), read_scene, scene.libraries))
 
     @property
     def time(self) -> np.ndarray:
@@ -143,17 +106,25 @@ class Run:
         """
         return self.report["events"]
 
+    @property
+    def scene_toml(self) -> str:
+        """The scene that was run, as the text of a scene file."""
+        return self._scene_text.toml
+
+    @property
+    def libraries(self) -> Iterable[str | os.PathLike]:
+        """Directories of elements that the scene may load when it is read back from its text."""
+        return self._scene_text.libraries
+
     @cached_property
-    def scene(self) -> Scene:
-        """The scene that was run, read back from its text; what was adjusted then is told in the report.
+    def scene(self) -> SceneData:
+        """The `funicular.Scene` that was run, read back from its text; what was adjusted then is in the report.
 
         Raises SceneError for a library that is not allowed.
         """
-        from ..scene_file import loads
-
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", FunicularWarning)
-            return loads(self.scene_toml, "the scene of the run", libraries=self.libraries)
+            return self._scene_text.read(self.scene_toml, "the scene of the run", libraries=self.libraries)
 
     def keys(self) -> list[str]:
         """The names of all results; a cable's ``wire.position`` is a part of its ``wire.nodal_vectors``."""
@@ -188,7 +159,7 @@ class Run:
     @property
     def dataset(self) -> xarray.Dataset:
         """All of it as an xarray.Dataset, with units, long names, the report and the scene as attributes."""
-        import xarray
+        import xarray  # 0.5 s, for those who ask for it
 
         def arrays(variables: Mapping[str, Variable]) -> dict:
             return {
@@ -236,7 +207,7 @@ class Run:
     @cached_property
     def model(self) -> Model:
         """The model of the scene, as it was drawn: numbers of its coordinates, what holds and joins them."""
-        from ..model.build import build
+        from ..model.build import build  # brings SciPy, which results alone do not need
 
         return build(self.scene)
 
@@ -260,7 +231,7 @@ class Run:
         is that of an elastica along the line of the force, not of the mesh.
         Raises UnknownResultError; FunicularError where s is off the cable.
         """
-        from .section_forces import dataset
+        from .section_forces import dataset  # brings SciPy, as above
 
         return dataset(self, cable, s, method=method, side=side)
 
@@ -314,196 +285,3 @@ _COUNTS = {
     "newton_iterations": "Newton iterations",
     "factorisations": "factorisations",
 }
-
-
-def labelled(rows) -> tuple[dict[str, Variable], dict[str, Variable]]:
-    """Results of the rows that `funicular.recording` names, with their labels; coordinates."""
-    variables = {}
-    coords = {
-        "time": Variable(_TIME, rows.time, "s", "time"),
-        "xyz": Variable(("xyz",), np.array(["x", "y", "z"]), "1", "axis"),
-    }
-    for name, cable in rows.cables.items():
-        node, vector = f"{name}.node", f"{name}.vector"
-        dims = ("time", node, vector, "xyz")
-        coords[node] = Variable((node,), cable["node_s"], "m", "undeformed arc-length of the node")
-        coords[vector] = Variable((vector,), np.array(cable["vector_names"]), "1", "nodal vector")
-        variables[f"{name}.nodal_vectors"] = Variable(
-            dims, cable["nodal_vectors"], "m (r), 1 (its gradients)", "nodal vectors"
-        )
-        variables[f"{name}.nodal_velocity"] = Variable(
-            dims, cable["nodal_velocity"], "m/s (r), 1/s (its gradients)", "rates of the nodal vectors"
-        )
-    for name, body in getattr(rows, "modal", {}).items():
-        mode, node = f"{name}.mode", f"{name}.node"
-        eta, places = body["modal_coordinates"], body["nodes"]
-        coords[mode] = Variable((mode,), np.arange(1, eta.shape[1] + 1), "1", "mode")
-        coords[node] = Variable((node,), np.arange(places.shape[1]), "1", "node")
-        variables[f"{name}.modal_coordinates"] = Variable(("time", mode), eta, "as the modes are", "modal coordinates")
-        variables[f"{name}.modal_velocities"] = Variable(("time", mode), body["modal_velocities"],
-                                                         "as the modes are, 1/s", "rates of the modal coordinates")
-        variables[f"{name}.nodes"] = Variable(("time", node, "xyz"), places, "m", "places of the deformed body's nodes")
-    for group, quantities in QUANTITIES.items():
-        for name, arrays in getattr(rows, group, {}).items():
-            for quantity, values in arrays.items():
-                dims, units, long_name = quantities[quantity]
-                variables[f"{name}.{quantity}"] = Variable(dims, values, units, long_name)
-    for name, values in rows.energy.items():
-        variables[f"energy.{name}"] = Variable(_TIME, values, "J", ENERGIES[name])
-    return variables, coords
-
-
-def check_writable(path: str | os.PathLike) -> Path:
-    """The path without links. Raises ResultFileError if no file can be written there; leaves nothing behind."""
-    try:
-        resolved = Path(path).resolve()  # a link keeps pointing to what it did
-        own = threading.get_native_id()  # several threads may look at once
-        probe = resolved.with_name(f".{resolved.name}.{own}.probe")  # longer than other names that are needed
-        if resolved.is_dir():
-            cause, remedy = "this is a directory", "add a name"
-        elif resolved.exists() and not resolved.is_file():
-            cause, remedy = "this is a device, not a file", "give another path"
-        elif resolved.exists() and not os.access(resolved, os.W_OK):
-            cause, remedy = "the file is write-protected", "give another path"
-        else:
-            os.close(created(probe))
-            probe.unlink()
-            return resolved
-    except ValueError as error:  # a NUL, half of a surrogate pair
-        cause, remedy = f"this is no path: {error}", "give another one"
-    except OSError as error:
-        cause, remedy = error.strerror, "give a path in a directory that exists and is yours to write to"
-        if error.errno == errno.ENAMETOOLONG:
-            remedy = "give a shorter name, below 240 bytes"
-    raise ResultFileError(f"{shown_path(path)}: the results cannot be written here: {cause}; {remedy}") from None
-
-
-def check_free(path: Path) -> None:
-    """Raises ResultFileError where a run is writing the file."""
-    try:
-        with open(path) as older:
-            lock(older.fileno())
-    except Taken:
-        raise ResultFileError(f"{path}: a run is writing it; wait for its end, or give another name") from None
-    except OSError:
-        pass  # there is none
-
-
-def over_time(coords: Mapping[str, Variable], variables: Mapping[str, Variable]) -> dict[str, np.ndarray]:
-    """The values that make rows of a file."""
-    return {"time": coords["time"].values} | {name: variable.values for name, variable in variables.items()}
-
-
-def file_text(report: dict, rows: int | None = None) -> str:
-    """A report as it stands in a file, in one line; rows: number of rows of a file that is whole."""
-    return json.dumps(report if rows is None else {"rows": rows, **report}, default=methodcaller("tolist"))
-
-
-def create_file(path: str | os.PathLike, coords: Mapping[str, Variable], variables: Mapping[str, Variable], scene: str,
-                report: str, room: int = 0, descriptor: int | None = None) -> File:
-    """A new file of results, without rows; report: from `file_text`; see `funicular.netcdf.create`. Raises OSError."""
-    return create(path, coords, variables, {"funicular_format": FILE_FORMAT, "scene": scene}, report, room, descriptor)
-
-
-class _Report(BaseModel):
-    """What a report in a file must be, as far as there is any of it but for its status."""
-
-    model_config = ConfigDict(strict=True, extra="allow", defer_build=True)
-
-    status: str
-    message: str
-    messages: list[str]
-    settings: dict
-    events: list[dict] = []
-    time_s: dict[str, float] = {}
-    us_per_step: dict[str, float] = {}
-    modes: dict[str, str] = {}
-    rows: int | None = None
-
-
-def load_run(path: str | os.PathLike, libraries: Iterable[str | os.PathLike] = (), salvage: bool = False) -> Run:
-    """Open the results of a run, also of one that goes on or was killed; arrays are read when they are asked for.
-
-    All of the file is checked: its header, its report and its rows have checksums.
-
-    libraries: directories of elements (`funicular derive --spec`) that ``run.scene`` may load; they are machine code.
-    salvage: leave out the rows that are damaged, with a `FunicularWarning`, where the file would be refused otherwise.
-    Raises ResultFileError, also for a damaged or foreign file.
-    """
-    return opened(open_file(path), libraries, salvage)
-
-
-def open_file(path: str | os.PathLike) -> File:
-    """A file of results, open to be read. Raises ResultFileError."""
-    if not os.path.isfile(path):
-        raise ResultFileError(f"{shown_path(path)}: there is no such file")
-    try:
-        return File(path)
-    except (OSError, ValueError) as error:
-        raise ResultFileError(f"{path}: is no netCDF file, or was cut short or damaged: {error}") from error
-
-
-def opened(file: File, libraries: Iterable[str | os.PathLike] = (), salvage: bool = False, check: bool = True) -> Run:
-    """The results in an open file, see `load_run`; check: its rows, too. Raises ResultFileError."""
-    path = file.path
-    if "funicular_format" not in file.attributes:
-        raise ResultFileError(f"{path}: is a netCDF file, but not one that funicular wrote")
-    try:
-        made = np.asarray(file.attributes["funicular_format"]).item()
-        if not isinstance(made, int):
-            raise ValueError("its format is no number")
-        if made > FILE_FORMAT:
-            raise ResultFileError(f"{path}: was written by a newer funicular; update this one to read it")
-        if made >= WITH_CHECKSUMS and not file.has_checksums:
-            raise ValueError("it lacks its checksums")
-        report, scene = _read_report(file), file.attributes["scene"]
-        rows = report.pop("rows", None)
-        if check:
-            _check_rows(file, rows, salvage)
-        names = [name for name, entry in file.entries.items()
-                 if entry.dims[:1] != (name,) and not (name == ROW_CHECKSUM and file.has_checksums)]
-        coords = {name: file.variable(name, file.read(name)) for name in file.entries
-                  if name not in {*names, ROW_CHECKSUM}}
-        if not isinstance(scene, str) or "time" not in coords:
-            raise ValueError("it has no times, or no scene")
-    except (OSError, ValueError, LookupError, TypeError, OverflowError) as error:
-        raise ResultFileError(f"{path}: is damaged: {error}") from error
-    if report["status"] == "unfinished":
-        from .streaming import add_events
-
-        add_events(report, Path(path))
-    return Run(Stored(file, names), coords, report, scene, libraries)
-
-
-def _read_report(file: File) -> dict:
-    """The report in a file. Raises ValueError, KeyError where it is damaged."""
-    report = last_report(file.attributes["report"], file.has_checksums)
-    _Report.model_validate(report)
-    return report
-
-
-def _check_rows(file: File, rows: int | None, salvage: bool) -> None:
-    """Find damaged rows, to leave them out or to raise ResultFileError; warn where there are no checksums.
-
-    rows: number of rows that the report tells, None where the run goes on.
-    """
-    if rows is not None and rows != file.rows:
-        raise ValueError(f"its header says that it has {file.rows} times, its report {rows}")
-    if not file.has_checksums:
-        warnings.warn(f"{file.path}: has no checksums, as an older funicular or another program wrote it: damage to it "
-                      "would not be found", FunicularWarning, stacklevel=4)
-        return
-    damaged = file.damaged_rows()
-    if not len(damaged):
-        return
-    named = ", ".join(map(str, damaged[:_MOST_ROWS])) + (", ..." if len(damaged) > _MOST_ROWS else "")
-    found = f"{file.path}: {len(damaged)} of its {file.rows} output times are damaged, those of the rows {named}"
-    if not salvage or len(damaged) == file.rows:
-        raise ResultFileError(f"{found}; take a copy of it, run the scene again, or read the other times with "
-                              "load_run(path, salvage=True)")
-    file.left_out = damaged
-    warnings.warn(f"{found}; they are left out", FunicularWarning, stacklevel=4)
-
-
-_MOST_ROWS = 10
-"""Rows that a message names."""

@@ -15,17 +15,13 @@ cut. a, r and the section's slopes are those of the shape functions, for which t
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from ..model.model import CableModel
+from ..model.states import spatial
 from ..parts.cable import EXACT, Cable
 from .cable_loads import CableActions, positions, rows, shape_on_axis
-from .recording import spatial
-
-if TYPE_CHECKING:
-    from ..model.build import CableModel
-    from .nodal_forces import ElementForces
+from .nodal_forces import ElementForces
 
 
 class Cuts:

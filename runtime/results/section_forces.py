@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from ..errors import FunicularError, UnknownResultError, near
 from ..kernels.libraries import kernels_of
+from ..model.model import Model
 from ..parts.cable import EXACT, Cable
+from ..parts.scene_data import SceneData
 from ..parts.section_stiffness import section_stiffness
 from ..parts.validation import show
+from ..solve.rest_state import RestState
 from .cable_loads import CableActions, Instants, rows
 from .nodal_forces import element_forces
 from .section_balance import Cuts, balanced
@@ -20,10 +23,6 @@ from .section_kinks import kinks
 
 if TYPE_CHECKING:
     import xarray
-
-    from ..model.build import Model
-    from .equilibrium import Equilibrium
-    from .run import Run
 
 PLACES = 8
 """Places on each element, where none are asked for."""
@@ -38,6 +37,26 @@ GLOBAL = {
     "force": ("N", "force on the part before the cut"),
     "moment": ("N m", "moment on the part before the cut"),
 }
+
+
+class Results(Protocol):
+    """What section forces take of a run."""
+
+    @property
+    def scene(self) -> SceneData:
+        """The scene that was run."""
+
+    @property
+    def model(self) -> Model:
+        """Its model."""
+
+    @property
+    def time(self) -> np.ndarray:
+        """(time,): in s."""
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """The result of a name, time first."""
+
 
 def constitutive(cable: Cable, nodal_vectors: np.ndarray, cuts: Cuts) -> tuple[np.ndarray, ...]:
     """The elastic law at cuts: force, moment (T, n, 3), axes of the section (T, n, 3, 3), strains (T, n, 6).
@@ -56,7 +75,7 @@ def constitutive(cable: Cable, nodal_vectors: np.ndarray, cuts: Cuts) -> tuple[n
     return tuple(values.reshape(*shape, *values.shape[1:]) for values in found)
 
 
-def cut_forces(scene, model: Model, at: Instants, name: str, s: np.ndarray, *, method: str = "balance",
+def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.ndarray, *, method: str = "balance",
                side: str = "after", at_rest: bool = False) -> dict[str, np.ndarray]:
     """Forces in sections of the cable ``name`` at instants.
 
@@ -78,7 +97,7 @@ def cut_forces(scene, model: Model, at: Instants, name: str, s: np.ndarray, *, m
     return balanced_components(cable, balance, (force, moment), taut, axes, strain)
 
 
-def of_run(run: Run, name: str, s: np.ndarray, chosen=slice(None), *, method: str = "balance",
+def of_run(run: Results, name: str, s: np.ndarray, chosen=slice(None), *, method: str = "balance",
            side: str = "after") -> dict[str, np.ndarray]:
     """`cut_forces` of a run at the chosen times; s: (1 or T, n)."""
     time = run.time[chosen]
@@ -92,7 +111,7 @@ def of_run(run: Run, name: str, s: np.ndarray, chosen=slice(None), *, method: st
     return {key: np.concatenate([each[key] for each in found]) for key in found[0]}
 
 
-def _instants(run: Run, numbers: np.ndarray) -> Instants:
+def _instants(run: Results, numbers: np.ndarray) -> Instants:
     model, kept = run.model, {}
     chosen = slice(numbers[0], numbers[-1] + 1) if numbers[-1] - numbers[0] + 1 == len(numbers) else numbers
 
@@ -108,19 +127,19 @@ def _instants(run: Run, numbers: np.ndarray) -> Instants:
     return Instants(run.time[chosen], q, v, value)
 
 
-def of_equilibrium(state: Equilibrium, name: str, s: np.ndarray, *, method: str = "balance",
+def of_equilibrium(state: RestState, name: str, s: np.ndarray, *, method: str = "balance",
                    side: str = "after") -> dict[str, np.ndarray]:
     """`cut_forces` of a state of rest: T = 1; s: (1, n)."""
     return cut_forces(state.scene, state.model, rest_instants(state), name, s, method=method, side=side, at_rest=True)
 
 
-def rest_instants(state: Equilibrium) -> Instants:
+def rest_instants(state: RestState) -> Instants:
     """A state of rest as one instant, with as much of the loads as it has."""
     return Instants(np.zeros(1), state.placed["q"][None], np.zeros((1, state.model.n_dof)),
                     lambda quantity: state[quantity][None], state.load_fraction, state.gravity_fraction)
 
 
-def jumps(scene, name: str) -> np.ndarray:
+def jumps(scene: SceneData, name: str) -> np.ndarray:
     """Arc-lengths of the cable at which something that stays there holds on: inside, in order."""
     cable = scene.cables[name]
     places = [load.s for load in scene.loads.values() if getattr(load, "on", None) == name]
@@ -149,10 +168,10 @@ def with_sides(cable: Cable, s: np.ndarray, places: np.ndarray) -> np.ndarray:
     return np.sort(np.concatenate([np.broadcast_to(s, (*sides.shape[:-1], len(s))), sides], axis=-1), axis=-1)
 
 
-def dataset(state: Run | Equilibrium, name: str, s=None, *, method: str = "balance",
+def dataset(state: Results | RestState, name: str, s=None, *, method: str = "balance",
             side: str = "after") -> xarray.Dataset:
     """See `Run.section_forces`; of an equilibrium without the time."""
-    import xarray
+    import xarray  # 0.5 s, for those who ask for it
 
     scene, name = state.scene, getattr(name, "name", name)
     if name not in scene.cables:
@@ -182,7 +201,7 @@ def dataset(state: Run | Equilibrium, name: str, s=None, *, method: str = "balan
         coords, {"cable": name, "element": cable.element, "law": cable.law, "method": method, "side": side})
 
 
-def _places(state: Run | Equilibrium, cable: Cable, s, over_time: bool) -> tuple[np.ndarray, bool]:
+def _places(state: Results | RestState, cable: Cable, s, over_time: bool) -> tuple[np.ndarray, bool]:
     """(1 or T, n) arc-lengths from what was asked for, and whether they go with a slide."""
     scene, name = state.scene, cable.name
     if s is None:

@@ -2,25 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from ..model.model import CableModel
+from ..model.states import spatial
+from ..parts.cable import Cable
+from ..parts.scene_data import SceneData
 from ..parts.support import Clamp, Motion, Tie
-from .cable_loads import positions, shape_on_axis
-from .recording import spatial
+from .cable_loads import CableActions, positions, shape_on_axis
+from .nodal_forces import ElementForces
 from .section_balance import Cuts, balanced, resultants
 from .section_layer import Kink, held
 
-if TYPE_CHECKING:
-    from ..model.build import CableModel
-    from ..parts.cable import Cable
-    from ..scene import Scene
-    from .cable_loads import CableActions
-    from .nodal_forces import ElementForces
 
-
-def kinks(scene: Scene, cable: Cable, model: CableModel, forces: ElementForces, actions: CableActions,
+def kinks(scene: SceneData, cable: Cable, model: CableModel, forces: ElementForces, actions: CableActions,
           number: int) -> list[Kink]:
     """Those of one cable at the instants of its forces."""
 
@@ -48,7 +43,7 @@ def _of_actions(cable, model, forces, actions, number, force_at) -> list[Kink]:
     return found
 
 
-def _of_nodes(scene: Scene, cable: Cable, model: CableModel, forces: ElementForces, force_at) -> list[Kink]:
+def _of_nodes(scene: SceneData, cable: Cable, model: CableModel, forces: ElementForces, force_at) -> list[Kink]:
     """Supports and joins; a section that they keep from turning holds the direction of the line."""
     found: list[Kink] = []
     places: dict[int, bool] = {}

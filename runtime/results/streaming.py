@@ -1,6 +1,6 @@
 """Results on disk while a run goes on, and checkpoints from which a run that was stopped goes on.
 
-A run that is saved as OUT.nc writes its rows there as it goes. At some of its pauses (see `pauses`) it replaces
+A run that is saved as OUT.nc writes its rows there as it goes. At some of its pauses (solve/pauses.py) it replaces
 OUT.nc.state, the checkpoint. At which of them depends on the clock, but results do not: the engine is brought into a
 state that a checkpoint holds in full at all of them. Runs that end by themselves leave no checkpoint.
 """
@@ -11,37 +11,34 @@ import errno
 import hashlib
 import json
 import os
+import shutil
 import time
 from collections.abc import Callable
 from copy import copy
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
 
+import numpy
+import scipy
+from funicular.generated import kernels
+
+from .. import engine
 from ..errors import ResultFileError
-from .checkpoints import Checkpoint, DamagedCheckpointError, Facts
+from ..kernels.libraries import load
+from ..model.model import Model
+from ..operating_system import BYTES
+from ..parts.scene_data import SceneData
+from ..parts.scene_text import dumps
+from ..parts.settings import RunSettings
+from ..solve.pauses import Pauses
+from .checkpoints import Checkpoint, DamagedCheckpointError, Facts, checkpoint_of
+from .files import check_writable, create_file, file_text, open_file, over_time
 from .locks import NoLocks, Taken, claimed, is_at, lock
 from .netcdf import File
-from .run import (
-    Run,
-    check_writable,
-    create_file,
-    file_text,
-    labelled,
-    open_file,
-    opened,
-    over_time,
-)
+from .opening import opened
+from .quantities import labelled
+from .recording import Recording, Rows, named
+from .run import ReadScene, Run
 
-if TYPE_CHECKING:
-    from ..model.build import Model
-    from ..parts.settings import RunSettings
-    from ..scene import Scene
-    from .recording import Recording, Rows
-
-PAUSES = 100
-"""The least number of pauses of a run with so many output times."""
-BUFFER = 8e6
-"""Bytes of rows that are kept in memory."""
 ROWS_INTERVAL = 0.5
 """Seconds between two times that rows are written, at most."""
 CHECKPOINT_INTERVAL = 0.5
@@ -52,31 +49,18 @@ GOES_ON = ("unfinished", "interrupted")
 """What the status of a run is that can be resumed."""
 
 
-class Pauses(NamedTuple):
-    """Output rows from one pause to the next, and rows that are kept in memory."""
-
-    every: int
-    room: int
-
-
-def pauses(rows: int, row_bytes: int) -> Pauses:
-    """When a run pauses: it must not depend on the clock, nor on whether results are saved."""
-    most = max(1, int(BUFFER // row_bytes))
-    every = min(most, -(-rows // PAUSES))
-    return Pauses(every, min(rows, most // every * every) + 2)  # the start, and where a run is cut short
-
-
 class Stream:
     """The file of a run while it goes on, and its checkpoint."""
 
-    def __init__(self, path: str | os.PathLike, scene: Scene, settings: RunSettings, resume: bool):
+    def __init__(self, path: str | os.PathLike, scene: SceneData, settings: RunSettings, resume: bool,
+                 read_scene: ReadScene):
         """Check that the file can be written or, to resume, that it holds a run of this scene and these settings.
 
         From here to the end no other run can write it. Raises ResultFileError.
         """
         self._path = check_writable(path)
-        self._state, self._part = _state_of(self._path), _part_of(self._path)
-        self._scene, self._settings = scene, settings
+        self._state, self._part = checkpoint_of(self._path), _part_of(self._path)
+        self._scene, self._settings, self._read_scene = scene, settings, read_scene
         self._file: File | None = None
         self._new = self._older = -1  # descriptors of the part file, and of the file that it will take the place of
         self._taken, self._resumed = 0, []
@@ -117,19 +101,18 @@ class Stream:
     @property
     def free(self) -> int:
         """Bytes that the file can have: those that are free, and those of the one that is there."""
-        disk = os.statvfs(self._path.parent)
-        return disk.f_bavail * disk.f_frsize + (self._path.stat().st_size if self._path.exists() else 0)
+        return shutil.disk_usage(self._path.parent).free + (self._path.stat().st_size if self._path.exists() else 0)
 
-    def start(self, model: Model, engine, rows: Callable[[], Rows], pace: Pauses, events: list[dict]) -> None:
+    def start(self, model: Model, engine: engine.Engine, pace: Pauses, events: list[dict]) -> None:
         """Make the file, with the first row, or go on where the checkpoint was taken.
 
-        rows: those of the engine, by name; events: those that have happened, a list to which more are added.
+        events: those that have happened, a list to which more are added.
         """
-        self._engine, self._rows, self._pace, self._events = engine, rows, pace, events
+        self._model, self._engine, self._pace, self._events = model, engine, pace, events
         self._begin = time.monotonic()
         self._facts |= {"start": _start_of(model), "integrator": engine.integrator}
         if self._kept is None:
-            self._make(labelled(rows()))
+            self._make(labelled(self._rows()))
             engine.take_rows()
             self._checkpoint()
             return
@@ -148,8 +131,8 @@ class Stream:
 
     def pause(self) -> None:
         """Write rows and a checkpoint if it is time to, or if the buffer does not last to the next pause."""
-        room = self._pace.room - (self._engine.n_rows - self._taken)
-        if time.monotonic() - self._checked > CHECKPOINT_INTERVAL or room < self._pace.every + 1:
+        free_rows = self._pace.capacity - (self._engine.n_rows - self._taken)
+        if time.monotonic() - self._checked > CHECKPOINT_INTERVAL or free_rows < self._pace.every + 1:
             self._take()
             self._checkpoint()
 
@@ -157,6 +140,10 @@ class Stream:
         """Write rows if it is time to."""
         if time.monotonic() - self._added > ROWS_INTERVAL and self._engine.n_rows > self._taken:
             self._take()
+
+    def _rows(self) -> Rows:
+        """Rows that the engine has, by name."""
+        return named(self._model, self._scene, self._engine)
 
     def _take(self) -> None:
         self._add(self._rows())
@@ -168,7 +155,7 @@ class Stream:
 
         A run that has failed before its first row leaves no file, or an older one as it was; it is returned, too.
         """
-        last = Run.from_recording(recording, self._scene, self._settings)
+        last = Run.from_recording(recording, self._scene, self._settings, self._read_scene)
         if self._resumed:
             last.report["resumed_at_s"] = self._resumed
         if self._file is None:
@@ -183,7 +170,7 @@ class Stream:
         file = open_file(self._path)
         if not is_at(self._file.descriptor, self._path):
             raise self._lost()
-        return opened(file, self._scene.libraries, check=False)  # it is what was just written
+        return opened(file, self._read_scene, self._scene.libraries, check=False)  # it is what was just written
 
     def _unfinished(self) -> dict:
         return {"status": "unfinished", "message": "the run goes on, or was killed", "resumed_at_s": self._resumed,
@@ -205,7 +192,7 @@ class Stream:
     def _replace(self, coords: dict, variables: dict, report: dict, rows: int | None = None) -> None:
         """The part file, whole but for its rows."""
         descriptor, self._new = self._new if self._new >= 0 else self._claim(self._part), -1
-        self._file = create_file(self._part, coords, variables, self._scene.to_toml(), file_text(report, rows),
+        self._file = create_file(self._part, coords, variables, dumps(self._scene), file_text(report, rows),
                                  REPORT_ROOM, descriptor)
 
     def _add(self, rows: Rows) -> None:
@@ -263,7 +250,7 @@ class Stream:
         """A descriptor of the file that is there already, which no other run can then write; -1 where there is none."""
         while self._path.exists():
             try:
-                descriptor = os.open(self._path, os.O_RDWR | os.O_CLOEXEC)
+                descriptor = os.open(self._path, os.O_RDWR | BYTES)
             except FileNotFoundError:
                 return -1
             except OSError as error:
@@ -295,7 +282,7 @@ class Stream:
         """The checkpoint, if it is one of this scene and these settings; opens the file."""
         if self._older < 0:
             raise self._refused("there is no run to resume: there is no such file")
-        status = opened(open_file(self._path), check=False).status
+        status = opened(open_file(self._path), self._read_scene, check=False).status
         if status not in GOES_ON:
             raise self._refused(f"its run has come to its end ({status}): there is nothing to resume")
         self._kept = kept = self._read_checkpoint()
@@ -326,31 +313,17 @@ class Stream:
             raise self._refused(f"its checkpoint {self._state.name} cannot be read: {error.strerror}") from None
 
 
-def add_events(report: dict, path: Path) -> None:
-    """Put into the report of a run that has not come to its end what events have found up to its checkpoint."""
-    try:
-        report["events"] = Checkpoint.read(_state_of(path)).facts.events
-    except (OSError, DamagedCheckpointError):
-        report["events"] = []
-        report["messages"].append(f"what events have found is not known: there is no whole checkpoint "
-                                  f"{_state_of(path).name}")
-
-
-def _state_of(path: Path) -> Path:
-    return path.with_name(f"{path.name}.state")
-
-
 def _part_of(path: Path) -> Path:
     """What becomes the file when it is whole; the same for all runs, so that a killed one's is written over."""
     return path.with_name(f".{path.name}.part")
 
 
-def _facts(scene: Scene, settings: RunSettings) -> dict:
+def _facts(scene: SceneData, settings: RunSettings) -> dict:
     """What must be the same for a run to go on."""
     alone = copy(scene)
     alone.run_settings = {}
     said = {name: value for name, value in settings.model_dump().items() if name != "save"}
-    return {"scene": _digest(alone.to_toml().encode()), "settings": json.loads(json.dumps(said, default=str)),
+    return {"scene": _digest(dumps(alone).encode()), "settings": json.loads(json.dumps(said, default=str)),
             "programs": _programs(scene)}
 
 
@@ -361,15 +334,8 @@ def _digest(*parts: bytes) -> str:
     return digest.hexdigest()
 
 
-def _programs(scene: Scene) -> str:
+def _programs(scene: SceneData) -> str:
     """Digest of the machine code that computes the run."""
-    import numpy
-    import scipy
-    from funicular.generated import kernels
-
-    from .. import engine
-    from ..kernels.libraries import load
-
     files = [engine.__file__, kernels.__file__]
     versions = f"{numpy.__version__} {scipy.__version__}"
     return _digest(versions.encode(), *(Path(file).read_bytes() for file in files),
@@ -378,5 +344,5 @@ def _programs(scene: Scene) -> str:
 
 def _start_of(model: Model) -> str:
     """Digest of the state that a run starts from."""
-    places = [(joint.s, joint.element, joint.director.tolist()) for joint in model.slides]
+    places = [(slide.s, slide.element, slide.director.tolist()) for slide in model.slides]
     return _digest(model.q.tobytes(), model.v.tobytes(), repr(places).encode())

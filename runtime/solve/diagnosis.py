@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from ..integrators import INTEGRATORS, stable_at
+from ..model.model import CableModel, Model
 from ..model.redundant_constraints import redundant
-
-if TYPE_CHECKING:
-    from ..model.build import CableModel, Model
-    from ..parts.settings import RunSettings
+from ..parts.settings import RunSettings
 
 KEPT = "what was computed up to there is kept"
 

@@ -3,48 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from ..checks.placement import node_at
+from ..checks.event_placement import AXES
 from ..errors import SceneError, near
+from ..model.model import Model
+from ..model.states import body_rates, body_state, spatial
 from ..parts.event import Event
-from ..results.recording import body_rates, body_state, spatial
-
-if TYPE_CHECKING:
-    from ..model.build import Model
-    from ..scene import Scene
-
-AXES = ("x", "y", "z")
-WATCHABLE = {"rigid_body": ("position", "velocity"), "modal_body": ("position", "velocity"),
-             "cable": ("position", "velocity"), "slide": ("s", "s_rate", "traction")}
-"""Quantities that a threshold can be set on, by kind of part."""
-
-
-def check_event(scene: Scene, event: Event) -> None:
-    """A threshold needs a quantity that the scene has. Raises SceneError."""
-    if event.quantity is None:
-        return
-    name, _, quantity = event.quantity.partition(".")
-    what, _, axis = quantity.partition(".")
-    parts = {**scene.bodies, **scene.cables, **scene.slides}
-    if name not in parts:
-        raise SceneError(event.where, f'there is no body, cable or slide "{name}"', near(name, parts))
-    part = parts[name]
-    known = WATCHABLE[part.kind]
-    if what not in known or (axis not in AXES if part.kind != "slide" else axis):
-        forms = ", ".join(f"{name}.{k}" if part.kind == "slide" else f"{name}.{k}.x" for k in known)
-        raise SceneError(event.where, f'"{event.quantity}" cannot be watched', f"{forms}, with x, y or z, can"
-                         if part.kind != "slide" else f"{forms} can")
-    if scene.dim == 2 and axis == "z":
-        raise SceneError(event.where, f'"{event.quantity}" is always 0: the scene is planar', "watch x or y")
-    if part.kind == "cable":
-        if event.s is None:
-            raise SceneError(event.where, "s is missing: where on the cable?", "give the s of a node")
-        node_at(scene, name, event.where, event.s)
-    elif event.s is not None:
-        raise SceneError(event.where, f'"{event.quantity}" has no place s', "leave it out")
+from ..parts.scene_data import SceneData
 
 
 class Watch:
@@ -53,7 +21,7 @@ class Watch:
     kind: "q" or "v", of which the index is an entry; "s", "s_rate", "traction", of which it is a slide; "function".
     """
 
-    def __init__(self, event: Event, scene: Scene, model: Model):
+    def __init__(self, event: Event, scene: SceneData, model: Model):
         self.event, self.value = event, event.value
         self.direction = {"rising": 1, "falling": -1, "both": 0}[event.direction]
         if event.function is not None:
@@ -95,7 +63,7 @@ class State:
 
     def names(self) -> list[str]:
         """Bodies, cables and slides that the state has quantities of."""
-        return [part.name for part in (*self._model.bodies, *self._model.cables, *self._model.joints)]
+        return [part.name for part in (*self._model.bodies, *self._model.cables, *self._model.slides)]
 
     def _all(self, name: str) -> dict[str, Any]:
         model = self._model
@@ -108,14 +76,14 @@ class State:
             if cable.name == name:
                 return {"nodal_vectors": spatial(self._q[cable.coordinates].reshape(cable.shape)),
                         "nodal_velocity": spatial(self._v[cable.coordinates].reshape(cable.shape))}
-        slides = [joint.name for joint in model.slides]
+        slides = [slide.name for slide in model.slides]
         return {"s": float(self._s[slides.index(name)])} if name in slides else {}
 
 
 class Watcher:
     """The events of a run as the engine meets them: what it asks, and what has happened."""
 
-    def __init__(self, scene: Scene, model: Model):
+    def __init__(self, scene: SceneData, model: Model):
         self.model = model
         self.watches = [Watch(event, scene, model) for event in scene.events.values()]
         self.happened: list[dict] = []
@@ -147,7 +115,7 @@ class Watcher:
         event, state = self.watches[which].event, State(self.model, q, v, s)
         at = {f"{body.name}.{k}": state[f"{body.name}.{k}"].tolist() for body in self.model.bodies
               for k in ("position", "velocity")}
-        at |= {f"{joint.name}.s": state[f"{joint.name}.s"] for joint in self.model.slides}
+        at |= {f"{slide.name}.s": state[f"{slide.name}.s"] for slide in self.model.slides}
         self.happened.append({"name": event.name, "time": time, "state": at})
         if event.action == "stop":
             self.stopped_by = event.name

@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from scipy.sparse.linalg import splu
 
+from ..engine import Engine
 from ..errors import SceneError
 from ..integrators import AUTO, INTEGRATORS, Demands, Integrator, stable_at
-from ..kernels.libraries import kernels_of
-
-if TYPE_CHECKING:
-    from ..engine import Engine
-    from ..model.build import Model
-    from ..parts.settings import RunSettings
-    from ..parts.slide import Slide
-    from ..scene import Scene
+from ..kernels.libraries import of_library
+from ..model.model import Model
+from ..parts.scene_data import SceneData
+from ..parts.settings import RunSettings
+from ..parts.slide import Slide
+from .condensation import condensed
 
 ITERATIONS = 20
 """Of the power iteration."""
 
 
-def choose(settings: RunSettings, scene: Scene, model: Model, engine: Engine) -> tuple[Integrator, str]:
+def choose(settings: RunSettings, scene: SceneData, model: Model, engine: Engine) -> tuple[Integrator, str]:
     """Return the integrator of a run, and why it is that one. "auto" takes the cheaper by stiffness and tolerance.
 
     Raises SceneError where the one that was asked for cannot run the scene.
@@ -45,7 +43,7 @@ def cheapest(demands: Demands) -> tuple[Integrator, str]:
     return chosen(), ", ".join(why for _, _, why in said)
 
 
-def demands_of(settings: RunSettings, scene: Scene, model: Model, engine: Engine) -> Demands:
+def demands_of(settings: RunSettings, scene: SceneData, model: Model, engine: Engine) -> Demands:
     """Return what a scene asks of an integrator."""
     frequency, decay = fastest_rates(model, engine)
     decay = max(decay, *(regularised_decay(scene, slide) for slide in scene.slides.values()), 0.0)
@@ -53,7 +51,7 @@ def demands_of(settings: RunSettings, scene: Scene, model: Model, engine: Engine
     return Demands(frequency, decay, slowest_rate(scene, model, settings.duration), rubs, settings.tol)
 
 
-def check(integrator: Integrator, scene: Scene, model: Model, engine: Engine) -> None:
+def check(integrator: Integrator, scene: SceneData, model: Model, engine: Engine) -> None:
     """Raise SceneError for what an integrator cannot run."""
     who = f'integrator "{integrator.name}"'
     for body in model.bodies:
@@ -76,11 +74,11 @@ def _take_another(capability: str) -> str:
     return f"take another integrator: {', '.join(able[:-1])} or {able[-1]}"
 
 
-def _check_gradients(integrator: Integrator, scene: Scene, model: Model, engine: Engine) -> None:
+def _check_gradients(integrator: Integrator, scene: SceneData, model: Model, engine: Engine) -> None:
     """Raise SceneError for what has no discrete gradient, or lacks the algorithmic dissipation that is asked for."""
     who = f'integrator "{integrator.name}"'
     for cable in model.cables:
-        if not hasattr(kernels_of(cable.library), f"{cable.element}_{cable.law}_discrete_force"):
+        if not of_library(cable.library)[cable.element].laws[cable.law].discrete_gradient:
             raise SceneError(scene.cables[cable.name].where, f'{who} has no discrete gradient of the law "{cable.law}"',
                              "take another law, or another integrator")
     if integrator.spectral_radius < 1:
@@ -95,7 +93,7 @@ def _check_gradients(integrator: Integrator, scene: Scene, model: Model, engine:
         raise SceneError(part.where, f"{who} has no discrete gradient of it", "take another integrator")
 
 
-def regularised_decay(scene: Scene, slide: Slide) -> float:
+def regularised_decay(scene: SceneData, slide: Slide) -> float:
     """1/s: how fast a slow rider under its weight comes to the speed at which regularised friction lets it creep."""
     friction = slide.friction
     if friction is None or friction.sticks or slide.prescribed is not None:
@@ -103,7 +101,7 @@ def regularised_decay(scene: Scene, slide: Slide) -> float:
     return friction.sliding * float(np.linalg.norm(scene.gravity)) / friction.velocity
 
 
-def slowest_rate(scene: Scene, model: Model, duration: float) -> float:
+def slowest_rate(scene: SceneData, model: Model, duration: float) -> float:
     """rad/s of the motion as a whole: a pendulum as long as the scene, or what crosses it, or the run."""
     points = [node.vector("r") for nodes in model.nodes.values() for node in nodes]
     points += [model.q[b.configuration : b.configuration + model.dim] for b in model.bodies]
@@ -119,8 +117,6 @@ def fastest_rates(model: Model, engine: Engine) -> tuple[float, float]:
 
     Holding riders on their cables only lowers them.
     """
-    from .modes import condensed
-
     engine.place(0.0)
     n = model.n_band + model.n_border_dof
     if n == 0:
@@ -133,8 +129,6 @@ def fastest_rates(model: Model, engine: Engine) -> tuple[float, float]:
 
 def _largest(matrix, mass) -> float:
     """About the largest eigenvalue of the symmetric part by the mass, in size: power iteration, some per cent low."""
-    from scipy.sparse.linalg import splu
-
     symmetric, factors = (matrix + matrix.T) / 2, splu(mass.tocsc())
     x = np.random.default_rng(0).normal(size=mass.shape[0])
     value = 0.0

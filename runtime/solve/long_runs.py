@@ -5,18 +5,16 @@ from __future__ import annotations
 import time
 import warnings
 from collections import deque
-from typing import TYPE_CHECKING
 
+from ..engine import Engine
 from ..errors import FunicularWarning
 from ..integrators import INTEGRATORS, stable_at
+from ..model.model import Model
+from ..parts.settings import RunSettings
 from .diagnosis import damping, place
+from .event_watcher import Watcher
 from .integrator_choice import fastest_rates
-
-if TYPE_CHECKING:
-    from ..model.build import Model
-    from ..parts.settings import RunSettings
-    from .event_watcher import Watcher
-    from .progress import Meter
+from .progress import Meter
 
 MANY_STEPS = 1_000_000
 """A run that needs more of them says so."""
@@ -110,8 +108,6 @@ class LongRun:
 
     def _fastest(self) -> tuple[float, float]:
         """rad/s and 1/s, of the state at the start."""
-        from ..engine import Engine
-
         return fastest_rates(self._model, Engine(self._model))
 
 

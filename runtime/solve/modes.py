@@ -9,13 +9,15 @@ import numpy as np
 from scipy.linalg import eig, eigh, null_space
 from scipy.sparse import csc_array, diags_array
 
+from ..engine import Engine
 from ..errors import FunicularWarning, SceneError, UnknownResultError, near
 from ..model.build import build
-from ..model.redundant_constraints import settle
-from ..results.equilibrium import Equilibrium
-from ..results.recording import body_state, spatial
+from ..model.redundant_constraints import drop_redundant_rows
+from ..model.states import body_state, spatial
+from ..parts.scene_data import SceneData
 from ..rotations import rotate
-from ..scene import Scene
+from .condensation import condensed, fastest
+from .rest_state import RestState
 from .spectrum import RELATIVE, ROUNDING, IncompleteError, Pencil, basis
 
 ASYMMETRY, LEAST_ASYMMETRY = 1e-9, 1e-13
@@ -67,16 +69,14 @@ class Modes:
         return len(self.angular_frequency)
 
 
-def modes(scene: Scene, n: int, about: Equilibrium | None = None) -> Modes:
+def modes(scene: SceneData, n: int, about: RestState | None = None) -> Modes:
     """The n lowest modes about a state, as drawn if none is given; damping and friction are left out.
 
     What is left out or uncertain is told in ``messages``, and by a FunicularWarning. Raises SceneError.
     """
-    from ..engine import Engine
-
     model = build(scene)
     engine = Engine(model)
-    settle(model, engine)
+    drop_redundant_rows(model, engine)
     engine.place(0.0, **({} if about is None else about.placed))
     K, constraints = condensed(engine.matrix(0.0, 0.0, 1.0), model)
     size = K.shape[0]
@@ -100,7 +100,7 @@ def modes(scene: Scene, n: int, about: Equilibrium | None = None) -> Modes:
     return found
 
 
-def _without_friction(scene: Scene) -> list[str]:
+def _without_friction(scene: SceneData) -> list[str]:
     slides = [f'"{slide.name}"' for slide in scene.slides.values() if slide.friction and slide.prescribed is None]
     return [f"modes leave out the friction of slide{'s' * (len(slides) > 1)} {', '.join(slides)}"] if slides else []
 
@@ -137,7 +137,7 @@ def _uncertain(modes: Modes, lowest: float) -> list[str]:
     return told
 
 
-def _refuse_what_is_out_of_range(scene: Scene, model, K: csc_array, M: csc_array) -> None:
+def _refuse_what_is_out_of_range(scene: SceneData, model, K: csc_array, M: csc_array) -> None:
     """Inertia and stiffness must be finite, and the inertia positive, but of the arc-lengths of slides."""
     n = model.n_band + model.n_border_dof
     inertia = M.diagonal()[:n]
@@ -151,37 +151,13 @@ def _refuse_what_is_out_of_range(scene: Scene, model, K: csc_array, M: csc_array
                              "take them nearer to each other")
 
 
-def _owner(scene: Scene, model, unknown: int) -> str:
+def _owner(scene: SceneData, model, unknown: int) -> str:
     """The part whose coordinate an unknown is."""
     dof = int(np.argmax(model.place == unknown))
     for name, nodes in model.nodes.items():
         if dof < model.cables[list(model.nodes).index(name)].coordinates.stop and nodes:
             return scene.cables[name].where
     return next(scene.bodies[body.name].where for body in reversed(model.bodies) if body.dof <= dof)
-
-
-def fastest(K: csc_array, M: csc_array, unknowns=slice(None)) -> float:
-    """rad²/s², about the square of the highest frequency of some unknowns; M may have more after those of K."""
-    inertia, stiffness = M.diagonal()[: K.shape[0]][unknowns], K.diagonal()[unknowns]
-    heavy = inertia > 0
-    return float(np.max(np.abs(stiffness[heavy]) / inertia[heavy], initial=0.0))
-
-
-def condensed(full: csc_array, model) -> tuple[csc_array, csc_array]:
-    """Stiffness over coordinates and free arc-lengths, springs' forces eliminated; the constraints on them."""
-    n = model.n_band + model.n_border_dof
-    dim = model.dim
-    arc = np.array([n + j.unknown for j in model.slides if j.drive < 0], dtype=int)
-    held = [n + j.unknown + 1 + d for j in model.slides for d in range(dim)]
-    held += [n + link.unknown + r for link in model.joints for r in range(link.rows)
-             if r not in link.redundant_rows]
-    springs = np.array([n + s.unknown + d for s in model.springs for d in range(dim)], dtype=int)
-    kept = np.concatenate([np.arange(n), arc])
-    full = full.tocsr()
-    K = full[kept][:, kept]
-    if len(springs):  # their rows are F - law(q): F = -C q
-        K = K - full[kept][:, springs] @ full[springs][:, kept]
-    return K.tocsc(), full[np.array(held, dtype=int)][:, kept].tocsc()
 
 
 def _solve(K: csc_array, M: csc_array, constraints: csc_array, n: int

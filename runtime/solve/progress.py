@@ -32,7 +32,7 @@ def progress_bar(duration: float, progress: bool | OnProgress | None) -> Iterato
     if callable(progress):
         yield Meter(progress)
     elif progress is True or (progress is None and sys.stderr.isatty()):
-        from rich.console import Console
+        from rich.console import Console  # for runs that a person watches
         from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
         reached = TextColumn("{task.completed:.4g} of {task.total:.4g} s")

@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from ..parts.section_stiffness import STABILISATION
-
-if TYPE_CHECKING:
-    from ..model.build import Model
-    from ..scene import Scene
+from ..model.model import Model
+from ..parts.scene_data import SceneData
+from ..parts.section_stiffness import STABILISATION, is_reduced
 
 
-def notes(scene: Scene, model: Model, time: np.ndarray, q: np.ndarray) -> list[str]:
+def notes(scene: SceneData, model: Model, time: np.ndarray, q: np.ndarray) -> list[str]:
     """A note for each cable with a reduced axial strain that was compressed too much at one of the times.
 
     time (n,) in s; q (n, coordinates). The strain is that of the chords of elements.
     """
     found = []
     for cable in model.cables:
-        if not len(q) or not scene.cables[cable.name].law.endswith("_reduced"):
+        if not len(q) or not is_reduced(scene.cables[cable.name].law):
             continue
         nodes = q[:, cable.coordinates].reshape(len(q), *cable.shape)[:, :, cable.vectors.index("r")]
         strain = np.linalg.norm(np.diff(nodes, axis=1), axis=-1) / cable.length - 1

@@ -1,4 +1,4 @@
-"""Equilibrium: a scene's rest under its loads, found at once, in load steps, or along the path of equilibria.
+"""RestState: a scene's rest under its loads, found at once, in load steps, or along the path of equilibria.
 
 A state at the load fraction p is at rest under p times all loads (solve/static_problem.py): a scene drawn with stress
 first
@@ -10,10 +10,10 @@ from __future__ import annotations
 import warnings
 
 from ..errors import EquilibriumError, FunicularWarning
+from ..parts.scene_data import SceneData
 from ..parts.settings import EquilibriumSettings
-from ..results.equilibrium import CriticalPoint, Equilibrium
-from ..scene import Scene
 from .path_following import Critical, Point, follow
+from .rest_state import CriticalPoint, RestState
 from .stability import stability
 from .stable_search import find_rest
 from .static_problem import StaticProblem
@@ -26,15 +26,18 @@ MOVED = 1e-9
 """Of the scene's size: what rounding may move."""
 
 
-def equilibrium(scene: Scene, settings: EquilibriumSettings, start: Equilibrium | None = None) -> Equilibrium:
+def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestState | None = None,
+                made: type[RestState] = RestState) -> RestState:
     """The scene at rest under gravity, its loads at t = 0 and its springs; start: a state to begin from, else as drawn.
+
+    made: what the states are, of which it returns one.
 
     Raises SceneError, EquilibriumError.
     """
     problem = StaticProblem(scene, settings)
     if start is not None:
         problem.restore(start.placed)
-    search = _Search(problem)
+    search = _Search(problem, made)
     reached = search.along_path(start) if settings.method == "arc_length" else search.in_steps()
     state = search.state
     _note(problem, state)
@@ -49,7 +52,7 @@ def equilibrium(scene: Scene, settings: EquilibriumSettings, start: Equilibrium 
     return state
 
 
-def _note(problem: StaticProblem, state: Equilibrium) -> None:
+def _note(problem: StaticProblem, state: RestState) -> None:
     """Complete a state's messages; what a user must know is a warning, too."""
     if rubbing := [name for name, slide in problem.scene.slides.items() if slide.friction is not None]:
         names = " and ".join(f'"{name}"' for name in rubbing)
@@ -65,13 +68,13 @@ def _note(problem: StaticProblem, state: Equilibrium) -> None:
 class _Search:
     """The states of rest found so far, and the ways to the next ones; the last one is `state`."""
 
-    def __init__(self, problem: StaticProblem):
-        self.problem = problem
-        self.state: Equilibrium | None = None
-        self.path: list[Equilibrium] = []
+    def __init__(self, problem: StaticProblem, made: type[RestState]):
+        self.problem, self.made = problem, made
+        self.state: RestState | None = None
+        self.path: list[RestState] = []
         self.critical: list[CriticalPoint] = []
 
-    def remember(self, state: Equilibrium) -> None:
+    def remember(self, state: RestState) -> None:
         """Add a state to the path."""
         self.state = state
         self.path.append(state)
@@ -86,7 +89,7 @@ class _Search:
         begin, reached, step = problem.keep(), 0.0, 1.0 / steps
         if steps == 1:
             if (found := find_rest(problem)) is not None:
-                self.remember(Equilibrium.of(problem, found))
+                self.remember(self.made.of(problem, found))
                 return 1.0
             step = 0.5
             problem.restore(begin)
@@ -100,7 +103,7 @@ class _Search:
             problem.load(target)
             if (found := find_rest(problem)) is not None:
                 reached, step = target, min(2 * step, largest)
-                self.remember(Equilibrium.of(problem, found))
+                self.remember(self.made.of(problem, found))
                 continue
             problem.restore(kept)
             problem.load(reached)
@@ -117,7 +120,7 @@ class _Search:
         found = find_rest(problem)
         if found is None:
             problem.restore(drawn)
-        self.state = Equilibrium.of(problem, found or stability(problem))
+        self.state = self.made.of(problem, found or stability(problem))
         moved = problem.distance(drawn)
         if found is not None and moved > MOVED * problem.size:
             what = "loads" if problem.settings.scale_gravity else "loads, under its weight"
@@ -134,11 +137,11 @@ class _Search:
             problem.restore(free)
             problem.load(0.0)
             return 0.0
-        self.remember(Equilibrium.of(problem, found))
+        self.remember(self.made.of(problem, found))
         problem.messages.append(f"without loads something is free to move: the path begins at {100 * FEW:g} % of them")
         return FEW
 
-    def along_path(self, start: Equilibrium | None) -> float:
+    def along_path(self, start: RestState | None) -> float:
         """The path from rest without loads, or from a state of rest on it; returns the fraction of the load reached."""
         problem = self.problem
         if start is None or start.load_fraction >= 1.0:
@@ -151,9 +154,9 @@ class _Search:
             reached, heading = start.load_fraction, start.heading
             problem.load(reached)
             if not problem.newton():
-                self.state = Equilibrium.of(problem, stability(problem))
+                self.state = self.made.of(problem, stability(problem))
                 return reached
-            self.state = Equilibrium.of(problem, stability(problem))
+            self.state = self.made.of(problem, stability(problem))
         for point in follow(problem, reached, heading):
             if isinstance(point, Critical):
                 self.critical.append(CriticalPoint(point.point.fraction, point.kind, point.directions,
@@ -163,12 +166,12 @@ class _Search:
                 reached = point.fraction
         return min(reached, 1.0)
 
-    def at(self, point: Point) -> Equilibrium:
+    def at(self, point: Point) -> RestState:
         """A point of the path as a state."""
         fraction, kept = self.problem.fraction, self.problem.keep()
         self.problem.restore(point.kept)
         self.problem.load(point.fraction)
-        state = Equilibrium.of(self.problem, point.stability, point.heading)
+        state = self.made.of(self.problem, point.stability, point.heading)
         self.problem.restore(kept)
         self.problem.load(fraction)
         return state

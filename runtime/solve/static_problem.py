@@ -12,12 +12,13 @@ import numpy as np
 from scipy.sparse import csc_array
 from scipy.sparse.linalg import splu
 
+from ..engine import Engine
 from ..model.build import build
-from ..model.redundant_constraints import settle
+from ..model.redundant_constraints import drop_redundant_rows
+from ..model.states import attachment_points
+from ..parts.scene_data import SceneData
 from ..parts.settings import EquilibriumSettings
-from ..results.recording import end_points
-from ..scene import Scene
-from .modes import condensed, fastest
+from .condensation import condensed, fastest
 
 GROWTH = 1e3
 """Of a correction over the least one before: Newton diverges."""
@@ -28,13 +29,11 @@ FREE = 1e-14
 class StaticProblem:
     """The engine's static state, its residual and tangent, and Newton's method; `load` says how much load is on."""
 
-    def __init__(self, scene: Scene, settings: EquilibriumSettings):
-        from ..engine import Engine
-
+    def __init__(self, scene: SceneData, settings: EquilibriumSettings):
         self.scene, self.settings = scene, settings
         self.model = build(scene)
         self.engine = Engine(self.model)
-        settle(self.model, self.engine)
+        drop_redundant_rows(self.model, self.engine)
         self.engine.place(0.0)
         self.load(1.0)
         drawn = self.residual()
@@ -67,7 +66,7 @@ class StaticProblem:
         model = self.model
         lengths = [cable.length * cable.n_elements for cable in model.cables]
         lengths += [np.linalg.norm(model.q[b.configuration : b.configuration + model.dim]) for b in model.bodies]
-        gaps = [end_points(model, s.ends[1], model.q[None]) - end_points(model, s.ends[0], model.q[None])
+        gaps = [attachment_points(model, s.ends[1], model.q[None]) - attachment_points(model, s.ends[0], model.q[None])
                 for s in model.springs]
         return max([*lengths, *(np.linalg.norm(gap) for gap in gaps)], default=0.0) or 1.0
 

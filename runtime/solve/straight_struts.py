@@ -8,16 +8,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..model.build import Model
-from ..scene import Scene
+from ..engine import Engine
+from ..model.model import Model
+from ..parts.scene_data import SceneData
+from .condensation import condensed
 from .inertia import inertia
-from .modes import condensed
 
 STRAIGHT = 1e-9
 """Of the length: nodes that are nearer to the line between the ends lie on it."""
 
 
-def notes(scene: Scene, model: Model, engine) -> list[str]:
+def notes(scene: SceneData, model: Model, engine) -> list[str]:
     """A note for each such strut at the time at which it is compressed most, of those still in memory."""
     rows = engine.rows()
     times, states, arcs = rows["time"], rows["q"], rows["s"]
@@ -75,8 +76,6 @@ def _on_line(r: np.ndarray) -> np.ndarray:
 
 def _unstable(model: Model, cable, t: float, q: np.ndarray, s: np.ndarray) -> int:
     """How many directions of a cable, all else fixed, lower the energy; joints hold it, with forces left out."""
-    from ..engine import Engine
-
     engine = Engine(model)
     engine.place(t, q=q, s=s)
     K, C = condensed(engine.matrix(0.0, 0.0, 1.0), model)

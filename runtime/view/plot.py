@@ -10,18 +10,17 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from ..errors import ResultFileError, shown_path
+from ..parts.attachment import Attachment
 from ..parts.modal_body import ModalBody
-from ..results.run import ENERGIES
+from ..parts.scene_data import SceneData
+from ..results.quantities import ENERGIES
+from ..results.run import Run
 from ..results.section_forces import even, jumps, of_run, with_sides
 from ..rotations import rotate
 
 if TYPE_CHECKING:
     from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure
-
-    from ..parts.attachment import Attachment
-    from ..results.run import Run
-    from ..scene import Scene
 
 STYLE = {
     "font.size": 10,
@@ -78,7 +77,7 @@ def save_plots(run: Run, directory: str | os.PathLike, prefix: str = "", forces:
     return written
 
 
-def view_of(scene: Scene) -> View:
+def view_of(scene: SceneData) -> View:
     """The vertical plane of the first cable; y is up without gravity."""
     gravity = np.array(scene.gravity)
     up = -gravity / np.linalg.norm(gravity) if gravity.any() else np.array([0.0, 1.0, 0.0])

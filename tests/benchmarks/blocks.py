@@ -19,8 +19,9 @@ from pathlib import Path
 
 import numpy as np
 from funicular.derive.catalogue import families
-from funicular.derive.codegen import drift, timing
+from funicular.derive.codegen import drift
 from funicular.derive.codegen import rendering as emit
+from funicular.derive.verify import timing
 from funicular.derive.verify.compiled import compiler
 from funicular.generated import kernels as compiled
 from table import arguments, show

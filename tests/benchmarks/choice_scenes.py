@@ -166,7 +166,7 @@ def cantilever() -> fu.Scene:
 
 
 def spin_up() -> fu.Scene:
-    """A beam turned about its end up to 6 rad/s within 3 s (CASES D3, five times as fast)."""
+    """A beam turned about its end up to 6 rad/s within 3 s (case D3 of published, five times as fast)."""
     scene = fu.Scene(gravity=(0, 0, 0))
     scene.cable("beam", start=(0, 0, 0), end=(10, 0, 0), elements=4, element="cable8p",
                 section=fu.GeneralSection(area=1e-3, second_moment_about_z=5e-7),

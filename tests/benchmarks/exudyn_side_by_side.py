@@ -3,7 +3,7 @@
     pip install '.[bench]' && python tests/benchmarks/exudyn_side_by_side.py [--out FILE.csv] [--plot FILE.png]
         [--cases pendulum] [--repetitions 3] [--limit 20]
 
-Scenes: the flexible pendulum (CASES: D0) and the sliding mass (S1), with Exudyn's cable, which is cable12 here with
+Scenes: the flexible pendulum (case D0) and the sliding mass (case S1), with Exudyn's cable, which is cable12 here with
 strain="engineering", but for three Gauss points where here are five for the bending. Compared is a path, the tip's or
 the mass's; its error is the largest distance from the converged path of the same mesh over 50 times, over the largest
 motion. Each code has its own converged path: here that of the explicit integration (of radau, for the stiffest scene)

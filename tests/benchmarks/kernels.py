@@ -20,7 +20,8 @@ from statistics import median
 import blocks
 import making
 from funicular.derive.catalogue import families
-from funicular.derive.codegen import drift, timing
+from funicular.derive.codegen import drift
+from funicular.derive.verify import timing
 from funicular.derive.verify.compiled import compile_units, compiler
 from funicular.generated import kernels as compiled
 from table import arguments, show

@@ -26,14 +26,20 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import sympy as sp
 
-from ...algebra import section_integrals as moments
+from ...algebra import section_integrals as integrals
 from ...algebra.gram import Gram
 from ...codegen.program import Program
+from ...spec import LawTraits
 from .blocks import named_blocks
-from .cable import Cable, Point, Term
-from .points import gathered
+from .cable import Cable, Term
+from .points import Point, gathered
 
 STIFFNESS_DOC = "axial and bending stiffness EA, EI, and EA of the strain's upper modes"
+
+
+def traits(strain: str, curvature: str) -> LawTraits:
+    """Return what the law with these measures is; it is damped like the full law with the same strain."""
+    return LawTraits("cable", strain, curvature, membrane="assumed", damped_like=f"{strain}_exact")
 
 
 class AssumedCable(Cable):
@@ -51,26 +57,27 @@ class AssumedCable(Cable):
 
     @property
     def axial_points(self) -> list[Point]:
-        """Those of the exact curvature with it; else exact for the modes of the green strain, degree 3(d - 1)."""
+        """Return those of the exact curvature with it; else exact for the modes of the green strain, degree 3(d - 1).
+        """
         if self.curvature == "exact" or self.strain == "engineering":
             return super().axial_points
         return self.points((3 * self.degree - 1) // 2)
 
     def constants(self, program: Program) -> np.ndarray:
-        """Input A."""
+        """Declare the input A (3,): EA in N, EI in N m^2, EA of the upper modes in N; return it."""
         return program.input("A", 3, "N, N m^2, N", STIFFNESS_DOC)
 
     def section_stiffness(self, program: Program) -> np.ndarray:
-        """Input S."""
+        """Declare the input S (3,): EA in N, EI in N m^2, EA of the upper modes in N; return it."""
         return program.input("S", 3, "N, N m^2, N", STIFFNESS_DOC)
 
     def set_up(self, program: Program) -> None:
-        """Inputs l, S and output A, which is S."""
+        """Declare the inputs l and S, and the output A, which is S."""
         program.input("l", (), "m", "length of the element")
         program.output("A", self.section_stiffness(program), "N, N m^2, N", STIFFNESS_DOC)
 
     def _terms(self, program: Program, A, c, w) -> Iterator[Term]:
-        """Stages: the energy of bending point by point, with strain and stress of the membrane."""
+        """Yield the energy of bending point by point, with strain and stress of the membrane."""
         program.stage("strain at the quadrature points")
         EI = program.define("EI_l", 2 * A[1] * w)
         points, names = self.axial_points, "abc" if self.curvature == "exact" else "a"
@@ -82,12 +89,12 @@ class AssumedCable(Cable):
                 bending.append(sp.S.Zero)
                 continue
             stiffness = self._weighted(program, points, g, "EI", EI)
-            strain, k2, _ = self.measures(program, f"_{g}", *invariants, stiffness)
+            strain, k2, _ = self.measures(program, f"_{g}", invariants, stiffness)
             strains.append(strain)
             bending.append(k2)
         stresses = self._stresses(program, A, w, points, strains)
-        for at, k2, strain, stress in zip(every, bending, strains, stresses, strict=True):
-            yield Term(names, k2, *at, strain, stress)
+        for (invariants, vectors, series), k2, strain, stress in zip(every, bending, strains, stresses, strict=True):
+            yield Term(names, k2, invariants, vectors, series, strain, stress)
         if names == "abc":
             return
         program.stage("curvature at the quadrature points")
@@ -98,12 +105,13 @@ class AssumedCable(Cable):
     # --- the strain by its modes ------------------------------------------------------------------------------
 
     def _stiffnesses(self, program: Program, A, w) -> list[sp.Expr]:
-        """EA_m l/2."""
-        full, upper = (program.once(name, value / (2 * w)) for name, value in (("EA_l", A[0]), ("EA_up_l", A[2])))
+        """Return EA_m l/2 of each mode m of the strain, N m."""
+        full, upper = (program.define_once(name, value / (2 * w))
+                       for name, value in (("EA_l", A[0]), ("EA_up_l", A[2])))
         return [full if m < self.n_full else upper for m in range(self.degree)]
 
     def _modes(self, program: Program, points: Sequence[Point], strains: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """Stage: strain_m from the strain at points, which come in pairs at X and -X."""
+        """Return strain_m from the strain at points, which come in pairs at X and -X."""
         program.stage("strain by its Legendre modes")
         total = [sp.S.Zero] * self.degree
         for here in range((len(points) + 1) // 2):
@@ -117,7 +125,7 @@ class AssumedCable(Cable):
         return [program.define(f"eps_m{m}", value) for m, value in enumerate(total)]
 
     def _stresses(self, program: Program, A, w, points: Sequence[Point], strains: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """Stages: derivatives of twice the membrane energy by the strain at the points."""
+        """Return derivatives of twice the membrane energy by the strain at the points."""
         modes = self._modes(program, points, strains)
         program.stage("normal force at the quadrature points")
         N = [program.define(f"N_m{m}", EA * eps)
@@ -135,12 +143,12 @@ class AssumedCable(Cable):
 
     def _product(self, m: int, i: int, k: int) -> sp.Rational:
         """(2m + 1)/2 ∫ P_m P_i P_k dX."""
-        integrand = moments.legendre(m) * moments.legendre(i) * moments.legendre(k)
+        integrand = integrals.legendre(m) * integrals.legendre(i) * integrals.legendre(k)
         total = sum((c * 2 / (powers[0] + 1) for powers, c in integrand.terms() if powers[0] % 2 == 0), sp.QQ(0))
         return sp.Rational(2 * m + 1, 2) * sp.Rational(int(total.numerator), int(total.denominator))
 
     def _product_at_points(self, m: int, i: int, k: int) -> sp.Expr:
-        """The same by the quadrature of the membrane, which may have too few points."""
+        """Return the same by the quadrature of the membrane, which may have too few points."""
         points = self.axial_points
         if m + i + k < 2 * len(points):
             return self._product(m, i, k)
@@ -152,7 +160,7 @@ class AssumedCable(Cable):
     # --- second derivatives -----------------------------------------------------------------------------------
 
     def tangent(self, program: Program, A, c, w) -> np.ndarray:
-        """Stages: d2U/dc2 over strain vectors: at the points with the stress constant, and what the stress changes."""
+        """Return d2U/dc2 over strain vectors: at the points with the stress constant, and what the stress changes."""
         terms = list(self._terms(program, A, c, w))
         total = np.array(0)
         for names in dict.fromkeys(term.names for term in terms):
@@ -172,7 +180,7 @@ class AssumedCable(Cable):
         return named_blocks(program, self.gram.names, total, symmetric=True)
 
     def _mode_gradients(self, program: Program, c: np.ndarray, terms: list[Term]) -> np.ndarray:
-        """Stage: derivatives of strain_m by the strain vectors, (m, n, dim)."""
+        """Return derivatives of strain_m by the strain vectors, (m, n, dim)."""
         program.stage("derivatives of the strain's modes")
         d = range(self.degree)
         along = [c[m] for m in self.axis_indices]
@@ -184,7 +192,7 @@ class AssumedCable(Cable):
                         for g, term in enumerate(terms)]
             series = [[sp.Rational(2 * m + 1, 2) * point.weight * point.value[m] * point.value[i] for m in d for i in d]
                       for point in self.axial_points]
-            values = gathered(program, "t", series, tangents).reshape(len(d), len(d), -1)
+            values = list(gathered(program, "t", series, tangents).reshape(len(d), len(d), -1))
         return np.array([[program.vector(f"eps_m{m}_{self.gram.names[i]}", value) for i, value in enumerate(row)]
                          for m, row in enumerate(values)])
 
@@ -208,7 +216,7 @@ class AssumedCable(Cable):
     # --- sections ---------------------------------------------------------------------------------------------
 
     def membrane(self, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, strain: sp.Expr) -> tuple:
-        """Stages: energy per length whose derivative is the membrane's force, what is constant in it, and the strain:
+        """Return energy per length whose derivative is the membrane's force, what is constant in it, and the strain:
         the modes' normal force and strain at X.
         """
         points = self.axial_points

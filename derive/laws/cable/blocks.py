@@ -51,7 +51,7 @@ def by_vectors(program: Program, tag: str, names: str, vectors: Sequence[np.ndar
 
 def spread(program: Program, tag: str, points: Sequence[Sequence], blocks: Sequence[PointBlocks],
            symmetric: bool) -> np.ndarray:
-    """Sum over the points of their blocks, spread over the strain vectors -> (n, n, dim, dim).
+    """Return the sum over the points of their blocks, spread over the strain vectors -> (n, n, dim, dim).
 
     points: for each, the series over the strain vectors of the vectors that its blocks are of. Of a symmetric sum the
     part below the diagonal is left out.
@@ -91,7 +91,7 @@ class _Folded:
 
 
 def named_block(program: Program, name: str, value: np.ndarray, symmetric: bool = False) -> np.ndarray:
-    """A block with its entries named."""
+    """Return a block with its entries named."""
     named = np.array(value, dtype=object)
     for i, j in np.ndindex(value.shape):
         named[i, j] = (named[j, i] if symmetric and j < i

@@ -8,7 +8,7 @@ and never through the coordinates.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
@@ -16,26 +16,18 @@ from itertools import groupby
 import numpy as np
 import sympy as sp
 
-from ...algebra import section_integrals as moments
+from ...algebra import section_integrals as integrals
 from ...algebra.discrete_gradient import DiscreteGradient, staged
 from ...algebra.gram import Gram
 from ...codegen.program import Program, jacobian
+from ...spec import LawTraits
 from .blocks import by_vectors, named_blocks, spread
 from .damping import Damping
-from .points import gathered, on_vectors, values
+from .points import Point, gathered, on_vectors, values
 from .section import resultants
 
-SOURCE = "DESIGN 4; Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)"
+SOURCE = "Gerstmayr & Shabana, Nonlinear Dyn. 45 (2006) 109-130; Berzeri & Shabana, J. Sound Vib. 235 (2000)"
 STIFFNESS_DOC = "axial and bending stiffness EA, EI"
-
-
-@dataclass(frozen=True)
-class Point:
-    """A quadrature point on [-1, 1]: weight, and the Legendre series of r' and (l/2) r'' there."""
-
-    weight: sp.Float
-    value: tuple[sp.Float, ...]
-    slope: tuple[sp.Float, ...]
 
 
 @dataclass(frozen=True)
@@ -62,19 +54,25 @@ class Term:
 
     @property
     def varied(self) -> sp.Expr:
-        """What has the derivatives of twice the energy by the invariants, the stress constant."""
+        """Return what has the derivatives of twice the energy by the invariants, the stress constant."""
         return self.twice + self.stress * self.strain
 
     @property
     def constant(self) -> list[sp.Symbol]:
-        """The stress, where there is one."""
+        """Return the stress, where there is one."""
         return [self.stress] if self.stress.is_Symbol else []
+
+
+def traits(strain: str, curvature: str) -> LawTraits:
+    """Return what the law with these measures is. Damping knows the strain alone: laws of one strain share it."""
+    damped_like = "" if curvature == "exact" else f"{strain}_exact"
+    return LawTraits("cable", strain, curvature, membrane="full", damped_like=damped_like)
 
 
 class Cable(Damping):
     """The law over an element's strain vectors."""
 
-    source, curved, set_up_kernel = SOURCE, False, "stiffness"
+    source, set_up_kernel = SOURCE, "stiffness"
 
     def __init__(self, gram: Gram, strain: str, curvature: str):
         self.gram, self.strain, self.curvature = gram, strain, curvature
@@ -83,29 +81,31 @@ class Cable(Damping):
 
     @cached_property
     def degree(self) -> int:
-        """Degree of the centreline."""
+        """Return the degree of the centreline in x."""
         return len(self._axis)
 
     @cached_property
     def axis_indices(self) -> list[int]:
-        """The strain vectors along the axis."""
+        """Return the strain vectors along the axis."""
         return [m for m, name in enumerate(self.gram.names) if name.startswith("t")]
 
     @cached_property
     def _axis(self) -> list:
-        """Their polynomials in X."""
+        """Return the polynomials in X of the strain vectors along the axis."""
         return [self.gram.gradient[m][0] for m in self.axis_indices]
 
     def points(self, n: int) -> list[Point]:
-        """Gauss-Legendre."""
+        """Return the n points of the Gauss-Legendre rule."""
         nodes, weights = np.polynomial.legendre.leggauss(n)
         return [Point(_number(w), tuple(_number(_at(p, x)) for p in self._axis),
-                      tuple(_number(_at(p.diff(moments.X), x)) for p in self._axis))
+                      tuple(_number(_at(p.diff(integrals.X), x)) for p in self._axis))
                 for x, w in zip(nodes.tolist(), weights.tolist(), strict=True)]
 
     @property
     def axial_points(self) -> list[Point]:
-        """Those of the exact curvature with it; else exact for the green strain, whose square has degree 4(d - 1)."""
+        """Return those of the exact curvature with it; else exact for the green strain, whose square has degree 4(d -
+        1).
+        """
         return self.points(2 * self.degree - 1) if self.curvature == "linear" else self.bending_points
 
     @property
@@ -119,20 +119,20 @@ class Cable(Damping):
         return self.points(self.degree - 1 if self.curvature == "linear" else max(5, self.degree))
 
     def constants(self, program: Program) -> np.ndarray:
-        """Input A."""
+        """Declare the input A (2,): EA in N, EI in N m^2; return it."""
         return program.input("A", 2, "N, N m^2", STIFFNESS_DOC)
 
     def section_stiffness(self, program: Program) -> np.ndarray:
-        """Input S."""
+        """Declare the input S (2,): EA in N, EI in N m^2; return it."""
         return program.input("S", 2, "N, N m^2", STIFFNESS_DOC)
 
     def set_up(self, program: Program) -> None:
-        """Inputs l, S and output A, which is S."""
+        """Declare the inputs l and S, and the output A, which is S."""
         program.input("l", (), "m", "length of the element")
         program.output("A", self.section_stiffness(program), "N, N m^2", STIFFNESS_DOC)
 
     def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X, w, c0=None) -> tuple:
-        """Stages: force and moment in space, and strain, at X; c0 of a curved stress-free shape."""
+        """Return force and moment in space, and strain, at X; c0 of a curved stress-free shape."""
         return resultants(self, program, S, c, X, w, c0)
 
     def membrane(self, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, strain: sp.Expr) -> tuple:
@@ -145,8 +145,8 @@ class Cable(Damping):
         """From a - 1, without losing the digits of a small strain."""
         if self.strain == "green":
             return program.define(f"eps{tag}", a1 / 2)
-        length = program.once(f"len{tag}", sp.sqrt(1 + a1))
-        program.once(f"inv_len{tag}", 1 / length)
+        length = program.define_once(f"len{tag}", sp.sqrt(1 + a1))
+        program.define_once(f"inv_len{tag}", 1 / length)
         return program.define(f"eps{tag}", a1 / (1 + length), derivative_of=length)  # |r'| - 1
 
     def _at_points(self, program: Program, rule: str, names: str, points: list[Point], c: np.ndarray) -> list[tuple]:
@@ -165,14 +165,14 @@ class Cable(Damping):
         return found
 
     def _terms(self, program: Program, A, c, w) -> Iterator[Term]:
-        """Stages: the energy point by point."""
+        """Yield the energy point by point."""
         program.stage("strain at the quadrature points")
         EA, EI = program.define("EA_l", A[0] / (2 * w)), program.define("EI_l", 2 * A[1] * w)
         if self.curvature == "exact":
             points = self.bending_points
             for g, (invariants, *at) in enumerate(self._at_points(program, "", "abc", points, c)):
                 axial, bending = (self._weighted(program, points, g, *stiff) for stiff in (("EA", EA), ("EI", EI)))
-                strain, k2, _ = self.measures(program, f"_{g}", *invariants, bending)
+                strain, k2, _ = self.measures(program, f"_{g}", invariants, bending)
                 yield Term("abc", axial * strain**2 + k2, invariants, *at)
             return
         points = self.axial_points
@@ -187,12 +187,13 @@ class Cable(Damping):
     def _weighted(self, program: Program, points: list[Point], g: int, name: str, stiffness: sp.Expr) -> sp.Expr:
         """Weight of a point times a stiffness; points that mirror each other share it."""
         first = min(g, len(points) - 1 - g)
-        return program.once(f"{name}{len(points)}_{first}", points[first].weight * stiffness)
+        return program.define_once(f"{name}{len(points)}_{first}", points[first].weight * stiffness)
 
-    def measures(self, program: Program, tag: str, a1, b, c, factor=sp.S.One) -> tuple:
+    def measures(self, program: Program, tag: str, invariants: Sequence[sp.Expr], factor=sp.S.One) -> tuple:
         """Axial strain, factor times the squared curvature, and what leads to that from |r' x r''|^2; None where it is
         |r''|^2.
         """
+        a1, b, c = invariants
         strain = self._axial_strain(program, tag, a1)
         if self.curvature == "linear":
             return strain, factor * c, None
@@ -205,14 +206,14 @@ class Cable(Damping):
         return strain, program.define(f"cross2{tag}", a * c - b * b) * scale, scale
 
     def energy(self, program: Program, A, c, w) -> sp.Expr:
-        """U."""
+        """Return the elastic energy U, J."""
         return sum(term.share for term in self._terms(program, A, c, w)) / 2
 
     def forces(self, program: Program, A, c, w) -> np.ndarray:
-        """Stages: dU/dc on strain vectors."""
+        """Return dU/dc on strain vectors."""
         f = np.zeros((len(self.gram.names), self.gram.element.dim), dtype=object)
-        for names, terms in groupby(list(self._terms(program, A, c, w)), key=lambda term: term.names):
-            terms = list(terms)
+        for names, of_rule in groupby(list(self._terms(program, A, c, w)), key=lambda term: term.names):
+            terms = list(of_rule)
             program.stage("forces at the quadrature points")
             forces = [on_vectors(program, f"{names}{g}", term.vectors, _first(program, term))
                       for g, term in enumerate(terms)]
@@ -220,36 +221,37 @@ class Cable(Damping):
         return self._named(program, f)
 
     def _gathered(self, program: Program, names: str, terms: list[Term], forces: list) -> np.ndarray:
-        """Forces on the strain vectors along the axis from those on the vectors of each point."""
-        return sum(gathered(program, f"{names}{k + 1}", [term.series[k] for term in terms], [f[k] for f in forces])
-                   for k in range(len(terms[0].vectors)))
+        """Return the forces on the strain vectors along the axis from those on the vectors of each point."""
+        return np.asarray(sum(
+            gathered(program, f"{names}{k + 1}", [term.series[k] for term in terms], [f[k] for f in forces])
+            for k in range(len(terms[0].vectors))))
 
     def _named(self, program: Program, f: np.ndarray) -> np.ndarray:
         program.stage("forces on strain vectors")
         return np.array([program.vector(f"f_{name}", v) for name, v in zip(self.gram.names, f, strict=True)])
 
     def discrete_forces(self, program: Program, A, now, then, w) -> np.ndarray:
-        """Stages: forces f on strain vectors with f . (then - now) = the difference of U, by the mean vectors."""
+        """Return forces f on strain vectors with f . (then - now) = the difference of U, by the mean vectors."""
         law, c = staged(program, now)
         terms = list(self._terms(law, A, c, w))
         inputs = zip(c.ravel(), zip(now.ravel(), then.ravel(), strict=True), strict=True)
-        secant = DiscreteGradient(program, law, dict(inputs))
+        discrete = DiscreteGradient(program, law, dict(inputs))
         f = np.zeros((len(self.gram.names), self.gram.element.dim), dtype=object)
-        for names, group in groupby(terms, key=lambda term: term.names):
-            group = list(group)
+        for names, of_rule in groupby(terms, key=lambda term: term.names):
+            group = list(of_rule)
             program.stage("forces at the quadrature points")
             forces = []
             for g, term in enumerate(group):
                 D = [program.define(f"D_{s.name}", d) for s, d in
-                     zip(term.invariants, secant.gradient(term.varied, term.invariants, term.constant), strict=True)]
-                means = [secant.means(f"mean{k + 1}_{names}{g}", v) for k, v in enumerate(term.vectors)]
+                     zip(term.invariants, discrete.gradient(term.varied, term.invariants, term.constant), strict=True)]
+                means = [discrete.means(f"mean{k + 1}_{names}{g}", v) for k, v in enumerate(term.vectors)]
                 forces.append(on_vectors(program, f"{names}{g}", means, D))
             f[self.axis_indices] += self._gathered(program, names, group, forces)
         return self._named(program, f)
 
     def stress_of_turning(self, program: Program, A, change, w) -> np.ndarray:
-        """Stages: blocks (n, n, 1, 1) over strain vectors that the mean stress of a step has more than the stress of
-        the mean vectors: EA (dr'.dr')/8, for that is what a turn takes off the strain. Of what bends it is none.
+        """Return blocks (n, n, 1, 1) over strain vectors that the mean stress of a step has more than the stress of the
+        mean vectors: EA (dr'.dr')/8, for that is what a turn takes off the strain. Of what bends it is none.
         """
         program.stage("strain of the change at the quadrature points")
         stiffness = program.define("EA_l", A[0] / (2 * w))
@@ -265,7 +267,7 @@ class Cable(Damping):
         return blocks
 
     def tangent(self, program: Program, A, c, w) -> np.ndarray:
-        """Stages: d2U/dc2 over strain vectors."""
+        """Return d2U/dc2 over strain vectors."""
         total = np.array(0)
         for _, terms in groupby(list(self._terms(program, A, c, w)), key=lambda term: term.names):
             total = total + self._second(program, list(terms))
@@ -273,7 +275,7 @@ class Cable(Damping):
         return named_blocks(program, self.gram.names, total, symmetric=True)
 
     def _second(self, program: Program, terms: list[Term]) -> np.ndarray:
-        """Stages: second derivatives of the terms of a rule, over strain vectors."""
+        """Return second derivatives of the terms of a rule, over strain vectors."""
         program.stage("second derivatives at the quadrature points")
         names, at_points = terms[0].names, []
         for g, term in enumerate(terms):
@@ -284,13 +286,13 @@ class Cable(Damping):
 
 
 def _first(program: Program, term: Term) -> list[sp.Expr]:
-    """Derivatives of twice the energy by a term's invariants."""
+    """Return the derivatives of twice the energy by a term's invariants."""
     gradient = jacobian(program, np.array([term.varied]), term.invariants, term.constant)[0]
     return [program.define(f"D_{s.name}", d) for s, d in zip(term.invariants, gradient, strict=True)]
 
 
 def _number(value) -> sp.Expr:
-    """A double as the kernels will hold it; small integers are exact."""
+    """Return a double as the kernels will hold it; small integers are exact."""
     value = float(value)
     return sp.Integer(round(value)) if abs(value - round(value)) < 1e-15 else sp.Float(value)
 

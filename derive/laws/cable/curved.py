@@ -21,6 +21,7 @@ import numpy as np
 import sympy as sp
 
 from ...codegen.program import Program
+from ...spec import LawTraits
 from .. import stress_free
 from .cable import Cable, Term
 
@@ -45,10 +46,16 @@ class Reference:
 N_REFERENCE = 6
 
 
+def traits(strain: str, curvature: str) -> LawTraits:
+    """Return what the law with these measures is; it is damped like the law for a straight shape."""
+    straight = f"{strain}_{curvature}"
+    return LawTraits("cable", strain, curvature, "full", straight, takes_shape=True, damped_like=straight)
+
+
 class CurvedCable(Cable):
     """The law with e0; the damping is that of the straight law."""
 
-    curved, floor = True, FLOOR
+    floor = FLOOR
 
     def __init__(self, gram, strain: str, curvature: str):
         super().__init__(gram, strain, curvature)
@@ -59,11 +66,11 @@ class CurvedCable(Cable):
         return 2 + N_REFERENCE * len(self.bending_points)
 
     def constants(self, program: Program) -> np.ndarray:
-        """Input A."""
+        """Declare the input A: EA, EI, and six numbers of the stress-free shape for each Gauss point; return it."""
         return program.input("A", self._size(), "N, N m^2, 1", "EA, EI, and the stress-free shape at each Gauss point")
 
     def set_up(self, program: Program) -> None:
-        """Inputs l, e0, S and output A."""
+        """Declare the inputs l, e0 and S, and the output A."""
         length = program.input("l", (), "m", "length of the element")
         e0 = stress_free.shape(program, self.gram.element)
         S = self.section_stiffness(program)
@@ -89,7 +96,7 @@ class CurvedCable(Cable):
                          program.define(f"k0_none{tag}", floor**2 * none * kappa))
 
     def _terms(self, program: Program, A, c, w) -> Iterator[Term]:
-        """Stages: the energy point by point."""
+        """Yield the energy point by point."""
         program.stage("strain at the quadrature points")
         EA, EI = program.define("EA_l", A[0] / (2 * w)), program.define("EI_l", 2 * A[1] * w)
         points = self.bending_points

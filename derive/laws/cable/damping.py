@@ -13,17 +13,38 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 import sympy as sp
 
+from ...algebra.gram import Gram
 from ...codegen.program import DirectionalDerivative, Program, jacobian
 from ...spec import Element, x
 from .blocks import named_blocks, spread
+from .points import Point
 
 
 class Damping:
     """Of a cable with a Green or an engineering strain; any curvature is damped alike."""
 
+    gram: Gram
+    strain: str
+
+    @property
+    def degree(self) -> int:
+        """Return the degree of the centreline in x."""
+        raise NotImplementedError
+
+    @property
+    def axis_indices(self) -> list[int]:
+        """Return the indices of the strain vectors along the axis."""
+        raise NotImplementedError
+
+    def points(self, n: int) -> list[Point]:
+        """Return the n points of the Gauss-Legendre rule."""
+        raise NotImplementedError
+
     @staticmethod
     def rates(element: Element) -> dict[str, int]:
-        """Number of strain rates that the damping of an element has, and whether a spin about the tangent is one."""
+        """Return the number of strain rates that the damping of an element has, and whether a spin about the tangent is
+        one.
+        """
         degree = sum(sp.sympify(monomial).free_symbols <= {x} for monomial in element.basis) - 1
         return {"rates": degree + (degree - 1) * element.dim, "spins": int(element.dim == 3)}
 
@@ -54,9 +75,10 @@ class Damping:
                    np.concatenate([d1, d2]), list(rate))
 
     def _at_point(self, program: Program, tag: str, order: str, series, c, dc) -> tuple[np.ndarray, np.ndarray]:
-        return tuple(program.vector(f"{name}{order}_{tag}",
-                                    sum(series[k] * v[m] for k, m in enumerate(self.axis_indices)))
-                     for name, v in (("r", c), ("d", dc)))
+        r, d = (program.vector(f"{name}{order}_{tag}",
+                               np.asarray(sum(series[k] * v[m] for k, m in enumerate(self.axis_indices))))
+                for name, v in (("r", c), ("d", dc)))
+        return r, d
 
     def _damping_points(self, program, A, tau, c, dc, w, strain: Callable = list) -> Iterator[tuple]:
         """At every point: factors, positions, rates, forces on r' (and (l/2) r''); strain: of the rates there, what the
@@ -70,24 +92,26 @@ class Damping:
             yield factors, still, moving, np.array(force)
 
     def damping_forces(self, program, A, tau, c, dc, w) -> np.ndarray:
-        """Forces on strain vectors."""
+        """Return the damping forces on the strain vectors, (vectors, dim), N m."""
         return self._summed(program, list(self._damping_points(program, A, tau, c, dc, w)))
 
-    def algorithmic_forces(self, program, A, weight, known, c, dc, w) -> tuple[np.ndarray, Sequence[sp.Expr]]:
-        """Forces on strain vectors of the stiffnesses times weight dE - known, and dE: the rates that dc makes."""
+    def algorithmic_forces(self, program, A, weight, relaxed_strain, c, dc, w) -> tuple[np.ndarray, Sequence[sp.Expr]]:
+        """Return the forces on strain vectors of the stiffnesses times weight dE - relaxed_strain, and dE, the rates
+        that dc makes.
+        """
         dE: list[sp.Expr] = []
 
         def strain(rates):
             dE.extend(rates)
-            return [program.define(f"excess_{s.name}", weight * s - known[k])
+            return [program.define(f"excess_{s.name}", weight * s - relaxed_strain[k])
                     for k, s in enumerate(rates, len(dE) - len(rates))]
 
         return self._summed(program, list(self._damping_points(program, A, sp.S.One, c, dc, w, strain))), dE
 
     def _summed(self, program: Program, points: list[tuple]) -> np.ndarray:
-        """Stage: forces on strain vectors from those at the points."""
+        """Return forces on strain vectors from those at the points."""
         dim = self.gram.element.dim
-        f = np.zeros((len(self.gram.names), dim), dtype=object)
+        f: np.ndarray = np.zeros((len(self.gram.names), dim), dtype=object)
         for factors, _, _, force in points:
             for k, m in enumerate(self.axis_indices):
                 f[m] = f[m] + sum(x[k] * force[i * dim:(i + 1) * dim] for i, x in enumerate(factors))
@@ -116,6 +140,6 @@ class Damping:
         return named_blocks(program, self.gram.names, total, symmetric=False)
 
     def dissipation(self, program, A, tau, c, dc, w) -> sp.Expr:
-        """Power."""
+        """Return the dissipated power, W."""
         return sum(viscosity * sum(e * e for e in rates)
                    for _, viscosity, _, _, rates in list(self._rates(program, A, tau, c, dc, w)))

@@ -7,18 +7,29 @@ and differences do the work of both points of a pair.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import sympy as sp
 
 from ...codegen.program import Program
 
+
+@dataclass(frozen=True)
+class Point:
+    """A quadrature point on [-1, 1]: weight, and the Legendre series of r' and (l/2) r'' there."""
+
+    weight: sp.Float
+    value: tuple[sp.Float, ...]
+    slope: tuple[sp.Float, ...]
+
+
 Series = Sequence[Sequence[sp.Expr]]
 """Factors of the strain vectors in a vector, point by point."""
 
 
 def values(program: Program, name: str, series: Series, c: Sequence[np.ndarray]) -> list[np.ndarray]:
-    """The vectors at the points: sums of strain vectors c."""
+    """Return the vectors at the points: sums of strain vectors c."""
     found: list = [None] * len(series)
     for here, there in _pairs(series):
         alike = _sum(f * v for f, v, same in zip(series[here], c, _alike(series, here, there), strict=True) if same)
@@ -34,8 +45,8 @@ def values(program: Program, name: str, series: Series, c: Sequence[np.ndarray])
 
 
 def on_vectors(program: Program, tag: str, vectors: Sequence[np.ndarray], D: Sequence[sp.Expr]) -> list[np.ndarray]:
-    """Forces on the vectors of a point from derivatives of twice the energy by their products: r1.r1, or r1.r1, r1.r2,
-    r2.r2.
+    """Return the forces on the vectors of a point from derivatives of twice the energy by their products: r1.r1, or
+    r1.r1, r1.r2, r2.r2.
     """
     if len(vectors) == 1:
         return [program.vector(f"F_{tag}", D[0] * vectors[0])]
@@ -45,7 +56,7 @@ def on_vectors(program: Program, tag: str, vectors: Sequence[np.ndarray], D: Seq
 
 
 def gathered(program: Program, name: str, series: Series, forces: Sequence[np.ndarray]) -> np.ndarray:
-    """Forces on the strain vectors (n, dim) from those on the vectors of the points."""
+    """Return the forces on the strain vectors (n, dim) from those on the vectors of the points."""
     total = np.zeros((len(series[0]), len(forces[0])), dtype=object)
     for here, there in _pairs(series):
         alike, opposite = forces[here], np.array(0)
@@ -59,7 +70,7 @@ def gathered(program: Program, name: str, series: Series, forces: Sequence[np.nd
 
 
 def _pairs(series: Series) -> list[tuple[int, int]]:
-    """Points that mirror each other; the middle one mirrors itself."""
+    """Return the points that mirror each other; the middle one mirrors itself."""
     return [(g, len(series) - 1 - g) for g in range((len(series) + 1) // 2)]
 
 

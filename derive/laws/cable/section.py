@@ -18,7 +18,7 @@ from ...codegen.program import DirectionalDerivative, Program, jacobian
 
 
 def resultants(law, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, w: sp.Expr, c0=None) -> tuple:
-    """Stages: force and moment in space, and strain; c0 of the stress-free shape where it is curved."""
+    """Return force and moment in space, and strain; c0 of the stress-free shape where it is curved."""
     program.stage("derivatives of the axis by x")
     r = [program.vector(f"r{order}", axis(law.gram, c, X, w, order)) for order in (1, 2, 3)]
     along = _along_x(r)
@@ -27,7 +27,7 @@ def resultants(law, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, 
                       (("a1", r[0].dot(r[0]) - 1), ("b", r[0].dot(r[1])), ("c", r[1].dot(r[1]))))
     kappa0 = sp.S.Zero
     if c0 is None:
-        at_point, k2, scale = law.measures(program, "", a1, b, squared)
+        at_point, k2, scale = law.measures(program, "", (a1, b, squared))
         axial, constant, strain = law.membrane(program, S, c, X, at_point)
         density = axial + S[1] * k2 / 2
     else:
@@ -50,7 +50,7 @@ def resultants(law, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, 
 
 
 def _along_x(r: list[np.ndarray]) -> dict[sp.Symbol, sp.Expr]:
-    """Derivatives by x of r', r''; r''' is not asked for."""
+    """Return the derivatives by x of r', r''; r''' is not asked for."""
     along = {s: 0 for s in r[2] if s.is_Symbol}
     return along | {s: v for near, far in pairwise(r) for s, v in zip(near, far, strict=True)}
 

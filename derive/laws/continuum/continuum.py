@@ -12,16 +12,17 @@ from functools import cached_property
 import numpy as np
 import sympy as sp
 
-from ...algebra import section_integrals as moments
+from ...algebra import section_integrals as integrals
 from ...algebra.gram import Gram
 from ...algebra.gram_tangent import blocks
 from ...codegen.program import Program
-from ...spec import Element
+from ...spec import Element, LawTraits
 from .section import Resultants
 
 NAME = "continuum"
 DOC = "St. Venant-Kirchhoff continuum, orthotropic, fully integrated"
 SOURCE = "eq 5-8"
+TRAITS = LawTraits("continuum")
 ROWS = {3: ("D11", "D22", "D33", "D12", "D13", "D23", "G12", "G13", "G23"), 2: ("D11", "D22", "D12", "G12")}
 
 
@@ -33,7 +34,7 @@ class Form:
 
     @cached_property
     def strain(self) -> dict[tuple[int, int], list]:
-        """E_ij = 1/2 sum_pairs strain[ij][p] (G - G0)_p, in the ring."""
+        """Return the Green strain (eq 6) over Gram pairs: E_ij = 1/2 sum_p strain[ij][p] (G - G0)_p, in the ring."""
         g, d = self.gram.gradient, range(self.gram.element.dim)
         return {(i, j): [g[a][i] * g[b][j] + (g[b][i] * g[a][j] if a != b else 0) for a, b in self.gram.pairs]
                 for i in d for j in d if i <= j}
@@ -52,7 +53,7 @@ class Form:
 
     @cached_property
     def form(self) -> dict[tuple[int, int], dict]:
-        """A over pairs (p, q): {(elastic constant, section moment, power of l): rational}, zeros left out.
+        """Return A over pairs (p, q): {(elastic constant, section moment, power of l): rational}, zeros left out.
 
         Shear enters as gamma = 2 E, so W = 1/2 sum D E_ii E_jj + 1/2 sum G gamma^2.
         """
@@ -66,7 +67,7 @@ class Form:
                         continue
                     integrand = self.strain[ij][p] * self.strain[kl][q]
                     if integrand not in products:
-                        products[integrand] = moments.over_element(integrand)
+                        products[integrand] = integrals.over_element(integrand)
                     weight = sp.QQ(1, 4) if ij[0] == ij[1] else sp.QQ(1)
                     for (m, power), value in products[integrand].items():
                         entry[k, m, power] = entry.get((k, m, power), 0) + weight * value
@@ -77,12 +78,12 @@ class Form:
 
     @cached_property
     def constants(self) -> list[tuple]:
-        """The different entries of A, in order of first use: the argument A of the kernels."""
+        """Return the different entries of A, in order of first use: the argument A of the kernels."""
         return list(dict.fromkeys(tuple(e.items()) for e in self.form.values()))
 
     @cached_property
     def index(self) -> dict[tuple[int, int], int]:
-        """Index into `constants` of each non-zero entry of A."""
+        """Return the index into `constants` of each non-zero entry of A."""
         place = {c: k for k, c in enumerate(self.constants)}
         return {pq: place[tuple(e.items())] for pq, e in self.form.items()}
 
@@ -90,25 +91,29 @@ class Form:
 class Continuum:
     """The law over an element's Gram products."""
 
-    name, doc, source, curved, set_up_kernel = NAME, DOC, SOURCE, False, "stiffness"
+    name, doc, source, set_up_kernel = NAME, DOC, SOURCE, "stiffness"
+
+    form: Form
 
     def __init__(self, gram: Gram):
         self.gram, self.form = gram, Form(gram)
 
     def constants(self, program: Program) -> np.ndarray:
-        """Input A."""
+        """Declare the input A, the different non-zero entries of the form in N m, and return it."""
         return program.input("A", len(self.form.constants), "N m",
                              f"elastic constants from {self.gram.element.name}_{NAME}_stiffness")
 
     def section_stiffness(self, program: Program) -> np.ndarray:
         """Input S: elastic constants integrated over the section, times even powers of y and z."""
         rows = ROWS[self.gram.element.dim]
-        return program.input("S", (len(rows), len(moments.SECTION)), "N, N m^2, N m^2, N m^4, N m^4, N m^4",
+        return program.input("S", (len(rows), len(integrals.SECTION)), "N, N m^2, N m^2, N m^4, N m^4, N m^4",
                              f"section stiffness: integrals over A of {', '.join(rows)} (rows; orthotropic, axes x, y, "
                              "z) times 1, y^2, z^2, y^4, y^2 z^2, z^4 (columns)")
 
     def set_up(self, program: Program) -> None:
-        """Inputs l, S and output A, for any doubly symmetric section and any orthotropic law, alike over it or not."""
+        """Declare the inputs l and S, and the output A. The section is any doubly symmetric one, the law any
+        orthotropic one, the same over the section or not.
+        """
         length = program.input("l", (), "m", "length of the element")
         S = self.section_stiffness(program)
         A = [sum(sp.Rational(int(c.numerator), int(c.denominator)) * S[k, m] * length**power
@@ -118,24 +123,24 @@ class Continuum:
                        "different non-zero entries of A")
 
     def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X, w, c0=None) -> tuple:
-        """Stages: force and moment in space, and strain, at X."""
+        """Return force and moment in space, and strain, at X."""
         section = Resultants(self.form, program, S, c, X, w)
         return section.force(), section.moment(), section.strain()
 
     def energy(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr) -> sp.Expr:
-        """U."""
+        """Return the elastic energy U = 1/2 (G - G0)' A (G - G0) (eq 7), J."""
         G = self._strain(program, A, c)
         return sum(a * b for a, b in zip(self._stress(program, A, G), G, strict=True)) / 2
 
     def forces(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr) -> np.ndarray:
-        """Stages: dU/dc on strain vectors."""
+        """Return the forces dU/dc on the strain vectors c (eq 8): (vectors, dim), N m."""
         u = self._stress(program, A, self._strain(program, A, c))
         program.stage("forces on strain vectors")
         return self.gram.vector_forces(program, c, u)
 
     def discrete_forces(self, program: Program, A: np.ndarray, now: np.ndarray, then: np.ndarray, w) -> np.ndarray:
-        """Stages: forces f on strain vectors with f . (then - now) = the difference of U: the stress of the mean
-        strain on the mean vectors (Simo & Tarnow, ZAMP 43 (1992) 757-792).
+        """Return forces f on strain vectors with f . (then - now) = the difference of U: the stress of the mean strain
+        on the mean vectors (Simo & Tarnow, ZAMP 43 (1992) 757-792).
         """
         G = [self._strain(program, A, c) for c in (now, then)]
         program.stage("mean strain and vectors")
@@ -148,8 +153,8 @@ class Continuum:
         return self.gram.vector_forces(program, c, u)
 
     def stress_of_turning(self, program: Program, A: np.ndarray, change: np.ndarray, w: sp.Expr) -> np.ndarray:
-        """Stages: blocks (n, n, 1, 1) over strain vectors that the mean stress of a step has more than the stress of
-        the mean vectors: of A times the Gram products of half the change.
+        """Return blocks (n, n, 1, 1) over strain vectors that the mean stress of a step has more than the stress of the
+        mean vectors: of A times the Gram products of half the change.
         """
         program.stage("Gram products of half the change")
         G = [program.define(f"G_{self.gram.pair(p)}", change[a].dot(change[b]) / 4)
@@ -161,11 +166,11 @@ class Continuum:
         return blocks
 
     def tangent(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr) -> np.ndarray:
-        """Stages: d2U/dc2 over strain vectors."""
+        """Return d2U/dc2 over strain vectors."""
         return blocks(self.gram, program, c, c, self._moduli(A), self._stress(program, A, self._strain(program, A, c)))
 
     def _strain(self, program: Program, A: np.ndarray, c: np.ndarray) -> list[sp.Expr]:
-        """Stage: Gram products, less those of the stress-free shape."""
+        """Return Gram products, less those of the stress-free shape."""
         program.stage("Gram products G - G0")
         return self.gram.gram(program, c)
 
@@ -188,22 +193,27 @@ class Continuum:
         return self._times(program, self._viscous_moduli(A), dG, tau), dG
 
     def damping_forces(self, program, A, tau, c, dc, w) -> np.ndarray:
-        """Forces on strain vectors."""
+        """Return the damping forces on the strain vectors, (vectors, dim), N m."""
         u, _ = self._viscous(program, A, tau, c, dc)
         program.stage("forces on strain vectors")
         return self.gram.vector_forces(program, c, u)
 
     @staticmethod
     def rates(element: Element) -> dict[str, int]:
-        """Number of strain rates that the damping of an element has, and whether a spin about the tangent is one."""
+        """Return the number of strain rates that the damping of an element has, and whether a spin about the tangent is
+        one.
+        """
         return {"rates": element.n_vectors * (element.n_vectors - 1) // 2, "spins": 0}
 
-    def algorithmic_forces(self, program, A, weight, known, c, dc, w) -> tuple[np.ndarray, Sequence[sp.Expr]]:
-        """Forces on strain vectors of the stiffnesses times weight dE - known, and dE: the rates that dc makes."""
+    def algorithmic_forces(self, program, A, weight, relaxed_strain, c, dc, w) -> tuple[np.ndarray, Sequence[sp.Expr]]:
+        """Return the forces on strain vectors of the stiffnesses times weight dE - relaxed_strain, and dE, the rates
+        that dc makes.
+        """
         program.stage("change of the Gram products")
         dG = self.gram.gram_rate(program, c, dc)
-        program.stage("u = A (weight dG - known)")
-        excess = [program.define(f"excess_{self.gram.pair(p)}", weight * d - known[p]) for p, d in enumerate(dG)]
+        program.stage("u = A (weight dG - relaxed_strain)")
+        excess = [program.define(f"excess_{self.gram.pair(p)}", weight * d - relaxed_strain[p])
+                  for p, d in enumerate(dG)]
         u = self._times(program, self._viscous_moduli(A), excess)
         program.stage("forces on strain vectors")
         return self.gram.vector_forces(program, c, u), dG
@@ -217,7 +227,7 @@ class Continuum:
         return blocks(self.gram, program, c, b, self._viscous_moduli(A), u)
 
     def dissipation(self, program, A, tau, c, dc, w) -> sp.Expr:
-        """Power."""
+        """Return the dissipated power, W."""
         u, dG = self._viscous(program, A, tau, c, dc)
         return sum(a * b for a, b in zip(u, dG, strict=True))
 

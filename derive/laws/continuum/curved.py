@@ -1,4 +1,4 @@
-"""St. Venant-Kirchhoff continuum with a curved stress-free shape e0 (eq 5): D = dr/dX with J0 = dr0/dx of e0.
+"""St. Venant-Kirchhoff continuum with a curved stress-free shape e0, eq 5: D = dr/dX with J0 = dr0/dx of e0.
 
 E = J0^-T (F'F - F0'F0)/2 J0^-1 is linear in G - G0 at every point, so the energy is the same quadratic form with a
 dense A and the G0 of e0. J0 is not a polynomial: A is a sum over points of the volume, each by the kernel
@@ -15,12 +15,14 @@ import sympy as sp
 from ...algebra.gram import DIRECTIONS, Gram
 from ...algebra.gram_point import by_section
 from ...codegen.program import Program
+from ...spec import LawTraits
 from .. import stress_free
 from .continuum import ROWS, Continuum, Form
 from .curved_point import Metric, at_point, columns, frame, voigt
 from .curved_section import resultants
 
 NAME = "continuum_curved"
+TRAITS = LawTraits("continuum", straight="continuum", takes_shape=True, damped_like="continuum")
 
 
 class DenseForm(Form):
@@ -35,7 +37,7 @@ class DenseForm(Form):
 
     @property
     def index(self) -> dict[tuple[int, int], int]:
-        """Index into A of its entries."""
+        """Return the index into A of its entries."""
         return self.places
 
 
@@ -43,14 +45,16 @@ class CurvedContinuum(Continuum):
     """The law with e0."""
 
     set_up_kernel = "stiffness_at"
-    name, doc, curved = NAME, "St. Venant-Kirchhoff continuum, orthotropic, its stress-free shape curved", True
+    name, doc = NAME, "St. Venant-Kirchhoff continuum, orthotropic, its stress-free shape curved"
+
+    form: DenseForm
 
     def __init__(self, gram: Gram):
         self.gram, self.straight = gram, Form(gram)
         self.form = DenseForm(gram, len(self.straight.constants))
 
     def constants(self, program: Program) -> np.ndarray:
-        """Input A."""
+        """Declare the input A: the straight law's constants, the form over Gram pairs in N m, and its G0; return it."""
         element = self.gram.element.name
         return program.input("A", self.form.stop + len(self.gram.pairs), "N m, 1",
                              f"A of {element}_continuum_stiffness; form over Gram pairs, summed over "
@@ -85,8 +89,9 @@ class CurvedContinuum(Continuum):
                        "1", "Gram products of e0, less those of a straight element")
 
     def _rows(self, program: Program, X, y, z, w) -> list[list[sp.Expr]]:
-        """Coefficients over the pairs of (F'F)_ii/2 and (F'F)_ij, in Voigt's order."""
-        rows, known = [], {}
+        """Return the coefficients over the pairs of (F'F)_ii/2 and (F'F)_ij, in Voigt's order."""
+        rows: list = []
+        known: dict = {}
         for i, j in voigt(self.gram.element.dim):
             row = []
             for polynomial in self.form.strain[i, j]:
@@ -100,7 +105,7 @@ class CurvedContinuum(Continuum):
         return rows
 
     def _strain(self, program: Program, A: np.ndarray, c: np.ndarray) -> list[sp.Expr]:
-        """Stages: Gram products, less those of the stress-free shape."""
+        """Return Gram products, less those of the stress-free shape."""
         G = super()._strain(program, A, c)
         program.stage("Gram products less those of e0")
         return [program.define(f"g_{self.gram.pair(p)}", value - A[self.form.stop + p]) for p, value in enumerate(G)]
@@ -109,5 +114,5 @@ class CurvedContinuum(Continuum):
         return {pq: A[k] for pq, k in self.straight.index.items()}
 
     def section_forces(self, program: Program, S: np.ndarray, c: np.ndarray, X, w, c0=None) -> tuple:
-        """Stages: force and moment in space, and strain, at X."""
+        """Return force and moment in space, and strain, at X."""
         return resultants(self.gram, self.form.elasticity, program, S, c, c0, X, w)

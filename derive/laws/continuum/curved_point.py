@@ -19,7 +19,7 @@ def voigt(dim: int) -> list[tuple[int, int]]:
 
 
 def columns(gram: Gram, c: np.ndarray, X: sp.Expr, w: sp.Expr) -> list[Expansion]:
-    """Columns of F as polynomials in y and z."""
+    """Return the columns of F as polynomials in y and z."""
     return [expansion([g[i] for g in gram.gradient], c, X, w) for i in range(gram.element.dim)]
 
 
@@ -30,7 +30,7 @@ def at_point(program: Program, name: str, F: list[Expansion], y: sp.Expr, z: sp.
 
 
 def frame(program: Program, F: list[Expansion], director: int) -> np.ndarray:
-    """Tangent frame of the axis, by columns."""
+    """Return the tangent frame of the axis, by columns."""
     tangent = program.vector("t0", F[0][0, 0])
     if len(F) == 2:
         i = unit(program, "i0", tangent)
@@ -39,7 +39,7 @@ def frame(program: Program, F: list[Expansion], director: int) -> np.ndarray:
 
 
 class Metric:
-    """N = (R' J0)^-1 and det J0 from J0 by columns, R the tangent frame of the stress-free axis."""
+    """N = (R' J0)^-1 and det J0 from J0 by columns, R the tangent frame of the stress-free axis: D = F N R' (eq 5)."""
 
     def __init__(self, program: Program, tag: str, R: np.ndarray, J0: list[np.ndarray]):
         self.program, self.dim = program, len(J0)

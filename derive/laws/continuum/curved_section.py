@@ -21,7 +21,7 @@ from .curved_point import Metric, at_point, columns, frame, voigt
 
 def resultants(gram: Gram, elasticity: Mapping, program: Program, S: np.ndarray, c: np.ndarray, c0: np.ndarray,
                X: sp.Expr, w: sp.Expr) -> tuple:
-    """Stages: force and moment in space, and strain."""
+    """Return force and moment in space, and strain."""
     dim = gram.element.dim
     program.stage("columns of F and J0, and the arm, as polynomials in y and z")
     F, F0 = (_named(program, name, columns(gram, vectors, X, w)) for name, vectors in (("F", c), ("F0", c0)))
@@ -56,7 +56,7 @@ def _points(program: Program, S: np.ndarray, dim: int) -> list[tuple]:
     program.stage("points of the section")
     (y, per_y), (z, per_z) = (_place(program, name, S[0, second], S[0, fourth])
                               for name, second, fourth in (("y", 1, 3), ("z", 2, 5)))
-    integrals = []
+    integrals: list[tuple] = []
     for k, row in enumerate(S):
         of_y, of_z, both = program.define(f"D{k}_y", row[1] * per_y), sp.S.Zero, sp.S.Zero
         if dim == 3:
@@ -74,7 +74,7 @@ def _points(program: Program, S: np.ndarray, dim: int) -> list[tuple]:
 
 
 def _place(program: Program, name: str, second: sp.Expr, fourth: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
-    """Where points have both moments, and the inverse of its square."""
+    """Return where points have both moments, and the inverse of its square."""
     square = program.define(f"{name}2", fourth / second)
     return program.define(name, sp.sqrt(square)), program.define(f"per_{name}2", 1 / square)
 

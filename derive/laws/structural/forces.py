@@ -9,7 +9,7 @@ import sympy as sp
 
 from ...algebra.tangent_frame import spatial
 from ...codegen.program import DirectionalDerivative
-from .midspan_strains import Middle
+from .midspan_strains import MidspanStrains
 from .structural import Configuration
 
 ZERO = sp.S.Zero
@@ -36,7 +36,7 @@ class Velocity:
         self.rate = DirectionalDerivative(program, "v", {s: program.define(f"v_{s.name}", r) for s, r in rates.items()})
 
     def strains(self) -> list[sp.Expr]:
-        """Rates of the strains."""
+        """Return the rates of the strains."""
         configuration, program = self.configuration, self.configuration.program
         n = len(configuration.strains) - 2 * len(configuration.law.across)
         found = [self.rate(s) for s in configuration.strains[:n]]
@@ -46,7 +46,9 @@ class Velocity:
 
 
 def across(configuration: Configuration) -> dict[int, list[tuple[int, int, int]]]:
-    """Strains of the section by index: their gradients by director i of a node are its director j, as (node, i, j)."""
+    """Return the strains of the section by index: their gradients by director i of a node are its director j, as (node,
+    i, j).
+    """
     law = configuration.law
     first = len(configuration.strains) - 2 * len(law.across)
     return {first + n * len(law.across) + p: [(n, a - 1, b - 1) for a, b in dict.fromkeys(((i, j), (j, i)))]
@@ -56,7 +58,7 @@ def across(configuration: Configuration) -> dict[int, list[tuple[int, int, int]]
 class Forces:
     """Generalised forces of resultants: on r_x at the three places, moments on the frames, forces on the directors.
 
-    V is the sum of resultants times strains, the resultants held: its derivatives by a motion of the parts are the
+    V is the sum of resultants times strains, the resultants constant: its derivatives by a motion of the parts are the
     forces.
     """
 
@@ -64,7 +66,8 @@ class Forces:
         self.configuration, self.program, self.law = configuration, configuration.program, configuration.law
         self.resultants, n = resultants, len(self.law.axes)
         self.program.stage("forces on the parts")
-        self.middle = Middle(configuration, [*resultants[n:2 * n], *resultants[3 * n:3 * n + len(self.law.spins)]])
+        curvature = slice(3 * n, 3 * n + len(self.law.spins))
+        self.midspan = MidspanStrains(configuration, [*resultants[n:2 * n], *resultants[curvature]])
         self.by_part = self._by_part()
         along = [sum((d * motion[s] for s, d in self.by_part.items()), ZERO) for motion in configuration.motions]
         self.slopes = [self.program.vector(f"f_x{tag}", along[place * n:(place + 1) * n])
@@ -75,21 +78,22 @@ class Forces:
                           for node, frame in enumerate(configuration.frames)]
 
     @property
-    def held(self) -> dict[sp.Symbol, sp.Expr]:
-        """Resultants, which V does not differentiate."""
+    def constant_resultants(self) -> dict[sp.Symbol, sp.Expr]:
+        """Return the resultants, which V does not differentiate."""
         return {r: ZERO for r in self.resultants if r.is_Symbol}
 
     def _by_part(self) -> dict[sp.Symbol, sp.Expr]:
         """dV by each scalar part."""
         configuration, n = self.configuration, len(self.law.axes)
-        by_scalar, values = dict(zip(self.middle.scalars, self.middle.gradient, strict=True)), {}
+        by_scalar = dict(zip(self.midspan.scalars, self.midspan.gradient, strict=True))
+        values: dict[sp.Symbol, sp.Expr] = {}
         for i in self.law.axes:
             values |= {configuration.along[node][i]: self.resultants[2 * n * node + i] for node in range(2)}
             values |= {p[i]: by_scalar[configuration.mean[i]] / 2 for p in configuration.between}
         return values | {g: by_scalar[g] for g in configuration.gibbs if g.is_Symbol}
 
     def nodal(self) -> np.ndarray:
-        """Stage: forces on the nodal vectors."""
+        """Return forces on the nodal vectors."""
         own = {("x", 0): self.slopes[0], ("x", 1): self.slopes[1], ("x", 2): self.slopes[2]}
         own |= {(name, n): force for n, forces in enumerate(self.directors)
                 for name, force in zip("yz", forces, strict=True)}
@@ -106,7 +110,7 @@ class Forces:
 
     @property
     def slots(self) -> list[list[tuple[Slot, sp.Expr]]]:
-        """What each nodal vector moves: r_x at a place, or a director of a node; and how much."""
+        """Return what each nodal vector moves: r_x at a place, or a director of a node; and how much."""
         found = []
         for k, name in enumerate(self.law.element.names):
             vector, node = name.partition("_")[2][:-1], int(name[-1]) - 1

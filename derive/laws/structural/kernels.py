@@ -22,8 +22,8 @@ from .structural import Configuration, Structural
 from .tangent import Tangent
 
 
-def build(element: Element, law: str) -> list[Program]:
-    """Every kernel of the law on an element."""
+def build(element: Element) -> list[Program]:
+    """Return every kernel of the law on an element."""
     kernels = Kernels(element)
     return [kernels.stiffness(), kernels.energy(), kernels.elastic_force(), kernels.elastic_tangent(),
             kernels.damping_force(), kernels.damping_tangent(), kernels.dissipation(), kernels.section_forces()]
@@ -41,7 +41,7 @@ class Kernels:
     def _inputs(self, program: Program, *names: str) -> tuple:
         """Inputs l, e, A, or l, e, v, A, tau."""
         shape = (self.element.n_vectors, self.element.dim)
-        about = {"e": ("m, 1", "nodal vectors (eq 1)"), "v": ("m/s, 1/s", "rates of the nodal vectors")}
+        about = {"e": ("m, 1", "nodal vectors e, eq 1"), "v": ("m/s, 1/s", "rates of the nodal vectors")}
         length = program.input("l", (), "m", "length of the element")
         vectors = [program.input(name, shape, *about[name]) for name in names]
         return (length, *vectors, self.law.constants(program))
@@ -57,13 +57,13 @@ class Kernels:
         return A[self.law.n_stiffness:self.law.n_constants]
 
     def stiffness(self) -> Program:
-        """The law's constants."""
+        """Return the kernel of the law's constants A."""
         p = self._program("stiffness", "constants of the law from the stiffness of the section and the reference")
         self.law.set_up(p)
         return p
 
     def energy(self) -> Program:
-        """Half of strains times resultants."""
+        """Return the kernel of the elastic energy, half of strains times resultants, J."""
         p = self._program("energy", "elastic energy")
         length, e, A = self._inputs(p, "e")
         strains = self.law.from_reference(p, A, self._configuration(p, e, length, self._shares(A)).strains)
@@ -72,7 +72,7 @@ class Kernels:
         return p
 
     def elastic_force(self) -> Program:
-        """dU/de."""
+        """Return the kernel of the force dU/de, N and N m."""
         p = self._program("elastic_force", "dU/de, minus the elastic force Q_k")
         length, e, A = self._inputs(p, "e")
         configuration = self._configuration(p, e, length, self._shares(A))
@@ -81,7 +81,7 @@ class Kernels:
         return p
 
     def elastic_tangent(self) -> Program:
-        """d2U/de2."""
+        """Return the kernel of the tangent d2U/de2."""
         p = self._program("elastic_tangent", "d2U/de2")
         length, e, A = self._inputs(p, "e")
         configuration = self._configuration(p, e, length, self._shares(A))
@@ -116,7 +116,7 @@ class Kernels:
         return p
 
     def dissipation(self) -> Program:
-        """Rates of strain times viscous resultants."""
+        """Return the rates of strain times viscous resultants."""
         p = self._program("dissipation", "power dissipated by the damping force")
         length, e, v, A = self._inputs(p, "e", "v")
         rates = Velocity(self._configuration(p, e, length, self._shares(A)), v).strains()
@@ -125,11 +125,11 @@ class Kernels:
         return p
 
     def section_forces(self) -> Program:
-        """What passes through the section at x from the side of greater x."""
+        """Return what passes through the section at x from the side of greater x."""
         p = self._program("section_forces", "force and moment resultants of a section")
         length, x = p.input("l", (), "m", "length of the element"), p.input("x", (), "m", "arc-length from its start")
         shape = (self.element.n_vectors, self.element.dim)
-        e, S = p.input("e", shape, "m, 1", "nodal vectors (eq 1)"), self.law.section_stiffness(p)
+        e, S = p.input("e", shape, "m, 1", "nodal vectors e, eq 1"), self.law.section_stiffness(p)
         e0 = stress_free.shape(p, self.element)
         shares = self.law.shares(p, S, length)
         now, before = (self._configuration(p, vectors, length, shares).strains for vectors in (e, e0))
@@ -156,7 +156,7 @@ class Kernels:
         return p
 
     def _stiffness(self, program: Program, A: np.ndarray, scale: sp.Expr) -> list[sp.Expr]:
-        """Stage: section stiffness, and what the bubbles take off, times l, or another scale."""
+        """Return section stiffness, and what the bubbles take off, times l, or another scale."""
         program.stage("stiffness of the element")
         return [program.define(f"S_{i}", scale * A[i]) for i in range(self.law.n_stiffness)]
 

@@ -17,8 +17,8 @@ from .structural import Configuration
 ZERO = sp.S.Zero
 
 
-class Middle:
-    """V, the sum of resultants times strains half way, the resultants held, and its derivatives by the scalars.
+class MidspanStrains:
+    """V, the sum of resultants times strains half way, the resultants constant, and its derivatives by the scalars.
 
     strains (strains, scalars) and gradient (scalars) are named expressions.
     """
@@ -26,9 +26,9 @@ class Middle:
     def __init__(self, configuration: Configuration, resultants: Sequence[sp.Expr]):
         self.program, self.components = configuration.program, configuration.components
         self.scalars = [s for s in (*configuration.mean, *configuration.gibbs) if s.is_Symbol]
-        held, n = {r: ZERO for r in resultants if r.is_Symbol}, len(self.components)
+        constant, n = {r: ZERO for r in resultants if r.is_Symbol}, len(self.components)
         self.by_component, self.by_scalar = (
-            [DirectionalDerivative(self.program, f"d_{s.name}", held | dict.fromkeys(symbols, ZERO) | {s: sp.S.One})
+            [DirectionalDerivative(self.program, f"d_{s.name}", constant | dict.fromkeys(symbols, ZERO) | {s: sp.S.One})
              for s in symbols] for symbols in (self.components, self.scalars))
         along, curvature = configuration.middle[:n], configuration.middle[n:]
         by_component = self._named("d", _columns(self.by_component, along))
@@ -44,7 +44,7 @@ class Middle:
         return np.array(named, dtype=object).reshape(values.shape)
 
     def hessian(self) -> np.ndarray:
-        """Second derivatives of V by the scalars."""
+        """Return the second derivatives of V by the scalars."""
         forces = self._symmetric("F", _columns(self.by_component, self.forces))
         moved = self._named("dF", forces.dot(self.turned))
         for by, rates in zip(self.by_scalar, moved.T, strict=True):
@@ -52,10 +52,10 @@ class Middle:
         return self._symmetric("V", _columns(self.by_scalar, self.gradient))
 
     def _symmetric(self, name: str, values: np.ndarray) -> np.ndarray:
-        """The upper half, named, on both sides."""
+        """Return the upper half, named, on both sides."""
         upper = self._named(name, np.triu(values))
         return upper + np.triu(upper, 1).T
 
 
-def _columns(derivations: Sequence[DirectionalDerivative], values: Sequence[sp.Expr]) -> np.ndarray:
+def _columns(derivations: Sequence[DirectionalDerivative], values: Sequence[sp.Expr] | np.ndarray) -> np.ndarray:
     return np.stack([by.array(np.array(values)) for by in derivations], axis=-1)

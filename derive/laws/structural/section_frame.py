@@ -14,7 +14,9 @@ from ...codegen.program import Program
 
 
 def turned(k: int, values: np.ndarray) -> np.ndarray:
-    """Rates under a unit spin about axis k: of the frame's vectors, or of components along them of a fixed vector."""
+    """Return the rates under a unit spin about axis k: of the frame's vectors, or of components along them of a fixed
+    vector.
+    """
     rate = np.zeros_like(values) + sp.S.Zero
     i, j = (k + 1) % 3, (k + 2) % 3
     rate[i], rate[j] = values[j], -values[i]
@@ -37,19 +39,20 @@ class SectionFrame:
         self.slant = program.define(f"slant{tag}", self.b * self.inverse_c)
 
     def spin(self, dy: np.ndarray, dz: np.ndarray) -> np.ndarray:
-        """Components in the frame of its spin, when the directors move: from dt2 = spin x t2 and z.t1 = 0."""
+        """Return the components in the frame of its spin, when the directors move: from dt2 = spin x t2 and z.t1 = 0.
+        """
         t1, _, t3 = self.t
         about1, about3 = self.inverse_a * t3.dot(dy), -self.inverse_a * t1.dot(dy)
         return np.array([about1, self.inverse_c * t1.dot(dz) + self.slant * about3, about3])
 
     def forces(self, program: Program, tag: str, moment: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Forces on y and z that do the work of a moment, its components in the frame, on every spin."""
+        """Return the forces on y and z that do the work of a moment, its components in the frame, on every spin."""
         t1, _, t3 = self.t
         along1 = program.define(f"y1_{tag}", -self.inverse_a * (moment[2] + self.slant * moment[1]))
         along3 = program.define(f"y3_{tag}", self.inverse_a * moment[0])
         return along1 * t1 + along3 * t3, program.define(f"z1_{tag}", self.inverse_c * moment[1]) * t1
 
-    def rates(self, spin: np.ndarray, dy: np.ndarray, dz: np.ndarray) -> dict[sp.Symbol, sp.Expr]:
+    def rates(self, spin: np.ndarray | list, dy: np.ndarray, dz: np.ndarray) -> dict[sp.Symbol, sp.Expr]:
         """Of everything named here, when the directors move."""
         _, t2, t3 = self.t
         db, dc = dz.dot(t2) + self.c * spin[0], dz.dot(t3) - self.b * spin[0]

@@ -33,7 +33,7 @@ import sympy as sp
 
 from ...algebra.tangent_frame import spatial
 from ...codegen.program import Program
-from ...spec import Element, l, x, y, z
+from ...spec import Element, LawTraits, l, x, y, z
 from .. import stress_free
 from .section_frame import SectionFrame, turned
 
@@ -42,7 +42,7 @@ DOC = "beam with Reissner's strains, its section's frame from the directors, fre
 SOURCE = ("Reissner, ZAMP 23 (1972) 795-804; Simo, CMAME 49 (1985) 55-70; Nachbagauer, Gruber & Gerstmayr, "
           "J. Comput. Nonlinear Dyn. 8 (2013) 021004; rotation between nodes: Crisfield & Jelenic, Proc. R. Soc. A 455 "
           "(1999) 1125-1147")
-
+TRAITS = LawTraits("structural", takes_shape=True)
 
 X = sp.Symbol("X")
 PLACES = (-1, 0, 1)  # X of the first node, half way, the second node
@@ -87,7 +87,7 @@ class Structural:
 
     @property
     def n_section(self) -> int:
-        """Length of S."""
+        """Return the length of S."""
         return len(self.axes) + len(self.spins) + len(self.across)
 
     @property
@@ -97,7 +97,7 @@ class Structural:
 
     @property
     def n_constants(self) -> int:
-        """Length of A without the reference: stiffness, and how much of each shear half way is stretch."""
+        """Return the length of A without the reference: stiffness, and how much of each shear half way is stretch."""
         return self.n_stiffness + len(self.shears)
 
     @property
@@ -106,7 +106,7 @@ class Structural:
         return 3 * len(self.axes) + len(self.spins) + 2 * len(self.across)
 
     def section_stiffness(self, program: Program) -> np.ndarray:
-        """Input S."""
+        """Declare the input S (n_section,), the stiffness of the section, and return it."""
         if self.element.dim == 3:
             return program.input("S", self.n_section, "N, N m^2",
                                  "section stiffness: EA, GA_y, GA_z, GJ, EI_yy, EI_zz; against r_y.r_y/2, r_z.r_z/2, "
@@ -114,12 +114,14 @@ class Structural:
         return program.input("S", self.n_section, "N, N m^2", "section stiffness: EA, GA, EI; against r_y.r_y/2")
 
     def constants(self, program: Program) -> np.ndarray:
-        """Input A: S, stiffness that the bubble takes off the shears, shares of stretch, reference strains."""
+        """Declare the input A and return it: S, stiffness that the bubble takes off the shears, shares of stretch,
+        strains of the reference.
+        """
         return program.input("A", self.n_constants + self.n_strains, "N, N m^2, 1, 1/m",
                              f"constants from {self.element.name}_{NAME}_stiffness")
 
     def set_up(self, program: Program) -> None:
-        """Inputs l, e0, S and output A."""
+        """Declare the inputs l, e0 and S, and the output A."""
         length = program.input("l", (), "m", "length of the element")
         e0 = stress_free.shape(program, self.element)
         S = self.section_stiffness(program)
@@ -132,15 +134,15 @@ class Structural:
                        "S, stiffness that the bubble takes off the shears, shares of stretch in the shears half way, "
                        "reference strains")
 
-    def shares(self, program: Program, S: Sequence[sp.Expr], length: sp.Expr) -> list[sp.Expr]:
-        """Stage: how much of each shear half way is stretch, since the bubble turns the section."""
+    def shares(self, program: Program, S: Sequence[sp.Expr] | np.ndarray, length: sp.Expr) -> list[sp.Expr]:
+        """Return how much of each shear half way is stretch, since the bubble turns the section."""
         program.stage("stretch of the bubble")
         left = [program.define(f"left_{i}", 1 - S[i] * BUBBLE_SQUARED / self._bubble_stiffness(S, i, length))
                 for i in self.shears]
         return [program.define(f"share_{i}", sp.sqrt(BUBBLE_AS_STRAIN * (1 - c**2)))
                 for i, c in zip(self.shears, left, strict=True)]
 
-    def bending(self, S: Sequence[sp.Expr], shear: int) -> sp.Expr:
+    def bending(self, S: Sequence[sp.Expr] | np.ndarray, shear: int) -> sp.Expr:
         """Stiffness of the bending that goes with a shear: about z with y, about y with z."""
         return S[len(self.axes) + list(self.spins).index(3 - shear)]
 
@@ -158,20 +160,20 @@ class Structural:
     # --- the energy, a quadratic form in the strains ----------------------------------------------------------
 
     def from_reference(self, program: Program, A: np.ndarray, strains: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """Stage: strains less those of the reference."""
+        """Return strains less those of the reference."""
         program.stage("strains from the reference")
         return [program.define(f"d_{name}", s - A[self.n_constants + i])
                 for i, (name, s) in enumerate(zip(self.names, strains, strict=True))]
 
     @cached_property
     def names(self) -> list[str]:
-        """Of the strains."""
+        """Return the names of the strains."""
         return ([f"e{i + 1}_{place}" for place in ("1", "m", "2") for i in self.axes]
                 + [f"k{k + 1}" for k in self.spins]
                 + [f"e{'xyz'[i]}{'xyz'[j]}_{n}" for n in (1, 2) for i, j in self.across])
 
     def resultants(self, stiffness: Sequence[sp.Expr], strains: Sequence[sp.Expr]) -> list[sp.Expr]:
-        """Derivatives of the form by the strains, times l; linear in the strains."""
+        """Return the derivatives of the form by the strains, times l; linear in the strains."""
         n, m = len(self.axes), len(self.spins)
         found: list[sp.Expr] = [sp.S.Zero] * self.n_strains
         for i in self.axes:
@@ -211,7 +213,7 @@ class Structural:
                 turn[3 - i] = program.define(f"turn_{3 - i + 1}", sign * bubble * BUBBLE.subs(X, at) / 2)
         return [program.define(f"at_{'ek'[i // 3]}{i % 3 + 1}", f) for i, f in enumerate(found)], turn
 
-    def spatial_stiffness(self, S: Sequence[sp.Expr]) -> list[sp.Expr]:
+    def spatial_stiffness(self, S: Sequence[sp.Expr] | np.ndarray) -> list[sp.Expr]:
         """EA, GA_y, GA_z, GJ, EI_yy, EI_zz; of a planar element those that it has."""
         return list(S[:6]) if self.element.dim == 3 else [S[0], S[1], *[sp.S.Zero] * 3, S[2]]
 
@@ -256,7 +258,7 @@ class Configuration:
                         *(self.along[1][i] for i in law.axes), *self.middle[len(law.axes):], *self._across()]
 
     def half_way(self, e: np.ndarray, tag: str = "") -> np.ndarray:
-        """Stage: r_x half way, through the chord, from nodal vectors or their rates."""
+        """Return r_x half way, through the chord, from nodal vectors or their rates."""
         positions = self.law.element.is_position
         chord = [self.program.vector(f"chord{tag}{k}", (e[k] - e[0]) * self.w) if v and k else e[k]
                  for k, v in enumerate(positions)]
@@ -301,22 +303,24 @@ class Configuration:
 
     @property
     def parts(self) -> list[sp.Symbol]:
-        """What motions move: frames, components of r_x, the rotation between the frames."""
+        """Return what motions move: frames, components of r_x, the rotation between the frames."""
         values = [*(f.t for f in self.frames), *self.along, *self.between, self.gibbs]
         return [s for v in values for s in v.ravel() if s.is_Symbol]
 
     @cached_property
     def motions(self) -> list[dict[sp.Symbol, sp.Expr]]:
-        """Rates of the parts when r_x at each place moves along x, y, z, then under unit spins of each frame."""
+        """Return the rates of the parts when r_x at each place moves along x, y, z, then under unit spins of each
+        frame.
+        """
         return ([m for place in range(3) for m in self._stretches(place)]
                 + [m for node in range(2) for m in self._turns(node)])
 
     def stretch(self, place: int, axis: int) -> int:
-        """Index of a motion of r_x."""
+        """Return the index of a motion of r_x."""
         return place * len(self.law.axes) + axis
 
     def turn(self, node: int, spin: int) -> int:
-        """Index of a spin about an axis of the frame, which may be any of `spins`."""
+        """Return the index of a spin about an axis of the frame, which may be any of `spins`."""
         return 3 * len(self.law.axes) + node * len(self.law.spins) + list(self.law.spins).index(spin)
 
     def _stretches(self, place: int) -> list[dict[sp.Symbol, sp.Expr]]:

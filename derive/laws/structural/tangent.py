@@ -42,21 +42,23 @@ class Tangent(Forces):
         self.parts = np.full((count, count), ZERO, dtype=object)
         forces = np.array([*(f for slope in self.slopes for f in slope),
                            *(moment[k] for moment in self.moments for k in self.law.spins)])
-        hessian = self.middle.hessian()
+        hessian = self.midspan.hessian()
         for column in [*(configuration.stretch(1, i) for i in self.law.axes), *range(first, count)]:
             motion = configuration.motions[column]
             moved = self._scalars_moved[column]
             by_scalar = {v: self.program.define(f"dV_{s.name}_{column}", row.dot(moved))
-                         for v, s, row in zip(self.middle.gradient, self.middle.scalars, hessian, strict=True)}
-            rate = DirectionalDerivative(self.program, f"turn{column}", self.held | motion | by_scalar)
+                         for v, s, row in zip(self.midspan.gradient, self.midspan.scalars, hessian, strict=True)}
+            rate = DirectionalDerivative(self.program, f"turn{column}", self.constant_resultants | motion | by_scalar)
             for row in range(column + 1):
                 self.parts[row, column] = self.program.define(f"P_{row}_{column}", rate(forces[row]))
         self._mirror()
-        self.velocity, self.late, self.across = None, None, {}
+        self.velocity: Velocity | None = None
+        self.late: np.ndarray | None = None
+        self.across: dict[tuple[Slot, Slot], np.ndarray] = {}
 
     @cached_property
     def _scalars_moved(self) -> list[np.ndarray]:
-        """Rates of the scalars of the middle by motion."""
+        """Return the rates of the scalars of the middle by motion."""
         return [self._moved_by(motion) for motion in self.configuration.motions]
 
     def _moved_by(self, motion: dict[sp.Symbol, sp.Expr]) -> np.ndarray:
@@ -123,12 +125,12 @@ class Tangent(Forces):
                          for rows in zip(K, form, strict=True)])
 
     def _strain_motions(self) -> np.ndarray:
-        """Strains by motions of the parts: (strains, motions); those of the section do not see them."""
+        """Return the strains by motions of the parts: (strains, motions); those of the section do not see them."""
         configuration, n = self.configuration, len(self.law.axes)
         B = np.full((self.law.n_strains, len(configuration.motions)), ZERO, dtype=object)
         for column, motion in enumerate(configuration.motions):
             values = [self.program.define(f"B_{row}_{column}", v)
-                      for row, v in enumerate(self.middle.strains.dot(self._scalars_moved[column]))]
+                      for row, v in enumerate(self.midspan.strains.dot(self._scalars_moved[column]))]
             for i in self.law.axes:
                 for node in range(2):
                     B[2 * n * node + i, column] = motion[configuration.along[node][i]]
@@ -137,7 +139,7 @@ class Tangent(Forces):
         return B
 
     def nodal(self) -> np.ndarray:
-        """Stages: over directors, then over the nodal vectors -> (n, n)."""
+        """Return the tangent (n, n): over the directors first, then over the nodal vectors."""
         symmetric = self.velocity is None
         self.program.stage("over r_x at the three places and directors")
         places = [("x", place) for place in range(3)]
@@ -151,7 +153,7 @@ class Tangent(Forces):
         return self._over_nodes(K, symmetric)
 
     def _moved(self, slot: Slot, j: int) -> Moved:
-        """When component j of r_x at a place or of a director moves."""
+        """Return what changes when component j of r_x at a place or of a director moves."""
         configuration, program = self.configuration, self.program
         vector, n = slot
         if vector == "x":
@@ -163,7 +165,7 @@ class Tangent(Forces):
                              for k, s in enumerate(configuration.frames[n].spin(*pair))])
             columns = np.array([configuration.turn(n, k) for k in self.law.spins])
             changes = self.parts[:, columns].dot(spin[list(self.law.spins)])
-            if self.velocity:
+            if self.velocity and self.late is not None:
                 late = np.array([program.define("dW", self.velocity.rate(spin[k])) for k in self.law.spins])
                 changes = changes + self.late[:, columns - configuration.turn(0, self.law.spins[0])].dot(late)
             rates = configuration.frames[n].rates(spin, *pair)
@@ -177,7 +179,7 @@ class Tangent(Forces):
         return Moved(changes, by_node)
 
     def _block(self, of: Slot, to: Slot, moved: list[Moved], symmetric: bool) -> np.ndarray:
-        """Derivative of the force on one slot by another, (dim, dim)."""
+        """Return the derivative of the force on one slot by another, (dim, dim)."""
         dim, (vector, n) = self.law.element.dim, of
         name = f"K_{vector}{n + 1}_{to[0]}{to[1] + 1}"
         block = np.full((dim, dim), ZERO, dtype=object)

@@ -1,1 +1,24 @@
-"""What no motion of the frame may change."""
+"""What no motion of the frame may change in a kernel: by role of the family, each as (text, error, ceiling).
+
+The error is relative to the scale that the text's quantity has in the sample.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from ...codegen.family import Family
+from ..numbers import Numbers, State
+from . import body, element, frame, joint, law, modal, resistance, slide
+from .measures import Invariance
+
+OF_ROLE: dict[str, Callable[[Any, Numbers, State], Iterator[Invariance]]] = {
+    "element": element.element, "law": law.law, "slide": slide.slide, "body": body.body, "modal": modal.modal,
+    "frame": frame.frame, "joint": joint.joint, "resistance": resistance.resistance}
+
+
+def invariances(family: Family, k: Numbers, states: list[State]) -> Iterator[Invariance]:
+    """Yield the invariances of a family at each of its states; the caller keeps the worst of each."""
+    for s in states:
+        yield from OF_ROLE[family.role](family, k, s)

@@ -6,16 +6,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...spec import Family
+from ...codegen.family import SlideFamily
 from ..motion import RIDERS, swung
 from ..numbers import EPS, Numbers, State
-from .element import FAR, Invariance, quantised, relative
+from .measures import FAR, Invariance, quantised, relative
 
 _OUTPUTS = ("C", "C_s", "s_rate", "Q_d", "W", "s_bias")
 
 
-def slide(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
-    """Motions that keep the joint; frame; digits; forces."""
+def slide(family: SlideFamily, k: Numbers, s: State) -> Iterator[Invariance]:
+    """Yield motions that keep the joint, turned frames, digits far away, and equilibrium of forces."""
     A = k("constraint", s)["A_t"]
     yield "A_t' A_t = I", relative(A.T @ A - np.eye(len(A)), 1), 8 * EPS
     yield "A_t right-handed", abs(np.linalg.det(A) - 1), 8 * EPS
@@ -28,7 +28,7 @@ def slide(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
     yield from _step(family, k, s, n_e)
 
 
-def _kept(family: Family, k: Numbers, s: State, n_e: int) -> Iterator[Invariance]:
+def _kept(family: SlideFamily, k: Numbers, s: State, n_e: int) -> Iterator[Invariance]:
     """On the joint, any velocity of the cable, any turning, any speed of sliding: H has to be blind to it."""
     gap = k("residual", s)["phi"]
     b = s["b"].copy()
@@ -53,8 +53,8 @@ def _kept(family: Family, k: Numbers, s: State, n_e: int) -> Iterator[Invariance
         yield "H'H is the same for any director", relative(H.T @ H - out["H"].T @ out["H"], H.T @ H), 64 * EPS
 
 
-def _frame(family: Family, k: Numbers, s: State, out: dict, n_e: int) -> Iterator[Invariance]:
-    """The whole scene turned: components in the tangent frame do not see it; moved far away: not one digit."""
+def _frame(family: SlideFamily, k: Numbers, s: State, out: dict, n_e: int) -> Iterator[Invariance]:
+    """Yield what a turn of the whole scene changes in the tangent frame, and what a move far away changes."""
     element, rider = family.element, RIDERS[family.rider]
     positions = np.array(element.is_position, dtype=float)
     Q, turn = rider.frame(np.random.default_rng(3))
@@ -86,7 +86,7 @@ def _frame(family: Family, k: Numbers, s: State, out: dict, n_e: int) -> Iterato
         yield "same digits at 10⁴ lengths", max(float(np.max(np.abs(here[n] - there[n]))) for n in here), 0.0
 
 
-def _step(family: Family, k: Numbers, s: State, n_e: int) -> Iterator[Invariance]:
+def _step(family: SlideFamily, k: Numbers, s: State, n_e: int) -> Iterator[Invariance]:
     """Momenta over a step: what the joint's force does to cable and rider, about the rider's mean place."""
     element, rider = family.element, RIDERS[family.rider]
     dim, positions = element.dim, np.array(element.is_position, dtype=float)
@@ -102,7 +102,7 @@ def _step(family: Family, k: Numbers, s: State, n_e: int) -> Iterator[Invariance
         yield "step: no net moment of the joint", relative(np.sum(turning * on_cable) + row, forces), 32 * EPS
 
 
-def _forces(family: Family, k: Numbers, s: State, n_e: int) -> Iterator[Invariance]:
+def _forces(family: SlideFamily, k: Numbers, s: State, n_e: int) -> Iterator[Invariance]:
     element, rider = family.element, RIDERS[family.rider]
     g, out = k("residual", s)["g"], k("tangent", s)
     positions = np.array(element.is_position, dtype=float)

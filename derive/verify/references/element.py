@@ -23,7 +23,7 @@ mp = mpmath.mp
 
 @lru_cache
 def gauss(n: int) -> tuple[tuple, ...]:
-    """Points and weights on [-1, 1], Newton from the double values."""
+    """Return the points and weights on [-1, 1], Newton from the double values."""
     rule = []
     with mpmath.workdps(DIGITS + 10):
         for start in np.polynomial.legendre.leggauss(n)[0]:
@@ -63,7 +63,9 @@ class Shape:
         return np.stack([self(at, by) for by in np.eye(3, dtype=int)[: self.element.dim].tolist()], axis=1)
 
     def points(self, height, width) -> list[tuple[tuple, object]]:
-        """Points and weights of a rectangle times the length, exact for the energy and for the kinetic energy."""
+        """Return the points and weights of a rectangle times the length, exact for the energy and for the kinetic
+        energy.
+        """
         highest = np.max(self.powers, axis=0)
         rules = [gauss(2 * int(d) + 1) for d in highest]
         half = (self.l / 2, mp.mpf(height) / 2, mp.mpf(width) / 2)
@@ -84,14 +86,14 @@ def _monomial(powers, by, at):
 
 
 def mass(element: Element, s) -> np.ndarray:
-    """eq 4 by quadrature."""
+    """Return the mass matrix m of eq 4 by quadrature."""
     shape = Shape(element, s["l"].item())
     return s["density"].item() * sum(weight * np.outer(N := shape(at), N) for at, weight in
                                      shape.points(*s["rectangle"]))
 
 
 def gravity(element: Element, s) -> np.ndarray:
-    """Work of gravity on the nodal vectors by quadrature."""
+    """Return the generalised force of gravity by quadrature."""
     shape = Shape(element, s["l"].item())
     weights = sum(weight * shape(at) for at, weight in shape.points(*s["rectangle"]))
     return np.outer(s["density"].item() * weights, s["g"])
@@ -108,7 +110,7 @@ def density(D, E: np.ndarray):
 
 
 def stress(D, E: np.ndarray) -> np.ndarray:
-    """Second Piola-Kirchhoff stress of the orthotropic law."""
+    """Return the second Piola-Kirchhoff stress of the orthotropic law."""
     dim = len(E)
     off = [(i, j) for i in range(dim) for j in range(i + 1, dim)]
     law = np.diag(list(D[:dim]))
@@ -131,5 +133,5 @@ def section_points(s) -> Iterator[tuple]:
 
 
 def spatial(vector: np.ndarray) -> np.ndarray:
-    """In three dimensions."""
+    """Return a vector of the plane or of space with three components."""
     return np.concatenate([vector, [mp.mpf(0)] * (3 - len(vector))])

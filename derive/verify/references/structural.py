@@ -22,7 +22,7 @@ STEP = mpmath.mpf(10) ** -16
 
 
 def energy(element: Element, law: str, s):
-    """Elastic energy."""
+    """Return the elastic energy from the strains, J."""
     now, before = (_strains(element, s["S"], s["l"].item(), s[name]) for name in ("e", "e0"))
     return _form(s["S"], s["l"].item(), {name: now[name] - before[name] for name in now}) / 2
 
@@ -36,7 +36,7 @@ def dissipation(element: Element, law: str, s):
 
 
 def section(element: Element, law: str, s) -> dict[str, np.ndarray]:
-    """Resultants, axes and strains of the section at x."""
+    """Return the resultants, axes and strains of the section at x."""
     l, at = s["l"].item(), 2 * s["x"].item() / s["l"].item() - 1
     now, before = (_strains(element, s["S"], l, s[name]) for name in ("e", "e0"))
     strains = {name: now[name] - before[name] for name in now}
@@ -102,7 +102,7 @@ def _spatial_stiffness(S: np.ndarray):
 
 
 def _form(S: np.ndarray, l, strains: dict[str, np.ndarray]):
-    """Twice the energy."""
+    """Return twice the energy of these strains."""
     EA, GAy, GAz, GJ, EIyy, EIzz, *across = _spatial_stiffness(S)
     along, kappa = strains["along"], strains["curvature"]
     total = EA * _square(_interpolated(along[:, 0])) + GJ * kappa[0] ** 2
@@ -128,7 +128,7 @@ def _least(parabola: Callable):
 
 
 def _interpolated(at: np.ndarray) -> Callable:
-    """The parabola through values at -1, 0, 1."""
+    """Return the parabola through values at -1, 0, 1."""
     return lambda t: at[0] * t * (t - 1) / 2 + at[1] * (1 - t * t) + at[2] * t * (t + 1) / 2
 
 
@@ -138,14 +138,14 @@ def _square(f: Callable):
 
 
 def _spatial(F: np.ndarray) -> np.ndarray:
-    """A planar gradient with the third axis at rest."""
+    """Return a planar gradient with the third axis at rest."""
     full = np.array([[mp.mpf(int(i == j)) for j in range(3)] for i in range(3)])
     full[: len(F), : len(F)] = F
     return full
 
 
 def _frame(y: np.ndarray, z: np.ndarray) -> np.ndarray:
-    """Columns t1, t2, t3: t2 along y, t3 in the plane of y and z."""
+    """Return the columns t1, t2, t3: t2 along y, t3 in the plane of y and z."""
     t2 = y / mp.sqrt(y.dot(y))
     t3 = z - t2.dot(z) * t2
     t3 = t3 / mp.sqrt(t3.dot(t3))
@@ -159,7 +159,7 @@ def _rotation_vector(Q: np.ndarray) -> np.ndarray:
 
 
 def _rotation(vector: np.ndarray) -> np.ndarray:
-    """Rodrigues' formula."""
+    """Return the rotation matrix of a vector by Rodrigues' formula."""
     angle = mp.sqrt(vector.dot(vector))
     if angle == 0:
         return _spatial(np.zeros((0, 0)))

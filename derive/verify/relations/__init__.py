@@ -1,1 +1,19 @@
-"""What outputs of kernels are derivatives of."""
+"""What every output of every kernel is the derivative of: by role of the family, for any element and any rider."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from ...codegen.family import Family
+from ..methods import Relation
+from . import body, element, frame, joint, law, modal, resistance, slide
+
+OF_ROLE: dict[str, Callable[[Any], list[Relation]]] = {
+    "element": element.element, "law": law.law, "slide": slide.slide, "body": body.body, "modal": modal.modal,
+    "frame": frame.frame, "joint": joint.joint, "resistance": resistance.resistance}
+
+
+def relations(family: Family) -> list[Relation]:
+    """Return the relations of a family's kernels."""
+    return OF_ROLE[family.role](family)

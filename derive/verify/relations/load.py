@@ -1,25 +1,21 @@
-"""What the outputs of the load kernels are, for any element, and what no motion of the frame may change in them."""
+"""What the outputs of the load kernels are, for any element."""
 
 from __future__ import annotations
-
-from collections.abc import Iterator
 
 import mpmath
 import numpy as np
 
 from ...elements.load_kernels import turning_slopes
 from ...spec import Element
-from ..invariances.element import FAR, Invariance, quantised, relative, spins
 from ..methods import Relation
 from ..motion import cross, frame
-from ..numbers import EPS, Numbers, State
 from ..references.element import Shape
-from ..states import rotation
-from .element import entry, from_kernel, root
+from .paths import entry, from_kernel, root
 
 
 def loads(spec: Element) -> list[Relation]:
-    """Shape functions at 50 digits, forces from their definition with these, K from f."""
+    """Return the relations of the load kernels: shape functions at 50 digits, forces from their definition, K from f.
+    """
     n = spec.n_coordinates
 
     def shape(s, by=""):
@@ -51,42 +47,13 @@ def loads(spec: Element) -> list[Relation]:
 
 
 def turning_rate(slopes: list[np.ndarray], rates: list[np.ndarray]) -> np.ndarray:
-    """The least omega of those with the least sum |a' - omega x a|^2, in mpmath numbers."""
+    """Return the least omega of those with the least sum |a' - omega x a|^2, in mpmath numbers."""
     if len(slopes[0]) == 2:
         return np.array([sum(a[0] * v[1] - a[1] * v[0] for a, v in zip(slopes, rates, strict=True))
                          / sum(a.dot(a) for a in slopes)])
     if len(slopes) == 1:
         return cross(slopes[0], rates[0]) / slopes[0].dot(slopes[0])
     turning = np.concatenate([np.stack([cross(axis, a) for axis in np.eye(3, dtype=int)], axis=1) for a in slopes])
-    rates = np.concatenate(rates)
+    every = np.concatenate(rates)
     # more equations than unknowns: mpmath solves in least squares
-    return np.array(list(mpmath.lu_solve(mpmath.matrix(turning.tolist()), mpmath.matrix(rates.tolist()))))
-
-
-def invariances(spec: Element, k: Numbers, s: State) -> Iterator[Invariance]:
-    """Work on rotations, turned frames, digits far away."""
-    positions = np.array(spec.is_position, dtype=float)
-    e = quantised(s["e"])
-    away = {**s, "e": e + np.outer(positions, np.full(spec.dim, FAR))}
-    for kernel in ("follower_force", "moment"):
-        out, there = k(kernel, s, e=e), k(kernel, away)
-        yield "loads: same digits at 10⁴ lengths", max(float(np.max(np.abs(out[n] - there[n]))) for n in out), 0.0
-        for axis in np.eye(spec.dim):
-            shift = np.outer(positions, axis).ravel()
-            yield "loads: K null on translation", relative(out["K"] @ shift, out["K"]), 8 * EPS
-    f, K = (k("follower_force", s)[name] for name in "fK")
-    yield "follower force: the net force is as large as c", abs(np.linalg.norm(positions @ f)
-                                                                / np.linalg.norm(s["c"]) - 1), 16 * EPS
-    Q = rotation(np.random.default_rng(4), spec.dim)
-    yield "follower force turns with the element", relative(k("follower_force", s, e=s["e"] @ Q.T)["f"] - f @ Q.T, f), (
-        64 * EPS)
-    moment = k("moment", s)["f"]
-    yield "moment: no net force", relative(positions @ moment, moment), 8 * EPS
-    M, tangent = s["M"], k("on_axis", s)["N_x"] @ s["e"]
-    for turn in spins(spec.dim):
-        arms = s["e"] - np.outer(positions, s["e"][0])
-        yield "follower force: K turns it", relative(K @ (arms @ turn.T).ravel() - (f @ turn.T).ravel(), K), 64 * EPS
-        omega = turn[1, :1] if spec.dim == 2 else np.array([turn[2, 1], turn[0, 2], turn[1, 0]])
-        if spec.dim == 3 and turning_slopes(spec) == ["x"]:
-            omega = omega - tangent * (tangent @ omega) / (tangent @ tangent)
-        yield "moment: f . v = M . ω in a rotation", relative(np.sum(moment * (arms @ turn.T)) - M @ omega, M), 64 * EPS
+    return np.array(list(mpmath.lu_solve(mpmath.matrix(turning.tolist()), mpmath.matrix(every.tolist()))))

@@ -1,57 +1,17 @@
-"""Modal bodies under verification: a handful of mass points with two modes, moved for real.
-
-The kernels see integrals over the points; the paths here sum over the points themselves, along finite motions.
-"""
+"""What the outputs of a modal body's kernels are: sums over mass points, moved along finite motions."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable
 
 import numpy as np
 
-from ...bodies.modal import axial, vector_product
-from ...spec import Family
-from ..invariances.element import FAR, Invariance, quantised, relative
+from ...bodies.modal import axial
+from ...codegen.family import BodyFamily
 from ..methods import Relation
 from ..motion import RIDERS, cross, swung
-from ..numbers import EPS, Numbers, State
-
-POINTS, MODES = 4, 2
-RATES = ("eta", "eta1", "eta2")
-
-
-def sample(random: np.random.Generator, dim: int) -> dict[str, np.ndarray]:
-    """Mass points, modes and their coordinates; the modes at one more point, which an anchor takes."""
-    turns = 1 if dim == 2 else 3
-    made = {"points": random.normal(size=(POINTS, dim)), "modes": random.normal(size=(MODES, POINTS, dim)) / 2,
-            "masses": random.uniform(0.5, 1.5, POINTS), "g": random.normal(size=dim),
-            "place": random.normal(size=dim), "phis": random.normal(size=(MODES, dim)),
-            "psis": random.uniform(0.5, 1.5, (MODES, turns)), "m": random.normal(size=turns)}
-    # of one sign: what cancels by chance would be held to digits that it has not
-    made |= {name: random.uniform(-0.8, -0.2, MODES) for name in RATES}
-    return made | integrals(made)
-
-
-def integrals(s: State, **moved: np.ndarray) -> dict[str, np.ndarray]:
-    """What the kernels take at these coordinates, some of them moved."""
-    s = {**s, **moved}
-    rho = s["masses"]
-    fields = [s["points"] + np.tensordot(s["eta"], s["modes"], 1),
-              *(np.tensordot(s[name], s["modes"], 1) for name in RATES[1:])]
-    mode, other = s["modes"]
-
-    def second(a, b):
-        return (rho[:, None] * a).T.dot(b)
-
-    made = {"mass": rho.sum(), "s": rho.dot(mode), "X_kl": second(mode, other),
-            "X11": second(fields[1], fields[1]).trace()}
-    for k, field in enumerate(fields):
-        made |= {f"S{k or ''}": rho.dot(field), f"X{k or ''}": second(fields[0], field),
-                 f"Y{k or ''}": second(mode, field)}
-    theta = [s[name].dot(s["psis"]) for name in RATES[:2]]
-    return made | {"u": s["place"] + s["eta"].dot(s["phis"]), "u1": s["eta1"].dot(s["phis"]), "theta": theta[0],
-                   "theta1": theta[1], "phi": s["phis"][0], "psi": s["psis"][0], "phi_l": s["phis"][1],
-                   "psi_l": s["psis"][1]}
+from ..numbers import Numbers, State
+from ..samples.modal import MODES, RATES, integrals
 
 
 def unit(n: int, j: int) -> np.ndarray:
@@ -62,17 +22,17 @@ def unit(n: int, j: int) -> np.ndarray:
 class Paths:
     """Finite motions of a body on a frame."""
 
-    def __init__(self, family: Family):
+    def __init__(self, family: BodyFamily):
         self.rider = RIDERS[family.rider]
         self.dim, self.n = self.rider.dim, self.rider.n_velocity
 
     def axes(self, b: np.ndarray) -> np.ndarray:
-        """A."""
+        """Return the body's axes A (dim, dim) at b."""
         still = np.concatenate([0 * b[: self.dim], b[self.dim :]])
         return np.stack([self.rider.point(still, e) for e in np.eye(self.dim, dtype=int)], axis=1)
 
     def velocity(self, s: State, u: np.ndarray, u1: np.ndarray) -> np.ndarray:
-        """Of a point."""
+        """Return the velocity of a point u with the rate u1, in body axes."""
         omega = np.concatenate([[0 * u[0]] * (3 - (self.n - self.dim)), s["w"][self.dim :]])
         return s["w"][: self.dim] + self.axes(s["b"]).dot(swung(omega, u) + u1)
 
@@ -94,8 +54,8 @@ class Paths:
         """The same along a mode."""
         return (s["masses"][:, None] * s["modes"][0].dot(self.axes(s["b"]).T) * self.falling(k, s, t)).sum()
 
-    def anchored(self, k: Numbers, s: State, motion: np.ndarray, eta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Place and axes of the anchor's point; the section turned by quaternions."""
+    def attached(self, k: Numbers, s: State, motion: np.ndarray, eta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the position and axes of the attachment; its section is turned by Cayley's formula."""
         b = self.rider.moved(k, s["b"], motion)
         theta = (s["eta"] + eta).dot(s["psis"])
         if self.dim == 2:
@@ -107,111 +67,146 @@ class Paths:
                           for e in np.eye(3, dtype=int)], axis=1)
         return self.rider.point(b, s["place"] + (s["eta"] + eta).dot(s["phis"])), self.axes(b).dot(C)
 
+    # --- kernels moved --------------------------------------------------------------------------------------------
 
-def modal(family: Family) -> list[Relation]:
-    """Every output of a modal body's kernels."""
-    p = Paths(family)
-    rider, n, zero = p.rider, p.n, np.zeros(MODES, dtype=int)
+    def frame_moved(self, kernel: str, output: str) -> Callable:
+        """Return the path of an output along translations and rotations of the frame."""
+        return lambda k, s, t, j: k(kernel, s, b=self.rider.moved(k, s["b"], t * unit(self.n, j)))[output]
 
-    def frame_moved(kernel: str, output: str) -> Relation:
-        return lambda k, s, t, j: k(kernel, s, b=rider.moved(k, s["b"], t * unit(n, j)))[output]
+    def point(self, which: int, by: str) -> Callable:
+        """Return the path of the attachment's position (which 0) or axes (1), by "frame", "mode" or "time"."""
+        def path(k, s, t, j):
+            motion, eta = {"frame": (t * unit(self.n, j), np.zeros(MODES, dtype=int)),
+                           "mode": (0 * s["w"], t * unit(MODES, 0)), "time": (t * s["w"], t * s["eta1"])}[by]
+            return self.attached(k, s, motion, eta)[which]
+        return path
 
-    def along(kernel: str, name: str):
-        return lambda k, s, t, j: k(kernel, s, **{name: s[name] + t * unit(len(s[name]), j)})["f"]
+    def by_frame(self, pull: Callable) -> Callable:
+        """Return the path of a force along translations and rotations of the frame."""
+        return lambda k, s, t, j: pull(k, s, b=self.rider.moved(k, s["b"], t * unit(self.n, j)))
 
-    def mode_moved(kernel: str, name: str, mode: int = 0):
-        return lambda k, s, t, j: k(kernel, s, **integrals(s, **{name: s[name] + t * unit(MODES, mode)}))["f"]
+    # --- energies -------------------------------------------------------------------------------------------------
 
-    def power(k, s):
-        """f . w + sum f_k eta_k' without weight."""
-        still = {**s, "g": 0 * s["g"]}
-        other = integrals({**still, "modes": s["modes"][::-1], **{name: s[name][::-1] for name in RATES}})
-        return (k("inertia_force", still)["f"].dot(s["w"]) + k("mode_force", still)["f"][0] * s["eta1"][0]
-                + k("mode_force", {**still, **other})["f"][0] * s["eta1"][1])
-
-    def energy(k, s, t, j):
-        b = rider.moved(k, s["b"], t * s["w"] + t * t * s["a"] / 2)
+    def energy(self, k: Numbers, s: State, t, j=0):
+        """Return the kinetic energy along the motion with all accelerations, of the kernel."""
+        b = self.rider.moved(k, s["b"], t * s["w"] + t * t * s["a"] / 2)
         moved = integrals(s, eta=s["eta"] + t * s["eta1"], eta1=s["eta1"] + t * s["eta2"])
         return k("kinetic_energy", s, b=b, w=s["w"] + t * s["a"], **moved)["T"]
 
-    def kinetic(k, s, t, j):
+    def kinetic(self, k: Numbers, s: State, t, j=0):
+        """Return the kinetic energy of the mass points."""
         at, rate = (x + np.tensordot(s[name], s["modes"], 1) for x, name in ((s["points"], "eta"), (0, "eta1")))
-        speeds = [p.velocity(s, u, u1) for u, u1 in zip(at, rate, strict=True)]
+        speeds = [self.velocity(s, u, u1) for u, u1 in zip(at, rate, strict=True)]
         return sum(m * v.dot(v) / 2 for m, v in zip(s["masses"], speeds, strict=True))
 
-    def potential(k, s, t, j):
+    def potential(self, k: Numbers, s: State, t, j=0):
+        """Return the potential energy of the mass points."""
         at = s["points"] + np.tensordot(s["eta"], s["modes"], 1)
-        return -sum(m * s["g"].dot(rider.point(s["b"], u)) for m, u in zip(s["masses"], at, strict=True))
+        return -sum(m * s["g"].dot(self.rider.point(s["b"], u)) for m, u in zip(s["masses"], at, strict=True))
 
-    def point(which: int, by: str):
-        def path(k, s, t, j):
-            motion, eta = {"frame": (t * unit(n, j), zero), "mode": (0 * s["w"], t * unit(MODES, 0)),
-                           "time": (t * s["w"], t * s["eta1"])}[by]
-            return p.anchored(k, s, motion, eta)[which]
-        return path
 
-    def turning(kernel: str, output: str, columns: bool = True):
-        """What turns the axes by each column (or by the one vector) of an output."""
-        def of(k, s):
-            axes, T = k("anchor", s)["axes"], k(kernel, s)[output]
-            T = T if columns else T[:, None]
-            return np.stack([_swung(T[:, j], axes) for j in range(T.shape[1])], axis=-1)
-        return of
+def along(kernel: str, name: str) -> Callable:
+    """Return the path of a kernel's force along the entries of an input."""
+    return lambda k, s, t, j: k(kernel, s, **{name: s[name] + t * unit(len(s[name]), j)})["f"]
 
-    def second(k, s):
-        out = k("anchor", s)
-        return _swung(out["omega_bias"], out["axes"]) + _swung(out["omega"], _swung(out["omega"], out["axes"]))
 
-    def pulled(k, s, **changes):
-        out = k("anchor", s, **changes)
-        return out["P"].T.dot(s["f"]) + out["T"].T.dot(s["m"])
+def mode_moved(kernel: str, name: str, mode: int = 0) -> Callable:
+    """Return the path of a kernel's force along eta, eta' or eta'' of a mode."""
+    return lambda k, s, t, j: k(kernel, s, **integrals(s, **{name: s[name] + t * unit(MODES, mode)}))["f"]
 
-    def mode_pulled(k, s, **changes):
-        out = k("anchor_mode", s, **changes)
-        return out["P"].dot(s["f"]) + out["T"].dot(s["m"])
 
-    def by_frame(pull):
-        return lambda k, s, t, j: pull(k, s, b=rider.moved(k, s["b"], t * unit(n, j)))
+def by_mode(pull: Callable, mode: int) -> Callable:
+    """Return the path of a force along eta of a mode."""
+    def path(k, s, t, j):
+        moved = integrals(s, eta=s["eta"] + t * unit(MODES, mode))
+        return pull(k, s, u=moved["u"], theta=moved["theta"])
+    return path
 
-    def by_mode(pull, mode: int):
-        def path(k, s, t, j):
-            moved = integrals(s, eta=s["eta"] + t * unit(MODES, mode))
-            return pull(k, s, u=moved["u"], theta=moved["theta"])
-        return path
 
+def power(k: Numbers, s: State):
+    """Return f . w + sum f_k eta_k' without weight."""
+    still = {**s, "g": 0 * s["g"]}
+    other = integrals({**still, "modes": s["modes"][::-1], **{name: s[name][::-1] for name in RATES}})
+    return (k("inertia_force", still)["f"].dot(s["w"]) + k("mode_force", still)["f"][0] * s["eta1"][0]
+            + k("mode_force", {**still, **other})["f"][0] * s["eta1"][1])
+
+
+def turning(kernel: str, output: str, columns: bool = True) -> Callable:
+    """Return what turns the axes by each column, or by the one vector, of an output."""
+    def of(k, s):
+        axes, T = k("attachment", s)["axes"], k(kernel, s)[output]
+        T = T if columns else T[:, None]
+        return np.stack([_swung(T[:, j], axes) for j in range(T.shape[1])], axis=-1)
+    return of
+
+
+def turning_rate(k: Numbers, s: State) -> np.ndarray:
+    """Return the second rate of the axes at constant velocities."""
+    out = k("attachment", s)
+    return _swung(out["omega_bias"], out["axes"]) + _swung(out["omega"], _swung(out["omega"], out["axes"]))
+
+
+def pulled(k: Numbers, s: State, **changes) -> np.ndarray:
+    """Return the frame's rows of P' f + T' m."""
+    out = k("attachment", s, **changes)
+    return out["P"].T.dot(s["f"]) + out["T"].T.dot(s["m"])
+
+
+def mode_pulled(k: Numbers, s: State, **changes) -> np.ndarray:
+    """Return a mode's row of P' f + T' m."""
+    out = k("attachment_mode", s, **changes)
+    return out["P"].dot(s["f"]) + out["T"].dot(s["m"])
+
+
+def modal(family: BodyFamily) -> list[Relation]:
+    """Return the relations of every output of a modal body's kernels."""
+    p = Paths(family)
+    return [*_of_inertia(p), *_of_attachment(p)]
+
+
+def _of_inertia(p: Paths) -> list[Relation]:
+    n = p.n
     return [
         Relation("inertia_force", "f", "Σ m (p'' - g) over mass points, along the frame's motions", 2, p.work),
-        Relation("inertia_force", "f", "all power is the rate of the kinetic energy", 1, energy, of=power),
+        Relation("inertia_force", "f", "all power is the rate of the kinetic energy", 1, p.energy, of=power),
         Relation("mass_matrix", "M", "df/da", 1, along("inertia_force", "a"), n),
         Relation("inertia_tangent", "D", "df/dw", 1, along("inertia_force", "w"), n),
-        Relation("inertia_tangent", "K", "df by translation and rotation", 1, frame_moved("inertia_force", "f"), n),
+        Relation("inertia_tangent", "K", "df by translation and rotation", 1, p.frame_moved("inertia_force", "f"), n),
         Relation("mode_force", "f", "Σ m phi.(p'' - g) over mass points", 2, p.work_of_mode),
         Relation("mode_mass", "M", "df/da of the mode", 1, along("mode_force", "a"), n),
         Relation("mode_mass", "M", "df of the frame by eta''", 1, mode_moved("inertia_force", "eta2")),
         Relation("mode_tangent", "D", "df/dw", 1, along("mode_force", "w"), n),
-        Relation("mode_tangent", "K", "df by translation and rotation", 1, frame_moved("mode_force", "f"), n),
+        Relation("mode_tangent", "K", "df by translation and rotation", 1, p.frame_moved("mode_force", "f"), n),
         Relation("mode_tangent", "D_frame", "df of the frame by eta'", 1, mode_moved("inertia_force", "eta1")),
         Relation("mode_tangent", "K_frame", "df of the frame by eta", 1, mode_moved("inertia_force", "eta")),
         Relation("pair_tangent", "D", "df by eta' of the other", 1, mode_moved("mode_force", "eta1", 1)),
         Relation("pair_tangent", "K", "df by eta of the other", 1, mode_moved("mode_force", "eta", 1)),
-        Relation("kinetic_energy", "T", "Σ ½ m v² of mass points", 0, kinetic),
-        Relation("potential_energy", "V", "-Σ m g.p of mass points", 0, potential),
-        Relation("anchor", "p", "R + A (x + Σ phi eta)", 0, point(0, "time")),
-        Relation("anchor", "axes", "A C by Cayley's formula", 0, point(1, "time")),
-        Relation("anchor", "P", "dp by translation and rotation", 1, point(0, "frame"), n),
-        Relation("anchor", "T", "d axes = (T dq)~ axes", 1, point(1, "frame"), n, of=turning("anchor", "T")),
-        Relation("anchor", "velocity", "dp/dt", 1, point(0, "time")),
-        Relation("anchor", "omega", "d axes/dt", 1, point(1, "time"), of=turning("anchor", "omega", columns=False)),
-        Relation("anchor", "bias", "d²p/dt² at constant velocities", 2, point(0, "time")),
-        Relation("anchor", "omega_bias", "d² axes/dt² at constant velocities", 2, point(1, "time"), of=second),
-        Relation("anchor_mode", "P", "dp by eta", 1, point(0, "mode")),
-        Relation("anchor_mode", "T", "d axes by eta", 1, point(1, "mode"),
-                 of=turning("anchor_mode", "T", columns=False)),
-        Relation("anchor_force", "K", "d(P' f + T' m) by translation and rotation", 1, by_frame(pulled), n),
-        Relation("anchor_mode_force", "K", "d(P' f + T' m) of the mode by translation and rotation", 1,
-                 by_frame(mode_pulled), n),
-        Relation("anchor_mode_force", "K_frame", "d(P' f + T' m) of the frame by eta", 1, by_mode(pulled, 0)),
-        Relation("anchor_pair_force", "K", "d(P' f + T' m) of the mode by eta of the other", 1,
+        Relation("kinetic_energy", "T", "Σ ½ m v² of mass points", 0, p.kinetic),
+        Relation("potential_energy", "V", "-Σ m g.p of mass points", 0, p.potential),
+    ]
+
+
+def _of_attachment(p: Paths) -> list[Relation]:
+    n = p.n
+    return [
+        Relation("attachment", "p", "R + A (x + Σ phi eta)", 0, p.point(0, "time")),
+        Relation("attachment", "axes", "A C by Cayley's formula", 0, p.point(1, "time")),
+        Relation("attachment", "P", "dp by translation and rotation", 1, p.point(0, "frame"), n),
+        Relation("attachment", "T", "d axes = (T dq)~ axes", 1, p.point(1, "frame"), n, of=turning("attachment", "T")),
+        Relation("attachment", "velocity", "dp/dt", 1, p.point(0, "time")),
+        Relation("attachment", "omega", "d axes/dt", 1, p.point(1, "time"),
+                 of=turning("attachment", "omega", columns=False)),
+        Relation("attachment", "bias", "d²p/dt² at constant velocities", 2, p.point(0, "time")),
+        Relation("attachment", "omega_bias", "d² axes/dt² at constant velocities", 2, p.point(1, "time"),
+                 of=turning_rate),
+        Relation("attachment_mode", "P", "dp by eta", 1, p.point(0, "mode")),
+        Relation("attachment_mode", "T", "d axes by eta", 1, p.point(1, "mode"),
+                 of=turning("attachment_mode", "T", columns=False)),
+        Relation("attachment_force", "K", "d(P' f + T' m) by translation and rotation", 1, p.by_frame(pulled), n),
+        Relation("attachment_mode_force", "K", "d(P' f + T' m) of the mode by translation and rotation", 1,
+                 p.by_frame(mode_pulled), n),
+        Relation("attachment_mode_force", "K_frame", "d(P' f + T' m) of the frame by eta", 1, by_mode(pulled, 0)),
+        Relation("attachment_pair_force", "K", "d(P' f + T' m) of the mode by eta of the other", 1,
                  by_mode(mode_pulled, 1)),
     ]
 
@@ -220,22 +215,3 @@ def _swung(theta: np.ndarray, axes: np.ndarray) -> np.ndarray:
     """theta x each column."""
     spatial = np.concatenate([[0 * theta[0]] * (3 - len(theta)), theta])
     return np.stack([swung(spatial, column) for column in axes.T], axis=1)
-
-
-def invariances(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
-    """Symmetry, momentum, digits."""
-    p = Paths(family)
-    M = k("mass_matrix", s)["M"]
-    yield "M symmetric", relative(M - M.T, M), 8 * EPS
-    least = float(np.linalg.eigvalsh((M + M.T) / 2)[0]) if np.isfinite(M).all() else -np.inf
-    yield "M positive definite (least eigenvalue below zero)", max(-least, 0.0), 0.0
-    axes = k("anchor", s)["axes"]
-    yield "axes' axes = 1", relative(axes.T @ axes - np.eye(len(axes)), 1), 8 * EPS
-    b = np.concatenate([quantised(s["b"][: p.dim]) + FAR, s["b"][p.dim :]])
-    yield "forces: same digits at 10⁴ lengths", max(
-        relative(k(name, s, b=b)["f"] - k(name, s)["f"], 1) for name in ("inertia_force", "mode_force")), 0.0
-    along = vector_product(s["S"], s["g"])
-    weight = k("inertia_force", {**s, "w": 0 * s["w"], "a": 0 * s["a"], "S1": 0 * s["S1"], "S2": 0 * s["S2"],
-                                 "X1": 0 * s["X1"], "X2": 0 * s["X2"], "b": np.eye(len(s["b"]))[p.dim]})["f"]
-    yield "weight is m g, its moment S x g", relative(
-        weight + np.concatenate([s["mass"] * s["g"], along]), weight), 8 * EPS

@@ -6,13 +6,17 @@ off the joint, since the formulas hold there too.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 
-from ...spec import Family
+from ...codegen.family import SlideFamily
 from ..methods import Relation
 from ..motion import RIDERS, frame, swung
+from ..numbers import Numbers, State
 from ..references import element as reference
-from .element import unit
+from .paths import unit
 
 
 class Curve:
@@ -25,26 +29,30 @@ class Curve:
         self.director = shape(at, by).dot(s["e"]) if element.director else s["director"]
 
 
-def slide(family: Family) -> list[Relation]:
-    """eq 13-38."""
-    element, rider = family.element, RIDERS[family.rider]
-    n_e, n = element.n_coordinates, element.n_coordinates + rider.n_velocity
+class Paths:
+    """Finite motions of a slide: along one coordinate of (e, rider, s), along the motion in time, over a step."""
 
-    def at(k, s, motion_e, motion_b):
-        return {"e": s["e"] + motion_e.reshape(s["e"].shape), "b": rider.moved(k, s["b"], motion_b)}
+    def __init__(self, family: SlideFamily):
+        self.element, self.rider = family.element, RIDERS[family.rider]
+        self.n_e = self.element.n_coordinates
+        self.n = self.n_e + self.rider.n_velocity
 
-    def by_coordinate(k, s, t, j):
-        """Configuration with coordinate j of (e, rider) moved by t."""
-        direction = t * unit(np.zeros(n), j)
-        return at(k, s, direction[:n_e], direction[n_e:])
+    def moved(self, k: Numbers, s: State, motion_e: np.ndarray, motion_b: np.ndarray) -> State:
+        """Return e and b after a motion of the nodal vectors and of the rider."""
+        return {"e": s["e"] + motion_e.reshape(s["e"].shape), "b": self.rider.moved(k, s["b"], motion_b)}
 
-    def by_motion(k, s, t, accelerated=True):
-        """Configuration at time t with the state's velocities and accelerations."""
+    def by_coordinate(self, k: Numbers, s: State, t: Any, j: int) -> State:
+        """Return the configuration with coordinate j of (e, rider) moved by t."""
+        direction = t * unit(np.zeros(self.n), j)
+        return self.moved(k, s, direction[: self.n_e], direction[self.n_e :])
+
+    def by_motion(self, k: Numbers, s: State, t: Any, accelerated: bool = True) -> State:
+        """Return the configuration at time t with the state's velocities and accelerations."""
         bend = t * t / 2 if accelerated else 0 * t
-        return at(k, s, t * s["v"] + bend * s["vdot"], t * s["w"] + bend * s["wdot"])
+        return self.moved(k, s, t * s["v"] + bend * s["vdot"], t * s["w"] + bend * s["wdot"])
 
-    def closed(k, s, q, level=None):
-        """s on C_l(q, s) = level, by default that of the state."""
+    def closed(self, k: Numbers, s: State, q: State, level: Any = None) -> Any:
+        """Return s on C_l(q, s) = level, by default that of the state."""
         level = k("constraint", s)["C"][0] if level is None else level
         x = s["x"]
         for _ in range(12):
@@ -55,90 +63,122 @@ def slide(family: Family) -> list[Relation]:
                 break
         return x
 
-    def constraint(k, s, x=None, **q):
-        return k("constraint", s, x=s["x"] if x is None else x, **q)["C"]
+    def kept(self, k: Numbers, s: State, q: State) -> np.ndarray:
+        """Return C_m along s(q)."""
+        return constraint(k, s, self.closed(k, s, q), **q)[1:]
 
-    def gap(k, s, **q):
-        return k("residual", s, **q)["phi"]
-
-    def lagrangian(get):
-        """Path of a function of the state along (e, rider, s)."""
+    def lagrangian(self, get: Callable) -> Callable:
+        """Return the path of a function of the state along (e, rider, s)."""
         def path(k, s, t, j):
-            moved = by_coordinate(k, s, t, j) if j < n else {"x": s["x"] + t}
-            return get(k, s, **moved)
+            return get(k, s, **(self.by_coordinate(k, s, t, j) if j < self.n else {"x": s["x"] + t}))
         return path
 
-    def reference_gap(k, s, t, j):
-        return Curve(element, s).point - rider.point(s["b"], s["u"])
+    # --- what C and phi are, from shape functions at 50 digits --------------------------------------------------
 
-    def step(s):
-        """From one end of a step to the other, over (e, rider, s)."""
-        return np.concatenate([(s["e_next"] - s["e"]).ravel(), rider.step(s["b"], s["b_next"]),
-                               [s["x_next"].item() - s["x"].item()]])
+    def reference_gap(self, k: Numbers, s: State, t: Any, j: int) -> np.ndarray:
+        """Return r - p."""
+        return Curve(self.element, s).point - self.rider.point(s["b"], s["u"])
 
-    def swept(k, s, t, j):
-        """Change of the gap over a step as seen from a frame that turns with the rider."""
-        here, there = (reference_gap(k, end, t, j) for end in (s, s | {name: s[f"{name}_next"] for name in "xeb"}))
-        return there - here - swung(rider.turn(s["b"], step(s)[n_e:n]), (here + there) / 2)
-
-    def seen(k, s, t, j):
-        """The gap along (e, rider, s) as seen from a frame that turns with the rider."""
-        path = lagrangian(gap)(k, s, t, j)
-        if j < n_e or j == n:
-            return path
-        return path - swung(rider.turn(s["b"], t * unit(s["w"], j - n_e)), gap(k, s))
-
-    def reference_frame(k, s, t, j):
-        curve = Curve(element, s)
+    def reference_frame(self, k: Numbers, s: State, t: Any, j: int) -> np.ndarray:
+        """Return the tangent frame by Gram-Schmidt."""
+        curve = Curve(self.element, s)
         return frame(k, curve.tangent, curve.director)
 
-    def reference_constraint(k, s, t, j):
-        return reference_frame(k, s, t, j).T.dot(reference_gap(k, s, t, j))
+    def reference_constraint(self, k: Numbers, s: State, t: Any, j: int) -> np.ndarray:
+        """Return A_t' (r - p)."""
+        return self.reference_frame(k, s, t, j).T.dot(self.reference_gap(k, s, t, j))
 
-    def newton_step(k, s, t, j):
-        return closed(k, s, {}, level=(1 - t) * k("constraint", s)["C"][0])
+    # --- along the motion ---------------------------------------------------------------------------------------
 
-    def held(k, s, t, j):
+    def newton_step(self, k: Numbers, s: State, t: Any, j: int) -> Any:
+        """Return s on C_l(s) = (1 - t) C_l."""
+        return self.closed(k, s, {}, level=(1 - t) * k("constraint", s)["C"][0])
+
+    def unaccelerated(self, k: Numbers, s: State, t: Any, j: int) -> np.ndarray:
+        """Return C at time t at constant velocities of all, s among them."""
         rate = k("terms", s)["s_rate"].item()
-        return constraint(k, s, s["x"] + t * rate, **by_motion(k, s, t, accelerated=False))
+        return constraint(k, s, s["x"] + t * rate, **self.by_motion(k, s, t, accelerated=False))
 
-    def kept(k, s, q):
-        return constraint(k, s, closed(k, s, q), **q)[1:]
+    def bend_left(self, k: Numbers, s: State, t: Any, j: int) -> np.ndarray:
+        """Return t^2/2 H q'' - C_m along s(q), whose second derivative is W."""
+        q = self.by_motion(k, s, t)
+        return t * t / 2 * k("terms", s)["H"].dot(_acceleration(s)) - self.kept(k, s, q)
 
-    def acceleration(s):
-        return np.concatenate([s["vdot"].ravel(), s["wdot"]])
+    def slide_left(self, k: Numbers, s: State, t: Any, j: int) -> Any:
+        """Return s - t^2/2 G q'', whose second derivative is s_bias."""
+        return self.closed(k, s, self.by_motion(k, s, t)) - t * t / 2 * k("terms", s)["G"].dot(_acceleration(s))
 
-    def bend_left(k, s, t, j):
-        q = by_motion(k, s, t)
-        return t * t / 2 * k("terms", s)["H"].dot(acceleration(s)) - kept(k, s, q)
+    # --- over a step --------------------------------------------------------------------------------------------
 
-    def slide_left(k, s, t, j):
-        return closed(k, s, by_motion(k, s, t)) - t * t / 2 * k("terms", s)["G"].dot(acceleration(s))
+    def step(self, s: State) -> np.ndarray:
+        """Return the way from one end of a step to the other, over (e, rider, s)."""
+        return np.concatenate([(s["e_next"] - s["e"]).ravel(), self.rider.step(s["b"], s["b_next"]),
+                               [s["x_next"].item() - s["x"].item()]])
 
-    return [
-        Relation("constraint", "C", "A_t' (r - p) at 50 digits", 0, reference_constraint),
-        Relation("constraint", "A_t", "Gram-Schmidt of r_x and the director", 0, reference_frame),
-        Relation("constraint", "C_s", "dC/ds", 1, lambda k, s, t, j: constraint(k, s, s["x"] + t)),
-        Relation("constraint", "s_step", "s on C_l(s) = (1 - t) C_l", 1, newton_step),
-        Relation("terms", "C", "A_t' (r - p) at 50 digits", 0, reference_constraint),
-        Relation("terms", "C_q", "dC/dq", 1, lambda k, s, t, j: constraint(k, s, **by_coordinate(k, s, t, j)), n),
-        Relation("terms", "C_s", "dC/ds", 1, lambda k, s, t, j: constraint(k, s, s["x"] + t)),
-        Relation("terms", "G", "ds/dq of s on C_l = const", 1,
-                 lambda k, s, t, j: closed(k, s, by_coordinate(k, s, t, j)), n),
-        Relation("terms", "s_rate", "ds/dt of s on C_l = const", 1,
-                 lambda k, s, t, j: closed(k, s, by_motion(k, s, t))),
-        Relation("terms", "Q_d", "d²C/dt² at q'' = s'' = 0", 2, held),
-        Relation("terms", "H", "dC_m/dq along s(q)", 1, lambda k, s, t, j: kept(k, s, by_coordinate(k, s, t, j)), n),
-        Relation("terms", "W", "H q'' - d²C_m/dt² along s(q)", 2, bend_left),
-        Relation("terms", "s_bias", "d²s/dt² - G q''", 2, slide_left),
-        Relation("residual", "phi", "r - p at 50 digits", 0, reference_gap),
-        Relation("residual", "g", "d(f . phi) by (e, rider, s)", 1,
-                 lagrangian(lambda k, s, **q: gap(k, s, **q).dot(s["f"])), n + 1),
-        Relation("discrete_gradient", "G", "G step is the change of phi seen from the rider", 0, swept,
-                 of=lambda k, s: k("discrete_gradient", s)["G"].dot(step(s))),
-        Relation("discrete_gradient", "G", "derivatives of phi seen from the rider, over no step", 1, seen, n + 1,
-                 of=lambda k, s: k("discrete_gradient", s, **{f"{name}_next": s[name] for name in "xeb"})["G"]),
-        Relation("tangent", "J", "dphi by (e, rider, s)", 1, lagrangian(gap), n + 1),
-        Relation("tangent", "K", "dg by (e, rider, s)", 1,
-                 lagrangian(lambda k, s, **q: k("residual", s, **q)["g"]), n + 1),
-    ]
+    def swept(self, k: Numbers, s: State, t: Any, j: int) -> np.ndarray:
+        """Return the change of the gap over a step as seen from a frame that turns with the rider."""
+        here, there = (self.reference_gap(k, end, t, j)
+                       for end in (s, s | {name: s[f"{name}_next"] for name in "xeb"}))
+        turn = self.rider.turn(s["b"], self.step(s)[self.n_e : self.n])
+        return there - here - swung(turn, (here + there) / 2)
+
+    def seen(self, k: Numbers, s: State, t: Any, j: int) -> np.ndarray:
+        """Return the gap along (e, rider, s) as seen from a frame that turns with the rider."""
+        path = self.lagrangian(gap)(k, s, t, j)
+        if j < self.n_e or j == self.n:
+            return path
+        return path - swung(self.rider.turn(s["b"], t * unit(s["w"], j - self.n_e)), gap(k, s))
+
+
+def constraint(k: Numbers, s: State, x: Any = None, **q: np.ndarray) -> np.ndarray:
+    """Return C at a configuration, of the kernel."""
+    return k("constraint", s, x=s["x"] if x is None else x, **q)["C"]
+
+
+def gap(k: Numbers, s: State, **q: np.ndarray) -> np.ndarray:
+    """Return phi at a configuration, of the kernel."""
+    return k("residual", s, **q)["phi"]
+
+
+def _acceleration(s: State) -> np.ndarray:
+    return np.concatenate([s["vdot"].ravel(), s["wdot"]])
+
+
+def slide(family: SlideFamily) -> list[Relation]:
+    """Return the relations of the slide's kernels, eq 13-38."""
+    p = Paths(family)
+    n = p.n
+    return [*_of_constraint(p), *_of_terms(p),
+            Relation("residual", "phi", "r - p at 50 digits", 0, p.reference_gap),
+            Relation("residual", "g", "d(f . phi) by (e, rider, s)", 1,
+                     p.lagrangian(lambda k, s, **q: gap(k, s, **q).dot(s["f"])), n + 1),
+            Relation("discrete_gradient", "G", "G step is the change of phi seen from the rider", 0, p.swept,
+                     of=lambda k, s: k("discrete_gradient", s)["G"].dot(p.step(s))),
+            Relation("discrete_gradient", "G", "derivatives of phi seen from the rider, over no step", 1, p.seen, n + 1,
+                     of=lambda k, s: k("discrete_gradient", s, **{f"{name}_next": s[name] for name in "xeb"})["G"]),
+            Relation("tangent", "J", "dphi by (e, rider, s)", 1, p.lagrangian(gap), n + 1),
+            Relation("tangent", "K", "dg by (e, rider, s)", 1,
+                     p.lagrangian(lambda k, s, **q: k("residual", s, **q)["g"]), n + 1)]
+
+
+def _of_constraint(p: Paths) -> list[Relation]:
+    return [Relation("constraint", "C", "A_t' (r - p) at 50 digits", 0, p.reference_constraint),
+            Relation("constraint", "A_t", "Gram-Schmidt of r_x and the director", 0, p.reference_frame),
+            Relation("constraint", "C_s", "dC/ds", 1, lambda k, s, t, j: constraint(k, s, s["x"] + t)),
+            Relation("constraint", "s_step", "s on C_l(s) = (1 - t) C_l", 1, p.newton_step)]
+
+
+def _of_terms(p: Paths) -> list[Relation]:
+    return [Relation("terms", "C", "A_t' (r - p) at 50 digits", 0, p.reference_constraint),
+            Relation("terms", "C_q", "dC/dq", 1,
+                     lambda k, s, t, j: constraint(k, s, **p.by_coordinate(k, s, t, j)), p.n),
+            Relation("terms", "C_s", "dC/ds", 1, lambda k, s, t, j: constraint(k, s, s["x"] + t)),
+            Relation("terms", "G", "ds/dq of s on C_l = const", 1,
+                     lambda k, s, t, j: p.closed(k, s, p.by_coordinate(k, s, t, j)), p.n),
+            Relation("terms", "s_rate", "ds/dt of s on C_l = const", 1,
+                     lambda k, s, t, j: p.closed(k, s, p.by_motion(k, s, t))),
+            Relation("terms", "Q_d", "d²C/dt² at q'' = s'' = 0", 2, p.unaccelerated),
+            Relation("terms", "H", "dC_m/dq along s(q)", 1,
+                     lambda k, s, t, j: p.kept(k, s, p.by_coordinate(k, s, t, j)), p.n),
+            Relation("terms", "W", "H q'' - d²C_m/dt² along s(q)", 2, p.bend_left),
+            Relation("terms", "s_bias", "d²s/dt² - G q''", 2, p.slide_left)]

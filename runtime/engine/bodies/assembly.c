@@ -227,6 +227,7 @@ void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, 
     }
 }
 
+/* Sum of e'.M e'/2 over the elements (eq 3), and the bodies' share, J. */
 double fu_kinetic_energy(const fu_model *model, const double *q, const double *v)
 {
     double total = 0.0, part[FU_MAX_COORDINATES];

@@ -207,14 +207,14 @@ void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *s
     double u[3], u1[3], theta[3], theta1[3], frame_P[18], frame_T[18], column[3], turn[3];
     point_of(body, spot, eta_of(body, b), 0, u, theta);
     point_of(body, spot, rate_of(body, w), 1, u1, theta1);
-    kernel->anchor(b, u, theta, w, u1, theta1, out->p, out->axes, frame_P, frame_T, out->velocity, out->omega, out->bias,
+    kernel->attachment(b, u, theta, w, u1, theta1, out->p, out->axes, frame_P, frame_T, out->velocity, out->omega, out->bias,
                    out->omega_bias);
     for (int j = 0; j < frame; ++j) {
         for (int d = 0; d < dim; ++d) P[d * n + j] = frame_P[d * frame + j];
         for (int d = 0; d < turns; ++d) T[d * n + j] = frame_T[d * frame + j];
     }
     for (int k = 0; k < body->modes; ++k) {
-        kernel->anchor_mode(b, u, theta, spot->phi + k * dim, spot->psi + k * turns, column, turn);
+        kernel->attachment_mode(b, u, theta, spot->phi + k * dim, spot->psi + k * turns, column, turn);
         for (int d = 0; d < dim; ++d) P[d * n + frame + k] = column[d];
         for (int d = 0; d < turns; ++d) T[d * n + frame + k] = turn[d];
     }
@@ -228,18 +228,18 @@ void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *s
     const int dim = body->kernel->dim, frame = body->kernel->velocity, turns = frame - dim, n = fu_body_dofs(body);
     double u[3], theta[3], of_frame[36], row[6], column[6];
     point_of(body, spot, eta_of(body, b), 0, u, theta);
-    kernel->anchor_force(b, u, theta, f, m, of_frame);
+    kernel->attachment_force(b, u, theta, f, m, of_frame);
     for (int i = 0; i < frame; ++i)
         for (int j = 0; j < frame; ++j) K[i * n + j] = of_frame[i * frame + j];
     for (int k = 0; k < body->modes; ++k) {
         const double *phi = spot->phi + k * dim, *psi = spot->psi + k * turns;
-        kernel->anchor_mode_force(b, u, theta, phi, psi, f, m, row, column);
+        kernel->attachment_mode_force(b, u, theta, phi, psi, f, m, row, column);
         for (int i = 0; i < frame; ++i) {
             K[(frame + k) * n + i] = row[i];
             K[i * n + frame + k] = column[i];
         }
         for (int l = 0; l < body->modes; ++l)
-            kernel->anchor_pair_force(b, u, theta, phi, psi, spot->phi + l * dim, spot->psi + l * turns, f, m,
+            kernel->attachment_pair_force(b, u, theta, phi, psi, spot->phi + l * dim, spot->psi + l * turns, f, m,
                                       K + (frame + k) * n + frame + l);
     }
 }

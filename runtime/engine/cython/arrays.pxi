@@ -1,7 +1,7 @@
 # Arrays that the engine's structures point to.
 
 INDICES = 2**31 - 1  # of C's int
-MACHINE_MEMORY = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+MACHINE_MEMORY = machine_memory()
 
 
 cdef class Arrays:

@@ -1,7 +1,7 @@
-/* Explicit Runge-Kutta with an embedded error estimate on the index-1 form of the equations (eq 38).
+/* Explicit Runge-Kutta with an embedded error estimate on the index-1 form of the equations, eq 38.
  *
  * Differentiated are the entries of the configuration (attitudes as they stand, normalised at the end of a step) and
- * the velocities; the slides' s is where C_l = 0 (eq 21) at every stage. What the constraints lost in a step is
+ * the velocities; the slides' s is where C_l = 0, eq 21, at every stage. What the constraints lost in a step is
  * projected away, in the norm of the mass: C_m = 0 by Newton, then H v = 0. The accelerations at the end are the first
  * stage of the next step and the last of the error estimate (Hairer, Norsett & Wanner 1993, II.5 and II.10).
  */

@@ -1,4 +1,4 @@
-/* Radau IIA of three stages, order 5, on the index-1 form of the equations (eq 38): implicit, for stiff scenes.
+/* Radau IIA of three stages, order 5, on the index-1 form of the equations, eq 38: implicit, for stiff scenes.
  *
  * Unknowns are the stages' velocities less those at the start, Z; configurations follow from them by the same
  * quadrature (attitudes by a few sweeps of it), slides by C_l = 0, accelerations by eq 38. Newton's systems are, for

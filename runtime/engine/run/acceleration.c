@@ -51,7 +51,7 @@ static void border(const fu_model *model, const double *q, fu_accelerator *work)
     fu_bodies_mass(model, q, 0, s);
 }
 
-/* Border of [M H'; H 0] at a state whose terms are evaluated. */
+/* Border of [M H'; H 0] (eq 11) at a state whose terms are evaluated. */
 static int factor_border(const fu_model *model, const fu_state *state, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
@@ -192,6 +192,7 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
     const int info = factor_border(model, state, work);
     if (info) return info;
     for (int i = 0; i < model->n_dof; ++i) work->force[i] = prescribed[i] = work->work[i] = 0.0;
+    /* - Q_k - Q_d - Q_e (eq 9) */
     fu_internal_forces(model, state->q, state->v, work->force);
     fu_coupling_forces(model, state, work->force);
     fu_external_forces(model, state->t, state->q, work->force);

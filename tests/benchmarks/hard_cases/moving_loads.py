@@ -1,4 +1,4 @@
-"""Loads that move (CASES M1, M2, M4, M5). A slide that is driven at constant speed is for later; here the rider keeps
+"""Loads that move (M1, M2, M4, M5). A slide that is driven at constant speed is for later; here the rider keeps
 its speed by itself: deflections are so small that no force acts along the beam, and a rider is pushed across it alone.
 """
 

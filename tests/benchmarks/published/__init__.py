@@ -1,6 +1,6 @@
 """Published cases of elements, as scenes: tests/benchmarks/cases.py prints the table, tests/test_cases.py asserts it.
 
-Numbers from CASES: S1 sliding mass; E1, E2 elements; B1 to B6, B8, B11 statics; D0, D1, D3 motions.
+Cases: S1 sliding mass; E1, E2 elements; B1 to B6, B8, B11 statics; D0, D1, D3 motions.
 """
 
 from . import cantilevers, catenary, dynamics, element, spatial

@@ -1,9 +1,8 @@
-"""The roots of verification for the laws: energy and dissipated power by quadrature, from their definitions.
+"""The root of verification of cables: energy and dissipated power by quadrature, from their definitions, at 50 digits.
 
-All at 50 digits, from the shape functions of verify/references/element.py: r', r'' and F are formed at each point, and
-nothing
-goes through Gram products or invariants. Where a law is a polynomial, its kernels claim the exact integral; where it
-is not (engineering strain, exact curvature, damping of cables), the number of Gauss points is part of what it is.
+r' and r'' are formed at each point from the shape functions of verify/references/element.py, and nothing goes through
+Gram products or invariants. Where a law is a polynomial, its kernels claim the exact integral; where it is not
+(engineering strain, exact curvature, damping), the number of Gauss points is part of what it is.
 """
 
 from __future__ import annotations
@@ -14,68 +13,25 @@ import mpmath
 import numpy as np
 
 from ...algebra.gram import Gram
-from ...laws import LAWS
+from ...laws import LAWS, TRAITS
 from ...spec import Element
 from ..motion import cross
-from . import curved as verify_curved
-from . import structural as verify_structural
-from .element import Shape, density, gauss, spatial
+from . import curved_cable
+from .element import Shape, gauss, spatial
 
 mp = mpmath.mp
 
 
 def energy(element: Element, law: str, s):
-    """Elastic energy."""
-    roots = {"continuum": continuum_energy, "continuum_curved": verify_curved.energy,
-             "structural": verify_structural.energy}
-    return roots.get(law, cable_energy)(element, law, s)
-
-
-def dissipation(element: Element, law: str, s):
-    """Power that Kelvin-Voigt damping takes out."""
-    roots = {"continuum": continuum_dissipation, "continuum_curved": continuum_dissipation,
-             "structural": verify_structural.dissipation}
-    return roots.get(law, cable_dissipation)(element, law, s)
-
-
-def continuum_energy(element: Element, law: str, s):
-    """eq 5-7 by quadrature."""
-    total = mp.mpf(0)
-    for N, weight, D in _material_points(element, s):
-        F = s["e"].T.dot(N)
-        total += weight * density(D, (F.T.dot(F) - np.eye(element.dim, dtype=int)) / 2)
-    return total
-
-
-def continuum_dissipation(element: Element, law: str, s):
-    """Power of the viscous stress tau D dE/dt by quadrature."""
-    total = mp.mpf(0)
-    for N, weight, D in _material_points(element, s):
-        F, rate = s["e"].T.dot(N), s["v"].T.dot(N)
-        total += weight * 2 * density(D, (F.T.dot(rate) + rate.T.dot(F)) / 2)
-    return s["tau"].item() * total
-
-
-def _material_points(element: Element, s) -> Iterator[tuple]:
-    """Gradient of the shape functions, weight and elastic constants: D over the volume, D_axis on the axis alone."""
-    shape = Shape(element, s["l"].item())
-    height, width = s["rectangle"]
-    for at, weight in shape.points(height, width):
-        yield shape.gradient(at), weight, s["D"]
-    for t, weight in gauss(2 * max(p[0] for p in shape.powers) + 1):
-        yield shape.gradient((shape.l / 2 * (1 + t), 0, 0)), weight * shape.l / 2 * height * width, s["D_axis"]
-
-
-def cable_energy(element: Element, law: str, s):
     """1/2 EA strain^2 + 1/2 EI curvature^2 along the axis; strain and curvature from the stress-free shape's."""
-    strain, curvature, *kind = law.split("_")
+    traits, kernels = TRAITS[law], LAWS[law](Gram(element))
+    strain, curvature = traits.strain, traits.curvature
     EA, EI = s["S"][:2]
-    kernels = LAWS[law](Gram(element))
     n_axial, n_bending = axial_points(element, law), len(kernels.bending_points)
-    if kind == ["curved"]:
-        return verify_curved.cable_energy(element, strain, s, n_bending)
+    if traits.straight:
+        return curved_cable.energy(element, strain, s, n_bending)
     total = mp.mpf(0)
-    if kind == ["assumed"]:
+    if traits.membrane == "assumed":
         l = s["l"].item()
         for m, (mode, stiffness) in enumerate(strain_modes(element, law, s)):
             total += l * stiffness * mode**2 / (2 * m + 1) / 2
@@ -92,24 +48,24 @@ def cable_energy(element: Element, law: str, s):
 
 def axial_points(element: Element, law: str) -> int:
     """Gauss points of the membrane; two more than the kernels take, where their number is claimed to be exact."""
-    kernels, (strain, _, *kind) = LAWS[law](Gram(element)), law.split("_")
+    kernels, traits = LAWS[law](Gram(element)), TRAITS[law]
     n, degree = len(kernels.axial_points), kernels.degree
-    exact = (3 * degree - 1) // 2 if kind == ["assumed"] else 2 * degree - 1
-    return n + 2 * (strain == "green" and n >= exact)
+    exact = (3 * degree - 1) // 2 if traits.membrane == "assumed" else 2 * degree - 1
+    return n + 2 * (traits.strain == "green" and n >= exact)
 
 
 def axial_strain(strain: str, r_x: np.ndarray):
-    """Green or engineering."""
+    """Return the Green or the engineering strain."""
     square = r_x.dot(r_x)
     return (square - 1) / 2 if strain == "green" else mp.sqrt(square) - 1
 
 
 def strain_modes(element: Element, law: str, s) -> list[tuple]:
-    """The Legendre modes of the axial strain that an assumed one has, and the axial stiffness of each.
+    """Return the Legendre modes of the axial strain that an assumed one has, and the axial stiffness of each.
 
     One mode a power of the slope; those beyond what a node has along the cable take the third stiffness.
     """
-    strain, n = law.split("_")[0], max(p[0] for p in Shape(element, s["l"].item()).powers)
+    strain, n = TRAITS[law].strain, max(p[0] for p in Shape(element, s["l"].item()).powers)
     full, _, upper = s["S"]
     found, l = [mp.mpf(0)] * n, s["l"].item()
     points = axial_points(element, law)
@@ -120,9 +76,9 @@ def strain_modes(element: Element, law: str, s) -> list[tuple]:
     return [(mode, full if m < (n + 1) // nodes else upper) for m, mode in enumerate(found)]
 
 
-def cable_dissipation(element: Element, law: str, s):
+def dissipation(element: Element, law: str, s):
     """EA tau strain'^2 + EI tau |D_t r''|^2, D_t the rate as seen from a frame that turns with the tangent."""
-    strain, *_ = law.split("_")
+    strain = TRAITS[law].strain
     EA, EI = s["S"][:2]
     degree = max(p[0] for p in Shape(element, s["l"].item()).powers)
     total = mp.mpf(0)
@@ -135,11 +91,11 @@ def cable_dissipation(element: Element, law: str, s):
     return s["tau"].item() * total
 
 
-def cable_turning(element: Element, law: str, s):
+def turning(element: Element, law: str, s):
     """EA |dr'|^2/8 over N' N'; of an assumed strain by its modes."""
     shape, half = Shape(element, s["l"].item()), s["l"].item() / 2
     degree = max(p[0] for p in shape.powers)
-    assumed = law.endswith("_assumed")
+    assumed = TRAITS[law].membrane == "assumed"
     points = []
     for t, weight in gauss(2 * degree if assumed else degree):
         N_x = shape((half * (1 + t), 0, 0), (1, 0, 0))

@@ -6,17 +6,18 @@ For `funicular derive --spec` and for tests/benchmarks. Each kernel gets the sam
 from __future__ import annotations
 
 import subprocess
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
-from ..spec import Family
-from ..verify import numbers as verify_numbers
-from ..verify.compiled import compiler
-from ..verify.states import states
-from . import rendering as emit
-from .rendering import Recorded
+from ..codegen import rendering as emit
+from ..codegen.family import Family
+from ..codegen.program import Program
+from ..codegen.rendering import Recorded
+from . import numbers as verify_numbers
+from .compiled import compiler
+from .samples import states
 
 PROGRAM = """#define _POSIX_C_SOURCE 199309L
 #include <stdio.h>
@@ -49,7 +50,7 @@ OPERATIONS = 2e7  # of one loop: some milliseconds
 
 def build(families: Iterable[Family], manifest: dict, kernels, units: Iterable[Path], flags: Iterable[str],
           work: Path) -> Path:
-    """A program with a loop for every kernel of the families.
+    """Return a program with a loop for every kernel of the families.
 
     manifest: what it says of them; kernels: their Python face; units: the object files that hold them; flags: of the
     compiler, with the folder of kernels.h; work: the folder for the program.
@@ -57,6 +58,7 @@ def build(families: Iterable[Family], manifest: dict, kernels, units: Iterable[P
     loops, names = [], []
     for family in families:
         record = emit.recorded(family, manifest)
+        assert record is not None  # families are those of the manifest
         values = sample(family, record.programs, kernels)
         loops += [_loop(program, values) for program in record.programs]
         names += [program.name for program in record.programs]
@@ -68,7 +70,7 @@ def build(families: Iterable[Family], manifest: dict, kernels, units: Iterable[P
 
 
 def times(program: Path, repetitions: int) -> dict[str, list[float]]:
-    """Microseconds a call by kernel; every repetition is a round of all of them."""
+    """Return the microseconds a call by kernel; every repetition is a round of all of them."""
     taken: dict[str, list[float]] = {}
     for _ in range(repetitions):
         for line in _output([program]):
@@ -78,7 +80,7 @@ def times(program: Path, repetitions: int) -> dict[str, list[float]]:
 
 
 def code_sizes(program: Path) -> dict[str, int]:
-    """Bytes of code by function, as nm tells; empty without nm."""
+    """Return the bytes of code by function, as nm tells; empty without nm."""
     try:
         lines = [line.split() for line in _output(["nm", "-S", program])]
     except (OSError, subprocess.CalledProcessError):
@@ -90,8 +92,8 @@ def _output(command: Iterable) -> list[str]:
     return subprocess.run(list(command), capture_output=True, text=True, check=True).stdout.splitlines()
 
 
-def sample(family: Family, programs: list[Recorded], kernels) -> dict[str, np.ndarray]:
-    """The first state on which the family is verified; its constants from the compiled kernels."""
+def sample(family: Family, programs: Sequence[Program | Recorded], kernels) -> dict[str, np.ndarray]:
+    """Return the first state on which the family is verified; its constants from the compiled kernels."""
     outputs = {p.name: [a.name for a in p.outputs] for p in programs}
 
     def call(name, inputs):
@@ -101,7 +103,7 @@ def sample(family: Family, programs: list[Recorded], kernels) -> dict[str, np.nd
     return states(family, verify_numbers.real(family.name, programs, call))[0]
 
 
-def _loop(program: Recorded, values: Mapping[str, np.ndarray]) -> str:
+def _loop(program: Program | Recorded, values: Mapping[str, np.ndarray]) -> str:
     arrays, arguments = [], []
     for argument in program.inputs:
         numbers = ", ".join(repr(float(v)) for v in np.ravel(values[argument.name]))

@@ -1,4 +1,4 @@
-"""The roots of verification where the stress-free shape e0 is curved: eq 5 and 7 by quadrature, at 50 digits.
+"""The root of verification of a continuum with a curved stress-free shape e0: eq 5 and 7 by quadrature, at 50 digits.
 
 Strain is J0^-T (F'F - F0'F0) J0^-1 / 2 in global axes, turned to the tangent frame by Gram-Schmidt; volume is det J0 of
 the straight one.
@@ -27,26 +27,26 @@ class Body:
         self.director = "xyz".index(element.director[-1])
 
     def gradient(self, name: str, at) -> np.ndarray:
-        """F of nodal vectors e, e0 or v."""
+        """Return F of the nodal vectors e, e0 or v."""
         return self.s[name].T.dot(self.shape.gradient(at))
 
     def frame(self, x) -> np.ndarray:
-        """Tangent frame of the stress-free axis, by columns."""
+        """Return the tangent frame of the stress-free axis, by columns."""
         F0 = self.gradient("e0", (x, 0, 0))
         return frame(mp, F0[:, 0], F0[:, self.director])
 
     def turned(self, at, change: np.ndarray) -> np.ndarray:
-        """J0^-T change J0^-1 in the tangent frame."""
+        """Return J0^-T change J0^-1 in the tangent frame."""
         inverse = _inverse(self.gradient("e0", at)).dot(self.frame(at[0]))
         return inverse.T.dot(change).dot(inverse)
 
     def strain(self, at) -> np.ndarray:
-        """E in the tangent frame."""
+        """Return the Green strain E in the tangent frame."""
         F, F0 = self.gradient("e", at), self.gradient("e0", at)
         return self.turned(at, (F.T.dot(F) - F0.T.dot(F0)) / 2)
 
     def volume(self, at):
-        """det J0."""
+        """Return det J0, the volume by that of the straight element."""
         return mp.det(mp.matrix(self.gradient("e0", at)))
 
 
@@ -55,7 +55,7 @@ def _inverse(matrix: np.ndarray) -> np.ndarray:
 
 
 def weighted_points(element: Element, s) -> Iterator[tuple]:
-    """Points of the volume and the elastic constants times what each stands for."""
+    """Yield the points of the volume and the elastic constants times what each stands for."""
     half = mp.mpf(s["l"].item()) / 2
     for t, p in gauss(ALONG):
         for y, z, area, D in section_points(s):
@@ -63,7 +63,7 @@ def weighted_points(element: Element, s) -> Iterator[tuple]:
 
 
 def energy(element: Element, law: str, s):
-    """Elastic energy."""
+    """Return the elastic energy by quadrature, J."""
     body = Body(element, s)
     return sum(body.volume(at) * density(D, body.strain(at)) for at, D in weighted_points(element, s))
 
@@ -75,7 +75,9 @@ def density_at(element: Element, s):
 
 
 def section(element: Element, law: str, s) -> dict[str, np.ndarray]:
-    """Resultants of P N dA, N dA = det J0 J0^-T e_x dy dz, and strain on the axis with its changes along y and z."""
+    """Return the resultants of P N dA, N dA = det J0 J0^-T e_x dy dz, and strain on the axis with its changes along y
+    and z.
+    """
     body, x = Body(element, s), s["x"].item()
     R, axis = body.frame(x), body.shape((x, 0, 0)).dot(s["e"])
     force, moment = np.zeros(3, dtype=object), np.zeros(3, dtype=object)
@@ -98,43 +100,3 @@ def section(element: Element, law: str, s) -> dict[str, np.ndarray]:
     by_y, by_z = ((change(k == 0, k) - change(-(k == 0), -k)) / 2 for k in (0, 1))
     strain = [here[0, 0], 2 * here[0, 1], 2 * here[0, 2], by_y[0, 2] - by_z[0, 1], by_z[0, 0], -by_y[0, 0]]
     return {"force": force, "moment": moment, "strain": np.array(strain)}
-
-
-# --- cables: derivatives r', r'' of the shape and of the stress-free one -----------------------------------------
-
-
-def cable_measures(strain: str, r, r0) -> tuple:
-    """Strain, and what the curvature has more than the stress-free one, both by the stress-free arc-length."""
-    stretch = mp.sqrt(r[0].dot(r[0]) / r0[0].dot(r0[0]))
-    change = _curvature(strain, r, r0) - _curvature("", r0, r0)
-    return (stretch**2 - 1) / 2 if strain == "green" else stretch - 1, change
-
-
-def _curvature(strain: str, r, r0):
-    normal, length = cross(*r), mp.sqrt(r[0].dot(r[0]))
-    by = mp.sqrt(r0[0].dot(r0[0])) * length**2 if strain == "engineering" else length**3
-    return mp.sqrt(normal.dot(normal)) / by
-
-
-def cable_density(strain: str, r, r0, EA, EI, l):
-    """Energy per x; kappa and kappa0 are rounded to sqrt(kappa^2 + 1e-6 kappa0^2 + floor), floor = (2e-6/l)^2, and a
-    kappa0^2 below the floor is none.
-    """
-    eps, _ = cable_measures(strain, r, r0)
-    kappa, kappa0, floor = _curvature(strain, r, r0), _curvature("", r0, r0), 4 / mp.mpf(10) ** 12 / mp.mpf(l) ** 2
-    rounding = kappa0**2 / 10**6 + floor
-    rounded, rounded0 = mp.sqrt(kappa**2 + rounding), mp.sqrt(kappa0**2 + rounding)
-    preferred = rounded0 * kappa0**4 / (kappa0**4 + floor**2)
-    bending = (kappa**2 - kappa0**2) / 2 - preferred * (rounded - rounded0)
-    return mp.sqrt(r0[0].dot(r0[0])) * (EA * eps**2 / 2 + EI * bending)
-
-
-def cable_energy(element: Element, strain: str, s, n: int):
-    """By n Gauss points."""
-    shape, half, total = Shape(element, s["l"].item()), mp.mpf(s["l"].item()) / 2, mp.mpf(0)
-    EA, EI = s["S"]
-    for t, weight in gauss(n):
-        at = (half * (1 + t), 0, 0)
-        r, r0 = ([spatial(shape(at, (k, 0, 0)).dot(s[e])) for k in (1, 2)] for e in ("e", "e0"))
-        total += half * weight * cable_density(strain, r, r0, EA, EI, s["l"].item())
-    return total

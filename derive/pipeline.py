@@ -1,0 +1,89 @@
+"""From specs to files, in one direction: the command `funicular derive`.
+
+specs      elements, laws, bodies and couplings, as `catalogue.families` lists them
+           -> families: a builder each, with the modules that decide its text
+programs   `codegen.rendering.derive` runs the builder of a family: SymPy expressions, staged, without what no output
+           needs -> programs, one a kernel
+text       `codegen.rendering.render` fills the templates with programs printed as C -> text by file name
+manifest   `codegen.rendering.manifest` says what was made, from what, with which tools
+files      `codegen.drift` compares the texts with generated/, or writes those that differ
+
+A family whose specs, tools and file are those that the manifest records is not derived again.
+"""
+
+from __future__ import annotations
+
+from rich.console import Console
+from rich.progress import Progress
+
+from .algebra import section_points
+from .catalogue import families, named
+from .codegen import drift
+from .codegen import rendering as emit
+from .codegen.family import FamilyError
+
+
+def generate(names: list[str] | None = None, show: bool = False) -> dict[str, str]:
+    """Return the text of every generated file, or (names not None) of the named families' and the common ones, by name.
+
+    With names, the other families stand in the common files as the manifest records them: as their files are.
+    Raises KeyError for an unknown family, naming the near ones.
+    """
+    every = families()
+    wanted = every if names is None else named(names)
+    record = {} if names is None else drift.record()
+    with Progress(disable=not show, console=Console(stderr=True), transient=True) as progress:
+        task = progress.add_task("derive", total=2 * len(wanted))
+        known = []
+        for name, family in every.items():
+            if name in wanted:
+                progress.update(task, description=f"derive {name}")
+                known.append(emit.derive(family))
+                progress.advance(task)
+            elif old := emit.recorded(family, record):
+                known.append(old)
+        progress.update(task, description="print")
+        files = emit.render(known, wanted, lambda _: progress.advance(task))
+    kept = {f"{d.family.name}.c": drift.current(f"{d.family.name}.c") for d in known if d.family.name not in wanted}
+    files[drift.MANIFEST] = emit.manifest(known, {n: text for n, text in kept.items() if text is not None} | files,
+                                          more={"section_points": section_points.table()})
+    return files
+
+
+def changed() -> list[str]:
+    """Return the names of the families whose specs, tools or files are not those that the manifest records."""
+    record = drift.record()
+    if record.get("tools") != emit.tools():
+        return list(families())
+    return [name for name, family in families().items()
+            if record.get("families", {}).get(name, {}).get("spec_hash") != emit.came_from(family)[1]
+            or record["files"].get(f"{name}.c") != emit.digest(drift.current(f"{name}.c") or "")]
+
+
+def main(names: list[str], check: bool = False) -> int:
+    """Write generated/, or compare it with the specs, and return the exit code of the command."""
+    out = Console(soft_wrap=True, highlight=False, markup=False)
+    err = Console(stderr=True, soft_wrap=True, highlight=False, markup=False)
+    try:
+        # a check believes no hash: it derives everything
+        files = generate(names or (None if check else changed()), show=err.is_terminal)
+        written = [] if check else drift.write(files)
+    except (KeyError, OSError, FamilyError) as problem:
+        err.print(f"funicular derive: {problem.args[0] if isinstance(problem, KeyError) else problem}")
+        return 1
+    unknown = [] if names else drift.extra(families())
+    if not check:
+        out.print("\n".join([f"{len(files)} files, {len(written)} written" + (": " if written else "")
+                             + ", ".join(written), *unknown]))
+        return 0
+    found = drift.differences(files)
+    for paragraph in [*found, *unknown]:
+        out.print(paragraph)
+    if found:
+        err.print(f"generated/ differs from the specs in {len(found)} files; `funicular derive"
+                  f"{''.join(' ' + n for n in names)}` mends it")
+    if unknown:
+        err.print(f"generated/ has {len(unknown)} files that no spec makes: delete them")
+    if not (found or unknown):
+        out.print(f"generated/ agrees with the specs: {len(files)} files")
+    return 1 if found or unknown else 0

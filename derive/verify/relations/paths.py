@@ -1,0 +1,36 @@
+"""Paths along which relations differentiate: inputs of a kernel moved, or a root that shares nothing with it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+
+def unit(like: np.ndarray, j: int) -> np.ndarray:
+    """Zeros with a one at entry j."""
+    zeros = np.zeros(like.size, dtype=int)
+    zeros[j] = 1
+    return zeros.reshape(like.shape)
+
+
+def from_kernel(kernel: str, output: str, **directions: Callable) -> Callable:
+    """Return a path: the output of a kernel with some inputs moved by t times directions[name](state, j)."""
+    def path(k, s, t, j):
+        return k(kernel, s, **{name: s[name] + t * d(s, j) for name, d in directions.items()})[output]
+    return path
+
+
+def entry(name: str) -> Callable:
+    """Direction: entry j of an input."""
+    return lambda s, j: unit(s[name], j)
+
+
+def root(function: Callable, *about) -> Callable:
+    """Return a path of order 0: function(*about, state), which shares nothing with the derivation."""
+    return lambda k, s, t, j: function(*about, s)
+
+
+def half(path: Callable) -> Callable:
+    """Return the path of half the value."""
+    return lambda k, s, t, j: path(k, s, t, j) / 2

@@ -1,0 +1,39 @@
+"""Checks of an event against the scene that it joins."""
+
+from __future__ import annotations
+
+from ..errors import SceneError, near
+from ..parts.event import Event
+from ..parts.scene_data import SceneData
+from .placement import node_at
+
+AXES = ("x", "y", "z")
+WATCHABLE = {"rigid_body": ("position", "velocity"), "modal_body": ("position", "velocity"),
+             "cable": ("position", "velocity"), "slide": ("s", "s_rate", "traction")}
+"""Quantities that a threshold can be set on, by kind of part."""
+
+
+def placed_event(scene: SceneData, event: Event) -> Event:
+    """Return the event, sure to watch a function or a quantity that the scene has. Raises SceneError."""
+    if event.quantity is None:
+        return event
+    name, _, quantity = event.quantity.partition(".")
+    what, _, axis = quantity.partition(".")
+    parts = {**scene.bodies, **scene.cables, **scene.slides}
+    if name not in parts:
+        raise SceneError(event.where, f'there is no body, cable or slide "{name}"', near(name, parts))
+    part = parts[name]
+    known = WATCHABLE[part.kind]
+    if what not in known or (axis not in AXES if part.kind != "slide" else axis):
+        forms = ", ".join(f"{name}.{k}" if part.kind == "slide" else f"{name}.{k}.x" for k in known)
+        raise SceneError(event.where, f'"{event.quantity}" cannot be watched', f"{forms}, with x, y or z, can"
+                         if part.kind != "slide" else f"{forms} can")
+    if scene.dim == 2 and axis == "z":
+        raise SceneError(event.where, f'"{event.quantity}" is always 0: the scene is planar', "watch x or y")
+    if part.kind == "cable":
+        if event.s is None:
+            raise SceneError(event.where, "s is missing: where on the cable?", "give the s of a node")
+        node_at(scene, name, event.where, event.s)
+    elif event.s is not None:
+        raise SceneError(event.where, f'"{event.quantity}" has no place s', "leave it out")
+    return event

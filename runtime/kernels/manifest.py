@@ -1,0 +1,51 @@
+"""What the manifest of a library of elements has to be."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict
+
+from .elements import LawTraits
+
+
+class _Described(BaseModel):
+    model_config = ConfigDict(strict=True, defer_build=True)
+
+
+class _Shared(_Described):
+    spec: str
+    file: str
+    sha256: str
+    digest: str = ""
+
+
+class _Argument(_Described):
+    name: str
+    shape: list[int]
+
+
+class _Kernel(_Described):
+    doc: str
+    source: str
+    inputs: list[_Argument]
+    outputs: list[_Argument]
+
+
+class _Element(_Described):
+    nodal_vectors: list[str]
+    dim: Literal[2, 3]
+    director: str
+    laws: dict[str, LawTraits]
+
+
+class Manifest(_Described):
+    """What a library's manifest must have to be loaded."""
+
+    interface: str
+    library: _Shared
+    elements: dict[str, _Element]
+    kernels: dict[str, _Kernel]
+    tools: dict[str, str]
+    families: dict[str, dict]
+    files: dict[str, str]

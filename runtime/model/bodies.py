@@ -1,0 +1,77 @@
+"""Rigid and modal bodies as the engine takes them: inertia, configuration, weight."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..parts.modal_body import ModalBody
+from ..parts.rigid_body import RigidBody
+from ..parts.scene_data import SceneData
+from ..rotations import rotate
+from .model import BodyModel, ShapeModel
+
+BODIES = {2: ("planar_rigid", 4, 3), 3: ("rigid", 7, 6)}
+"""Kernels, length of the configuration and dofs of a rigid body, by dimension of the scene."""
+
+
+def body_models(scene: SceneData, at: int) -> list[BodyModel]:
+    """Bodies in the scene's order, their coordinates from `at` on."""
+    dim, made, dof = scene.dim, [], at
+    kernel, n_configuration, n_velocity = BODIES[dim]
+    for body in scene.bodies.values():
+        shape = _shape(body, np.array(scene.gravity)[:dim]) if isinstance(body, ModalBody) else None
+        centre = np.zeros(3) if shape else np.array(body.centre)
+        made.append(BodyModel(body.name, kernel, body.mass, np.array(body.inertia), centre, at, dof, shape))
+        at += n_configuration + made[-1].modes
+        dof += n_velocity + made[-1].modes
+    return made
+
+
+def _shape(body: ModalBody, gravity: np.ndarray) -> ShapeModel:
+    shape, dim = body.shape, len(gravity)
+    return ShapeModel(shape.S[:, :dim], shape.X[:, :, :dim, :dim], shape.stiffness, shape.damping(body.damping_ratio),
+                      gravity, shape)
+
+
+def dofs_of(body: BodyModel, dim: int) -> int:
+    """Return the number of its degrees of freedom."""
+    return BODIES[dim][2] + body.modes
+
+
+def configuration_of(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
+    """Its configuration, undeformed."""
+    if isinstance(body, ModalBody):
+        (position, orientation), modes = body.frame, np.zeros(body.shape.n)
+    else:
+        position, orientation, modes = body.point(body.centre), body.orientation, np.zeros(0)
+    if dim == 2:
+        w, _, _, z = orientation
+        orientation = w * w - z * z, 2 * w * z
+    return np.array([*position[:dim], *orientation, *modes])
+
+
+def velocity_of(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
+    """Return the rates of its configuration at the start, those of its modes zero."""
+    turning = np.array(body.angular_velocity)
+    velocity, modes = np.array(body.velocity), np.zeros(0)
+    if isinstance(body, ModalBody):
+        modes = np.zeros(body.shape.n)
+    else:
+        velocity = velocity + rotate(body.orientation, np.cross(turning, body.centre))
+    return np.concatenate([velocity[:dim], turning[2 if dim == 2 else 0 :], modes])
+
+
+def body_weights(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
+    """1 for the origin, the largest radius of gyration for turns, the root mean square of displacement for modes."""
+    inertia = np.array(body.inertia)
+    largest = inertia[2, 2] if dim == 2 else np.max(np.linalg.eigvalsh(inertia))
+    modes = np.sqrt(np.diag(body.shape.modal_mass) / body.mass) if isinstance(body, ModalBody) else np.zeros(0)
+    return np.concatenate([np.ones(dim), np.full(1 if dim == 2 else 3, np.sqrt(largest / body.mass)), modes])
+
+
+def body_gravity(body: BodyModel, gravity: np.ndarray) -> np.ndarray:
+    """Of a modal body nothing: its weight turns and deforms with it, and is among its forces."""
+    weight = np.zeros(dofs_of(body, len(gravity)))
+    if not body.modes:
+        weight[: len(gravity)] = body.mass * gravity
+    return weight

@@ -1,0 +1,98 @@
+"""Joints between two attachments as the engine takes them, and what keeps a rider's axes to its cable."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..checks.frames import has_section, joint_axes, slide_axes
+from ..kernels.libraries import kernels_of
+from ..parts.joint import DRIVEN, Joint
+from ..parts.places import point_of
+from ..parts.signal import Signal
+from ..parts.slide import Slide
+from .attachments import AttachmentBuilder, AttachmentModel
+
+
+@dataclass
+class JointModel:
+    """A joint between two ends; unknown, multiplier: places of its rows; signal: that drives it, or -1.
+
+    slide: the one beside which it ties a rider's axes to the cable; redundant_rows: those that other joints imply
+    (model/redundant_constraints.py);
+    reversed: the first end is the joint's b.
+    """
+
+    name: str
+    kernel: str
+    ends: tuple[AttachmentModel, AttachmentModel]
+    unknown: int
+    multiplier: int
+    signal: int
+    base: float
+    scale: np.ndarray
+    slide: str | None = None
+    redundant_rows: set[int] = field(default_factory=set)
+    reversed: bool = False
+
+    @property
+    def rows(self) -> int:
+        """Number of its equations."""
+        return len(self.scale)
+
+
+def joint_model(attachments: AttachmentBuilder, joint: Joint, signal: Callable[[Signal], int], unknown: int,
+                multiplier: int) -> JointModel:
+    """The model of a joint; signal(s): number of a signal."""
+    scene = attachments.scene
+    at = joint_axes(scene, joint)
+    needs = joint.pair not in ("spherical", "distance")
+    ends = [attachments.model(attachment, axes if needs else None, None if attachment.on not in scene.cables
+                            or has_section(scene.cables[attachment.on]) else joint.up)
+            for attachment, axes in zip((joint.a, joint.b), at, strict=True)]
+    kind, driven, turned = joint.pair, joint.is_driven, False
+    if scene.dim == 2:
+        kind = {"revolute": "revolute" if driven else "spherical", "cylindrical": "prismatic"}.get(kind, kind)
+    if driven and joint.pair != "distance":
+        kind += f"_{DRIVEN[joint.pair]}"
+        if scene.dim == 2 and joint.axes[2, 2] < -0.5:  # about -z: what a sees of b is what b sees of a about z
+            ends.reverse()
+            turned = True
+    base = 0.0
+    if joint.pair == "distance":
+        base = 0.0 if driven else joint.length
+    elif driven and DRIVEN[joint.pair] == "distance":
+        base = float(joint.axes[:, 2] @ (point_of(scene, joint.b) - point_of(scene, joint.a)))
+    model = _model(joint.name, kind, scene.dim, ends, unknown, multiplier,
+                   signal(joint.prescribed) if driven else -1, base)
+    model.reversed = turned
+    return model
+
+
+def frame_joint_model(attachments: AttachmentBuilder, slide: Slide, number: int, unknown: int,
+                      multiplier: int) -> JointModel:
+    """What keeps a rider's axes to the frame of its cable, beside slide number `number`."""
+    dim = attachments.scene.dim
+    at = slide_axes(attachments.scene, slide)
+    free = slide.frame == "tangent" and slide.roll == "free" and dim == 3
+    ends = [attachments.on_slide(slide, number, at.a), attachments.model(slide.rider, at.b)]
+    model = _model(slide.name, "aligned" if free else "locked", dim, ends, unknown, multiplier, -1, 0.0)
+    model.slide = slide.name
+    return model
+
+
+def _model(name: str, kind: str, dim: int, ends: list[AttachmentModel], unknown: int, multiplier: int, signal: int,
+          base: float) -> JointModel:
+    kernel = f"joint_{'planar_' * (dim == 2)}{kind}"
+    return JointModel(name, kernel, tuple(ends), unknown, multiplier, signal, base, _scales(kernel, dim, ends))
+
+
+def _scales(kernel: str, dim: int, ends: list[AttachmentModel]) -> np.ndarray:
+    """(rows,): kg, and kg m where a row is about turns alone: no displacement of the points changes it."""
+    eye, ones = np.eye(dim), np.ones(dim)
+    force = getattr(kernels_of(None), f"{kernel}_force")
+    J = force(ones, eye, eye, np.array([0.5, np.cos(0.5), np.sin(0.5)]), np.zeros(force.shapes["f"]))[1]
+    mass, length = max(end.mass for end in ends), max(end.length for end in ends)
+    return np.where(np.any(J[:, :dim] != 0, axis=1), mass, mass * length)

@@ -1,0 +1,177 @@
+"""What the engine integrates, as data: cables, bodies, slides, joints, springs, loads, and arrays over all of them.
+
+Coordinates, unknowns and their order are those of engine/engine.h.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.sparse import csr_array
+
+from ..kernels.libraries import kernels_of
+from ..parts.body_shape import Shape
+from ..parts.end_stops import Stop
+from ..parts.friction import Friction
+from .attachments import AttachmentModel
+from .joints import JointModel
+from .loads import DeadLoad, LoadModel, PointForceModel, SignalModel
+from .unknowns import Node
+
+
+@dataclass
+class CableModel:
+    """One cable: constants of its elements and where its coordinates are; A (1 or elements, constants)."""
+
+    name: str
+    element: str
+    law: str
+    n_elements: int
+    first: int
+    length: float
+    tau: float
+    mass_damping: float
+    m: np.ndarray
+    A: np.ndarray
+    shape: tuple[int, int, int]
+    vectors: tuple[str, ...]
+    library: str | None
+
+    @property
+    def coordinates(self) -> slice:
+        """Its part of q, v and the dofs."""
+        return slice(self.first, self.first + int(np.prod(self.shape)))
+
+    def kernel(self, name: str) -> Callable:
+        """A kernel of its element."""
+        return getattr(kernels_of(self.library), f"{self.element}_{name}")
+
+
+@dataclass
+class ShapeModel:
+    """Modes of a body as the engine takes them: S (n + 1, dim), X (n + 1, n + 1, dim, dim), gravity (dim,)."""
+
+    S: np.ndarray
+    X: np.ndarray
+    stiffness: np.ndarray
+    damping: np.ndarray
+    gravity: np.ndarray
+    fields: Shape
+
+
+@dataclass
+class BodyModel:
+    """One body: kernels of its frame, inertia, where its coordinates are; `shape` is that of a modal one.
+
+    The engine's frame is at the mass centre of a rigid body, `centre` in its axes from the origin that the user sees.
+    """
+
+    name: str
+    kernel: str
+    mass: float
+    inertia: np.ndarray
+    centre: np.ndarray
+    configuration: int
+    dof: int
+    shape: ShapeModel | None = None
+
+    @property
+    def modes(self) -> int:
+        """Number of modes."""
+        return 0 if self.shape is None else len(self.shape.stiffness)
+
+    @property
+    def modal_kernel(self) -> str:
+        """Name of the kernels of its modes."""
+        return self.kernel.replace("rigid", "modal")
+
+
+@dataclass
+class SlideModel:
+    """One slide: kernels, its cable and its rider, its unknowns, what drives it, and where it starts.
+
+    rider_is_rigid: the kernels take the rider's own configuration; max_multipliers: how many it may have; drive: a
+    signal, or -1;
+    resistance: kernels of friction and buffers, or none; ends: what waits at the start and at the end of the cable.
+    """
+
+    name: str
+    kernel: str
+    cable: int
+    rider: AttachmentModel
+    rider_is_rigid: bool
+    unknown: int
+    multiplier: int
+    max_multipliers: int
+    drive: int
+    carries_director: bool
+    mass: float
+    s: float
+    element: int
+    director: np.ndarray
+    resistance: str = ""
+    friction: Friction | None = None
+    ends: tuple[str | Stop, str | Stop] = ("error", "error")
+
+
+@dataclass
+class MotionModel:
+    """A dof that follows a signal: base + linear f + cosine cos f + sine sin f."""
+
+    dof: int
+    signal: int
+    base: float
+    linear: float
+    cosine: float
+    sine: float
+
+
+@dataclass
+class Model:
+    """Arrays that the engine reads; see engine/engine.h for their meaning. tables: addresses of further kernels."""
+
+    dim: int
+    cables: list[CableModel]
+    bodies: list[BodyModel]
+    slides: list[SlideModel]
+    joints: list[JointModel]
+    springs: list[PointForceModel]
+    signals: list[SignalModel]
+    motions: list[MotionModel]
+    dead_loads: list[DeadLoad]
+    loads: list[LoadModel]
+    q: np.ndarray
+    v: np.ndarray
+    weight: np.ndarray
+    gravity: np.ndarray
+    place: np.ndarray
+    combinations: csr_array
+    n_band: int
+    n_border_dof: int
+    n_extra: int
+    n_multipliers: int
+    width: int
+    chains: np.ndarray
+    nodes: dict[str, list[Node]]
+    tables: list[int] = field(default_factory=list)
+
+    @property
+    def n_q(self) -> int:
+        """Length of the configuration."""
+        return len(self.q)
+
+    @property
+    def n_dof(self) -> int:
+        """Length of the velocities."""
+        return len(self.v)
+
+    @property
+    def kernels(self) -> list[str]:
+        """Names of the kernel families that the scene touches."""
+        return sorted({c.element for c in self.cables} | {f"{c.element}_{c.law}" for c in self.cables}
+                      | {slide.kernel for slide in self.slides} | {body.kernel for body in self.bodies}
+                      | {joint.kernel for joint in self.joints}
+                      | {slide.resistance for slide in self.slides if slide.resistance}
+                      | {body.modal_kernel for body in self.bodies if body.modes})

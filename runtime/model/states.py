@@ -1,0 +1,133 @@
+"""The state of a model, read: bodies, joints, springs and reactions, in three dimensions whatever the scene's."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..parts.places import ends_of, joined, node_of
+from ..parts.scene_data import SceneData
+from ..parts.support import Support, Tie
+from ..rotations import rotate
+from .joints import JointModel
+from .model import Model
+
+
+def spatial(vectors: np.ndarray) -> np.ndarray:
+    """(..., 2 or 3) -> (..., 3)."""
+    return np.concatenate([vectors, np.zeros((*vectors.shape[:-1], 3 - vectors.shape[-1]))], axis=-1)
+
+
+def force_and_moment(nodes, reaction: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray]:
+    """Force and moment that supports or joins give to nodes at one place.
+
+    reaction, q: (time, dofs) generalised forces and configuration. Returns force, moment (time, 3) in N, N m: the
+    moment is what the forces on the slopes turn the section by, sum of r_k x f_k.
+    """
+    force, moment = np.zeros((len(q), 3)), np.zeros((len(q), 3))
+    for node in nodes:
+        force += spatial(reaction[:, node.dofs("r")])
+        for name in {"r_x", "r_y", "r_z"} & set(node.names):
+            at = node.dofs(name)
+            moment += np.cross(spatial(q[:, at]), spatial(reaction[:, at]))
+    return {"force": force, "moment": moment}
+
+
+def support_reaction(model: Model, scene: SceneData, part: Support, reaction: np.ndarray,
+                     q: np.ndarray) -> dict[str, np.ndarray]:
+    """Force and moment of a pin, clamp or motion on its node and those joined to it."""
+    nodes = joined(scene, node_of(scene, part))
+    return force_and_moment([model.nodes[cable][k] for cable, k in nodes], reaction, q)
+
+
+def tie_force(model: Model, scene: SceneData, tie: Tie, reaction: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray]:
+    """Force and moment of a tie on the node of its `cable`: what the nodes on that side of it are given.
+
+    A support on that side gives a part that is not the tie's: then it is minus what the other side is given.
+    """
+    supported = {node_of(scene, support) for support in scene.supports}
+    one, other = ends_of(scene, tie)
+    sign, near = 1.0, joined(scene, one, without=tie)
+    if near & supported:
+        sign, near = -1.0, joined(scene, other, without=tie)
+    found = force_and_moment([model.nodes[cable][k] for cable, k in near], reaction, q)
+    return {name: sign * value for name, value in found.items()}
+
+
+def body_state(model: Model, body, q: np.ndarray) -> dict[str, np.ndarray]:
+    """position, orientation of a body from configurations (time, n_q)."""
+    b = body.configuration
+    if model.dim == 3:
+        centre, orientation = q[:, b : b + 3], q[:, b + 3 : b + 7]
+    else:
+        half = np.arctan2(q[:, b + 3], q[:, b + 2]) / 2
+        zero = np.zeros_like(half)
+        centre, orientation = spatial(q[:, b : b + 2]), np.stack([np.cos(half), zero, zero, np.sin(half)], axis=1)
+    return {"position": centre - rotate(orientation, body.centre) if body.centre.any() else centre,
+            "orientation": orientation}
+
+
+def body_rates(model: Model, body, orientation: np.ndarray, v: np.ndarray, a: np.ndarray | None = None) -> dict:
+    """velocity of a body's origin, angular_velocity, and with accelerations theirs, from rates (time, n_dof)."""
+    at = slice(body.dof, body.dof + model.dim)
+    turn = slice(at.stop, at.stop + (3 if model.dim == 3 else 1))
+    velocity, omega = spatial(v[:, at]), _turning(v[:, turn])
+    swing = np.cross(omega, body.centre)
+    found = {"velocity": velocity - rotate(orientation, swing) if body.centre.any() else velocity,
+             "angular_velocity": omega}
+    if a is not None:
+        acceleration, alpha = spatial(a[:, at]), _turning(a[:, turn])
+        if body.centre.any():
+            acceleration = acceleration - rotate(orientation, np.cross(alpha, body.centre) + np.cross(omega, swing))
+        found |= {"acceleration": acceleration, "angular_acceleration": alpha}
+    return found
+
+
+def modal_state(model: Model, body, state: dict[str, np.ndarray], q: np.ndarray, v: np.ndarray | None = None) -> dict:
+    """modal_coordinates (time, mode) and nodes (time, node, 3) of a modal body whose frame's `state` is known.
+
+    With v (time, n_dof) modal_velocities, too.
+    """
+    start = body.configuration + (7 if model.dim == 3 else 4)
+    eta, fields = q[:, start : start + body.modes], body.shape.fields
+    place = fields.nodes + np.einsum("tk,kni->tni", eta, fields.modes)
+    rate = body.dof + (6 if model.dim == 3 else 3)
+    return {"modal_coordinates": eta,
+            "nodes": state["position"][:, None] + rotate(state["orientation"][:, None], place)} | (
+                {} if v is None else {"modal_velocities": v[:, rate : rate + body.modes]})
+
+
+def joint_state(joint: JointModel, numbers: np.ndarray) -> dict[str, np.ndarray]:
+    """Force and moment on the end b, and residual, from the engine's numbers (..., FU_JOINT_OUTPUTS) of a joint."""
+    sign = -1.0 if joint.reversed else 1.0  # that has its ends at one point
+    return {"force": sign * numbers[..., :3], "moment": sign * numbers[..., 3:6], "residual": numbers[..., 6]}
+
+
+def _turning(rates: np.ndarray) -> np.ndarray:
+    """Rotation about three axes, or about z alone."""
+    return rates if rates.shape[1] == 3 else np.concatenate([np.zeros((len(rates), 2)), rates], axis=1)
+
+
+def spring_state(model: Model, spring, force: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray]:
+    """Force on the first end, (time, 3) in N; length between the ends, in m; tension, in N, negative in compression."""
+    a, b = (attachment_points(model, each, q) for each in spring.ends)
+    gap, force = b - a, spatial(force)
+    length = np.linalg.norm(gap, axis=1)
+    along = gap / np.where(length > 0, length, 1.0)[:, None]
+    return {"force": force, "length": length, "tension": np.sum(force * along, axis=1)}
+
+
+def attachment_points(model: Model, attachment, q: np.ndarray) -> np.ndarray:
+    """(time, 3): where an attachment is."""
+    if attachment.cable >= 0:
+        cable = model.cables[attachment.cable]
+        start = cable.first + attachment.element * cable.shape[1] * model.dim
+        vectors = q[:, start : start + len(attachment.N) * model.dim].reshape(len(q), -1, model.dim)
+        return spatial(np.einsum("k,tkd->td", attachment.N, vectors))
+    if attachment.body >= 0:
+        body = model.bodies[attachment.body]
+        state, arm = body_state(model, body, q), body.centre + attachment.u
+        if attachment.spot is not None:
+            eta = modal_state(model, body, state, q)["modal_coordinates"]
+            arm = spatial(attachment.spot[0] + eta @ attachment.spot[1])
+        return state["position"] + rotate(state["orientation"], arm)
+    return np.broadcast_to(np.array(attachment.u), (len(q), 3))

@@ -1,0 +1,79 @@
+"""What differs between operating systems: locks of files, reads and writes at a place of a file, the machine's memory.
+
+POSIX systems take their own calls. The others are for Windows, where `fcntl` and some of `os` are missing.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import threading
+
+try:
+    import fcntl
+except ModuleNotFoundError:
+    fcntl = None
+    import msvcrt
+
+# Flags of os.open: bytes as they are, none for child processes, and no links, where a system has such a flag.
+BYTES = getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_NOINHERIT", 0)
+NO_LINK = getattr(os, "O_NOFOLLOW", 0)
+
+_LOCKED_BYTE = 2**31 - 2  # Windows locks bytes and keeps others from reading them: this one is behind most files' end
+_one_at_a_time = threading.Lock()
+
+
+def lock(descriptor: int) -> None:
+    """Lock an open file until it is closed, also by the end of the process.
+
+    Raises BlockingIOError where somebody else has it, OSError where the file system has no locks.
+    """
+    if fcntl:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        return
+    with _one_at_a_time:
+        place = os.lseek(descriptor, 0, os.SEEK_CUR)
+        os.lseek(descriptor, _LOCKED_BYTE, os.SEEK_SET)
+        try:
+            msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
+        except PermissionError as error:
+            raise BlockingIOError(error.errno, "the file is locked") from None
+        finally:
+            os.lseek(descriptor, place, os.SEEK_SET)
+
+
+def read_at(descriptor: int, size: int, at: int) -> bytes:
+    """The bytes of a file from `at` on: `size`, or fewer where the file ends. Raises OSError."""
+    if hasattr(os, "pread"):
+        return os.pread(descriptor, size, at)
+    with _one_at_a_time:
+        os.lseek(descriptor, at, os.SEEK_SET)
+        return os.read(descriptor, size)
+
+
+def read_into(descriptor: int, buffer: memoryview, at: int) -> int:
+    """Fill a buffer of bytes from `at` on; returns how many bytes the file had. Raises OSError."""
+    if hasattr(os, "preadv"):
+        return os.preadv(descriptor, [buffer], at)
+    data = read_at(descriptor, len(buffer), at)
+    buffer[: len(data)] = data
+    return len(data)
+
+
+def write_at(descriptor: int, data: memoryview, at: int) -> int:
+    """Write bytes into a file from `at` on; returns how many were written. Raises OSError."""
+    if hasattr(os, "pwrite"):
+        return os.pwrite(descriptor, data, at)
+    with _one_at_a_time:
+        os.lseek(descriptor, at, os.SEEK_SET)
+        return os.write(descriptor, data)
+
+
+def machine_memory() -> int:
+    """Bytes of memory that the machine has."""
+    if hasattr(os, "sysconf"):
+        return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    status = (ctypes.c_uint64 * 8)(64)  # MEMORYSTATUSEX: its size and the load in the first word, then the total
+    if not ctypes.windll.kernel32.GlobalMemoryStatusEx(status):
+        raise ctypes.WinError()
+    return status[1]

@@ -1,0 +1,118 @@
+"""The elastic laws of cables: which an element has, which one a cable is given, and what they ask of its section."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from ..kernels.elements import ElementKind, built_in
+from .material import Material
+from .section import GeneralSection, Section
+from .section_stiffness import kernel_law, law_of_measures, variants
+from .validation import EXACT, show, shown
+
+MEMBRANES = ("full", "assumed", "reduced")
+"""How an element of a cable represents its axial strain, see `Cable`; the first is the default."""
+
+
+class Described(Protocol):
+    """What the checks of a law look at, which a cable has."""
+
+    element: str
+    law: str
+    section: Section
+    material: Material
+    is_curved: bool
+    kernel_law: str
+    stiffness_law: str
+    kind_of_element: ElementKind
+    dim: int
+
+
+def possible_laws(kind: ElementKind) -> list[str]:
+    """The laws that a cable of such elements can be given."""
+    laws = [law for law, traits in kind.laws.items() if not traits.straight]
+    return laws + [law for law, variant in variants().items() if variant.kernel_law in laws]
+
+
+def chosen(kind: ElementKind, data: dict) -> str:
+    """The law of a cable from what it is given; ValueError if the element has no such law."""
+    element = data.get("element", "beam24")
+    law, strain, curvature, membrane = (data.get(name) for name in ("law", "strain", "curvature", "membrane"))
+    possible = possible_laws(kind)
+    if law is None and not (strain or curvature or membrane):
+        return possible[0]
+    if not isinstance(law, str | None):
+        raise ValueError(f"law must be a name, got {shown(law)}", "possible: " + ", ".join(possible))
+    if not all(isinstance(measure, str | None) for measure in (strain, curvature, membrane)):
+        return possible[0]  # the checks of strain, curvature and membrane refuse it
+    if strain or curvature or membrane:
+        if not kind.is_cable:
+            raise ValueError(f"strain, curvature and membrane are for cable elements, {element} is a beam",
+                             "leave them out, or take " + others(kind.dim, cable=True))
+        by_measures = law_of_measures(strain or "green", curvature or "exact", membrane or MEMBRANES[0])
+        if law not in (None, by_measures):
+            raise ValueError(f'law "{law}" disagrees with strain, curvature and membrane', "give the one or the others")
+        law = by_measures
+    if law not in possible:
+        known = ({strain or "green", curvature or "exact"} <= {"green", "engineering", "exact", "linear"}
+                 and (membrane or "full") in MEMBRANES)
+        if not known:  # the checks of strain and curvature say it better
+            return law
+        raise ValueError(f'law "{law}" is not possible for {element}', "possible: " + ", ".join(possible))
+    return law
+
+
+def name_of_kernels(kind: ElementKind, law: str, curved: bool) -> str:
+    """Return the name of a law among an element's kernels, of a cable whose stress-free shape is curved or straight."""
+    law = kernel_law(law)
+    return (kind.law_for_curved_shape(law) or law) if curved else law
+
+
+def check(cable: Described) -> None:
+    """Raise ValueError(cause, remedy) where the law of a cable does not suit its shape, its section or its material."""
+    kind = cable.kind_of_element
+    if cable.is_curved and kind.law_for_curved_shape(kernel_law(cable.law)) is None:
+        curved = {name: [law for law in possible_laws(other) if other.law_for_curved_shape(kernel_law(law))]
+                  for name, other in built_in().items()}
+        able = [f"{name} ({', '.join(laws)})" for name, laws in curved.items() if laws]
+        raise ValueError(f'{cable.element} with law "{cable.law}" is stress-free only where it is straight, but '
+                         "it is drawn curved", 'take rest="straight", or one of ' + ", ".join(able))
+    if cable.dim == 3 and kernel_law(cable.stiffness_law) == "continuum" and cable.material.is_incompressible:
+        raise ValueError(f'law "{cable.law}" needs a poisson_ratio below 0.5, at which Lamé\'s λ is infinite, got '
+                         f"{cable.material.poisson():.9g}", 'take law="structural", which needs E and G alone')
+    section = cable.section
+    given = {keyword for keyword in ("torsion_constant", "shear_factors")
+             if getattr(section, f"given_{keyword}") is not None}
+    if kind.is_cable:
+        _refuse_unequal_bending(cable)
+        if given:
+            raise ValueError(f"section.{min(given)} is given, but {cable.element} has neither shear nor torsion",
+                             "leave it out, or take " + others(kind.dim, cable=False))
+        if isinstance(section, GeneralSection) and section.has_rotary:
+            raise ValueError(f"section.rotary_moment is given, but {cable.element} has no rotary inertia",
+                             "leave it out, or take " + others(kind.dim, cable=False))
+    elif kind.laws[cable.kernel_law].kind == "structural":
+        needed = {"shear_factors"} | ({"torsion_constant"} if kind.dim == 3 else set())
+        if isinstance(section, GeneralSection) and (missing := needed - given):
+            raise ValueError(f'law "structural" needs section.{min(missing)}, which a general section does not '
+                             "tell", "give it to the section")
+    elif isinstance(section, GeneralSection):
+        raise ValueError(f'law "{cable.law}" integrates over the shape of the section, which a general section does '
+                         "not tell", 'take law="structural", a rectangle, circle or tube, or '
+                         + others(kind.dim, cable=True))
+    elif cable.law == "continuum" and given:
+        raise ValueError(f'section.{min(given)} is given, but law "continuum" computes its own from the shape',
+                         'leave it out, or take law="poisson_split" or "structural"')
+
+
+def _refuse_unequal_bending(cable: Described) -> None:
+    across = cable.section.second_moment_about_z, cable.section.second_moment_about_y
+    if cable.dim == 3 and abs(across[0] - across[1]) > EXACT * max(across):
+        raise ValueError(f"{cable.element} has one bending stiffness: its section needs equal second moments, "
+                         f"got {show(across, 'm⁴')}", 'take a square, a circle or a tube, or element="beam24"')
+
+
+def others(dim: int, *, cable: bool | None = None) -> str:
+    """Elements to take instead, for a remedy."""
+    names = [f'"{name}"' for name, kind in built_in().items() if kind.dim == dim and cable in (None, kind.is_cable)]
+    return "element=" + " or ".join(names)

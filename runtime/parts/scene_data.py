@@ -1,0 +1,132 @@
+"""The data of a scene: its gravity, its parts by kind and name, and the settings that its file gives."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from ..errors import SceneError, check_renamed
+from .cable import Cable
+from .event import Event
+from .joint import Joint
+from .kinds import KINDS
+from .load import DistributedForce, Force, Moment
+from .modal_body import ModalBody
+from .rigid_body import RigidBody
+from .slide import Slide
+from .spring import Spring
+from .support import Clamp, Motion, Pin, Support, Tie
+from .validation import Part, vector
+
+RESERVED = ("energy", "time")
+"""Names that results have of themselves."""
+
+
+class SceneData:
+    """What a scene is, as checks, model, solvers and results take it; `funicular.Scene` adds what can be done with it.
+
+    ``gravity`` in m/s². Each kind of part has a group, ``group`` of its class: a dict by name where parts have names,
+    else a list. ``messages`` tells what was adjusted; ``run_settings`` and ``equilibrium_settings`` hold the settings
+    that a scene file gives.
+    """
+
+    cables: dict[str, Cable]
+    pins: list[Pin]
+    clamps: list[Clamp]
+    motions: list[Motion]
+    ties: dict[str, Tie]
+    bodies: dict[str, RigidBody | ModalBody]
+    joints: dict[str, Joint]
+    slides: dict[str, Slide]
+    loads: dict[str, Force | DistributedForce | Moment]
+    springs: dict[str, Spring]
+    events: dict[str, Event]
+
+    def __init__(self, gravity: Any = (0, -9.81, 0)):
+        """Make an empty scene; gravity: 3 numbers in m/s². Raises SceneError."""
+        try:
+            self.gravity = vector(gravity, "m/s²")
+        except ValueError as error:
+            raise SceneError("scene", f"gravity {error}") from None
+        for kind in KINDS:
+            setattr(self, kind.group, {} if kind.is_named() else [])
+        self.messages: list[str] = []
+        self.run_settings: dict[str, Any] = {}
+        self.equilibrium_settings: dict[str, Any] = {}
+
+    def __getattr__(self, name: str) -> Any:
+        """Refuse an attribute that there is not; of an older version's, say what it is called now."""
+        check_renamed(f"{type(self).__name__!r} object", name, dir(self))
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+
+    @property
+    def dim(self) -> int:
+        """2 if its cables are planar, else 3."""
+        return min((cable.dim for cable in self.cables.values()), default=3)
+
+    @property
+    def libraries(self) -> tuple[str, ...]:
+        """Directories of the libraries that its cables' elements are from."""
+        return tuple(sorted({cable.library for cable in self.cables.values() if cable.library is not None}))
+
+    @property
+    def supports(self) -> list[Support]:
+        """All that holds or moves nodes: pins, clamps and motions."""
+        return [*self.pins, *self.clamps, *self.motions]
+
+    def parts(self) -> Iterator[Part]:
+        """Yield all parts, in an order in which they can be added."""
+        for group in _groups():
+            yield from self.group(group)
+
+    def group(self, name: str) -> Iterable[Part]:
+        """The parts of a group, in the order in which they were added."""
+        parts = getattr(self, name)
+        return parts.values() if isinstance(parts, dict) else parts
+
+    def put(self, part: Part) -> None:
+        """Store a part in its group, as it is."""
+        group = getattr(self, part.group)
+        if isinstance(group, dict):
+            group[part.name] = part
+        else:
+            group.append(part)
+
+    def part_named(self, name: str, group: str) -> Part | None:
+        """The part whose name that is, None if it is free for a part of a group.
+
+        Results are addressed by name, so that all but events share one space of names.
+        """
+        groups = ["events"] if group == "events" else [each for each in _groups() if each != "events"]
+        named = (getattr(self, each) for each in groups)
+        return next((parts[name] for parts in named if isinstance(parts, dict) and name in parts), None)
+
+    def check_name(self, part: Part) -> None:
+        """Raise SceneError where the name of a part is taken."""
+        if (other := self.part_named(part.name, part.group)) is not None:
+            article = "an" if part.kind == "event" else "a"
+            raise SceneError(part.where, f"there is already {article} {other.kind} of that name",
+                             "give each part its own name")
+        if part.name in RESERVED:
+            raise SceneError(part.where, "that name is taken by the results", "give another one")
+
+    def free_name(self, part: type[Part]) -> str:
+        """A name with a number that no part has: the least one where those below it are taken one after the other.
+
+        Found by doubling and bisection, so that a thousand unnamed parts do not cost a million look-ups.
+        """
+        taken, free = 0, 1
+        while self.part_named(f"{part.kind}_{free}", part.group) is not None:
+            taken, free = free, 2 * free
+        while free - taken > 1:
+            middle = (taken + free) // 2
+            if self.part_named(f"{part.kind}_{middle}", part.group) is None:
+                free = middle
+            else:
+                taken = middle
+        return f"{part.kind}_{free}"
+
+
+def _groups() -> list[str]:
+    """The groups, each once, in an order in which their parts can be added."""
+    return list(dict.fromkeys(kind.group for kind in KINDS))

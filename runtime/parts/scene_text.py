@@ -1,0 +1,178 @@
+"""Scenes as text, and back: TOML tables with the names of the Python API.
+
+``gravity``, one array of tables for each kind of part (``[[cable]]``, ``[[pin]]``, ...), ``[equilibrium]`` and
+``[run]``. All checks are those of the parts, the settings and `funicular.Scene`.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import tomllib
+from collections.abc import Callable, Iterable
+from typing import Any, Protocol, TypeVar
+
+from ..errors import SceneError, near
+from ..kernels.libraries import check_allowed, resolved
+from .attachment import Attachment
+from .end_stops import Stop
+from .kinds import PARTS
+from .scene_data import SceneData
+from .section import Section
+from .settings import EquilibriumSettings, RunSettings
+from .signal import Constant, Signal
+from .support import FREE, Motion, Rotation
+from .validation import Part
+
+SETTINGS = {"run": RunSettings, "equilibrium": EquilibriumSettings}
+
+TAGS = {Section: "shape", Signal: "form", Stop: "stop"}
+"""The word in a table that says which of several parts it is."""
+
+TABLES = ("gravity", *PARTS, *SETTINGS)
+
+
+class Addable(Protocol):
+    """A scene to which parts can be added."""
+
+    def add(self, part: Part) -> Part:
+        """Add a part. Raises SceneError."""
+
+
+S = TypeVar("S", bound=Addable)
+
+
+def read(text: str, origin: str, new: Callable[..., S], directory: str | os.PathLike = "",
+         libraries: Iterable[str | os.PathLike] = ()) -> S:
+    """A scene from the text of a scene file; ``origin`` is what error messages call it.
+
+    new: makes an empty scene, of the keyword gravity; directory: where paths in the text start from, by default the
+    working directory; libraries: directories of elements that the text may load. Raises SceneError.
+    """
+    try:
+        tables = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:  # its text gives line and column
+        raise SceneError(origin, f"is not valid TOML: {error}") from None
+    except RecursionError:
+        raise SceneError(origin, "is nested too deeply") from None
+    except ValueError:  # Python refuses to read an integer of thousands of digits
+        raise SceneError(origin, "has an integer of too many digits", "write it as a number such as 1e9") from None
+    for name in tables:
+        if name not in TABLES:
+            raise SceneError(origin, f'"{name}" is not known here', near(name, TABLES))
+    try:
+        _check_libraries(tables, directory, [libraries] if isinstance(libraries, str | os.PathLike) else [*libraries])
+        scene = new(**{name: tables[name] for name in ("gravity",) if name in tables})
+        for kind, part in PARTS.items():
+            for index, table in enumerate(_array(tables, kind), start=1):
+                scene.add(_part(part, _placed(table, directory), index))
+        for name in SETTINGS:
+            if name in tables:
+                setattr(scene, f"{name}_settings", _settings(name, tables[name]))
+    except SceneError as error:
+        raise error.inside(origin) from None
+    return scene
+
+
+def _array(tables: dict, kind: str) -> list:
+    array = tables.get(kind, [])
+    if not isinstance(array, list) or not all(isinstance(table, dict) for table in array):
+        raise SceneError(f"[{kind}]", "must be an array of tables", f"write [[{kind}]], in two brackets")
+    return array
+
+
+def _check_libraries(tables: dict, directory: str | os.PathLike, allowed: list[str | os.PathLike]) -> None:
+    """Refuse libraries that the caller does not allow, before any of them is loaded. Raises SceneError."""
+    for kind, part in PARTS.items():
+        for index, table in enumerate(_array(tables, kind), start=1):
+            if isinstance(library := table.get("library"), str):
+                place = part.place(table) if isinstance(table.get("name"), str) else f"[[{kind}]] {index}"
+                try:
+                    asked = resolved(os.path.join(directory, library))
+                except ValueError as error:
+                    raise SceneError(place, f"library {error}") from None
+                check_allowed(asked, allowed, place)
+
+
+def _placed(table: dict, directory: str | os.PathLike) -> dict:
+    """A table with its library or data seen from the working directory, and not from the scene file's."""
+    return table | {name: os.path.join(directory, table[name]) for name in ("library", "data")
+                    if isinstance(table.get(name), str)}
+
+
+def _part(part: type[Part], table: dict, index: int) -> Part:
+    try:
+        return part(**table)
+    except SceneError as error:
+        if isinstance(table.get("name"), str):
+            raise
+        raise SceneError(f"[[{part.kind}]] {index}", error.cause, error.remedy) from None
+
+
+def _settings(name: str, table: Any) -> dict:
+    """What a table of settings sets, checked."""
+    if not isinstance(table, dict):
+        raise SceneError(f"[{name}]", "must be a table")
+    settings = SETTINGS[name](**table).model_dump(exclude_unset=True)
+    save = settings.get("save")
+    if save is not None and not save.endswith(".nc"):  # lest a scene file replace any file of its reader's
+        raise SceneError(f"[{name}]", f'save = "{save}" in a scene file must end in .nc',
+                         "choose another name, or give it on the command line (-o) or in Python (save=)")
+    return settings
+
+
+def dumps(scene: SceneData) -> str:
+    """The text of a scene file, such that `loads` makes the same scene of it."""
+    lines, parts = [f"gravity = {as_toml(scene.gravity)}"], list(scene.parts())
+    for kind in PARTS:
+        for part in parts:
+            if part.kind == kind == "event" and part.function is not None:
+                lines += ["", f"# {part.where} watches a function, which only Python can hold"]
+            elif part.kind == kind:
+                lines += ["", f"[[{kind}]]", *_lines(_data(part))]
+    for name in SETTINGS:
+        if settings := getattr(scene, f"{name}_settings"):
+            lines += ["", f"[{name}]", *_lines(settings)]
+    return "\n".join(lines) + "\n"
+
+
+def _data(value: Any) -> Any:
+    """A value as plain data: of a part all that is set, defaults too, which a later version may change."""
+    match value:
+        case Constant():
+            return value.constant
+        case Attachment():
+            return value.data()
+        case Rotation():
+            return [value.axis, _data(value.angle)]
+        case Motion():
+            given = {"cable": value.cable, "s": value.s}
+            if value.displacement is not None:
+                given["displacement"] = [FREE if each is None else _data(each) for each in value.displacement]
+            return given | ({} if value.rotation is None else {"rotation": _data(value.rotation)})
+        case Part():
+            tag = {name: getattr(value, name) for base, name in TAGS.items() if isinstance(value, base)}
+            given = {keyword: getattr(value, name) for keyword, name in value.keywords().items()}
+            return tag | {keyword: _data(each) for keyword, each in given.items() if each is not None}
+        case list() | tuple():
+            return [_data(each) for each in value]
+    return value
+
+
+def _lines(table: dict) -> list[str]:
+    return [f"{name} = {as_toml(value)}" for name, value in table.items()]
+
+
+def as_toml(value: Any) -> str:
+    """A value as the text of a scene file."""
+    match value:
+        case str():
+            return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+        case bool():
+            return str(value).lower()
+        case dict():
+            return "{" + ", ".join(_lines(value)) + "}"
+        case list() | tuple():
+            return "[" + ", ".join(map(as_toml, value)) + "]"
+        case _:
+            return repr(value)

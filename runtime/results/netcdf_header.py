@@ -1,0 +1,205 @@
+"""The header of a file of results: written, read and checked. Format: NetCDF Classic Format Specification, Unidata."""
+
+from __future__ import annotations
+
+import json
+import math
+import struct
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from .checksums import text_checksum
+
+MAGIC = b"CDF\x02"
+COUNT_AT = len(MAGIC)
+"""Where the number of rows stands in the header, four bytes."""
+
+_DIMENSION, _VARIABLE, _ATTRIBUTE = 10, 11, 12
+_CHAR, _INT, _DOUBLE = 2, 4, 6
+_TYPES = {1: ">i1", _CHAR: "S1", 3: ">i2", _INT: ">i4", 5: ">f4", _DOUBLE: ">f8"}
+HEADER_CHECKSUM = "header_checksum"
+NOT_YET = "00000000"
+"""In the place of a text's checksum while that is computed."""
+_REPORT_CHECKSUM = '{"checksum": "'
+"""How a line of the report begins that has one."""
+
+
+class Variable(NamedTuple):
+    """An array with the names of its dimensions, its unit and what it is."""
+
+    dims: tuple[str, ...]
+    values: np.ndarray
+    units: str
+    long_name: str
+
+
+class Entry(NamedTuple):
+    """A variable as the header describes it; `begin` is where it starts, in bytes: in the file, or in a row."""
+
+    dims: tuple[str, ...]
+    shape: tuple[int, ...]
+    attributes: dict[str, str | np.ndarray]
+    dtype: np.dtype
+    in_rows: bool
+    begin: int
+
+
+def header_checksum(head: bytes, places: Mapping[str, tuple[int, int]]) -> str:
+    """Of all before the first row, but for the number of rows, the report's text and the checksum itself."""
+    checksum, at = 0, 0
+    for begin, size in sorted([(COUNT_AT, 4), places[HEADER_CHECKSUM], places.get("report", (COUNT_AT, 0))]):
+        checksum, at = text_checksum(head[at:begin], checksum), begin + size
+    return f"{text_checksum(head[at:], checksum):08x}"
+
+
+def header_of(variables: dict[str, Variable], attributes: dict) -> bytes:
+    """The header, and behind it the variables that are not over time."""
+    sizes, entries, fixed = {"time": 0}, {}, {}
+    for name, variable in variables.items():
+        values, dims = variable.values, variable.dims
+        labels = {"units": variable.units, "long_name": variable.long_name}
+        if values.dtype.kind == "U":  # characters along one more dimension, as xarray writes them, too
+            texts = np.char.encode(values, "utf-8")
+            values = texts.view("S1").reshape(*texts.shape, texts.itemsize)
+            dims = (*dims, f"string{texts.itemsize}")
+            labels["_Encoding"] = "utf-8"
+        sizes |= {dim: size for dim, size in zip(dims, values.shape, strict=True) if dim != "time"}
+        entries[name] = (dims, labels, _CHAR if values.dtype.kind == "S" else _DOUBLE)
+        if dims[:1] != ("time",):
+            fixed[name] = _padded(values.astype(_TYPES[entries[name][2]]).tobytes())
+    number = {dim: k for k, dim in enumerate(sizes)}
+    size = {name: np.dtype(_TYPES[kind]).itemsize * int(np.prod([sizes[d] for d in dims if d != "time"], dtype=int))
+            for name, (dims, _, kind) in entries.items()}
+
+    def head(begins: dict[str, int]) -> bytes:
+        written = [_text(name) + struct.pack(">i", len(dims)) + b"".join(struct.pack(">i", number[d]) for d in dims)
+                   + _attributes(labels)
+                   + struct.pack(">iIq", kind, min(-(-size[name] // 4) * 4, 2**32 - 4), begins.get(name, 0))
+                   for name, (dims, labels, kind) in entries.items()]
+        dimensions = [_text(dim) + struct.pack(">i", length) for dim, length in sizes.items()]
+        return (MAGIC + struct.pack(">i", 0) + _list(_DIMENSION, dimensions) + _attributes(attributes)
+                + _list(_VARIABLE, written))
+
+    at, begins = len(head({})), {}
+    for name in [*fixed, *(name for name in entries if name not in fixed)]:
+        begins[name] = at
+        at += -(-size[name] // 4) * 4
+    return head(begins) + b"".join(fixed.values())
+
+
+def _padded(data: bytes) -> bytes:
+    return data + bytes(-len(data) % 4)
+
+
+def _text(text: str) -> bytes:
+    data = text.encode()
+    return struct.pack(">i", len(data)) + _padded(data)
+
+
+def _list(tag: int, items: list[bytes]) -> bytes:
+    return struct.pack(">ii", tag if items else 0, len(items)) + b"".join(items)
+
+
+def _attributes(attributes: Mapping[str, str | bytes | int]) -> bytes:
+    items = []
+    for name, value in attributes.items():
+        if isinstance(value, int):
+            items.append(_text(name) + struct.pack(">iii", _INT, 1, value))
+        else:
+            data = value if isinstance(value, bytes) else value.encode()
+            items.append(_text(name) + struct.pack(">ii", _CHAR, len(data)) + _padded(data))
+    return _list(_ATTRIBUTE, items)
+
+
+def parsed(header: bytes) -> tuple[int, dict, dict[str, tuple[int, int]], dict[str, Entry]]:
+    """Number of rows, attributes, their places and sizes, variables.
+
+    Raises ValueError, and what struct and dicts raise, where the header is damaged or longer than what is given.
+    """
+    at = len(MAGIC)
+    if header[:at] != MAGIC:
+        raise ValueError("it does not begin as the classic format with 64-bit offsets does")
+
+    def ints(count: int = 1) -> tuple[int, ...]:
+        nonlocal at
+        found = struct.unpack_from(f">{count}i", header, at)
+        at += 4 * count
+        return found
+
+    def data(size: int) -> bytes:
+        nonlocal at
+        found = header[at : at + size]
+        if size < 0 or len(found) < size:
+            raise IndexError
+        at += -(-size // 4) * 4
+        return found
+
+    def attributes() -> tuple[dict, dict]:
+        found, places = {}, {}
+        for _ in range(ints(2)[1]):
+            name = data(*ints()).decode()
+            kind, count = ints(2)
+            dtype = np.dtype(_TYPES[kind])
+            places[name] = at, count
+            value = data(dtype.itemsize * count)
+            found[name] = value.decode() if kind == _CHAR else np.frombuffer(value, dtype)
+        return found, places
+
+    def known(value: int, most: int) -> int:
+        if not 0 <= value <= most:
+            raise ValueError("the header is damaged")
+        return value
+
+    rows = known(*ints(), 2**31)
+    dims = [(data(*ints()).decode(), known(*ints(), 2**31)) for _ in range(ints(2)[1])]
+    general, places = attributes()
+    entries = {}
+    for _ in range(ints(2)[1]):
+        name = data(*ints()).decode()
+        along = [dims[known(k, len(dims) - 1)] for k in ints(known(*ints(), len(dims)))]
+        labels, _ = attributes()
+        kind, _ = ints(2)
+        (begin,) = struct.unpack_from(">q", header, at)
+        at += 8
+        in_rows = bool(along) and along[0][1] == 0
+        shape = tuple(size for _, size in along[in_rows:])
+        known(begin, 2**62)
+        entries[name] = Entry(tuple(dim for dim, _ in along), shape, labels, np.dtype(_TYPES[kind]), in_rows, begin)
+    return rows, general, places, entries
+
+
+def size_of(entry: Entry) -> int:
+    """Bytes of a variable, or of its part of a row."""
+    return entry.dtype.itemsize * math.prod(entry.shape)
+
+
+def report_line(text: str) -> bytes:
+    """A JSON object as a line of the report, with its checksum as first entry."""
+    bare = f'{_REPORT_CHECKSUM}{NOT_YET}", {text[1:]}'
+    checksum = f"{text_checksum(bare.encode()):08x}"
+    return f'{_REPORT_CHECKSUM}{checksum}", {text[1:]}\n'.encode()
+
+
+def last_report(text: str, has_checksum: bool) -> dict:
+    """What the last whole line of the attribute `report` says, or all of it where it is not in lines.
+
+    Raises ValueError where it is damaged.
+    """
+    lines = text.split("\n")
+    line = (lines[:-1] or lines)[-1].strip(" ")
+    if has_checksum:
+        begin = len(_REPORT_CHECKSUM)
+        end = begin + len(NOT_YET)
+        bare = line[:begin] + NOT_YET + line[end:]
+        if not line.startswith(_REPORT_CHECKSUM) or line[begin:end] != f"{text_checksum(bare.encode()):08x}":
+            raise ValueError("the report is damaged: it has another checksum")
+    try:
+        report = json.loads(line)
+    except RecursionError:
+        raise ValueError("the report is damaged") from None
+    if not isinstance(report, dict):
+        raise ValueError("the report is damaged")
+    report.pop("checksum", None)
+    return report

@@ -1,0 +1,69 @@
+"""The methods of a scene that add parts, one for each kind: what they take is what the fields of the kind are.
+
+Signatures and docstrings are made here, for `help` and notebooks. Editors and type checkers read scene_methods.pyi,
+which `python tests/scene_stub.py` writes and a test compares.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from typing import Any
+
+from .parts.kinds import KINDS
+from .parts.scene_data import SceneData
+from .parts.signal import Constant
+from .parts.validation import Part
+
+
+class SceneMethods(SceneData):
+    """A scene with a method for each kind of part, such as `cable` and `rigid_body`."""
+
+    def add(self, part: Part) -> Part:
+        """Add a part; `funicular.Scene` says how."""
+        raise NotImplementedError
+
+
+def signature(kind: type[Part]) -> inspect.Signature:
+    """Return the signature of the method that adds such parts; None stands for what is not given."""
+    keywords = kind.keywords()
+    order = [*kind.positional, *(name for name in keywords if name not in (*kind.positional, "name"))]
+    order += ["name"] * ("name" in keywords and "name" not in kind.positional)
+    parameters = [inspect.Parameter("self", inspect.Parameter.POSITIONAL_OR_KEYWORD)]
+    for name in order:
+        field = kind.model_fields[keywords[name]]
+        default = (inspect.Parameter.empty if field.is_required()
+                   else None if field.default_factory is not None else field.default)
+        default = default.constant if isinstance(default, Constant) else default  # a number may be given for it
+        place = (inspect.Parameter.POSITIONAL_OR_KEYWORD if name in kind.positional
+                 else inspect.Parameter.KEYWORD_ONLY)
+        parameters.append(inspect.Parameter(name, place, default=default))
+    return inspect.Signature(parameters)
+
+
+def _method(kind: type[Part]) -> Callable[..., Part]:
+    """Return the method that makes a part of such a kind and adds it."""
+    positional, made = kind.positional, signature(kind)
+    optional = {parameter.name for parameter in made.parameters.values() if parameter.default is None}
+
+    def method(self: SceneMethods, *given: Any, **keywords: Any) -> Part:
+        if len(given) > len(positional):
+            arguments = f"{len(positional)} argument{'s' * (len(positional) > 1)}"
+            raise TypeError(f"Scene.{kind.kind}() takes {arguments} without keyword ({', '.join(positional)}), "
+                            f"{len(given)} were given")
+        for name, value in zip(positional, given, strict=False):
+            if name in keywords:
+                raise TypeError(f"Scene.{kind.kind}() got {name} twice")
+            keywords[name] = value
+        return self.add(kind(**{name: value for name, value in keywords.items()
+                                if value is not None or name not in optional}))
+
+    method.__signature__ = made
+    method.__name__, method.__qualname__ = kind.kind, f"Scene.{kind.kind}"
+    method.__doc__ = (f"Add a {kind.__name__}: {inspect.cleandoc(kind.__doc__ or '')}\n\n"
+                      "Returns the part as it stands in the scene. Raises SceneError.")
+    return method
+
+
+for _kind in KINDS:
+    setattr(SceneMethods, _kind.kind, _method(_kind))

@@ -1,0 +1,235 @@
+"""Written by `python tests/scene_stub.py` from the fields of the parts: change those, and run it again."""
+
+import os
+from collections.abc import Callable, Sequence
+from inspect import Signature
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from .parts.cable import Cable
+from .parts.end_stops import Stop
+from .parts.event import Event
+from .parts.friction import Friction
+from .parts.joint import Joint
+from .parts.load import DistributedForce, Force, Moment
+from .parts.material import Material
+from .parts.modal_body import ModalBody
+from .parts.rigid_body import RigidBody
+from .parts.scene_data import SceneData
+from .parts.section import Section
+from .parts.signal import Signal
+from .parts.slide import Slide
+from .parts.spring import Spring
+from .parts.support import Clamp, Motion, Pin, Tie
+from .parts.validation import Part
+
+Numbers: TypeAlias = Sequence[float] | np.ndarray
+Points: TypeAlias = Sequence[Numbers] | np.ndarray
+Named: TypeAlias = Part | str
+Place: TypeAlias = Named | Numbers | tuple[Named, float] | tuple[Named, Numbers]
+Scale: TypeAlias = Signal | float
+
+def signature(kind: type[Part]) -> Signature: ...
+
+class SceneMethods(SceneData):
+    def cable(
+        self,
+        name: str,
+        *,
+        start: Numbers | None = None,
+        end: Numbers | None = None,
+        points: Points | None = None,
+        curve: Callable[..., Any] | None = None,
+        elements: int,
+        library: str | os.PathLike[str] | None = None,
+        element: str = "beam24",
+        law: str | None = None,
+        strain: str | None = None,
+        curvature: str | None = None,
+        membrane: str | None = None,
+        section: Section,
+        material: Material,
+        up: Numbers = (0.0, 1.0, 0.0),
+        rest: str = "drawn",
+        rest_length: float | None = None,
+        velocity: Numbers = (0.0, 0.0, 0.0),
+        angular_velocity: Numbers = (0.0, 0.0, 0.0),
+    ) -> Cable:
+        """Add a Cable, which see."""
+
+    def pin(
+        self,
+        cable: Named,
+        *,
+        s: float,
+    ) -> Pin:
+        """Add a Pin, which see."""
+
+    def clamp(
+        self,
+        cable: Named,
+        *,
+        s: float,
+        hold: str = "section",
+    ) -> Clamp:
+        """Add a Clamp, which see."""
+
+    def motion(
+        self,
+        cable: Named,
+        *,
+        s: float,
+        displacement: Sequence[Scale | str | None] | None = None,
+        rotation: tuple[Numbers, Scale] | None = None,
+    ) -> Motion:
+        """Add a Motion, which see."""
+
+    def tie(
+        self,
+        cable: Named,
+        *,
+        s: float,
+        to: Named,
+        at: float,
+        rotation: str = "rigid",
+        name: str | None = None,
+    ) -> Tie:
+        """Add a Tie, which see."""
+
+    def rigid_body(
+        self,
+        name: str,
+        *,
+        mass: float,
+        inertia: Numbers | Points,
+        position: Numbers,
+        orientation: Numbers = (1.0, 0.0, 0.0, 0.0),
+        centre: Numbers = (0.0, 0.0, 0.0),
+        velocity: Numbers = (0.0, 0.0, 0.0),
+        angular_velocity: Numbers = (0.0, 0.0, 0.0),
+    ) -> RigidBody:
+        """Add a RigidBody, which see."""
+
+    def modal_body(
+        self,
+        name: str,
+        *,
+        start: Numbers | None = None,
+        end: Numbers | None = None,
+        section: Section | None = None,
+        material: Material | None = None,
+        up: Numbers = (0.0, 1.0, 0.0),
+        elements: int = 10,
+        element: str = "beam24",
+        law: str | None = None,
+        modes: int = 5,
+        boundary: str = "free",
+        data: str | os.PathLike[str] | None = None,
+        orthogonal: bool = True,
+        position: Numbers | None = None,
+        orientation: Numbers = (1.0, 0.0, 0.0, 0.0),
+        damping_ratio: float = 0.0,
+        velocity: Numbers = (0.0, 0.0, 0.0),
+        angular_velocity: Numbers = (0.0, 0.0, 0.0),
+    ) -> ModalBody:
+        """Add a ModalBody, which see."""
+
+    def joint(
+        self,
+        kind: str,
+        a: Place,
+        b: Place,
+        *,
+        axis: Numbers | None = None,
+        second_axis: Numbers | None = None,
+        up: Numbers | None = None,
+        angle: Scale | None = None,
+        distance: Scale | None = None,
+        velocity: Scale | None = None,
+        length: float | None = None,
+        name: str | None = None,
+    ) -> Joint:
+        """Add a Joint, which see."""
+
+    def slide(
+        self,
+        body: Named | tuple[Named, float],
+        *,
+        body_s: float | None = None,
+        along: Named,
+        s: float,
+        at: Numbers = (0.0, 0.0, 0.0),
+        frame: str = "point",
+        roll: str = "free",
+        up: Numbers | None = None,
+        drive: Scale | None = None,
+        velocity: Scale | None = None,
+        friction: Friction | None = None,
+        at_start: str | Stop = "error",
+        at_end: str | Stop = "error",
+        name: str | None = None,
+    ) -> Slide:
+        """Add a Slide, which see."""
+
+    def force(
+        self,
+        on: Named,
+        *,
+        scale: Scale = 1.0,
+        s: float | None = None,
+        at: Numbers | None = None,
+        value: Numbers,
+        follower: bool = False,
+        name: str | None = None,
+    ) -> Force:
+        """Add a Force, which see."""
+
+    def distributed_force(
+        self,
+        cable: Named,
+        *,
+        scale: Scale = 1.0,
+        value: Numbers,
+        start: float | None = None,
+        stop: float | None = None,
+        follower: bool = False,
+        name: str | None = None,
+    ) -> DistributedForce:
+        """Add a DistributedForce, which see."""
+
+    def moment(
+        self,
+        on: Named,
+        *,
+        scale: Scale = 1.0,
+        s: float | None = None,
+        value: Numbers,
+        name: str | None = None,
+    ) -> Moment:
+        """Add a Moment, which see."""
+
+    def spring(
+        self,
+        a: Place,
+        b: Place,
+        *,
+        stiffness: float,
+        damping: float = 0.0,
+        length: float | None = None,
+        name: str | None = None,
+    ) -> Spring:
+        """Add a Spring, which see."""
+
+    def event(
+        self,
+        name: str | None = None,
+        *,
+        quantity: str | None = None,
+        s: float | None = None,
+        value: float = 0.0,
+        function: Callable[..., Any] | None = None,
+        direction: str = "both",
+        action: str = "record",
+    ) -> Event:
+        """Add a Event, which see."""

@@ -1,0 +1,157 @@
+"""A state of rest: what a search for equilibrium finds, and a run or modes start from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..errors import SceneError, UnknownResultError, near
+from ..model.model import Model
+from ..model.states import (
+    body_state,
+    joint_state,
+    modal_state,
+    spatial,
+    spring_state,
+    support_reaction,
+    tie_force,
+)
+from ..parts.scene_data import SceneData
+from .stability import Stability
+from .static_problem import StaticProblem
+
+
+def layout(scene: SceneData) -> dict[str, list]:
+    """What must be the same in two scenes for a state of one to be a state of the other."""
+    return {"cables": [(c.name, c.element, c.elements, c.length) for c in scene.cables.values()],
+            "bodies": list(scene.bodies), "slides": list(scene.slides),
+            "joints": [(j.name, j.pair) for j in scene.joints.values()], "springs": list(scene.springs)}
+
+
+@dataclass
+class CriticalPoint:
+    """A point of a load path at which stability changes or the load turns.
+
+    load_fraction: of the loads; kind: "limit", where the load stops rising or falling, or "bifurcation", where another
+    path of equilibria crosses this one; directions: how many more directions are unstable beyond it; state: there.
+    """
+
+    load_fraction: float
+    kind: str
+    directions: int
+    state: RestState = field(repr=False)
+
+
+@dataclass
+class RestState:
+    """A state of rest of a scene.
+
+    Quantities by name as in a `Run`, without the time: ``state["wire.nodal_vectors"]`` (node, vector, 3),
+    ``state["A.position"]``, ``state["trolley.s"]``, ``state["wire@0.force"]`` ... load_fraction: how much of the load
+    is on, 1 but in the `EquilibriumError` that says how far it got, and along a path; iterations of Newton; residual:
+    the largest force left over, in N; stability: see `Stability`; path: the states of rest on the way, each under its
+    load_fraction of all loads, in their order, this one last: what a curve of load and displacement is drawn from;
+    critical_points of that path; gravity_fraction: how much of gravity is on, all of it where scale_gravity is off;
+    messages: what the search passed, adjusted or left out.
+    """
+
+    scene: SceneData
+    model: Model
+    placed: dict
+    reaction: np.ndarray
+    joint_forces: np.ndarray
+    load_fraction: float
+    iterations: int
+    residual: float
+    stability: Stability
+    gravity_fraction: float
+    heading: np.ndarray | None = field(default=None, repr=False)
+    quantities: dict[str, np.ndarray] = field(default_factory=dict)
+    path: list[RestState] = field(default_factory=list, repr=False)
+    critical_points: list[CriticalPoint] = field(default_factory=list)
+    messages: list[str] = field(default_factory=list)
+    layout: dict[str, list] = field(default_factory=dict, repr=False)
+
+    @classmethod
+    def of(cls, problem: StaticProblem, stability: Stability, heading: np.ndarray | None = None) -> RestState:
+        """Read the static state of a problem, under the load that is on; heading: of the path there."""
+        left = problem.residual()
+        units = np.where(problem.weight > 0, problem.weight, np.inf)
+        engine = problem.engine
+        state = cls(problem.scene, problem.model, problem.keep(), engine.reaction(), engine.held(), problem.fraction,
+                    problem.iterations, float(np.max(np.abs(left) / units, initial=0.0)), stability,
+                    problem.fraction if problem.settings.scale_gravity else 1.0, heading)
+        state.quantities = state._quantities()
+        state.path, state.layout = [state], layout(problem.scene)
+        return state
+
+    @property
+    def unstable_directions(self) -> int:
+        """How many independent directions lower the energy; of loads that turn: in how many the state diverges."""
+        return self.stability.unstable
+
+    @property
+    def neutral_directions(self) -> int:
+        """How many independent directions leave the energy as it is: what is free to move."""
+        return self.stability.neutral
+
+    @property
+    def stable(self) -> bool:
+        """Whether no direction lowers the energy; False also where that could not be counted."""
+        return self.stability.known and self.stability.unstable == 0
+
+    def keys(self) -> list[str]:
+        """Names of all quantities."""
+        return list(self.quantities)
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """A quantity by its name. Raises UnknownResultError naming the near ones."""
+        if name not in self.quantities:
+            raise UnknownResultError(f'no result "{name}"; {near(name, self.quantities)}')
+        return self.quantities[name]
+
+    def check_fits(self, scene: SceneData) -> None:
+        """Raise SceneError where the state is of a scene with other parts; supports and loads may be others."""
+        for kind, here in layout(scene).items():
+            if here != self.layout[kind]:
+                raise SceneError("scene", f"the state to start from is of another scene: its {kind} are "
+                                 f"{self.layout[kind]}, here they are {here}", "take an equilibrium of this scene")
+
+    def start(self, model: Model) -> None:
+        """Put a freshly built model of the same scene into this state."""
+        model.q = self.placed["q"].copy()
+        for slide, s in zip(model.slides, self.placed["s"], strict=True):
+            cable = model.cables[slide.cable]
+            slide.s = float(s)
+            at = s / cable.length
+            if not slide.element <= at <= slide.element + 1:
+                slide.element = min(max(int(at), 0), cable.n_elements - 1)
+
+    def _quantities(self) -> dict[str, np.ndarray]:
+        model, scene, q, reaction = self.model, self.scene, self.placed["q"][None], self.reaction[None]
+        found = {}
+        for cable in model.cables:
+            vectors = spatial(q[0, cable.coordinates].reshape(cable.shape))
+            found[f"{cable.name}.nodal_vectors"] = vectors
+            found[f"{cable.name}.position"] = vectors[:, cable.vectors.index("r")]
+        for body in model.bodies:
+            state = body_state(model, body, q)
+            state |= modal_state(model, body, state, q) if body.modes else {}
+            found |= {f"{body.name}.{name}": value[0] for name, value in state.items()}
+        for k, slide in enumerate(model.slides):
+            found[f"{slide.name}.s"] = self.placed["s"][k]
+            found[f"{slide.name}.force"] = self.placed["force"][k]
+        for joint, numbers in zip(model.joints, self.joint_forces, strict=True):
+            values = joint_state(joint, numbers)
+            found |= {f"{joint.name}.{name}": values[name]
+                      for name in (("force", "moment") if joint.slide is None else ("moment",))}
+        for part in scene.supports:
+            given_ = support_reaction(model, scene, part, reaction, q)
+            found |= {f"{part.label}.{name}": value[0] for name, value in given_.items()}
+        for name, tie in scene.ties.items():
+            found |= {f"{name}.{part}": value[0] for part, value in tie_force(model, scene, tie, reaction, q).items()}
+        for k, spring in enumerate(model.springs):
+            values = spring_state(model, spring, self.placed["spring"][k][None], q)
+            found |= {f"{spring.name}.{name}": value[0] for name, value in values.items()}
+        return found

@@ -1,0 +1,177 @@
+"""A run: the model of a scene through time, what is said of it on the way, and what is left at its end."""
+
+from __future__ import annotations
+
+import time
+import warnings
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from ..checks.velocity_jumps import velocity_jumps
+from ..engine import Engine
+from ..errors import FunicularWarning, SceneError
+from ..integrators import Integrator
+from ..model.build import build
+from ..model.knots import knots
+from ..model.model import Model
+from ..model.redundant_constraints import drop_redundant_rows
+from ..parts.scene_data import SceneData
+from ..parts.settings import RunSettings
+from . import reduced_strain, straight_struts
+from .diagnosis import notes
+from .event_watcher import Watcher
+from .integrator_choice import choose
+from .long_runs import LongRun
+from .pauses import Pauses, pauses
+from .progress import Meter
+from .rest_state import RestState
+from .threads import share_elements
+
+MOST_OUTPUT = 4e9
+"""Bytes of results that a run may keep in memory."""
+
+
+class Sink(Protocol):
+    """Takes the rows of a run as they come, so that the engine keeps the last ones only."""
+
+    @property
+    def elapsed(self) -> float:
+        """Seconds that the run took before it was resumed."""
+
+    @property
+    def free(self) -> int:
+        """Bytes that it can take."""
+
+    def start(self, model: Model, engine: Engine, pace: Pauses, events: list[dict]) -> None:
+        """Take the first row, or bring the engine to where the run is resumed."""
+
+    def pause(self) -> None:
+        """Take rows, at a pause."""
+
+    def between(self) -> None:
+        """Take rows, between pauses."""
+
+
+@dataclass
+class Simulation:
+    """What is left at the end of a run: the engine with its last rows, how it ended, why it was integrated so.
+
+    set_up_s, total_s: wall time; solve_cpu_s: CPU seconds of the integration alone, whatever else the machine does.
+    """
+
+    model: Model
+    engine: Engine
+    watcher: Watcher
+    status: str
+    messages: list[str]
+    reason: str
+    set_up_s: float
+    total_s: float
+    solve_cpu_s: float
+
+
+def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initial: RestState | None = None,
+             stream: Sink | None = None) -> Simulation:
+    """Integrate a checked scene; calls on_progress(time reached in s) about twenty times a second.
+
+    initial: a state of rest of this scene to start from, at the scene's velocities; stream: takes the rows as they
+    come, so that only the last ones are in what is returned.
+    """
+    begin = time.perf_counter()
+    model = build(scene)
+    if initial is not None:
+        initial.start(model)
+    pace = pauses(int(np.ceil(settings.duration / settings.output_step)) + 1, _check_size(model, settings, stream))
+    engine, watcher = Engine(model), Watcher(scene, model)
+    engine.watch(watcher)
+    messages = drop_redundant_rows(model, engine)
+    if initial is not None:
+        messages += [f"equilibrium to start from: {message}" for message in initial.messages]
+    messages += _divided_step(settings) + share_elements(engine, settings.threads)
+    method, reason = choose(settings, scene, model, engine)
+    set_up, cpu = time.perf_counter() - begin, time.process_time()
+    status, changed = _start(scene, settings, model, engine, method, None if stream is None else pace.capacity)
+    messages += changed.gaps
+    warned = _broken_velocities(model, changed.velocities) + velocity_jumps(scene, settings.duration)
+    for message in warned:
+        warnings.warn(message, FunicularWarning, stacklevel=3)
+    messages += warned
+    if status is None:
+        if stream is not None:
+            stream.start(model, engine, pace, watcher.happened)
+        long_run = LongRun(model, engine, settings, watcher, on_progress)
+        status = engine.advance(long_run, pace.every, stream)
+        messages += long_run.notes()
+    cpu, total = time.process_time() - cpu, time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
+    if status == "completed":
+        rows = engine.rows()
+        for note in [*notes(engine, settings), *straight_struts.notes(scene, model, engine),
+                     *reduced_strain.notes(scene, model, rows["time"], rows["q"])]:
+            messages.append(note)
+            warnings.warn(note, FunicularWarning, stacklevel=3)
+    return Simulation(model, engine, watcher, status, messages, reason, set_up, total, cpu)
+
+
+@dataclass
+class _Changed:
+    """What the start was changed by: gaps that were closed, in words, and velocities (n_dof,)."""
+
+    gaps: list[str]
+    velocities: np.ndarray
+
+
+def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine, method: Integrator,
+           capacity: int | None) -> tuple[str | None, _Changed]:
+    """Start the engine; returns how the run ended, None where it goes on. Raises SceneError for a singular start."""
+    status, change = engine.start(
+        duration=settings.duration,
+        output_step=settings.output_step,
+        tol=settings.tol,
+        step=settings.step or 0.0,
+        method=method,
+        first_step=min(settings.output_step, 1e-3 * settings.duration),
+        knots=knots(model, settings.duration, settings.tol),
+        capacity=capacity,
+    )
+    if status == "singular" and engine.jammed >= 0:
+        slide = list(scene.slides.values())[engine.jammed]
+        raise SceneError(slide.where, "friction jams it at the start: the more it holds, the more it presses it on the "
+                         "cable", "take a smaller coefficient, or the rider's point nearer to its centre of mass")
+    if status == "singular":
+        raise SceneError("scene", "the equations are singular at the start: a mass is zero, or a cable's director lies "
+                         "along its tangent", "look at masses and inertias, and at up")
+    closed = engine.closed > 1e-9 * engine.extent
+    gaps = [f"gaps of joints were closed at the start: things moved by up to {engine.closed:.3g} m"] * closed
+    return status, _Changed(gaps, change)
+
+
+def _divided_step(settings: RunSettings) -> list[str]:
+    """Say where a fixed step is made smaller, so that steps end on output times."""
+    if settings.step is None:
+        return []
+    step = settings.output_step / np.ceil(settings.output_step / settings.step * (1 - 1e-9))
+    if step >= settings.step * (1 - 1e-6):
+        return []
+    return [f"step {settings.step:.6g} s was made {step:.6g} s, so that steps end on output times"]
+
+
+def _broken_velocities(model: Model, change: np.ndarray) -> list[str]:
+    """Say where the start changed velocities (n_dof,), which broke a joint."""
+    largest = float(np.max(np.abs(change) * model.weight, initial=0.0))  # rates of slopes and turns as those of points
+    if largest <= 1e-9 * (1.0 + np.max(np.abs(model.v) * model.weight, initial=0.0)):
+        return []
+    return [f"initial velocities broke a joint: changed by up to {largest:.3g} m/s to keep it"]
+
+
+def _check_size(model: Model, settings: RunSettings, stream: Sink | None) -> int:
+    """Bytes of a row; refuses what no memory holds or, for a stream, what does not fit on its disk."""
+    per_row = 8 * (model.n_q + 3 * model.n_dof + 12 * len(model.slides) + 7 * len(model.joints)
+                   + 3 * len(model.springs) + 6)
+    need = per_row * settings.duration / settings.output_step
+    most, where = (MOST_OUTPUT, "") if stream is None else (stream.free, " that are free on the disk")
+    if not need < most:
+        raise SceneError("run", f"output_step {settings.output_step:.6g} s makes {need:.3g} bytes of results, more "
+                         f"than the {most:.3g}{where}", "take a larger output_step")
+    return per_row

@@ -1,0 +1,45 @@
+"""The contracts on imports in pyproject.toml, checked over all three folders of the package by import-linter.
+
+The folders runtime, derive and generated are one package only once they are installed: import-linter looks for packages
+below packages, so it gets a copy in which they are.
+
+    python tests/import_contracts.py
+"""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+TOP = Path(__file__).parents[1]
+PACKAGES = {"runtime": "funicular", "derive": "funicular/derive", "generated": "funicular/generated"}
+
+
+def installed_tree(directory: Path) -> None:
+    """Copy the Python files of the package to where they stand once it is installed."""
+    for folder, package in PACKAGES.items():
+        for file in (TOP / folder).rglob("*.py"):
+            copy = directory / package / file.relative_to(TOP / folder)
+            copy.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(file, copy)
+        for file in (TOP / folder).glob("*.pyx"):  # Cython: a module that others import
+            (directory / package / file.with_suffix(".py").name).touch()
+
+
+def broken_contracts(directory: Path) -> str:
+    """What import-linter says of the package in a directory, empty where all contracts are kept."""
+    command = [sys.executable, "-c", "from importlinter.cli import lint_imports_command; lint_imports_command()",
+               "--config", str(TOP / "pyproject.toml"), "--no-cache"]
+    found = subprocess.run(command, cwd=directory, capture_output=True, text=True, check=False)
+    return "" if found.returncode == 0 else found.stdout + found.stderr
+
+
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as directory:
+        installed_tree(Path(directory))
+        if complaint := broken_contracts(Path(directory)):
+            sys.exit(complaint)
+    print("all contracts on imports are kept")

@@ -1,0 +1,104 @@
+"""Writes runtime/scene_methods.pyi, what editors and type checkers know of a scene's methods, from the parts' fields.
+
+    python tests/scene_stub.py
+"""
+
+from __future__ import annotations
+
+import inspect
+from pathlib import Path
+
+from funicular.parts.kinds import KINDS
+from funicular.parts.validation import Part
+from funicular.scene_methods import signature
+
+FILE = Path(__file__).parents[1] / "runtime" / "scene_methods.pyi"
+
+HEAD = '''"""Written by `python tests/scene_stub.py` from the fields of the parts: change those, and run it again."""
+
+import os
+from collections.abc import Callable, Sequence
+from inspect import Signature
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from .parts.cable import Cable
+from .parts.end_stops import Stop
+from .parts.event import Event
+from .parts.friction import Friction
+from .parts.joint import Joint
+from .parts.load import DistributedForce, Force, Moment
+from .parts.material import Material
+from .parts.modal_body import ModalBody
+from .parts.rigid_body import RigidBody
+from .parts.scene_data import SceneData
+from .parts.section import Section
+from .parts.signal import Signal
+from .parts.slide import Slide
+from .parts.spring import Spring
+from .parts.support import Clamp, Motion, Pin, Tie
+from .parts.validation import Part
+
+Numbers: TypeAlias = Sequence[float] | np.ndarray
+Points: TypeAlias = Sequence[Numbers] | np.ndarray
+Named: TypeAlias = Part | str
+Place: TypeAlias = Named | Numbers | tuple[Named, float] | tuple[Named, Numbers]
+Scale: TypeAlias = Signal | float
+
+def signature(kind: type[Part]) -> Signature: ...
+
+class SceneMethods(SceneData):
+'''
+
+TYPES = {
+    "Vector": "Numbers", "Quaternion": "Numbers", "inertia": "Numbers | Points", "points": "Points",
+    "AnySection": "Section", "Reference": "Named", "AnyAttachment": "Place", "AnySignal": "Scale",
+    "CableEnd": "str | Stop", "Displacement": "Sequence[Scale | str | None]", "Rotation": "tuple[Numbers, Scale]",
+    "Name": "str", "Count": "int", "Flag": "bool", "Place": "float", "Material": "Material", "Friction": "Friction",
+    "float": "float", "str": "str", "int": "int", "bool": "bool", "Callable": "Callable[..., Any]",
+    "Any": "Callable[..., Any]",
+}
+"""What may be given for fields that are annotated so; ``inertia`` and ``points`` are fields of their own."""
+
+BY_NAME = {"inertia": "inertia", "points": "points", "library": "path", "data": "path", "body": "rider"}
+PATHS = {"path": "str | os.PathLike[str]", "rider": "Named | tuple[Named, float]"}
+
+
+def given_type(kind: type[Part], keyword: str, optional: bool) -> str:
+    """The type of what may be given for a keyword, as the stub writes it."""
+    field = kind.keywords()[keyword]
+    written = next(vars(base)["__annotations__"][field] for base in kind.__mro__
+                   if field in vars(base).get("__annotations__", ()))
+    if (special := BY_NAME.get(keyword)) is not None:
+        found = PATHS.get(special) or TYPES[special]
+    else:
+        bare = written.removeprefix("Annotated[")
+        word = bare.replace("|", " ").replace(",", " ").replace("[", " ").replace("]", " ").split()[0]
+        found = TYPES[word]
+    return f"{found} | None" if optional else found
+
+
+def method(kind: type[Part]) -> str:
+    """The method that adds such a part."""
+    arguments, keyword_only = ["self"], False
+    for name, parameter in list(signature(kind).parameters.items())[1:]:
+        if parameter.kind is inspect.Parameter.KEYWORD_ONLY and not keyword_only:
+            arguments.append("*")
+            keyword_only = True
+        needed = parameter.default is inspect.Parameter.empty
+        default = "" if needed else f" = {parameter.default!r}"
+        arguments.append(f"{name}: {given_type(kind, name, not needed and parameter.default is None)}{default}")
+    listed = "".join(f"        {each.replace(chr(39), chr(34))},\n" for each in arguments)
+    documented = f'"""Add a {kind.__name__}, which see."""'
+    return f"    def {kind.kind}(\n{listed}    ) -> {kind.__name__}:\n        {documented}\n\n"
+
+
+def stub() -> str:
+    """The text of the file."""
+    return HEAD + "".join(method(kind) for kind in KINDS).rstrip() + "\n"
+
+
+if __name__ == "__main__":
+    FILE.write_text(stub(), encoding="utf-8")
+    print(FILE)

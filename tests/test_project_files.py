@@ -1,0 +1,50 @@
+"""The files for those who build, cite and change the package say the same as the package, and name what exists."""
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PAGES = [str(path.relative_to(ROOT)) for pattern in ("*.md", "*/README.md", "tests/*/README.md")
+         for path in ROOT.glob(pattern)]
+
+
+def text(name: str) -> str:
+    return (ROOT / name).read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def project() -> dict:
+    return tomllib.loads(text("pyproject.toml"))["project"]
+
+
+def test_one_version(project):
+    assert re.search(r"^version: (\S+)$", text("CITATION.cff"), re.MULTILINE)[1] == project["version"]
+    assert re.search(r"^## (\S+)", text("CHANGELOG.md"), re.MULTILINE)[1] == project["version"]
+
+
+def test_one_licence(project):
+    assert re.search(r"^license: (\S+)$", text("CITATION.cff"), re.MULTILINE)[1] == project["license"]
+
+
+def test_contributing_names_files_that_exist():
+    named = set(re.findall(r"`((?:derive|runtime|tests|generated|\.ci)/[\w./]*)`", text("CONTRIBUTING.md")))
+    assert len(named) > 5
+    assert [path for path in sorted(named) if path != "derive/elements/NAME.py" and not (ROOT / path).exists()] == []
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_pages_link_to_what_exists(page):
+    """Pictures, too; the source distribution has all that the repository has, so that they show there."""
+    links = re.findall(r"\]\((?!https?:|#)([^)#\s]+)", text(page))
+    assert [link for link in links if not (ROOT / page).parent.joinpath(link).exists()] == []
+
+
+def test_python_versions_are_those_of_the_metadata(project):
+    """CI runs the oldest and the newest that the classifiers name."""
+    oldest = project["requires-python"].removeprefix(">=")
+    named = re.findall(r":: (3\.\d+)$", "\n".join(project["classifiers"]), re.MULTILINE)
+    run = re.search(r"python: \[(.*)\]", text(".github/workflows/ci.yml"))[1].replace('"', "").split(", ")
+    assert (named[0], run) == (oldest, [named[0], named[-1]])
