@@ -1,5 +1,4 @@
-"""Points of a section that have the moments of its stiffness table up to the fourth, as Gauss points have those of a
-rectangle.
+"""Points of a section with the moments of its stiffness table up to the fourth, as Gauss points have a rectangle's.
 
 They stand at the middle, on both axes and in the four corners of a rectangle: nine, or three of a planar section. At
 distance y the second and the fourth moments of all of them are right: y^2 is the fourth moment over the second.

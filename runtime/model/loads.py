@@ -76,6 +76,7 @@ class PointForceModel:
     mass: float
 
 
+
 class Actions:
     """Translates the loads and springs of a scene."""
 

@@ -1,0 +1,28 @@
+"""The engine knows a coupling by its table of operations: no integrator and no loop of the run knows a kind by name."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+ENGINE = Path(__file__).parents[1] / "runtime" / "engine"
+KIND = re.compile(r"\bfu_(?:slide|joint|spring|load|resistance)(?:_\w+)?\b|\bmodel->(?:slides|n_slides)\b")
+
+
+@pytest.mark.parametrize("path", sorted(ENGINE.glob("integrators/*.c")), ids=lambda path: path.stem)
+def test_integrators_know_no_kind_of_coupling(path):
+    assert not KIND.findall(path.read_text())
+
+
+@pytest.mark.parametrize("name", ["acceleration", "energy_balance", "part_timing"])
+def test_sums_over_couplings_know_no_kind(name):
+    found = KIND.findall((ENGINE / "run" / f"{name}.c").read_text())
+    assert not found
+
+
+def test_each_type_of_coupling_stands_in_the_list_once():
+    listed = re.search(r"types\[\] = \{(.*?)\}", (ENGINE / "couplings" / "list.c").read_text(), re.S).group(1)
+    listed = re.findall(r"&(fu_\w+_type)", listed)
+    defined = [name for path in ENGINE.glob("couplings/*.c")
+               for name in re.findall(r"^const fu_coupling_type (\w+) =", path.read_text(), re.M)]
+    assert sorted(listed) == sorted(defined)
