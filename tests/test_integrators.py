@@ -187,4 +187,5 @@ def test_the_engine_refuses_other_integrators_and_parameters():
 
     for method, what in ((Other(), "no integrator other"), (Short(), "genalpha: 4 parameters, not 3")):
         with pytest.raises(ValueError, match=what):
-            Engine(build(soft())).start(duration=1.0, output_step=0.1, tol=1e-4, step=0.0, method=method, first_step=1e-3)
+            Engine(build(soft())).start(duration=1.0, output_step=0.1, tol=1e-4, step=0.0, method=method,
+                                        first_step=1e-3)
