@@ -283,6 +283,8 @@ cdef class Engine(Statics):
         """Split slides' numbers (..., numbers of a slide) by name; see fu_slide_output."""
         sizes = (1, 1, 3, 2, 1, 3)
         ends = np.cumsum(sizes)
+        if slides.shape[-1] != ends[-1]:
+            raise ValueError(f"a slide has {slides.shape[-1]} numbers, not {ends[-1]}")
         return {name: slides[..., end - size:end] if size > 1 else slides[..., end - 1]
                 for name, size, end in zip(SLIDE_OUTPUTS, sizes, ends)}
 

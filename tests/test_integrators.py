@@ -3,7 +3,9 @@
 import funicular as fu
 import numpy as np
 import pytest
-from funicular.integrators import Radau
+from funicular.engine import Engine
+from funicular.integrators import INTEGRATORS, GeneralisedAlpha, Radau
+from funicular.model.build import build
 from funicular.parts.settings import RunSettings
 
 
@@ -165,3 +167,25 @@ def test_threads_change_no_bit(integrator, monkeypatch):
         assert run["rope.nodal_vectors"].tobytes() == runs[0]["rope.nodal_vectors"].tobytes()
         assert run.report["messages"] in ([], [f"threads = {run.report['settings']['threads']} came to 1: the compiler "
                                               "that built this had no OpenMP"])
+
+
+@pytest.mark.parametrize("name", INTEGRATORS)
+def test_the_engine_takes_the_parameters_of_each_integrator(name):
+    """Its name and the number of its parameters are those of the engine's part."""
+    engine = Engine(build(soft()))
+    status, _ = engine.start(duration=1.0, output_step=0.1, tol=1e-4, step=0.0, method=INTEGRATORS[name].of(0.9),
+                             first_step=1e-3)
+    assert (status, engine.integrator) == (None, name)
+
+
+def test_the_engine_refuses_other_integrators_and_parameters():
+    class Other(GeneralisedAlpha):
+        name = "other"
+
+    class Short(GeneralisedAlpha):
+        parameters = np.zeros(3)
+
+    for method, what in ((Other(), "no integrator other"), (Short(), "genalpha: 4 parameters, not 3")):
+        with pytest.raises(ValueError, match=what):
+            Engine(build(soft())).start(duration=1.0, output_step=0.1, tol=1e-4, step=0.0, method=method,
+                                        first_step=1e-3)

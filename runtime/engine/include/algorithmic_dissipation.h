@@ -9,6 +9,7 @@
 typedef struct {
     double lag, viscosity, inertia, weight;
 } fu_algorithmic;
+_Static_assert(sizeof(fu_algorithmic) == 4 * sizeof(double), "parameters are an array of doubles");
 
 const fu_algorithmic *fu_algorithmic_of(const fu_run *run);
 long fu_algorithmic_state(const fu_run *run);

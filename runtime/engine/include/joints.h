@@ -20,6 +20,7 @@ extern const fu_coupling_type fu_joint_type;
 typedef struct {
     double force[3], moment[3], residual; /* on the second attachment, at its point; the largest of phi */
 } fu_joint_output;
+_Static_assert(sizeof(fu_joint_output) == 7 * sizeof(double), "rows of output are arrays of doubles");
 
 int fu_joint_is_inactive(const fu_joint *joint, const fu_state *state);
 int fu_joint_residual(const fu_model *model, const fu_joint *joint, const fu_state *state, double *phi, int *at, double *J);

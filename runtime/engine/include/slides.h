@@ -38,6 +38,7 @@ typedef struct {
 typedef struct {
     double s_rate, s_acceleration, force[3], multiplier[2], traction, residual[3];
 } fu_slide_output;
+_Static_assert(sizeof(fu_slide_output) == 11 * sizeof(double), "rows of output are arrays of doubles");
 
 int fu_slide_coordinates(const fu_model *model, const fu_state *state, int j, int *at);
 double fu_slide_locked_s(const fu_model *model, const fu_state *state, int j, double *rate, double *second);

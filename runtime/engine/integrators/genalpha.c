@@ -21,6 +21,7 @@
 typedef struct {
     double alpha_m, alpha_f, beta, gamma;
 } parameters;
+_Static_assert(sizeof(parameters) == 4 * sizeof(double), "parameters are an array of doubles");
 
 static const parameters *scheme_of(const fu_run *run)
 {

@@ -39,6 +39,8 @@ typedef struct {
     double A[STAGES * STAGES], A_inverse[STAGES * STAGES], c[STAGES], T[STAGES * STAGES], T_inverse[STAGES * STAGES];
     double gamma, alpha, beta, error[STAGES];
 } parameters;
+_Static_assert(sizeof(parameters) == (4 * STAGES * STAGES + 2 * STAGES + 3) * sizeof(double),
+               "parameters are an array of doubles");
 
 static const parameters *method_of(const fu_run *run)
 {
