@@ -39,11 +39,11 @@ def build(scene: SceneData) -> Model:
     slides = _slides(scene, attachments, actions)
     joints = _joints(scene, attachments, actions, slides)
     n_extra = (1 + dim) * len(slides) + sum(joint.rows for joint in joints)
-    springs = [actions.point_force(spring, n_extra + dim * k) for k, spring in enumerate(scene.springs.values())]
+    point_forces = [actions.point_force(force, n_extra + dim * k) for k, force in enumerate(scene.springs.values())]
     n_of_bodies = sum(dofs_of(body, dim) for body in bodies)
     numbering = reduction.numbering
     return Model(
-        dim, cables, bodies, slides, joints, springs, actions.signals,
+        dim, cables, bodies, slides, joints, point_forces, actions.signals,
         [MotionModel(dof, p.signal, p.base, p.linear, p.cosine, p.sine) for dof, p in reduction.prescribed],
         actions.dead, actions.turning,
         q=_joined(*(vectors.ravel() for vectors in nodal), *(configuration_of(body, dim) for body in described)),
@@ -55,7 +55,7 @@ def build(scene: SceneData) -> Model:
         combinations=reduction.combinations,
         n_band=numbering.n_band,
         n_border_dof=reduction.n_unknowns - numbering.n_band + n_of_bodies,
-        n_extra=n_extra + dim * len(springs),
+        n_extra=n_extra + dim * len(point_forces),
         n_multipliers=sum(slide.max_multipliers for slide in slides) + sum(joint.rows for joint in joints),
         width=numbering.width,
         chains=numbering.chains,

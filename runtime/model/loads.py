@@ -1,4 +1,4 @@
-"""Loads, springs and signals of a scene, as the engine takes them."""
+"""Loads, forces between points and signals of a scene, as the engine takes them."""
 
 from __future__ import annotations
 
@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..checks.placement import placed_attachment
-from ..parts import DistributedForce, Force, Moment
 from ..parts.attachment import Attachment
+from ..parts.load import DistributedForce, Force, Moment
+from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from ..parts.signal import Constant, value_at
 from .attachments import AttachmentBuilder, AttachmentModel
@@ -147,7 +148,7 @@ class Actions:
         self.turning += [LoadModel(kind, number, self.cable_index[cable], element, x, (0.0, 0.0, 0.0),
                                    tuple(weight * c)) for element, x, weight in points]
 
-    def point_force(self, part, unknown: int) -> PointForceModel:
+    def point_force(self, part: PointForce, unknown: int) -> PointForceModel:
         """Return the model of a spring or the like, whose force is unknown number `unknown` beyond the dofs."""
         ends = [self.attachments.model(part.a), self.attachments.model(part.b)]
         return PointForceModel(part.kind, part.name, ends, self.scene.dim, unknown, part.parameters, part.is_damped,

@@ -137,7 +137,7 @@ class Model:
     bodies: list[BodyModel]
     slides: list[SlideModel]
     joints: list[JointModel]
-    springs: list[PointForceModel]
+    point_forces: list[PointForceModel]
     signals: list[SignalModel]
     motions: list[MotionModel]
     dead_loads: list[DeadLoad]

@@ -11,7 +11,7 @@ from ..model.attachments import CARRIED, UP, AttachmentModel
 from ..model.loads import GAUSS
 from ..model.model import CableModel, Model
 from ..model.states import attachment_points, spatial
-from ..parts import DistributedForce, Moment
+from ..parts.load import DistributedForce, Moment
 from ..parts.scene_data import SceneData
 from ..rotations import rotate
 
@@ -192,7 +192,7 @@ class CableActions:
         return self.at.value(f"{body.name}.position") + rotate(self.at.value(f"{body.name}.orientation"), arm)
 
     def _springs(self) -> None:
-        for spring in self.model.springs:
+        for spring in self.model.point_forces:
             if any(end.cable >= 0 for end in spring.ends):
                 force = self.at.value(f"{spring.name}.force")
                 self._on_end(spring.ends[0], force, None)

@@ -95,7 +95,7 @@ def named(model: Model, scene: SceneData, engine) -> Rows:
         joints={joint.name: joint_state(joint, rows["joint"][:, k])
                 for k, joint in enumerate(model.joints) if joint.slide is None},
         springs={spring.name: spring_state(model, spring, rows["spring"][:, k], q)
-                 for k, spring in enumerate(model.springs)},
+                 for k, spring in enumerate(model.point_forces)},
         energy={name: rows[name] for name in ("kinetic", "elastic", "potential", "dissipated", "external")},
     )
 

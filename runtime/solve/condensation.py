@@ -23,7 +23,7 @@ def condensed(full: csc_array, model: Model) -> tuple[csc_array, csc_array]:
     forces = [n + slide.unknown + 1 + d for slide in model.slides for d in range(dim)]
     forces += [n + joint.unknown + r for joint in model.joints for r in range(joint.rows)
                if r not in joint.redundant_rows]
-    springs = np.array([n + s.unknown + d for s in model.springs for d in range(dim)], dtype=int)
+    springs = np.array([n + s.unknown + d for s in model.point_forces for d in range(dim)], dtype=int)
     kept = np.concatenate([np.arange(n), arc])
     full = full.tocsr()
     K = full[kept][:, kept]

@@ -168,7 +168,7 @@ def _broken_velocities(model: Model, change: np.ndarray) -> list[str]:
 def _check_size(model: Model, settings: RunSettings, stream: Sink | None) -> int:
     """Bytes of a row; refuses what no memory holds or, for a stream, what does not fit on its disk."""
     per_row = 8 * (model.n_q + 3 * model.n_dof + 12 * len(model.slides) + 7 * len(model.joints)
-                   + 3 * len(model.springs) + 6)
+                   + 3 * len(model.point_forces) + 6)
     need = per_row * settings.duration / settings.output_step
     most, where = (MOST_OUTPUT, "") if stream is None else (stream.free, " that are free on the disk")
     if not need < most:

@@ -1,0 +1,44 @@
+"""Forces between two points: what springs and the like have in common."""
+
+from __future__ import annotations
+
+from typing import ClassVar, Self
+
+from pydantic import model_validator
+
+from .attachment import AnyAttachment
+from .validation import Name, Part
+
+
+class PointForce(Part):
+    """Base of forces along the gap between the points of two attachments, a and b.
+
+    ``kind`` is also the name of the engine's type of coupling, whose law takes `parameters`
+    (engine/couplings/list.c). A further force is a class of this kind and an entry in kinds.py.
+    """
+
+    group: ClassVar[str] = "springs"
+    positional: ClassVar[tuple[str, ...]] = ("a", "b")
+    name: Name | None = None
+    a: AnyAttachment
+    b: AnyAttachment
+
+    @property
+    def parameters(self) -> tuple[float, ...]:
+        """Parameters of the law, in the order of the engine, in SI units."""
+        raise NotImplementedError
+
+    @property
+    def is_damped(self) -> bool:
+        """Whether the force depends on velocities."""
+        return False
+
+    def at_distance(self, distance: float) -> Self:
+        """Return the part complete; distance: of its points at the start, m."""
+        return self
+
+    @model_validator(mode="after")
+    def _acts_on_something(self) -> Self:
+        if self.a.on is None and self.b.on is None:
+            raise ValueError("has both ends on the ground", "let one of them hold a cable or a body")
+        return self
