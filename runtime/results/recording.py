@@ -12,8 +12,8 @@ from ..model.states import (
     body_state,
     joint_state,
     modal_state,
+    point_force_state,
     spatial,
-    spring_state,
     support_reaction,
     tie_force,
 )
@@ -94,7 +94,7 @@ def named(model: Model, scene: SceneData, engine) -> Rows:
         ties={name: tie_force(model, scene, tie, rows["reaction"], q) for name, tie in scene.ties.items()},
         joints={joint.name: joint_state(joint, rows["joint"][:, k])
                 for k, joint in enumerate(model.joints) if joint.slide is None},
-        springs={spring.name: spring_state(model, spring, rows["spring"][:, k], q)
+        springs={spring.name: point_force_state(model, spring, rows["point_force"][:, k], q)
                  for k, spring in enumerate(model.point_forces)},
         energy={name: rows[name] for name in ("kinetic", "elastic", "potential", "dissipated", "external")},
     )
