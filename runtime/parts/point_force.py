@@ -7,6 +7,7 @@ from typing import ClassVar, Self
 from pydantic import model_validator
 
 from .attachment import AnyAttachment
+from .quantity import Quantity, of_time, vector_of_time
 from .validation import Name, Part
 
 
@@ -19,6 +20,11 @@ class PointForce(Part):
 
     group: ClassVar[str] = "springs"
     positional: ClassVar[tuple[str, ...]] = ("a", "b")
+    quantities: ClassVar[dict[str, Quantity]] = {
+        "force": vector_of_time("N", "force on the first end"),
+        "tension": of_time("N", "force with which the ends are drawn together"),
+        "length": of_time("m", "distance of the ends"),
+    }
     name: Name | None = None
     a: AnyAttachment
     b: AnyAttachment
