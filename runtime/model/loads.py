@@ -13,6 +13,7 @@ from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from ..parts.signal import Constant, value_at
 from .attachments import AttachmentBuilder, AttachmentModel
+from .coupling import CouplingModel
 
 CABLE_FOLLOWER, CABLE_MOMENT, BODY_FORCE, BODY_FOLLOWER, BODY_MOMENT = range(5)
 """Kinds of loads, in the order of engine.h."""
@@ -60,8 +61,8 @@ class LoadModel:
 
 
 @dataclass
-class PointForceModel:
-    """A force between two points; unknown: the place of its force.
+class PointForceModel(CouplingModel):
+    """A force between two points, whose unknowns are its components.
 
     type: the engine's type of coupling; parameters: those of its law, in the order that the engine has them;
     is_damped: whether the force depends on velocities; mass: scale of its equations, kg.
@@ -71,11 +72,9 @@ class PointForceModel:
     name: str
     ends: list[AttachmentModel]
     dim: int
-    unknown: int
     parameters: tuple[float, ...]
     is_damped: bool
     mass: float
-
 
 
 class Actions:
@@ -148,8 +147,8 @@ class Actions:
         self.turning += [LoadModel(kind, number, self.cable_index[cable], element, x, (0.0, 0.0, 0.0),
                                    tuple(weight * c)) for element, x, weight in points]
 
-    def point_force(self, part: PointForce, unknown: int) -> PointForceModel:
-        """Return the model of a spring or the like, whose force is unknown number `unknown` beyond the dofs."""
+    def point_force(self, part: PointForce) -> PointForceModel:
+        """Return the model of a force between two points."""
         ends = [self.attachments.model(part.a), self.attachments.model(part.b)]
-        return PointForceModel(part.kind, part.name, ends, self.scene.dim, unknown, part.parameters, part.is_damped,
-                               max(end.mass for end in ends))
+        return PointForceModel(part.kind, part.name, ends, self.scene.dim, part.parameters, part.is_damped,
+                               max(end.mass for end in ends), n_unknowns=self.scene.dim)

@@ -16,6 +16,7 @@ from ..parts.body_shape import Shape
 from ..parts.end_stops import Stop
 from ..parts.friction import Friction
 from .attachments import AttachmentModel
+from .coupling import CouplingModel
 from .joints import JointModel
 from .loads import DeadLoad, LoadModel, PointForceModel, SignalModel
 from .unknowns import Node
@@ -89,11 +90,10 @@ class BodyModel:
 
 
 @dataclass
-class SlideModel:
-    """One slide: kernels, its cable and its rider, its unknowns, what drives it, and where it starts.
+class SlideModel(CouplingModel):
+    """One slide: kernels, its cable and its rider, what drives it, and where it starts; its first unknown is s.
 
-    rider_is_rigid: the kernels take the rider's own configuration; max_multipliers: how many it may have; drive: a
-    signal, or -1;
+    rider_is_rigid: the kernels take the rider's own configuration; drive: a signal, or -1;
     resistance: kernels of friction and buffers, or none; ends: what waits at the start and at the end of the cable.
     """
 
@@ -102,9 +102,6 @@ class SlideModel:
     cable: int
     rider: AttachmentModel
     rider_is_rigid: bool
-    unknown: int
-    multiplier: int
-    max_multipliers: int
     drive: int
     carries_director: bool
     mass: float

@@ -187,8 +187,8 @@ cdef class Translation(Arrays):
             if j.kernel.coordinates + 1 > FU_MAX_COORDINATES:
                 raise ValueError(f"{slide.kernel}: more coordinates than the engine's {FU_MAX_COORDINATES}")
             self._coupling(&j.base, "slide", i, slide.unknown, [slide.mass] * model.dim)
-            j.base.n_coordinates, j.base.multiplier, j.base.n_multipliers = 1, slide.multiplier, slide.max_multipliers
-            for k in range(model.dim, slide.max_multipliers):
+            j.base.n_coordinates, j.base.multiplier, j.base.n_multipliers = 1, slide.multiplier, slide.n_multipliers
+            for k in range(model.dim, slide.n_multipliers):
                 j.base.scale[k] = slide.mass
             j.cable, j.rider_is_rigid, j.drive = slide.cable, slide.rider_is_rigid, slide.drive
             j.carries_director = slide.carries_director
