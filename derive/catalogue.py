@@ -10,7 +10,7 @@ from types import ModuleType
 from .bodies import BODIES, RIDERS, modal, modal_kernels
 from .bodies import kernels as body_kernels
 from .bodies.point import Point
-from .couplings import frame, resistance, slide
+from .couplings import frame, resistance, slide, spring
 from .couplings import joint as pair
 from .elements import ELEMENTS
 from .elements import kernels as element_kernels
@@ -82,6 +82,12 @@ def _resistance(dim: int) -> Family:
                   ("couplings.resistance",), role="resistance", facts={"dim": dim}, dim=dim)
 
 
+def _spring(name: str, of: spring.Spring) -> Family:
+    return Family(name, f"spring and damper{'' if of.has_length else ' of no rest length'} between two points in "
+                  f"{_SPACE[of.dim]}", partial(spring.build, name), ("couplings.spring",), role="spring",
+                  facts={"dim": of.dim}, dim=of.dim)
+
+
 def _joint(dim: int, name: str) -> Family:
     return Family(f"joint_{name}", f"{name.replace('_', ' ')} joint between two frames", partial(pair.build, dim, name),
                   ("couplings.joint",), role="joint", facts={"dim": dim, "rows": pair.rows(dim, name)}, dim=dim)
@@ -98,7 +104,7 @@ def of_element(element: Element) -> list[Family]:
 
 def families() -> dict[str, Family]:
     """Every family by name: elements, their laws, bodies, the slide for each pair of element and rider, joints,
-    resistances.
+    resistances, springs.
     """
     of_role: dict[str, list[Family]] = {"element": [], "law": [], "slide": []}
     for element in ELEMENTS.values():
@@ -108,7 +114,8 @@ def families() -> dict[str, Family]:
     every = [*of_role["element"], *of_role["law"], *map(_body, BODIES.values()),
              *(_modal(name, of) for name, of in modal.FRAMES.items()),
              *of_role["slide"],
-             *map(_frame, frame.FRAMES), *joints, *map(_resistance, resistance.RESISTANCES)]
+             *map(_frame, frame.FRAMES), *joints, *map(_resistance, resistance.RESISTANCES),
+             *(_spring(name, of) for name, of in spring.SPRINGS.items())]
     return {f.name: f for f in every}
 
 

@@ -585,6 +585,34 @@ void resistance_force(const fu_real *t, const fu_real *u, const fu_real *f, cons
 /* planar_resistance: friction and buffers of slides in the plane */
 void planar_resistance_force(const fu_real *t, const fu_real *u, const fu_real *f, const fu_real *friction, const fu_real *buffer, fu_real *R, fu_real *R_t, fu_real *R_u, fu_real *R_f, fu_real *R_x);
 
+/* spring: spring and damper between two points in space */
+void spring_energy(fu_real stiffness, fu_real rest_length, const fu_real *gap, fu_real *U);
+void spring_dissipation(fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
+void spring_force(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
+void spring_tangent(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
+void spring_discrete_force(fu_real stiffness, fu_real damping, fu_real rest_length, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
+
+/* zero_length_spring: spring and damper of no rest length between two points in space */
+void zero_length_spring_energy(fu_real stiffness, fu_real rest_length, const fu_real *gap, fu_real *U);
+void zero_length_spring_dissipation(fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
+void zero_length_spring_force(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
+void zero_length_spring_tangent(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
+void zero_length_spring_discrete_force(fu_real stiffness, fu_real damping, fu_real rest_length, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
+
+/* planar_spring: spring and damper between two points in the plane */
+void planar_spring_energy(fu_real stiffness, fu_real rest_length, const fu_real *gap, fu_real *U);
+void planar_spring_dissipation(fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
+void planar_spring_force(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
+void planar_spring_tangent(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
+void planar_spring_discrete_force(fu_real stiffness, fu_real damping, fu_real rest_length, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
+
+/* planar_zero_length_spring: spring and damper of no rest length between two points in the plane */
+void planar_zero_length_spring_energy(fu_real stiffness, fu_real rest_length, const fu_real *gap, fu_real *U);
+void planar_zero_length_spring_dissipation(fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
+void planar_zero_length_spring_force(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
+void planar_zero_length_spring_tangent(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
+void planar_zero_length_spring_discrete_force(fu_real stiffness, fu_real damping, fu_real rest_length, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
+
 /* What the engine needs of a element. */
 typedef struct {
     const char *name;
@@ -689,6 +717,17 @@ typedef struct {
     void (*force)(const fu_real *t, const fu_real *u, const fu_real *f, const fu_real *friction, const fu_real *buffer, fu_real *R, fu_real *R_t, fu_real *R_u, fu_real *R_f, fu_real *R_x);
 } fu_resistance_kernels;
 
+/* What the engine needs of a spring. */
+typedef struct {
+    const char *name;
+    int dim;
+    void (*energy)(fu_real stiffness, fu_real rest_length, const fu_real *gap, fu_real *U);
+    void (*dissipation)(fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
+    void (*force)(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
+    void (*tangent)(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
+    void (*discrete_force)(fu_real stiffness, fu_real damping, fu_real rest_length, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
+} fu_spring_kernels;
+
 /* Every table, one entry a family. */
 typedef struct {
     int n_elements;
@@ -707,6 +746,8 @@ typedef struct {
     const fu_joint_kernels *joints;
     int n_resistances;
     const fu_resistance_kernels *resistances;
+    int n_springs;
+    const fu_spring_kernels *springs;
 } fu_tables;
 extern const fu_tables fu_all;
 
@@ -729,6 +770,8 @@ static inline const void *fu_find(const fu_tables *tables, const char *role, con
         if (!strcmp(tables->joints[i].name, name)) return &tables->joints[i];
     for (int i = 0; i < tables->n_resistances && !strcmp(role, "resistance"); ++i)
         if (!strcmp(tables->resistances[i].name, name)) return &tables->resistances[i];
+    for (int i = 0; i < tables->n_springs && !strcmp(role, "spring"); ++i)
+        if (!strcmp(tables->springs[i].name, name)) return &tables->springs[i];
     return 0;
 }
 

@@ -742,6 +742,41 @@ static const fu_resistance_kernels resistances[] = {
     }
 };
 
+static const fu_spring_kernels springs[] = {
+    {"spring",
+     3,
+     spring_energy,
+     spring_dissipation,
+     spring_force,
+     spring_tangent,
+     spring_discrete_force
+    },
+    {"zero_length_spring",
+     3,
+     zero_length_spring_energy,
+     zero_length_spring_dissipation,
+     zero_length_spring_force,
+     zero_length_spring_tangent,
+     zero_length_spring_discrete_force
+    },
+    {"planar_spring",
+     2,
+     planar_spring_energy,
+     planar_spring_dissipation,
+     planar_spring_force,
+     planar_spring_tangent,
+     planar_spring_discrete_force
+    },
+    {"planar_zero_length_spring",
+     2,
+     planar_zero_length_spring_energy,
+     planar_zero_length_spring_dissipation,
+     planar_zero_length_spring_force,
+     planar_zero_length_spring_tangent,
+     planar_zero_length_spring_discrete_force
+    }
+};
+
 static void call_beam24_mass(const fu_real *const *a, fu_real *const *out)
 {
     beam24_mass(*a[0], *a[1], a[2], out[0]);
@@ -2382,6 +2417,86 @@ static void call_planar_resistance_force(const fu_real *const *a, fu_real *const
 {
     planar_resistance_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]);
 }
+static void call_spring_energy(const fu_real *const *a, fu_real *const *out)
+{
+    spring_energy(*a[0], *a[1], a[2], out[0]);
+}
+static void call_spring_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    spring_dissipation(*a[0], *a[1], a[2], a[3], out[0]);
+}
+static void call_spring_force(const fu_real *const *a, fu_real *const *out)
+{
+    spring_force(*a[0], *a[1], *a[2], a[3], a[4], out[0]);
+}
+static void call_spring_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    spring_tangent(*a[0], *a[1], *a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_spring_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    spring_discrete_force(*a[0], *a[1], *a[2], *a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_zero_length_spring_energy(const fu_real *const *a, fu_real *const *out)
+{
+    zero_length_spring_energy(*a[0], *a[1], a[2], out[0]);
+}
+static void call_zero_length_spring_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    zero_length_spring_dissipation(*a[0], *a[1], a[2], a[3], out[0]);
+}
+static void call_zero_length_spring_force(const fu_real *const *a, fu_real *const *out)
+{
+    zero_length_spring_force(*a[0], *a[1], *a[2], a[3], a[4], out[0]);
+}
+static void call_zero_length_spring_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    zero_length_spring_tangent(*a[0], *a[1], *a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_zero_length_spring_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    zero_length_spring_discrete_force(*a[0], *a[1], *a[2], *a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_planar_spring_energy(const fu_real *const *a, fu_real *const *out)
+{
+    planar_spring_energy(*a[0], *a[1], a[2], out[0]);
+}
+static void call_planar_spring_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    planar_spring_dissipation(*a[0], *a[1], a[2], a[3], out[0]);
+}
+static void call_planar_spring_force(const fu_real *const *a, fu_real *const *out)
+{
+    planar_spring_force(*a[0], *a[1], *a[2], a[3], a[4], out[0]);
+}
+static void call_planar_spring_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    planar_spring_tangent(*a[0], *a[1], *a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_planar_spring_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    planar_spring_discrete_force(*a[0], *a[1], *a[2], *a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_planar_zero_length_spring_energy(const fu_real *const *a, fu_real *const *out)
+{
+    planar_zero_length_spring_energy(*a[0], *a[1], a[2], out[0]);
+}
+static void call_planar_zero_length_spring_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    planar_zero_length_spring_dissipation(*a[0], *a[1], a[2], a[3], out[0]);
+}
+static void call_planar_zero_length_spring_force(const fu_real *const *a, fu_real *const *out)
+{
+    planar_zero_length_spring_force(*a[0], *a[1], *a[2], a[3], a[4], out[0]);
+}
+static void call_planar_zero_length_spring_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    planar_zero_length_spring_tangent(*a[0], *a[1], *a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_planar_zero_length_spring_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    planar_zero_length_spring_discrete_force(*a[0], *a[1], *a[2], *a[3], a[4], a[5], out[0], out[1]);
+}
 
 const fu_kernel fu_kernels[] = {
     {"beam24_mass", call_beam24_mass},
@@ -2794,6 +2909,26 @@ const fu_kernel fu_kernels[] = {
     {"joint_planar_locked_motion", call_joint_planar_locked_motion},
     {"resistance_force", call_resistance_force},
     {"planar_resistance_force", call_planar_resistance_force},
+    {"spring_energy", call_spring_energy},
+    {"spring_dissipation", call_spring_dissipation},
+    {"spring_force", call_spring_force},
+    {"spring_tangent", call_spring_tangent},
+    {"spring_discrete_force", call_spring_discrete_force},
+    {"zero_length_spring_energy", call_zero_length_spring_energy},
+    {"zero_length_spring_dissipation", call_zero_length_spring_dissipation},
+    {"zero_length_spring_force", call_zero_length_spring_force},
+    {"zero_length_spring_tangent", call_zero_length_spring_tangent},
+    {"zero_length_spring_discrete_force", call_zero_length_spring_discrete_force},
+    {"planar_spring_energy", call_planar_spring_energy},
+    {"planar_spring_dissipation", call_planar_spring_dissipation},
+    {"planar_spring_force", call_planar_spring_force},
+    {"planar_spring_tangent", call_planar_spring_tangent},
+    {"planar_spring_discrete_force", call_planar_spring_discrete_force},
+    {"planar_zero_length_spring_energy", call_planar_zero_length_spring_energy},
+    {"planar_zero_length_spring_dissipation", call_planar_zero_length_spring_dissipation},
+    {"planar_zero_length_spring_force", call_planar_zero_length_spring_force},
+    {"planar_zero_length_spring_tangent", call_planar_zero_length_spring_tangent},
+    {"planar_zero_length_spring_discrete_force", call_planar_zero_length_spring_discrete_force},
 };
 const int fu_n_kernels = sizeof fu_kernels / sizeof fu_kernels[0];
 
@@ -2805,5 +2940,6 @@ const fu_tables fu_all = {
     10, slides,
     2, frames,
     20, joints,
-    2, resistances
+    2, resistances,
+    4, springs
 };

@@ -28,13 +28,14 @@ def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
     then shows up there and nowhere else.
     """
     from .relations import modal as verify_modal
+    from .relations import spring as verify_spring
 
     found = []
     for seed in SEEDS:
         random = np.random.default_rng(seed)
         state: dict[str, np.ndarray] = {}
         if family.dim:
-            found.append(samples(family, random))
+            found.append((verify_spring.sample if family.role == "spring" else samples)(family, random))
             continue
         dim = family.element.dim if family.element else RIDERS[family.rider].dim
         if family.element:

@@ -180,6 +180,7 @@ typedef struct {
 } fu_load;
 
 typedef struct {
+    const fu_spring_kernels *kernel;
     fu_attachment ends[2];
     int dim, unknown;
     double stiffness, damping, length, mass; /* N/m, N s/m, m; kg: scale of its rows */

@@ -23,6 +23,8 @@ cdef extern from "kernels.h" nogil:
         int rows
     ctypedef struct fu_resistance_kernels:
         const char *name
+    ctypedef struct fu_spring_kernels:
+        const char *name
     ctypedef struct fu_tables:
         pass
     const void *fu_find(const fu_tables *tables, const char *role, const char *name)
@@ -133,6 +135,7 @@ cdef extern from "engine.h" nogil:
         double c[3]
         fu_modal_attachment spot
     ctypedef struct fu_spring:
+        const fu_spring_kernels *kernel
         fu_attachment ends[2]
         int dim, unknown
         double stiffness, damping, length, mass

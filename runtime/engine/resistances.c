@@ -73,7 +73,7 @@ double fu_resistance_power(const fu_model *model, const fu_state *state, int j, 
 }
 
 /* J in the springs of the buffers that a slide is in; those that do not touch it alone, or all */
-static double spring_energy(const fu_model *model, const fu_state *state, int j, int all)
+static double buffer_energy_of(const fu_model *model, const fu_state *state, int j, int all)
 {
     double energy = 0.0;
     for (int side = -1; side <= 1 && state->mode[j] != FU_LEFT; side += 2) {
@@ -89,7 +89,7 @@ static double spring_energy(const fu_model *model, const fu_state *state, int j,
 double fu_buffer_energy(const fu_model *model, const fu_state *state)
 {
     double energy = 0.0;
-    for (int j = 0; j < model->n_slides; ++j) energy += spring_energy(model, state, j, 1);
+    for (int j = 0; j < model->n_slides; ++j) energy += buffer_energy_of(model, state, j, 1);
     return energy;
 }
 
@@ -99,7 +99,8 @@ double fu_lost_in_buffers(const fu_model *model, const fu_state *from, const fu_
 {
     double lost = 0.0;
     for (int j = 0; j < model->n_slides; ++j)
-        if (model->slides[j].resistance) lost += spring_energy(model, from, j, 0) - spring_energy(model, to, j, 0);
+        if (model->slides[j].resistance)
+            lost += buffer_energy_of(model, from, j, 0) - buffer_energy_of(model, to, j, 0);
     return lost;
 }
 

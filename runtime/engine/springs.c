@@ -1,5 +1,5 @@
-/* Springs and dampers between two points. Where a Newton system is solved the force is an unknown of its own, so that
- * ends far apart on cables do not widen the band. */
+/* Springs and dampers between two points (derive/couplings/spring.py has the law). Where a Newton system is solved the
+ * force is an unknown of its own, so that ends far apart on cables do not widen the band. */
 #include "engine.h"
 
 #include <string.h>
@@ -10,39 +10,6 @@ static int end_point(const fu_model *model, const fu_attachment *end, const doub
     const fu_state state = {.q = (double *)q, .v = (double *)v};
     fu_attachment_at(model, end, &state, 0.0, FU_POINT, place);
     return place->n ? place->at[0] : 0;
-}
-
-/* Force on the first end, and its derivatives by the gap p_2 - p_1 and the gap's rate (dim x dim). A length of zero
- * makes it k gap + c rate, smooth where the ends meet. */
-static void law(const fu_spring *spring, const double *gap, const double *rate, double *force, double *by_gap,
-                double *by_rate)
-{
-    const int dim = spring->dim;
-    const double k = spring->stiffness, c = spring->damping;
-    if (spring->length == 0.0) {
-        for (int i = 0; i < dim; ++i) {
-            force[i] = k * gap[i] + c * rate[i];
-            for (int j = 0; j < dim; ++j) {
-                by_gap[i * dim + j] = i == j ? k : 0.0;
-                by_rate[i * dim + j] = i == j ? c : 0.0;
-            }
-        }
-        return;
-    }
-    double square = 0.0, closing = 0.0, n[3];
-    for (int d = 0; d < dim; ++d) square += gap[d] * gap[d];
-    const double length = sqrt(square);
-    for (int d = 0; d < dim; ++d) n[d] = gap[d] / length;
-    for (int d = 0; d < dim; ++d) closing += n[d] * rate[d];
-    const double tension = k * (length - spring->length) + c * closing;
-    for (int i = 0; i < dim; ++i) {
-        force[i] = tension * n[i];
-        for (int j = 0; j < dim; ++j) {
-            by_gap[i * dim + j] = tension / length * ((i == j) - n[i] * n[j]) +
-                                  n[i] * (k * n[j] + c / length * (rate[j] - closing * n[j]));
-            by_rate[i * dim + j] = c * n[i] * n[j];
-        }
-    }
 }
 
 static void gap_of(const fu_model *model, const fu_spring *spring, const double *q, const double *v, double gap[3],
@@ -56,12 +23,20 @@ static void gap_of(const fu_model *model, const fu_spring *spring, const double 
     }
 }
 
+/* Force on the first end, and its derivatives by the gap p_2 - p_1 and by the gap's rate (dim x dim). */
 void fu_spring_force(const fu_model *model, const fu_spring *spring, const double *q, const double *v, double force[3],
                      double by_gap[9], double by_rate[9])
 {
     double gap[3], rate[3];
     gap_of(model, spring, q, v, gap, rate);
-    law(spring, gap, rate, force, by_gap, by_rate);
+    spring->kernel->tangent(spring->stiffness, spring->damping, spring->length, gap, rate, force, by_gap, by_rate);
+}
+
+static void force_of(const fu_model *model, const fu_spring *spring, const double *q, const double *v, double force[3])
+{
+    double gap[3], rate[3];
+    gap_of(model, spring, q, v, gap, rate);
+    spring->kernel->force(spring->stiffness, spring->damping, spring->length, gap, rate, force);
 }
 
 /* f += what a force on the first end, and its opposite on the second, puts on the left of the equations of motion */
@@ -78,9 +53,9 @@ void fu_spring_pull(const fu_model *model, const fu_spring *spring, const double
 /* f += all spring forces */
 void fu_spring_forces(const fu_model *model, const double *q, const double *v, double *f)
 {
-    double force[3], by_gap[9], by_rate[9];
+    double force[3];
     for (int k = 0; k < model->n_springs; ++k) {
-        fu_spring_force(model, &model->springs[k], q, v, force, by_gap, by_rate);
+        force_of(model, &model->springs[k], q, v, force);
         fu_spring_pull(model, &model->springs[k], q, force, f);
     }
 }
@@ -137,38 +112,20 @@ void fu_spring_matrix(const fu_model *model, const fu_spring *spring, const fu_s
 /* the force of each spring on its first end, 3 each */
 void fu_spring_forces_of(const fu_model *model, const fu_state *state, double *forces)
 {
-    double by_gap[9], by_rate[9];
     for (int k = 0; k < model->n_springs; ++k)
-        fu_spring_force(model, &model->springs[k], state->q, state->v, forces + 3 * k, by_gap, by_rate);
+        force_of(model, &model->springs[k], state->q, state->v, forces + 3 * k);
 }
 
 /* Force on the first end over a step from q to q_next that takes as much work as the spring stores, and as much more as
- * the damper dissipates; returns the latter's power. L_next - L is n . (gap_next - gap), n = (gap + gap_next)/(L + L_next).
- */
+ * the damper dissipates. Returns the power of the damper in W. */
 double fu_discrete_spring(const fu_model *model, const fu_spring *spring, const double *q, const double *q_next, double h,
                           double force[3])
 {
-    double gap[3], gap_next[3], unused[3], square = 0.0, square_next = 0.0, closing = 0.0, power = 0.0;
+    double gap[3], gap_next[3], unused[3], power;
     gap_of(model, spring, q, model->zero, gap, unused);
     gap_of(model, spring, q_next, model->zero, gap_next, unused);
-    const int dim = spring->dim;
-    if (spring->length == 0.0) {
-        for (int d = 0; d < dim; ++d) {
-            const double rate = (gap_next[d] - gap[d]) / h;
-            force[d] = 0.5 * spring->stiffness * (gap[d] + gap_next[d]) + spring->damping * rate;
-            power += spring->damping * rate * rate;
-        }
-        return power;
-    }
-    for (int d = 0; d < dim; ++d) {
-        square += gap[d] * gap[d];
-        square_next += gap_next[d] * gap_next[d];
-    }
-    const double both = sqrt(square) + sqrt(square_next);
-    for (int d = 0; d < dim; ++d) closing += (gap[d] + gap_next[d]) / both * (gap_next[d] - gap[d]) / h;
-    const double tension = spring->stiffness * (0.5 * both - spring->length) + spring->damping * closing;
-    for (int d = 0; d < dim; ++d) force[d] = tension * (gap[d] + gap_next[d]) / both;
-    return spring->damping * closing * closing;
+    spring->kernel->discrete_force(spring->stiffness, spring->damping, spring->length, h, gap, gap_next, force, &power);
+    return power;
 }
 
 /* The same as fu_spring_pull over a step: what the force does is its work on the gap's change. */
@@ -190,12 +147,12 @@ void fu_discrete_pull(const fu_model *model, const fu_spring *spring, const doub
 
 double fu_spring_energy(const fu_model *model, const double *q)
 {
-    double total = 0.0, gap[3], rate[3];
+    double total = 0.0, gap[3], rate[3], energy;
     for (int k = 0; k < model->n_springs; ++k) {
         const fu_spring *spring = &model->springs[k];
         gap_of(model, spring, q, model->zero, gap, rate);
-        const double length = sqrt(gap[0] * gap[0] + gap[1] * gap[1] + gap[2] * gap[2]) - spring->length;
-        total += 0.5 * spring->stiffness * length * length;
+        spring->kernel->energy(spring->stiffness, spring->length, gap, &energy);
+        total += energy;
     }
     return total;
 }
@@ -203,17 +160,12 @@ double fu_spring_energy(const fu_model *model, const double *q)
 /* power taken out by the dampers */
 double fu_spring_dissipation(const fu_model *model, const double *q, const double *v)
 {
-    double total = 0.0, gap[3], rate[3];
+    double total = 0.0, gap[3], rate[3], power;
     for (int k = 0; k < model->n_springs; ++k) {
         const fu_spring *spring = &model->springs[k];
-        double square = 0.0, along = 0.0, speed = 0.0;
         gap_of(model, spring, q, v, gap, rate);
-        for (int d = 0; d < 3; ++d) {
-            square += gap[d] * gap[d];
-            along += gap[d] * rate[d];
-            speed += rate[d] * rate[d];
-        }
-        total += spring->damping * (spring->length == 0.0 ? speed : along * along / square);
+        spring->kernel->dissipation(spring->damping, spring->length, gap, rate, &power);
+        total += power;
     }
     return total;
 }

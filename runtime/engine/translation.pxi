@@ -183,6 +183,7 @@ cdef class Translation(Arrays):
                 self._end(&l.ends[k], joint.ends[k], tables)
         for i, spring in enumerate(model.springs):
             p = &self.springs[i]
+            p.kernel = <const fu_spring_kernels *>_found(tables, "spring", spring.kernel)
             p.dim, p.unknown, p.mass = spring.dim, spring.unknown, spring.mass
             p.stiffness, p.damping, p.length = spring.stiffness, spring.damping, spring.length
             for k in range(2):

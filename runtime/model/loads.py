@@ -13,6 +13,8 @@ from ..parts.signal import Constant, value_at
 from ..scene import Scene
 from .attachments import AttachmentBuilder, AttachmentModel
 
+SPRINGS = {(2, True): "planar_spring", (2, False): "planar_zero_length_spring",
+           (3, True): "spring", (3, False): "zero_length_spring"}  # by dimension, and whether there is a rest length
 CABLE_FOLLOWER, CABLE_MOMENT, BODY_FORCE, BODY_FOLLOWER, BODY_MOMENT = range(5)
 """Kinds of loads, in the order of engine.h."""
 
@@ -63,6 +65,7 @@ class SpringModel:
     """Two ends and what is between them; unknown: the place of its force."""
 
     name: str
+    kernel: str
     ends: list[AttachmentModel]
     dim: int
     unknown: int
@@ -145,5 +148,6 @@ class Actions:
     def spring(self, spring, unknown: int) -> SpringModel:
         """The model of a spring whose force is unknown number `unknown` beyond the dofs."""
         ends = [self.holder.end(spring.a), self.holder.end(spring.b)]
-        return SpringModel(spring.name, ends, self.scene.dim, unknown, spring.stiffness, spring.damping, spring.length,
-                           max(end.mass for end in ends))
+        kernel = SPRINGS[self.scene.dim, spring.length > 0]
+        return SpringModel(spring.name, kernel, ends, self.scene.dim, unknown, spring.stiffness, spring.damping,
+                           spring.length, max(end.mass for end in ends))

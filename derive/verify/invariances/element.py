@@ -23,10 +23,11 @@ def invariances(family: Family, k: Numbers, states: list[State]) -> Iterator[Inv
     """The invariances of a family; the worst of each over its states is up to the caller."""
     from ..relations.joint import frame_invariances, joint_invariances, resistance_invariances
     from ..relations.modal import invariances as modal
+    from ..relations.spring import invariances as spring
     from .slide import slide
 
     table = {"element": element, "law": law, "slide": slide, "body": body, "modal": modal,
-             "frame": frame_invariances, "joint": joint_invariances, "resistance": resistance_invariances}
+             "frame": frame_invariances, "joint": joint_invariances, "resistance": resistance_invariances, "spring": spring}
     for s in states:
         yield from table[family.role](family, k, s)
 

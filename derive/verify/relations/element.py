@@ -21,10 +21,11 @@ def relations(family: Family) -> list[Relation]:
     from .joint import frame_relations, joint_relations, resistance_relations
     from .modal import modal
     from .slide import slide
+    from .spring import relations as spring
 
     table: dict[str, Callable[[Family], list[Relation]]] = {
         "element": element, "law": law, "slide": slide, "body": body, "modal": modal,
-        "frame": frame_relations, "joint": joint_relations, "resistance": resistance_relations}
+        "frame": frame_relations, "joint": joint_relations, "resistance": resistance_relations, "spring": spring}
     return table[family.role](family)
 
 
