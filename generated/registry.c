@@ -447,7 +447,17 @@ static const fu_body_kernels bodys[] = {
      rigid_inertia_force,
      rigid_inertia_tangent,
      rigid_kinetic_energy,
-     rigid_discrete_point
+     rigid_discrete_point,
+     rigid_force,
+     rigid_follower_force,
+     rigid_moment,
+     rigid_move,
+     rigid_move_tangent,
+     rigid_cayley_move,
+     rigid_cayley_tangent,
+     rigid_halfway,
+     rigid_rate,
+     rigid_increment
     },
     {"planar_rigid",
      2,
@@ -459,7 +469,17 @@ static const fu_body_kernels bodys[] = {
      planar_rigid_inertia_force,
      planar_rigid_inertia_tangent,
      planar_rigid_kinetic_energy,
-     planar_rigid_discrete_point
+     planar_rigid_discrete_point,
+     planar_rigid_force,
+     planar_rigid_follower_force,
+     planar_rigid_moment,
+     planar_rigid_move,
+     planar_rigid_move_tangent,
+     planar_rigid_cayley_move,
+     planar_rigid_cayley_tangent,
+     planar_rigid_halfway,
+     planar_rigid_rate,
+     planar_rigid_increment
     }
 };
 
@@ -479,7 +499,10 @@ static const fu_modal_kernels modals[] = {
      modal_anchor_mode,
      modal_anchor_force,
      modal_anchor_mode_force,
-     modal_anchor_pair_force
+     modal_anchor_pair_force,
+     modal_anchor_follower,
+     modal_anchor_mode_follower,
+     modal_anchor_pair_follower
     },
     {"planar_modal",
      2,
@@ -496,7 +519,10 @@ static const fu_modal_kernels modals[] = {
      planar_modal_anchor_mode,
      planar_modal_anchor_force,
      planar_modal_anchor_mode_force,
-     planar_modal_anchor_pair_force
+     planar_modal_anchor_pair_force,
+     planar_modal_anchor_follower,
+     planar_modal_anchor_mode_follower,
+     planar_modal_anchor_pair_follower
     }
 };
 
@@ -1885,6 +1911,46 @@ static void call_rigid_discrete_point(const fu_real *const *a, fu_real *const *o
 {
     rigid_discrete_point(a[0], a[1], a[2], out[0]);
 }
+static void call_rigid_force(const fu_real *const *a, fu_real *const *out)
+{
+    rigid_force(a[0], a[1], a[2], out[0], out[1]);
+}
+static void call_rigid_follower_force(const fu_real *const *a, fu_real *const *out)
+{
+    rigid_follower_force(a[0], a[1], a[2], out[0], out[1]);
+}
+static void call_rigid_moment(const fu_real *const *a, fu_real *const *out)
+{
+    rigid_moment(a[0], a[1], out[0], out[1]);
+}
+static void call_rigid_move(const fu_real *const *a, fu_real *const *out)
+{
+    rigid_move(a[0], a[1], out[0]);
+}
+static void call_rigid_move_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    rigid_move_tangent(a[0], out[0]);
+}
+static void call_rigid_cayley_move(const fu_real *const *a, fu_real *const *out)
+{
+    rigid_cayley_move(a[0], a[1], out[0]);
+}
+static void call_rigid_cayley_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    rigid_cayley_tangent(a[0], out[0]);
+}
+static void call_rigid_halfway(const fu_real *const *a, fu_real *const *out)
+{
+    rigid_halfway(a[0], a[1], out[0]);
+}
+static void call_rigid_rate(const fu_real *const *a, fu_real *const *out)
+{
+    rigid_rate(a[0], a[1], out[0]);
+}
+static void call_rigid_increment(const fu_real *const *a, fu_real *const *out)
+{
+    rigid_increment(a[0], a[1], out[0]);
+}
 static void call_planar_rigid_point(const fu_real *const *a, fu_real *const *out)
 {
     planar_rigid_point(a[0], a[1], a[2], out[0], out[1], out[2], out[3]);
@@ -1912,6 +1978,46 @@ static void call_planar_rigid_kinetic_energy(const fu_real *const *a, fu_real *c
 static void call_planar_rigid_discrete_point(const fu_real *const *a, fu_real *const *out)
 {
     planar_rigid_discrete_point(a[0], a[1], a[2], out[0]);
+}
+static void call_planar_rigid_force(const fu_real *const *a, fu_real *const *out)
+{
+    planar_rigid_force(a[0], a[1], a[2], out[0], out[1]);
+}
+static void call_planar_rigid_follower_force(const fu_real *const *a, fu_real *const *out)
+{
+    planar_rigid_follower_force(a[0], a[1], a[2], out[0], out[1]);
+}
+static void call_planar_rigid_moment(const fu_real *const *a, fu_real *const *out)
+{
+    planar_rigid_moment(a[0], a[1], out[0], out[1]);
+}
+static void call_planar_rigid_move(const fu_real *const *a, fu_real *const *out)
+{
+    planar_rigid_move(a[0], a[1], out[0]);
+}
+static void call_planar_rigid_move_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    planar_rigid_move_tangent(a[0], out[0]);
+}
+static void call_planar_rigid_cayley_move(const fu_real *const *a, fu_real *const *out)
+{
+    planar_rigid_cayley_move(a[0], a[1], out[0]);
+}
+static void call_planar_rigid_cayley_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    planar_rigid_cayley_tangent(a[0], out[0]);
+}
+static void call_planar_rigid_halfway(const fu_real *const *a, fu_real *const *out)
+{
+    planar_rigid_halfway(a[0], a[1], out[0]);
+}
+static void call_planar_rigid_rate(const fu_real *const *a, fu_real *const *out)
+{
+    planar_rigid_rate(a[0], a[1], out[0]);
+}
+static void call_planar_rigid_increment(const fu_real *const *a, fu_real *const *out)
+{
+    planar_rigid_increment(a[0], a[1], out[0]);
 }
 static void call_modal_inertia_force(const fu_real *const *a, fu_real *const *out)
 {
@@ -1969,6 +2075,18 @@ static void call_modal_anchor_pair_force(const fu_real *const *a, fu_real *const
 {
     modal_anchor_pair_force(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], out[0]);
 }
+static void call_modal_anchor_follower(const fu_real *const *a, fu_real *const *out)
+{
+    modal_anchor_follower(a[0], a[1], a[2], a[3], out[0], out[1]);
+}
+static void call_modal_anchor_mode_follower(const fu_real *const *a, fu_real *const *out)
+{
+    modal_anchor_mode_follower(a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_modal_anchor_pair_follower(const fu_real *const *a, fu_real *const *out)
+{
+    modal_anchor_pair_follower(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0]);
+}
 static void call_planar_modal_inertia_force(const fu_real *const *a, fu_real *const *out)
 {
     planar_modal_inertia_force(a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0]);
@@ -2024,6 +2142,18 @@ static void call_planar_modal_anchor_mode_force(const fu_real *const *a, fu_real
 static void call_planar_modal_anchor_pair_force(const fu_real *const *a, fu_real *const *out)
 {
     planar_modal_anchor_pair_force(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], out[0]);
+}
+static void call_planar_modal_anchor_follower(const fu_real *const *a, fu_real *const *out)
+{
+    planar_modal_anchor_follower(a[0], a[1], a[2], a[3], out[0], out[1]);
+}
+static void call_planar_modal_anchor_mode_follower(const fu_real *const *a, fu_real *const *out)
+{
+    planar_modal_anchor_mode_follower(a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_planar_modal_anchor_pair_follower(const fu_real *const *a, fu_real *const *out)
+{
+    planar_modal_anchor_pair_follower(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0]);
 }
 static void call_slide_beam24_rigid_constraint(const fu_real *const *a, fu_real *const *out)
 {
@@ -2776,6 +2906,16 @@ const fu_kernel fu_kernels[] = {
     {"rigid_inertia_tangent", call_rigid_inertia_tangent},
     {"rigid_kinetic_energy", call_rigid_kinetic_energy},
     {"rigid_discrete_point", call_rigid_discrete_point},
+    {"rigid_force", call_rigid_force},
+    {"rigid_follower_force", call_rigid_follower_force},
+    {"rigid_moment", call_rigid_moment},
+    {"rigid_move", call_rigid_move},
+    {"rigid_move_tangent", call_rigid_move_tangent},
+    {"rigid_cayley_move", call_rigid_cayley_move},
+    {"rigid_cayley_tangent", call_rigid_cayley_tangent},
+    {"rigid_halfway", call_rigid_halfway},
+    {"rigid_rate", call_rigid_rate},
+    {"rigid_increment", call_rigid_increment},
     {"planar_rigid_point", call_planar_rigid_point},
     {"planar_rigid_point_force", call_planar_rigid_point_force},
     {"planar_rigid_frame", call_planar_rigid_frame},
@@ -2783,6 +2923,16 @@ const fu_kernel fu_kernels[] = {
     {"planar_rigid_inertia_tangent", call_planar_rigid_inertia_tangent},
     {"planar_rigid_kinetic_energy", call_planar_rigid_kinetic_energy},
     {"planar_rigid_discrete_point", call_planar_rigid_discrete_point},
+    {"planar_rigid_force", call_planar_rigid_force},
+    {"planar_rigid_follower_force", call_planar_rigid_follower_force},
+    {"planar_rigid_moment", call_planar_rigid_moment},
+    {"planar_rigid_move", call_planar_rigid_move},
+    {"planar_rigid_move_tangent", call_planar_rigid_move_tangent},
+    {"planar_rigid_cayley_move", call_planar_rigid_cayley_move},
+    {"planar_rigid_cayley_tangent", call_planar_rigid_cayley_tangent},
+    {"planar_rigid_halfway", call_planar_rigid_halfway},
+    {"planar_rigid_rate", call_planar_rigid_rate},
+    {"planar_rigid_increment", call_planar_rigid_increment},
     {"modal_inertia_force", call_modal_inertia_force},
     {"modal_mass_matrix", call_modal_mass_matrix},
     {"modal_inertia_tangent", call_modal_inertia_tangent},
@@ -2797,6 +2947,9 @@ const fu_kernel fu_kernels[] = {
     {"modal_anchor_force", call_modal_anchor_force},
     {"modal_anchor_mode_force", call_modal_anchor_mode_force},
     {"modal_anchor_pair_force", call_modal_anchor_pair_force},
+    {"modal_anchor_follower", call_modal_anchor_follower},
+    {"modal_anchor_mode_follower", call_modal_anchor_mode_follower},
+    {"modal_anchor_pair_follower", call_modal_anchor_pair_follower},
     {"planar_modal_inertia_force", call_planar_modal_inertia_force},
     {"planar_modal_mass_matrix", call_planar_modal_mass_matrix},
     {"planar_modal_inertia_tangent", call_planar_modal_inertia_tangent},
@@ -2811,6 +2964,9 @@ const fu_kernel fu_kernels[] = {
     {"planar_modal_anchor_force", call_planar_modal_anchor_force},
     {"planar_modal_anchor_mode_force", call_planar_modal_anchor_mode_force},
     {"planar_modal_anchor_pair_force", call_planar_modal_anchor_pair_force},
+    {"planar_modal_anchor_follower", call_planar_modal_anchor_follower},
+    {"planar_modal_anchor_mode_follower", call_planar_modal_anchor_mode_follower},
+    {"planar_modal_anchor_pair_follower", call_planar_modal_anchor_pair_follower},
     {"slide_beam24_rigid_constraint", call_slide_beam24_rigid_constraint},
     {"slide_beam24_rigid_terms", call_slide_beam24_rigid_terms},
     {"slide_beam24_rigid_residual", call_slide_beam24_rigid_residual},

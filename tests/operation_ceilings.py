@@ -145,21 +145,25 @@ CEILINGS = {
     },
     "rigid": {
         "point": 207, "point_force": 183, "inertia_force": 45, "inertia_tangent": 48, "kinetic_energy": 31,
-        "discrete_point": 230, "frame": 78
+        "discrete_point": 230, "frame": 78, "force": 117, "follower_force": 99, "moment": 93, "move": 93,
+        "move_tangent": 82, "cayley_move": 43, "cayley_tangent": 16, "halfway": 26, "rate": 23, "increment": 24
     },
     "planar_rigid": {
         "point": 40, "point_force": 23, "inertia_force": 3, "inertia_tangent": 0, "kinetic_energy": 9,
-        "discrete_point": 18, "frame": 0
+        "discrete_point": 18, "frame": 0, "force": 18, "follower_force": 15, "moment": 0, "move": 17,
+        "move_tangent": 0, "cayley_move": 22, "cayley_tangent": 4, "halfway": 15, "rate": 2, "increment": 3
     },
     "modal": {
         "inertia_force": 312, "mass_matrix": 105, "inertia_tangent": 675, "mode_force": 137, "mode_mass": 66,
         "mode_tangent": 459, "pair_tangent": 55, "kinetic_energy": 135, "potential_energy": 74, "anchor": 836,
-        "anchor_mode": 151, "anchor_force": 183, "anchor_mode_force": 310, "anchor_pair_force": 164
+        "anchor_mode": 151, "anchor_force": 183, "anchor_mode_force": 310, "anchor_pair_force": 164,
+        "anchor_follower": 169, "anchor_mode_follower": 307, "anchor_pair_follower": 163
     },
     "planar_modal": {
         "inertia_force": 71, "mass_matrix": 13, "inertia_tangent": 80, "mode_force": 31, "mode_mass": 7,
         "mode_tangent": 94, "pair_tangent": 14, "kinetic_energy": 32, "potential_energy": 13, "anchor": 107,
-        "anchor_mode": 11, "anchor_force": 9, "anchor_mode_force": 18, "anchor_pair_force": 10
+        "anchor_mode": 11, "anchor_force": 9, "anchor_mode_force": 18, "anchor_pair_force": 10,
+        "anchor_follower": 35, "anchor_mode_follower": 64, "anchor_pair_follower": 35
     },
     "slide_beam24_rigid": {"constraint": 599, "terms": 1646, "residual": 209, "tangent": 286, "discrete_gradient": 397},
     "slide_cable12_rigid": {

@@ -11,12 +11,13 @@ import numpy as np
 
 from ..algebra.tangent_frame import cross
 from ..codegen.program import DirectionalDerivative, Program
+from . import load_kernels, moves
 
 
 def build(body: ModuleType) -> list[Program]:
     """Every kernel of a body."""
     return [point(body), point_force(body), frame(body), inertia_force(body), inertia_tangent(body),
-            kinetic_energy(body), discrete_point(body)]
+            kinetic_energy(body), discrete_point(body), *load_kernels.build(body), *moves.build(body)]
 
 
 def _position(p: Program, body: ModuleType, b: np.ndarray, u: np.ndarray):

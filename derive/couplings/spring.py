@@ -1,8 +1,8 @@
 """Springs with dampers between two points: the force along the gap from the first point to the second.
 
-With the extension e the spring stores U = k e.e/2 and the damper takes the power P = c e'.e'. e is |gap| less the rest
-length; where that is zero e is the gap itself, so that nothing is singular where the points meet. The force on the first
-point is dU/dgap + d(P/2)/dgap' = (k e + c e') . de/dgap, its opposite acts on the second.
+With the extension e the spring stores U = k e.e/2 and the damper takes the power P = c e'.e'. e is |gap| less the
+rest length; where that is zero e is the gap itself, so that nothing is singular where the points meet. The force on the
+first point is dU/dgap + d(P/2)/dgap' = (k e + c e') . de/dgap, its opposite acts on the second.
 """
 
 from __future__ import annotations
@@ -132,8 +132,8 @@ def discrete_force(name: str, spring: Spring) -> Program:
     extension = spring.extension(law, at, rest_length)
     secant = DiscreteGradient(p, law, dict(zip(at, zip(gap, gap_next, strict=True), strict=True)))
     p.stage("discrete derivatives of the extension")
-    direction = np.array([[p.define(f"D_e_{axis}", d) for axis, d in zip(AXES, secant.gradient(e, list(at)), strict=False)]
-                          for e in extension])
+    gradients = [secant.gradient(e, list(at)) for e in extension]
+    direction = np.array([p.vector("D_e", row) for row in gradients])
     p.stage("rate of the extension over the step")
     change = p.vector("change", gap_next - gap)
     inverse = p.define("inv_h", 1 / h)

@@ -28,6 +28,7 @@ def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
     then shows up there and nowhere else.
     """
     from .relations import modal as verify_modal
+    from .relations import moves as verify_moves
     from .relations import spring as verify_spring
 
     found = []
@@ -55,6 +56,8 @@ def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
             state |= _constants(family, exact, state, random)
         if family.role == "modal":
             state |= verify_modal.sample(random, dim)
+        if family.role == "body":
+            state |= verify_moves.sample(random, RIDERS[family.rider])
         if family.role == "element":
             state |= loads(family.element, random)
         found.append(state)
@@ -64,6 +67,8 @@ def states(family: Family, exact: Numbers) -> list[dict[str, np.ndarray]]:
     if family.role == "modal":
         rest |= {name: 0 * rest[name] for name in verify_modal.RATES}
         rest |= verify_modal.integrals(rest)
+    if family.role == "body":
+        rest["step"] = 0 * rest["step"]
     if family.law and family.law.endswith("_curved"):
         rest["e0"] = rest["e"]
         rest |= _from_kernels(family, exact, rest)

@@ -171,7 +171,7 @@ typedef struct {
 } fu_dead_load;
 
 /* A load that turns with what it acts on: at x of a cable's element, at the point u of a body, at that of a modal one. */
-enum { FU_CABLE_FOLLOWER, FU_CABLE_MOMENT, FU_BODY_FORCE, FU_BODY_FOLLOWER, FU_BODY_MOMENT, FU_BODY_MOMENT_FOLLOWER };
+enum { FU_CABLE_FOLLOWER, FU_CABLE_MOMENT, FU_BODY_FORCE, FU_BODY_FOLLOWER, FU_BODY_MOMENT };
 typedef struct {
     int kind, signal, on; /* `on`: the cable or the body */
     int element;
@@ -340,6 +340,8 @@ void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *s
                      double *P, double *T);
 void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *spot, const double *b, const double *f, const double *m,
                            double *K);
+void fu_modal_attachment_follower(const fu_body *body, const fu_modal_attachment *spot, const double *b, const double *c,
+                                  double *g, double *K);
 
 /* motions.c */
 double fu_signal_at(const fu_signal *signal, double t, double *rate, double *second);

@@ -27,7 +27,8 @@ def invariances(family: Family, k: Numbers, states: list[State]) -> Iterator[Inv
     from .slide import slide
 
     table = {"element": element, "law": law, "slide": slide, "body": body, "modal": modal,
-             "frame": frame_invariances, "joint": joint_invariances, "resistance": resistance_invariances, "spring": spring}
+             "frame": frame_invariances, "joint": joint_invariances, "resistance": resistance_invariances,
+             "spring": spring}
     for s in states:
         yield from table[family.role](family, k, s)
 
@@ -231,5 +232,8 @@ def body(family: Family, k: Numbers, s: State) -> Iterator[Invariance]:
     M = k("inertia_tangent", s)["M"]
     yield "the gyroscopic moment does no work", abs(still @ s["w"]) / relative(f, 1), 32 * EPS
     yield "f . w is the rate of the kinetic energy", abs(f @ s["w"] - s["w"] @ M @ s["a"]) / relative(f, 1), 64 * EPS
+    from ..relations.moves import invariances as moves
+
+    yield from moves(rider, k, s)
     T = k("kinetic_energy", s)["T"][0]
     yield "kinetic energy is w . M w / 2", abs(s["w"] @ M @ s["w"] / 2 / T - 1), 8 * EPS

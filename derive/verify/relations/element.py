@@ -207,6 +207,7 @@ def body(family: Family) -> list[Relation]:
         return sum(s["mass"] * s["w"][i] ** 2 for i in range(dim)) / 2 + _spinning(spread, spin(s["w"], dim))
 
     from .joint import body_frame_relations
+    from .moves import loads, moves
 
     at = Relation("point", "p", "R + A u by quaternions or complex numbers", 0,
                   lambda k, s, t, j: rider.point(s["b"], s["u"]))
@@ -229,6 +230,8 @@ def body(family: Family) -> list[Relation]:
         Relation("inertia_tangent", "M", "df/da", 1, from_kernel("inertia_force", "f", a=entry("a")), n),
         Relation("inertia_tangent", "D", "df/dw", 1, from_kernel("inertia_force", "f", w=entry("w")), n),
         Relation("kinetic_energy", "T", "Σ ½ m v² of point masses", 0, kinetic_energy),
+        *loads(rider),
+        *moves(rider),
     ]
 
 

@@ -29,6 +29,7 @@ def sample(random: np.random.Generator, dim: int) -> dict[str, np.ndarray]:
             "psis": random.uniform(0.5, 1.5, (MODES, turns)), "m": random.normal(size=turns)}
     # of one sign: what cancels by chance would be held to digits that it has not
     made |= {name: random.uniform(-0.8, -0.2, MODES) for name in RATES}
+    made["c"] = random.uniform(0.5, 1.5, dim)
     return made | integrals(made)
 
 
@@ -170,6 +171,12 @@ def modal(family: Family) -> list[Relation]:
         out = k("anchor_mode", s, **changes)
         return out["P"].dot(s["f"]) + out["T"].dot(s["m"])
 
+    def followed(k, s, **changes):
+        return k("anchor", s, **changes)["axes"].dot(s["c"])
+
+    def follower(kernel):
+        return lambda k, s, **changes: k(kernel, s, **changes)["g"]
+
     def by_frame(pull):
         return lambda k, s, t, j: pull(k, s, b=rider.moved(k, s["b"], t * unit(n, j)))
 
@@ -213,6 +220,15 @@ def modal(family: Family) -> list[Relation]:
         Relation("anchor_mode_force", "K_frame", "d(P' f + T' m) of the frame by eta", 1, by_mode(pulled, 0)),
         Relation("anchor_pair_force", "K", "d(P' f + T' m) of the mode by eta of the other", 1,
                  by_mode(mode_pulled, 1)),
+        Relation("anchor_follower", "g", "P' (axes c)", 0,
+                 lambda k, s, t, j: k("anchor", s)["P"].T.dot(followed(k, s))),
+        Relation("anchor_follower", "K", "dg by translation and rotation", 1, by_frame(follower("anchor_follower")), n),
+        Relation("anchor_mode_follower", "g", "P' (axes c) of the mode", 0,
+                 lambda k, s, t, j: k("anchor_mode", s)["P"].dot(followed(k, s))),
+        Relation("anchor_mode_follower", "K_frame", "dg of the frame by eta", 1,
+                 by_mode(follower("anchor_follower"), 0)),
+        Relation("anchor_pair_follower", "K", "dg of the mode by eta of the other", 1,
+                 by_mode(follower("anchor_mode_follower"), 1)),
     ]
 
 
