@@ -36,10 +36,13 @@ void fu_cayley_move(const fu_model *model, double *q, const double *psi)
 /* Half-way between two configurations; bodies have turned half of the way. */
 void fu_between(const fu_model *model, const double *q, const double *q_next, double *between)
 {
-    for (int i = 0; i < model->n_q; ++i) between[i] = 0.5 * (q[i] + q_next[i]);
+    const int n_flexible = model->n_bodies ? model->bodies[0].configuration : model->n_q;
+    for (int i = 0; i < n_flexible; ++i) between[i] = 0.5 * (q[i] + q_next[i]);
     for (int k = 0; k < model->n_bodies; ++k) {
-        const int at = model->bodies[k].configuration;
-        model->bodies[k].kernel->halfway(q + at, q_next + at, between + at);
+        const fu_body *body = &model->bodies[k];
+        const int at = body->configuration, eta = at + body->kernel->configuration;
+        body->kernel->halfway(q + at, q_next + at, between + at);
+        for (int i = eta; i < eta + body->modes; ++i) between[i] = 0.5 * (q[i] + q_next[i]);
     }
 }
 
@@ -58,15 +61,17 @@ void fu_body_increment(const fu_body_kernels *kernel, const double *b, const dou
 /* Rows times T, in the columns of a body's rotations. */
 static void turn_columns(const fu_body_kernels *kernel, double *rows, int n_rows, int n_columns, int first, const double *T)
 {
-    const int dim = kernel->dim;
-    for (int r = 0; r < n_rows; ++r) {
-        double *p = rows + r * n_columns + first + dim;
-        if (dim == 2) {
-            p[0] *= T[0];
-            continue;
-        }
+    double *p = rows + first + kernel->dim;
+    if (kernel->dim == 2) {
+        for (int r = 0; r < n_rows; ++r) p[r * n_columns] *= T[0];
+        return;
+    }
+    const double xx = T[0], xy = T[1], xz = T[2], yx = T[3], yy = T[4], yz = T[5], zx = T[6], zy = T[7], zz = T[8];
+    for (int r = 0; r < n_rows; ++r, p += n_columns) {
         const double x = p[0], y = p[1], z = p[2];
-        for (int d = 0; d < 3; ++d) p[d] = x * T[d] + y * T[3 + d] + z * T[6 + d];
+        p[0] = x * xx + y * yx + z * zx;
+        p[1] = x * xy + y * yy + z * zy;
+        p[2] = x * xz + y * yz + z * zz;
     }
 }
 

@@ -114,7 +114,7 @@ def invariances(rider, k: Numbers, s: State) -> Iterator[Invariance]:
         yield "attitudes keep their size", abs(float(size) - 1), 4 * EPS
     direction = np.eye(rider.n_velocity)[dim] + 0.5 * np.eye(rider.n_velocity)[-1]
     for kernel, output in (("move", "b_next"), ("move_tangent", "T")):
-        for length in (1.0, 2.0):  # series below, quotients above
+        for length in (1.0, 2.0):  # series below one of these, quotients above
             step = length / np.linalg.norm(direction) * direction
             below, above = (k(kernel, s, step=(1 + way * 1e-15) * step)[output] for way in (-1, 1))
             yield "no jump from series to quotients", float(np.abs(above - below).max()), 32 * EPS
