@@ -78,7 +78,7 @@ double fu_resistance_power(const fu_model *model, const fu_state *state, int j, 
 }
 
 /* J in the springs of the buffers that a slide is in; those that do not touch it alone, or all */
-static double spring_energy(const fu_model *model, const fu_state *state, int j, int all)
+static double buffer_energy(const fu_model *model, const fu_state *state, int j, int all)
 {
     double energy = 0.0;
     for (int side = -1; side <= 1 && state->mode[j] != FU_LEFT; side += 2) {
@@ -92,14 +92,14 @@ static double spring_energy(const fu_model *model, const fu_state *state, int j,
 
 double fu_buffer_energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
-    return spring_energy(model, state, coupling->index, 1);
+    return buffer_energy(model, state, coupling->index, 1);
 }
 
 double fu_lost_in_buffers(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to)
 {
     const int j = coupling->index;
     if (!model->slides[j].resistance) return 0.0;
-    return spring_energy(model, from, j, 0) - spring_energy(model, to, j, 0);
+    return buffer_energy(model, from, j, 0) - buffer_energy(model, to, j, 0);
 }
 
 void fu_touch_buffers(const fu_model *model, const fu_coupling *coupling, fu_state *state)
