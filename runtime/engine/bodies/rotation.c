@@ -59,7 +59,7 @@ void fu_body_increment(const fu_body_kernels *kernel, const double *b, const dou
 }
 
 /* Rows times T, in the columns of a body's rotations. */
-static void turn_columns(const fu_body_kernels *kernel, double *rows, int n_rows, int n_columns, int first, const double *T)
+static inline void turn_columns(const fu_body_kernels *kernel, double *rows, int n_rows, int n_columns, int first, const double *T)
 {
     double *p = rows + first + kernel->dim;
     if (kernel->dim == 2) {
