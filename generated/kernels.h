@@ -11,6 +11,9 @@
 #undef I
 typedef double _Complex fu_real;
 #define FU_SQRT csqrt
+#define FU_SIN csin
+#define FU_COS ccos
+#define FU_REAL creal
 #elif defined(FU_BLOCK)
 #include <math.h>
 #define FU_KERNEL static inline __attribute__((always_inline)) FU_BLOCK_TARGET
@@ -26,6 +29,9 @@ FU_KERNEL fu_real fu_block_sqrt(fu_real x)
 #include <math.h>
 typedef double fu_real;
 #define FU_SQRT sqrt
+#define FU_SIN sin
+#define FU_COS cos
+#define FU_REAL(x) (x)
 #endif
 
 #ifndef FU_BLOCK
@@ -377,6 +383,16 @@ void rigid_inertia_force(fu_real mass, const fu_real *J, const fu_real *w, const
 void rigid_inertia_tangent(fu_real mass, const fu_real *J, const fu_real *w, fu_real *M, fu_real *D);
 void rigid_kinetic_energy(fu_real mass, const fu_real *J, const fu_real *w, fu_real *T);
 void rigid_discrete_point(const fu_real *b, const fu_real *u, const fu_real *b_next, fu_real *P);
+void rigid_force(const fu_real *b, const fu_real *u, const fu_real *f, fu_real *g, fu_real *K);
+void rigid_follower_force(const fu_real *b, const fu_real *u, const fu_real *c, fu_real *g, fu_real *K);
+void rigid_moment(const fu_real *b, const fu_real *m, fu_real *g, fu_real *K);
+void rigid_move(const fu_real *b, const fu_real *step, fu_real *b_next);
+void rigid_move_tangent(const fu_real *step, fu_real *T);
+void rigid_cayley_move(const fu_real *b, const fu_real *step, fu_real *b_next);
+void rigid_cayley_tangent(const fu_real *step, fu_real *T);
+void rigid_halfway(const fu_real *b, const fu_real *b_next, fu_real *b_half);
+void rigid_rate(const fu_real *b, const fu_real *w, fu_real *b_rate);
+void rigid_increment(const fu_real *b, const fu_real *change, fu_real *step);
 
 /* planar_rigid: planar rigid body */
 void planar_rigid_point(const fu_real *b, const fu_real *u, const fu_real *w, fu_real *p, fu_real *p_q, fu_real *v, fu_real *bias);
@@ -386,6 +402,16 @@ void planar_rigid_inertia_force(fu_real mass, const fu_real *J, const fu_real *w
 void planar_rigid_inertia_tangent(fu_real mass, const fu_real *J, const fu_real *w, fu_real *M, fu_real *D);
 void planar_rigid_kinetic_energy(fu_real mass, const fu_real *J, const fu_real *w, fu_real *T);
 void planar_rigid_discrete_point(const fu_real *b, const fu_real *u, const fu_real *b_next, fu_real *P);
+void planar_rigid_force(const fu_real *b, const fu_real *u, const fu_real *f, fu_real *g, fu_real *K);
+void planar_rigid_follower_force(const fu_real *b, const fu_real *u, const fu_real *c, fu_real *g, fu_real *K);
+void planar_rigid_moment(const fu_real *b, const fu_real *m, fu_real *g, fu_real *K);
+void planar_rigid_move(const fu_real *b, const fu_real *step, fu_real *b_next);
+void planar_rigid_move_tangent(const fu_real *step, fu_real *T);
+void planar_rigid_cayley_move(const fu_real *b, const fu_real *step, fu_real *b_next);
+void planar_rigid_cayley_tangent(const fu_real *step, fu_real *T);
+void planar_rigid_halfway(const fu_real *b, const fu_real *b_next, fu_real *b_half);
+void planar_rigid_rate(const fu_real *b, const fu_real *w, fu_real *b_rate);
+void planar_rigid_increment(const fu_real *b, const fu_real *change, fu_real *step);
 
 /* modal: modal body on a rigid frame */
 void modal_inertia_force(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *S2, const fu_real *X, const fu_real *X1, const fu_real *X2, fu_real *f);
@@ -402,6 +428,9 @@ void modal_attachment_mode(const fu_real *b, const fu_real *u, const fu_real *th
 void modal_attachment_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *f, const fu_real *m, fu_real *K);
 void modal_attachment_mode_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *f, const fu_real *m, fu_real *K, fu_real *K_frame);
 void modal_attachment_pair_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K);
+void modal_attachment_follower(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *c, fu_real *g, fu_real *K);
+void modal_attachment_mode_follower(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *c, fu_real *g, fu_real *K_frame);
+void modal_attachment_pair_follower(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *c, fu_real *K);
 
 /* planar_modal: modal body on a planar_rigid frame */
 void planar_modal_inertia_force(const fu_real *b, const fu_real *w, const fu_real *a, const fu_real *g, fu_real mass, const fu_real *S, const fu_real *S1, const fu_real *S2, const fu_real *X, const fu_real *X1, const fu_real *X2, fu_real *f);
@@ -418,6 +447,9 @@ void planar_modal_attachment_mode(const fu_real *b, const fu_real *u, const fu_r
 void planar_modal_attachment_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *f, const fu_real *m, fu_real *K);
 void planar_modal_attachment_mode_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *f, const fu_real *m, fu_real *K, fu_real *K_frame);
 void planar_modal_attachment_pair_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K);
+void planar_modal_attachment_follower(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *c, fu_real *g, fu_real *K);
+void planar_modal_attachment_mode_follower(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *c, fu_real *g, fu_real *K_frame);
+void planar_modal_attachment_pair_follower(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *c, fu_real *K);
 
 /* slide_beam24_rigid: sliding joint of a rigid rider on a beam24 cable */
 void slide_beam24_rigid_constraint(fu_real l, fu_real x, const fu_real *e, const fu_real *b, const fu_real *u, const fu_real *director, fu_real *C, fu_real *C_s, fu_real *s_step, fu_real *A_t);
@@ -585,6 +617,34 @@ void resistance_force(const fu_real *t, const fu_real *u, const fu_real *f, cons
 /* planar_resistance: friction and buffers of slides in the plane */
 void planar_resistance_force(const fu_real *t, const fu_real *u, const fu_real *f, const fu_real *friction, const fu_real *buffer, fu_real *R, fu_real *R_t, fu_real *R_u, fu_real *R_f, fu_real *R_x);
 
+/* spring: spring and damper between two points in space */
+void spring_energy(fu_real stiffness, fu_real rest_length, const fu_real *gap, fu_real *U);
+void spring_dissipation(fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
+void spring_force(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
+void spring_tangent(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
+void spring_discrete_force(fu_real stiffness, fu_real damping, fu_real rest_length, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
+
+/* zero_length_spring: spring and damper of no rest length between two points in space */
+void zero_length_spring_energy(fu_real stiffness, fu_real rest_length, const fu_real *gap, fu_real *U);
+void zero_length_spring_dissipation(fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
+void zero_length_spring_force(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
+void zero_length_spring_tangent(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
+void zero_length_spring_discrete_force(fu_real stiffness, fu_real damping, fu_real rest_length, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
+
+/* planar_spring: spring and damper between two points in the plane */
+void planar_spring_energy(fu_real stiffness, fu_real rest_length, const fu_real *gap, fu_real *U);
+void planar_spring_dissipation(fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
+void planar_spring_force(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
+void planar_spring_tangent(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
+void planar_spring_discrete_force(fu_real stiffness, fu_real damping, fu_real rest_length, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
+
+/* planar_zero_length_spring: spring and damper of no rest length between two points in the plane */
+void planar_zero_length_spring_energy(fu_real stiffness, fu_real rest_length, const fu_real *gap, fu_real *U);
+void planar_zero_length_spring_dissipation(fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
+void planar_zero_length_spring_force(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
+void planar_zero_length_spring_tangent(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
+void planar_zero_length_spring_discrete_force(fu_real stiffness, fu_real damping, fu_real rest_length, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
+
 /* What the engine needs of a element. */
 typedef struct {
     const char *name;
@@ -630,6 +690,16 @@ typedef struct {
     void (*inertia_tangent)(fu_real mass, const fu_real *J, const fu_real *w, fu_real *M, fu_real *D);
     void (*kinetic_energy)(fu_real mass, const fu_real *J, const fu_real *w, fu_real *T);
     void (*discrete_point)(const fu_real *b, const fu_real *u, const fu_real *b_next, fu_real *P);
+    void (*force)(const fu_real *b, const fu_real *u, const fu_real *f, fu_real *g, fu_real *K);
+    void (*follower_force)(const fu_real *b, const fu_real *u, const fu_real *c, fu_real *g, fu_real *K);
+    void (*moment)(const fu_real *b, const fu_real *m, fu_real *g, fu_real *K);
+    void (*move)(const fu_real *b, const fu_real *step, fu_real *b_next);
+    void (*move_tangent)(const fu_real *step, fu_real *T);
+    void (*cayley_move)(const fu_real *b, const fu_real *step, fu_real *b_next);
+    void (*cayley_tangent)(const fu_real *step, fu_real *T);
+    void (*halfway)(const fu_real *b, const fu_real *b_next, fu_real *b_half);
+    void (*rate)(const fu_real *b, const fu_real *w, fu_real *b_rate);
+    void (*increment)(const fu_real *b, const fu_real *change, fu_real *step);
 } fu_body_kernels;
 
 /* What the engine needs of a modal. */
@@ -650,6 +720,9 @@ typedef struct {
     void (*attachment_force)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *f, const fu_real *m, fu_real *K);
     void (*attachment_mode_force)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *f, const fu_real *m, fu_real *K, fu_real *K_frame);
     void (*attachment_pair_force)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K);
+    void (*attachment_follower)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *c, fu_real *g, fu_real *K);
+    void (*attachment_mode_follower)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *c, fu_real *g, fu_real *K_frame);
+    void (*attachment_pair_follower)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *c, fu_real *K);
 } fu_modal_kernels;
 
 /* What the engine needs of a slide. */
@@ -689,6 +762,17 @@ typedef struct {
     void (*force)(const fu_real *t, const fu_real *u, const fu_real *f, const fu_real *friction, const fu_real *buffer, fu_real *R, fu_real *R_t, fu_real *R_u, fu_real *R_f, fu_real *R_x);
 } fu_resistance_kernels;
 
+/* What the engine needs of a spring. */
+typedef struct {
+    const char *name;
+    int dim;
+    void (*energy)(fu_real stiffness, fu_real rest_length, const fu_real *gap, fu_real *U);
+    void (*dissipation)(fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
+    void (*force)(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
+    void (*tangent)(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
+    void (*discrete_force)(fu_real stiffness, fu_real damping, fu_real rest_length, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
+} fu_spring_kernels;
+
 /* Every table, one entry a family. */
 typedef struct {
     int n_elements;
@@ -707,6 +791,8 @@ typedef struct {
     const fu_joint_kernels *joints;
     int n_resistances;
     const fu_resistance_kernels *resistances;
+    int n_springs;
+    const fu_spring_kernels *springs;
 } fu_tables;
 extern const fu_tables fu_all;
 
@@ -729,6 +815,8 @@ static inline const void *fu_find(const fu_tables *tables, const char *role, con
         if (!strcmp(tables->joints[i].name, name)) return &tables->joints[i];
     for (int i = 0; i < tables->n_resistances && !strcmp(role, "resistance"); ++i)
         if (!strcmp(tables->resistances[i].name, name)) return &tables->resistances[i];
+    for (int i = 0; i < tables->n_springs && !strcmp(role, "spring"); ++i)
+        if (!strcmp(tables->springs[i].name, name)) return &tables->springs[i];
     return 0;
 }
 

@@ -447,7 +447,17 @@ static const fu_body_kernels bodys[] = {
      rigid_inertia_force,
      rigid_inertia_tangent,
      rigid_kinetic_energy,
-     rigid_discrete_point
+     rigid_discrete_point,
+     rigid_force,
+     rigid_follower_force,
+     rigid_moment,
+     rigid_move,
+     rigid_move_tangent,
+     rigid_cayley_move,
+     rigid_cayley_tangent,
+     rigid_halfway,
+     rigid_rate,
+     rigid_increment
     },
     {"planar_rigid",
      2,
@@ -459,7 +469,17 @@ static const fu_body_kernels bodys[] = {
      planar_rigid_inertia_force,
      planar_rigid_inertia_tangent,
      planar_rigid_kinetic_energy,
-     planar_rigid_discrete_point
+     planar_rigid_discrete_point,
+     planar_rigid_force,
+     planar_rigid_follower_force,
+     planar_rigid_moment,
+     planar_rigid_move,
+     planar_rigid_move_tangent,
+     planar_rigid_cayley_move,
+     planar_rigid_cayley_tangent,
+     planar_rigid_halfway,
+     planar_rigid_rate,
+     planar_rigid_increment
     }
 };
 
@@ -479,7 +499,10 @@ static const fu_modal_kernels modals[] = {
      modal_attachment_mode,
      modal_attachment_force,
      modal_attachment_mode_force,
-     modal_attachment_pair_force
+     modal_attachment_pair_force,
+     modal_attachment_follower,
+     modal_attachment_mode_follower,
+     modal_attachment_pair_follower
     },
     {"planar_modal",
      2,
@@ -496,7 +519,10 @@ static const fu_modal_kernels modals[] = {
      planar_modal_attachment_mode,
      planar_modal_attachment_force,
      planar_modal_attachment_mode_force,
-     planar_modal_attachment_pair_force
+     planar_modal_attachment_pair_force,
+     planar_modal_attachment_follower,
+     planar_modal_attachment_mode_follower,
+     planar_modal_attachment_pair_follower
     }
 };
 
@@ -739,6 +765,41 @@ static const fu_resistance_kernels resistances[] = {
     {"planar_resistance",
      2,
      planar_resistance_force
+    }
+};
+
+static const fu_spring_kernels springs[] = {
+    {"spring",
+     3,
+     spring_energy,
+     spring_dissipation,
+     spring_force,
+     spring_tangent,
+     spring_discrete_force
+    },
+    {"zero_length_spring",
+     3,
+     zero_length_spring_energy,
+     zero_length_spring_dissipation,
+     zero_length_spring_force,
+     zero_length_spring_tangent,
+     zero_length_spring_discrete_force
+    },
+    {"planar_spring",
+     2,
+     planar_spring_energy,
+     planar_spring_dissipation,
+     planar_spring_force,
+     planar_spring_tangent,
+     planar_spring_discrete_force
+    },
+    {"planar_zero_length_spring",
+     2,
+     planar_zero_length_spring_energy,
+     planar_zero_length_spring_dissipation,
+     planar_zero_length_spring_force,
+     planar_zero_length_spring_tangent,
+     planar_zero_length_spring_discrete_force
     }
 };
 
@@ -1850,6 +1911,46 @@ static void call_rigid_discrete_point(const fu_real *const *a, fu_real *const *o
 {
     rigid_discrete_point(a[0], a[1], a[2], out[0]);
 }
+static void call_rigid_force(const fu_real *const *a, fu_real *const *out)
+{
+    rigid_force(a[0], a[1], a[2], out[0], out[1]);
+}
+static void call_rigid_follower_force(const fu_real *const *a, fu_real *const *out)
+{
+    rigid_follower_force(a[0], a[1], a[2], out[0], out[1]);
+}
+static void call_rigid_moment(const fu_real *const *a, fu_real *const *out)
+{
+    rigid_moment(a[0], a[1], out[0], out[1]);
+}
+static void call_rigid_move(const fu_real *const *a, fu_real *const *out)
+{
+    rigid_move(a[0], a[1], out[0]);
+}
+static void call_rigid_move_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    rigid_move_tangent(a[0], out[0]);
+}
+static void call_rigid_cayley_move(const fu_real *const *a, fu_real *const *out)
+{
+    rigid_cayley_move(a[0], a[1], out[0]);
+}
+static void call_rigid_cayley_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    rigid_cayley_tangent(a[0], out[0]);
+}
+static void call_rigid_halfway(const fu_real *const *a, fu_real *const *out)
+{
+    rigid_halfway(a[0], a[1], out[0]);
+}
+static void call_rigid_rate(const fu_real *const *a, fu_real *const *out)
+{
+    rigid_rate(a[0], a[1], out[0]);
+}
+static void call_rigid_increment(const fu_real *const *a, fu_real *const *out)
+{
+    rigid_increment(a[0], a[1], out[0]);
+}
 static void call_planar_rigid_point(const fu_real *const *a, fu_real *const *out)
 {
     planar_rigid_point(a[0], a[1], a[2], out[0], out[1], out[2], out[3]);
@@ -1877,6 +1978,46 @@ static void call_planar_rigid_kinetic_energy(const fu_real *const *a, fu_real *c
 static void call_planar_rigid_discrete_point(const fu_real *const *a, fu_real *const *out)
 {
     planar_rigid_discrete_point(a[0], a[1], a[2], out[0]);
+}
+static void call_planar_rigid_force(const fu_real *const *a, fu_real *const *out)
+{
+    planar_rigid_force(a[0], a[1], a[2], out[0], out[1]);
+}
+static void call_planar_rigid_follower_force(const fu_real *const *a, fu_real *const *out)
+{
+    planar_rigid_follower_force(a[0], a[1], a[2], out[0], out[1]);
+}
+static void call_planar_rigid_moment(const fu_real *const *a, fu_real *const *out)
+{
+    planar_rigid_moment(a[0], a[1], out[0], out[1]);
+}
+static void call_planar_rigid_move(const fu_real *const *a, fu_real *const *out)
+{
+    planar_rigid_move(a[0], a[1], out[0]);
+}
+static void call_planar_rigid_move_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    planar_rigid_move_tangent(a[0], out[0]);
+}
+static void call_planar_rigid_cayley_move(const fu_real *const *a, fu_real *const *out)
+{
+    planar_rigid_cayley_move(a[0], a[1], out[0]);
+}
+static void call_planar_rigid_cayley_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    planar_rigid_cayley_tangent(a[0], out[0]);
+}
+static void call_planar_rigid_halfway(const fu_real *const *a, fu_real *const *out)
+{
+    planar_rigid_halfway(a[0], a[1], out[0]);
+}
+static void call_planar_rigid_rate(const fu_real *const *a, fu_real *const *out)
+{
+    planar_rigid_rate(a[0], a[1], out[0]);
+}
+static void call_planar_rigid_increment(const fu_real *const *a, fu_real *const *out)
+{
+    planar_rigid_increment(a[0], a[1], out[0]);
 }
 static void call_modal_inertia_force(const fu_real *const *a, fu_real *const *out)
 {
@@ -1934,6 +2075,18 @@ static void call_modal_attachment_pair_force(const fu_real *const *a, fu_real *c
 {
     modal_attachment_pair_force(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], out[0]);
 }
+static void call_modal_attachment_follower(const fu_real *const *a, fu_real *const *out)
+{
+    modal_attachment_follower(a[0], a[1], a[2], a[3], out[0], out[1]);
+}
+static void call_modal_attachment_mode_follower(const fu_real *const *a, fu_real *const *out)
+{
+    modal_attachment_mode_follower(a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_modal_attachment_pair_follower(const fu_real *const *a, fu_real *const *out)
+{
+    modal_attachment_pair_follower(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0]);
+}
 static void call_planar_modal_inertia_force(const fu_real *const *a, fu_real *const *out)
 {
     planar_modal_inertia_force(a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0]);
@@ -1989,6 +2142,18 @@ static void call_planar_modal_attachment_mode_force(const fu_real *const *a, fu_
 static void call_planar_modal_attachment_pair_force(const fu_real *const *a, fu_real *const *out)
 {
     planar_modal_attachment_pair_force(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], out[0]);
+}
+static void call_planar_modal_attachment_follower(const fu_real *const *a, fu_real *const *out)
+{
+    planar_modal_attachment_follower(a[0], a[1], a[2], a[3], out[0], out[1]);
+}
+static void call_planar_modal_attachment_mode_follower(const fu_real *const *a, fu_real *const *out)
+{
+    planar_modal_attachment_mode_follower(a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_planar_modal_attachment_pair_follower(const fu_real *const *a, fu_real *const *out)
+{
+    planar_modal_attachment_pair_follower(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0]);
 }
 static void call_slide_beam24_rigid_constraint(const fu_real *const *a, fu_real *const *out)
 {
@@ -2382,6 +2547,86 @@ static void call_planar_resistance_force(const fu_real *const *a, fu_real *const
 {
     planar_resistance_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]);
 }
+static void call_spring_energy(const fu_real *const *a, fu_real *const *out)
+{
+    spring_energy(*a[0], *a[1], a[2], out[0]);
+}
+static void call_spring_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    spring_dissipation(*a[0], *a[1], a[2], a[3], out[0]);
+}
+static void call_spring_force(const fu_real *const *a, fu_real *const *out)
+{
+    spring_force(*a[0], *a[1], *a[2], a[3], a[4], out[0]);
+}
+static void call_spring_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    spring_tangent(*a[0], *a[1], *a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_spring_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    spring_discrete_force(*a[0], *a[1], *a[2], *a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_zero_length_spring_energy(const fu_real *const *a, fu_real *const *out)
+{
+    zero_length_spring_energy(*a[0], *a[1], a[2], out[0]);
+}
+static void call_zero_length_spring_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    zero_length_spring_dissipation(*a[0], *a[1], a[2], a[3], out[0]);
+}
+static void call_zero_length_spring_force(const fu_real *const *a, fu_real *const *out)
+{
+    zero_length_spring_force(*a[0], *a[1], *a[2], a[3], a[4], out[0]);
+}
+static void call_zero_length_spring_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    zero_length_spring_tangent(*a[0], *a[1], *a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_zero_length_spring_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    zero_length_spring_discrete_force(*a[0], *a[1], *a[2], *a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_planar_spring_energy(const fu_real *const *a, fu_real *const *out)
+{
+    planar_spring_energy(*a[0], *a[1], a[2], out[0]);
+}
+static void call_planar_spring_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    planar_spring_dissipation(*a[0], *a[1], a[2], a[3], out[0]);
+}
+static void call_planar_spring_force(const fu_real *const *a, fu_real *const *out)
+{
+    planar_spring_force(*a[0], *a[1], *a[2], a[3], a[4], out[0]);
+}
+static void call_planar_spring_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    planar_spring_tangent(*a[0], *a[1], *a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_planar_spring_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    planar_spring_discrete_force(*a[0], *a[1], *a[2], *a[3], a[4], a[5], out[0], out[1]);
+}
+static void call_planar_zero_length_spring_energy(const fu_real *const *a, fu_real *const *out)
+{
+    planar_zero_length_spring_energy(*a[0], *a[1], a[2], out[0]);
+}
+static void call_planar_zero_length_spring_dissipation(const fu_real *const *a, fu_real *const *out)
+{
+    planar_zero_length_spring_dissipation(*a[0], *a[1], a[2], a[3], out[0]);
+}
+static void call_planar_zero_length_spring_force(const fu_real *const *a, fu_real *const *out)
+{
+    planar_zero_length_spring_force(*a[0], *a[1], *a[2], a[3], a[4], out[0]);
+}
+static void call_planar_zero_length_spring_tangent(const fu_real *const *a, fu_real *const *out)
+{
+    planar_zero_length_spring_tangent(*a[0], *a[1], *a[2], a[3], a[4], out[0], out[1], out[2]);
+}
+static void call_planar_zero_length_spring_discrete_force(const fu_real *const *a, fu_real *const *out)
+{
+    planar_zero_length_spring_discrete_force(*a[0], *a[1], *a[2], *a[3], a[4], a[5], out[0], out[1]);
+}
 
 const fu_kernel fu_kernels[] = {
     {"beam24_mass", call_beam24_mass},
@@ -2661,6 +2906,16 @@ const fu_kernel fu_kernels[] = {
     {"rigid_inertia_tangent", call_rigid_inertia_tangent},
     {"rigid_kinetic_energy", call_rigid_kinetic_energy},
     {"rigid_discrete_point", call_rigid_discrete_point},
+    {"rigid_force", call_rigid_force},
+    {"rigid_follower_force", call_rigid_follower_force},
+    {"rigid_moment", call_rigid_moment},
+    {"rigid_move", call_rigid_move},
+    {"rigid_move_tangent", call_rigid_move_tangent},
+    {"rigid_cayley_move", call_rigid_cayley_move},
+    {"rigid_cayley_tangent", call_rigid_cayley_tangent},
+    {"rigid_halfway", call_rigid_halfway},
+    {"rigid_rate", call_rigid_rate},
+    {"rigid_increment", call_rigid_increment},
     {"planar_rigid_point", call_planar_rigid_point},
     {"planar_rigid_point_force", call_planar_rigid_point_force},
     {"planar_rigid_frame", call_planar_rigid_frame},
@@ -2668,6 +2923,16 @@ const fu_kernel fu_kernels[] = {
     {"planar_rigid_inertia_tangent", call_planar_rigid_inertia_tangent},
     {"planar_rigid_kinetic_energy", call_planar_rigid_kinetic_energy},
     {"planar_rigid_discrete_point", call_planar_rigid_discrete_point},
+    {"planar_rigid_force", call_planar_rigid_force},
+    {"planar_rigid_follower_force", call_planar_rigid_follower_force},
+    {"planar_rigid_moment", call_planar_rigid_moment},
+    {"planar_rigid_move", call_planar_rigid_move},
+    {"planar_rigid_move_tangent", call_planar_rigid_move_tangent},
+    {"planar_rigid_cayley_move", call_planar_rigid_cayley_move},
+    {"planar_rigid_cayley_tangent", call_planar_rigid_cayley_tangent},
+    {"planar_rigid_halfway", call_planar_rigid_halfway},
+    {"planar_rigid_rate", call_planar_rigid_rate},
+    {"planar_rigid_increment", call_planar_rigid_increment},
     {"modal_inertia_force", call_modal_inertia_force},
     {"modal_mass_matrix", call_modal_mass_matrix},
     {"modal_inertia_tangent", call_modal_inertia_tangent},
@@ -2682,6 +2947,9 @@ const fu_kernel fu_kernels[] = {
     {"modal_attachment_force", call_modal_attachment_force},
     {"modal_attachment_mode_force", call_modal_attachment_mode_force},
     {"modal_attachment_pair_force", call_modal_attachment_pair_force},
+    {"modal_attachment_follower", call_modal_attachment_follower},
+    {"modal_attachment_mode_follower", call_modal_attachment_mode_follower},
+    {"modal_attachment_pair_follower", call_modal_attachment_pair_follower},
     {"planar_modal_inertia_force", call_planar_modal_inertia_force},
     {"planar_modal_mass_matrix", call_planar_modal_mass_matrix},
     {"planar_modal_inertia_tangent", call_planar_modal_inertia_tangent},
@@ -2696,6 +2964,9 @@ const fu_kernel fu_kernels[] = {
     {"planar_modal_attachment_force", call_planar_modal_attachment_force},
     {"planar_modal_attachment_mode_force", call_planar_modal_attachment_mode_force},
     {"planar_modal_attachment_pair_force", call_planar_modal_attachment_pair_force},
+    {"planar_modal_attachment_follower", call_planar_modal_attachment_follower},
+    {"planar_modal_attachment_mode_follower", call_planar_modal_attachment_mode_follower},
+    {"planar_modal_attachment_pair_follower", call_planar_modal_attachment_pair_follower},
     {"slide_beam24_rigid_constraint", call_slide_beam24_rigid_constraint},
     {"slide_beam24_rigid_terms", call_slide_beam24_rigid_terms},
     {"slide_beam24_rigid_residual", call_slide_beam24_rigid_residual},
@@ -2794,6 +3065,26 @@ const fu_kernel fu_kernels[] = {
     {"joint_planar_locked_motion", call_joint_planar_locked_motion},
     {"resistance_force", call_resistance_force},
     {"planar_resistance_force", call_planar_resistance_force},
+    {"spring_energy", call_spring_energy},
+    {"spring_dissipation", call_spring_dissipation},
+    {"spring_force", call_spring_force},
+    {"spring_tangent", call_spring_tangent},
+    {"spring_discrete_force", call_spring_discrete_force},
+    {"zero_length_spring_energy", call_zero_length_spring_energy},
+    {"zero_length_spring_dissipation", call_zero_length_spring_dissipation},
+    {"zero_length_spring_force", call_zero_length_spring_force},
+    {"zero_length_spring_tangent", call_zero_length_spring_tangent},
+    {"zero_length_spring_discrete_force", call_zero_length_spring_discrete_force},
+    {"planar_spring_energy", call_planar_spring_energy},
+    {"planar_spring_dissipation", call_planar_spring_dissipation},
+    {"planar_spring_force", call_planar_spring_force},
+    {"planar_spring_tangent", call_planar_spring_tangent},
+    {"planar_spring_discrete_force", call_planar_spring_discrete_force},
+    {"planar_zero_length_spring_energy", call_planar_zero_length_spring_energy},
+    {"planar_zero_length_spring_dissipation", call_planar_zero_length_spring_dissipation},
+    {"planar_zero_length_spring_force", call_planar_zero_length_spring_force},
+    {"planar_zero_length_spring_tangent", call_planar_zero_length_spring_tangent},
+    {"planar_zero_length_spring_discrete_force", call_planar_zero_length_spring_discrete_force},
 };
 const int fu_n_kernels = sizeof fu_kernels / sizeof fu_kernels[0];
 
@@ -2805,5 +3096,6 @@ const fu_tables fu_all = {
     10, slides,
     2, frames,
     20, joints,
-    2, resistances
+    2, resistances,
+    4, springs
 };

@@ -431,7 +431,7 @@ def test_all_libraries_of_a_file_are_looked_at_first(hostile, tmp_path):
 def test_a_file_of_results_does_not_load_a_library(hostile, tmp_path):
     folder, marker = hostile
     run = loads(naming("x").replace('library = "x"\n', ""), "x").run()
-    run.scene_toml = naming(folder)
+    run._scene_text = run._scene_text._replace(toml=naming(folder))
     run.save(tmp_path / "x.nc")
     read = load_run(tmp_path / "x.nc")
     assert len(read.time) == 101 and read["wire.nodal_vectors"].shape[0] == 101
