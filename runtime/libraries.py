@@ -21,6 +21,7 @@ import numpy as np
 from funicular import elements
 from funicular.elements import MANIFEST, ElementKind
 from funicular.errors import FunicularError, SceneError, shown_path
+from funicular.generated import described as described_kernels
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 COMMAND = "`funicular derive --spec {spec} --out {out}`"
@@ -77,8 +78,8 @@ class _Argument(_Described):
 class _Kernel(_Described):
     doc: str
     source: str
-    inputs: list[_Argument]
-    outputs: list[_Argument]
+    inputs: list[int]
+    outputs: list[int]
 
 
 class _Element(_Described):
@@ -94,6 +95,7 @@ class _Manifest(_Described):
     interface: str
     library: _Shared
     elements: dict[str, _Element]
+    arguments: list[_Argument]
     kernels: dict[str, _Kernel]
     tools: dict[str, str]
     families: dict[str, dict]
@@ -219,11 +221,12 @@ def _open(path: Path, content: dict) -> Library:
         if file.is_symlink() or hashlib.sha256(file.read_bytes()).hexdigest() != described["sha256"]:
             raise LibraryError(f'"{path}" is damaged: {file.name} is not the file that was made', again)
         shared = ctypes.CDLL(str(file))
-        kernels = SimpleNamespace(**{name: Kernel(shared, name, entry) for name, entry in content["kernels"].items()})
+        kernels = SimpleNamespace(**{name: Kernel(shared, name, entry)
+                                     for name, entry in described_kernels(content).items()})
         tables = ctypes.addressof(ctypes.c_char.in_dll(shared, "fu_all"))
     except OSError as error:
         raise LibraryError(f'"{path}" cannot be loaded here: {error}', again) from None
-    except (AttributeError, ValueError) as error:  # a name that the shared object does not have
+    except (AttributeError, IndexError, ValueError) as error:  # a name or argument that is not there
         if isinstance(error, LibraryError):
             raise
         raise LibraryError(f'"{path}" is damaged: {file.name} lacks what its {MANIFEST} names: {error}',
