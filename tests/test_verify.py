@@ -144,7 +144,7 @@ def test_an_output_left_unwritten_is_found(generated, capsys):
 
 
 def test_what_does_not_compile_is_told_with_the_compilers_words(generated, capsys):
-    broken(generated, "rigid.c", "const fu_real dt_p_x =", "const fu_real dt_p_x +=")
+    broken(generated, "rigid.c", "        dt_p_x =", "        dt_p_x +=")
     assert verify.main(["rigid"], generated) == 1
     err = capsys.readouterr().err
     assert "generated/rigid.c does not compile" in err
