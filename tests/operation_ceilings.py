@@ -45,18 +45,18 @@ CEILINGS = {
         "discrete_force": 823, "step_stiffness": 675
     },
     "cable12_green_exact": {
-        "stiffness": 0, "energy": 251, "elastic_force": 476, "elastic_tangent": 1681, "damping_force": 561,
-        "damping_tangent": 3501, "dissipation": 301, "section_forces": 258,
-        "discrete_force": 892, "step_stiffness": 161, "algorithmic_force": 577
+        "stiffness": 0, "energy": 251, "elastic_force": 476, "elastic_tangent": 1681, "damping_force": 423,
+        "damping_tangent": 1761, "dissipation": 301, "section_forces": 258,
+        "discrete_force": 892, "step_stiffness": 161, "algorithmic_force": 439
     },
     "cable12_green_linear": {
         "stiffness": 0, "energy": 150, "elastic_force": 222, "elastic_tangent": 661, "section_forces": 156,
         "discrete_force": 407, "step_stiffness": 161
     },
     "cable12_engineering_exact": {
-        "stiffness": 0, "energy": 266, "elastic_force": 501, "elastic_tangent": 1741, "damping_force": 594,
-        "damping_tangent": 3759, "dissipation": 325, "section_forces": 260,
-        "discrete_force": 907, "step_stiffness": 161, "algorithmic_force": 610
+        "stiffness": 0, "energy": 266, "elastic_force": 501, "elastic_tangent": 1741, "damping_force": 450,
+        "damping_tangent": 1842, "dissipation": 325, "section_forces": 260,
+        "discrete_force": 907, "step_stiffness": 161, "algorithmic_force": 466
     },
     "cable12_engineering_linear": {
         "stiffness": 0, "energy": 165, "elastic_force": 257, "elastic_tangent": 746, "section_forces": 161,
@@ -79,14 +79,14 @@ CEILINGS = {
         "discrete_force": 516, "step_stiffness": 164
     },
     "cable18_green_exact": {
-        "stiffness": 0, "energy": 410, "elastic_force": 788, "elastic_tangent": 5134, "damping_force": 1776,
-        "damping_tangent": 12942, "dissipation": 1023, "section_forces": 516,
-        "discrete_force": 1363, "step_stiffness": 980, "algorithmic_force": 1808
+        "stiffness": 0, "energy": 410, "elastic_force": 788, "elastic_tangent": 5134, "damping_force": 1500,
+        "damping_tangent": 9086, "dissipation": 1023, "section_forces": 516,
+        "discrete_force": 1363, "step_stiffness": 980, "algorithmic_force": 1532
     },
     "cable18_engineering_exact": {
-        "stiffness": 0, "energy": 425, "elastic_force": 813, "elastic_tangent": 5194, "damping_force": 1831,
-        "damping_tangent": 13372, "dissipation": 1063, "section_forces": 518,
-        "discrete_force": 1378, "step_stiffness": 980, "algorithmic_force": 1863
+        "stiffness": 0, "energy": 425, "elastic_force": 813, "elastic_tangent": 5194, "damping_force": 1545,
+        "damping_tangent": 9221, "dissipation": 1063, "section_forces": 518,
+        "discrete_force": 1378, "step_stiffness": 980, "algorithmic_force": 1577
     },
     "cable18_green_exact_assumed": {
         "stiffness": 0, "energy": 459, "elastic_force": 842, "elastic_tangent": 6608, "section_forces": 693,
@@ -102,18 +102,18 @@ CEILINGS = {
         "discrete_force": 455, "step_stiffness": 337, "algorithmic_force": 411
     },
     "cable8p_green_exact": {
-        "stiffness": 0, "energy": 194, "elastic_force": 356, "elastic_tangent": 990, "damping_force": 338,
-        "damping_tangent": 1374, "dissipation": 205, "section_forces": 182,
-        "discrete_force": 685, "step_stiffness": 127, "algorithmic_force": 350
+        "stiffness": 0, "energy": 194, "elastic_force": 356, "elastic_tangent": 990, "damping_force": 286,
+        "damping_tangent": 902, "dissipation": 205, "section_forces": 182,
+        "discrete_force": 685, "step_stiffness": 127, "algorithmic_force": 298
     },
     "cable8p_green_linear": {
         "stiffness": 0, "energy": 112, "elastic_force": 154, "elastic_tangent": 351, "section_forces": 102,
         "discrete_force": 284, "step_stiffness": 127
     },
     "cable8p_engineering_exact": {
-        "stiffness": 0, "energy": 209, "elastic_force": 381, "elastic_tangent": 1050, "damping_force": 362,
-        "damping_tangent": 1506, "dissipation": 223, "section_forces": 184,
-        "discrete_force": 700, "step_stiffness": 127, "algorithmic_force": 374
+        "stiffness": 0, "energy": 209, "elastic_force": 381, "elastic_tangent": 1050, "damping_force": 307,
+        "damping_tangent": 959, "dissipation": 223, "section_forces": 184,
+        "discrete_force": 700, "step_stiffness": 127, "algorithmic_force": 319
     },
     "cable8p_engineering_linear": {
         "stiffness": 0, "energy": 127, "elastic_force": 189, "elastic_tangent": 436, "section_forces": 107,

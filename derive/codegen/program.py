@@ -72,14 +72,14 @@ class Program:
         """Open a stage; the definitions that follow belong to it."""
         self.stages.append(Stage(title))
 
-    def define(self, name: str, expr: sp.Expr, derivative_of: sp.Expr | None = None) -> sp.Expr:
+    def define(self, name: str, expr: sp.Expr, derivative_of: sp.Expr | None = None, alias: bool = False) -> sp.Expr:
         """Give an expression a name. Numbers and bare symbols pass through: a name would say nothing more.
 
         `derivative_of` is an expression that differs from this one by a constant: derivatives are taken of that one
-        instead.
+        instead. With `alias` a bare symbol gets the name too, so that it is called as its like at other points are.
         """
         expr = sp.sympify(expr)
-        if expr.is_Number or expr.is_Symbol:
+        if expr.is_Number or (expr.is_Symbol and not alias):
             return expr
         unique, n = name, 2
         while unique in self._taken:
@@ -95,9 +95,10 @@ class Program:
         symbol = sp.Symbol(name)
         return symbol if self.definition.get(symbol) == expr else self.define(name, expr)
 
-    def vector(self, name: str, components: Iterable[sp.Expr]) -> np.ndarray:
-        """Define a vector component by component: name_x, name_y, name_z."""
-        return np.array([self.define(f"{name}_{axis}", c) for axis, c in zip(AXES, components, strict=False)])
+    def vector(self, name: str, components: Iterable[sp.Expr], alias: bool = False) -> np.ndarray:
+        """Define a vector component by component: name_x, name_y, name_z; `alias` as in `define`."""
+        return np.array([self.define(f"{name}_{axis}", c, alias=alias)
+                         for axis, c in zip(AXES, components, strict=False)])
 
     def output(self, name: str, value: Any, unit: str, doc: str) -> None:
         """Declare an output and its expressions (array_like; a scalar becomes shape (1,))."""
