@@ -64,11 +64,13 @@ class LoadModel:
 class PointForceModel(CouplingModel):
     """A force between two points, whose unknowns are its components.
 
-    type: the engine's type of coupling; parameters: those of its law, in the order that the engine has them;
-    is_damped: whether the force depends on velocities; mass: scale of its equations, kg.
+    type: the engine's type of coupling, and the role of its kernels; kernel: their name, or none; parameters: of its
+    law, in the order that the engine has them; is_damped: whether the force depends on velocities; mass: scale of its
+    equations, kg.
     """
 
     type: str
+    kernel: str
     name: str
     ends: list[AttachmentModel]
     dim: int
@@ -150,5 +152,6 @@ class Actions:
     def point_force(self, part: PointForce) -> PointForceModel:
         """Return the model of a force between two points."""
         ends = [self.attachments.model(part.a), self.attachments.model(part.b)]
-        return PointForceModel(part.kind, part.name, ends, self.scene.dim, part.parameters, part.is_damped,
-                               max(end.mass for end in ends), n_unknowns=self.scene.dim)
+        dim = self.scene.dim
+        return PointForceModel(part.kind, part.kernel(dim), part.name, ends, dim, part.parameters, part.is_damped,
+                               max(end.mass for end in ends), n_unknowns=dim)

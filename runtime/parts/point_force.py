@@ -14,8 +14,8 @@ from .validation import Name, Part
 class PointForce(Part):
     """Base of forces along the gap between the points of two attachments, a and b.
 
-    ``kind`` is also the name of the engine's type of coupling, whose law takes `parameters`
-    (engine/couplings/list.c). A further force is a class of this kind and an entry in kinds.py.
+    ``kind`` is also the name of the engine's type of coupling (engine/couplings/list.c), whose law takes `parameters`,
+    and the role of its kernels. A further force is a class of this kind and an entry in kinds.py.
     """
 
     group: ClassVar[str] = "springs"
@@ -33,6 +33,10 @@ class PointForce(Part):
     def parameters(self) -> tuple[float, ...]:
         """Parameters of the law, in the order of the engine, in SI units."""
         raise NotImplementedError
+
+    def kernel(self, dim: int) -> str:
+        """Return the name of the kernels of its law in a scene of that dimension; "" if the law is written in C."""
+        return ""
 
     @property
     def is_damped(self) -> bool:
