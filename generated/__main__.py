@@ -81,6 +81,10 @@ SOURCES = (
     "joint_planar_locked.c",
     "resistance.c",
     "planar_resistance.c",
+    "spring.c",
+    "zero_length_spring.c",
+    "planar_spring.c",
+    "planar_zero_length_spring.c",
     "registry.c",
 )
 """C files of the kernels; each can be compiled without the others but for registry.c, which has tables of all."""

@@ -13,6 +13,9 @@
 #undef I
 typedef double _Complex fu_real;
 #define FU_SQRT csqrt
+#define FU_SIN csin
+#define FU_COS ccos
+#define FU_REAL creal
 #elif defined(FU_BLOCK)
 #include <math.h>
 #define FU_KERNEL static inline __attribute__((always_inline)) FU_BLOCK_TARGET
@@ -28,6 +31,9 @@ FU_KERNEL fu_real fu_block_sqrt(fu_real x)
 #include <math.h>
 typedef double fu_real;
 #define FU_SQRT sqrt
+#define FU_SIN sin
+#define FU_COS cos
+#define FU_REAL(x) (x)
 #endif
 
 /* Statements for each of n directions (or points) i, for pairs of directions (i, j), and for pairs i <= j. They are
@@ -823,6 +829,27 @@ void rigid_inertia_tangent(fu_real mass, const fu_real *J, const fu_real *w, fu_
 void rigid_kinetic_energy(fu_real mass, const fu_real *J, const fu_real *w, fu_real *T);
 /* Jacobian of a point over a step psi: p_next - p = P psi: b 7[m, 1]; u 3[m]; b_next 7[m, 1] -> P 3x6[1, m] */
 void rigid_discrete_point(const fu_real *b, const fu_real *u, const fu_real *b_next, fu_real *P);
+/* generalised force of a force at a point: b 7[m, 1]; u 3[m]; f 3[N] -> g 6[N, N m]; K 6x6[N, N m] */
+void rigid_force(const fu_real *b, const fu_real *u, const fu_real *f, fu_real *g, fu_real *K);
+/* generalised force of a force at a point that turns with the body: b 7[m, 1]; u 3[m]; c 3[N] -> g 6[N, N m]; K
+ * 6x6[N, N m] */
+void rigid_follower_force(const fu_real *b, const fu_real *u, const fu_real *c, fu_real *g, fu_real *K);
+/* generalised force of a moment: b 7[m, 1]; m 3[N m] -> g 6[N, N m]; K 6x6[N, N m] */
+void rigid_moment(const fu_real *b, const fu_real *m, fu_real *g, fu_real *K);
+/* configuration moved by a translation and a rotation vector: b 7[m, 1]; step 6[m, rad] -> b_next 7[m, 1] */
+void rigid_move(const fu_real *b, const fu_real *step, fu_real *b_next);
+/* turn in body axes by a change of the rotation vector: step 6[m, rad] -> T 3x3[1] */
+void rigid_move_tangent(const fu_real *step, fu_real *T);
+/* configuration moved by a translation and a Cayley vector: b 7[m, 1]; step 6[m, rad] -> b_next 7[m, 1] */
+void rigid_cayley_move(const fu_real *b, const fu_real *step, fu_real *b_next);
+/* turn in body axes by a change of the Cayley vector: step 6[m, rad] -> T 3x3[1] */
+void rigid_cayley_tangent(const fu_real *step, fu_real *T);
+/* configuration half-way, turned by half of the turn: b 7[m, 1]; b_next 7[m, 1] -> b_half 7[m, 1] */
+void rigid_halfway(const fu_real *b, const fu_real *b_next, fu_real *b_half);
+/* rate of the configuration: b 7[m, 1]; w 6[m/s, rad/s] -> b_rate 7[m/s, 1/s] */
+void rigid_rate(const fu_real *b, const fu_real *w, fu_real *b_rate);
+/* translation and small turn that a change of b is: b 7[m, 1]; change 7[m, 1] -> step 6[m, rad] */
+void rigid_increment(const fu_real *b, const fu_real *change, fu_real *step);
 
 /* planar_rigid: planar rigid body */
 /* position, Jacobian, velocity and acceleration bias of a point: b 4[m, 1]; u 2[m]; w 3[m/s, rad/s] -> p 2[m]; p_q
@@ -843,6 +870,27 @@ void planar_rigid_inertia_tangent(fu_real mass, const fu_real *J, const fu_real 
 void planar_rigid_kinetic_energy(fu_real mass, const fu_real *J, const fu_real *w, fu_real *T);
 /* Jacobian of a point over a step psi: p_next - p = P psi: b 4[m, 1]; u 2[m]; b_next 4[m, 1] -> P 2x3[1, m] */
 void planar_rigid_discrete_point(const fu_real *b, const fu_real *u, const fu_real *b_next, fu_real *P);
+/* generalised force of a force at a point: b 4[m, 1]; u 2[m]; f 2[N] -> g 3[N, N m]; K 3x3[N, N m] */
+void planar_rigid_force(const fu_real *b, const fu_real *u, const fu_real *f, fu_real *g, fu_real *K);
+/* generalised force of a force at a point that turns with the body: b 4[m, 1]; u 2[m]; c 2[N] -> g 3[N, N m]; K
+ * 3x3[N, N m] */
+void planar_rigid_follower_force(const fu_real *b, const fu_real *u, const fu_real *c, fu_real *g, fu_real *K);
+/* generalised force of a moment: b 4[m, 1]; m 1[N m] -> g 3[N, N m]; K 3x3[N, N m] */
+void planar_rigid_moment(const fu_real *b, const fu_real *m, fu_real *g, fu_real *K);
+/* configuration moved by a translation and a rotation vector: b 4[m, 1]; step 3[m, rad] -> b_next 4[m, 1] */
+void planar_rigid_move(const fu_real *b, const fu_real *step, fu_real *b_next);
+/* turn in body axes by a change of the rotation vector: step 3[m, rad] -> T 1x1[1] */
+void planar_rigid_move_tangent(const fu_real *step, fu_real *T);
+/* configuration moved by a translation and a Cayley vector: b 4[m, 1]; step 3[m, rad] -> b_next 4[m, 1] */
+void planar_rigid_cayley_move(const fu_real *b, const fu_real *step, fu_real *b_next);
+/* turn in body axes by a change of the Cayley vector: step 3[m, rad] -> T 1x1[1] */
+void planar_rigid_cayley_tangent(const fu_real *step, fu_real *T);
+/* configuration half-way, turned by half of the turn: b 4[m, 1]; b_next 4[m, 1] -> b_half 4[m, 1] */
+void planar_rigid_halfway(const fu_real *b, const fu_real *b_next, fu_real *b_half);
+/* rate of the configuration: b 4[m, 1]; w 3[m/s, rad/s] -> b_rate 4[m/s, 1/s] */
+void planar_rigid_rate(const fu_real *b, const fu_real *w, fu_real *b_rate);
+/* translation and small turn that a change of b is: b 4[m, 1]; change 4[m, 1] -> step 3[m, rad] */
+void planar_rigid_increment(const fu_real *b, const fu_real *change, fu_real *step);
 
 /* modal: modal body on a rigid frame */
 /* inertia and weight of a modal body: force, moment about its origin: b 7[m, 1]; w 6[m/s, rad/s]; a 6[m/s^2,
@@ -889,6 +937,15 @@ void modal_attachment_mode_force(const fu_real *b, const fu_real *u, const fu_re
 /* derivative of mode k's row of P' f + T' m by eta of mode l: b 7[m, 1]; u 3[m]; theta 3[rad]; phi 3[1]; psi
  * 3[rad/m]; phi_l 3[1]; psi_l 3[rad/m]; f 3[N]; m 3[N m] -> K 1[N/m] */
 void modal_attachment_pair_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K);
+/* the frame's rows of a force that turns with the section: b 7[m, 1]; u 3[m]; theta 3[rad]; c 3[N] -> g 6[N, N m]; K
+ * 6x6[N, N m] */
+void modal_attachment_follower(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *c, fu_real *g, fu_real *K);
+/* a mode's row of a force that turns with the section; K by eta: b 7[m, 1]; u 3[m]; theta 3[rad]; phi 3[1]; psi
+ * 3[rad/m]; c 3[N] -> g 1[N]; K_frame 6[N/m, N] */
+void modal_attachment_mode_follower(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *c, fu_real *g, fu_real *K_frame);
+/* derivative of mode k's row of a follower force by eta of mode l: b 7[m, 1]; u 3[m]; theta 3[rad]; phi 3[1]; psi
+ * 3[rad/m]; phi_l 3[1]; psi_l 3[rad/m]; c 3[N] -> K 1[N/m] */
+void modal_attachment_pair_follower(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *c, fu_real *K);
 
 /* planar_modal: modal body on a planar_rigid frame */
 /* inertia and weight of a modal body: force, moment about its origin: b 4[m, 1]; w 3[m/s, rad/s]; a 3[m/s^2,
@@ -935,6 +992,15 @@ void planar_modal_attachment_mode_force(const fu_real *b, const fu_real *u, cons
 /* derivative of mode k's row of P' f + T' m by eta of mode l: b 4[m, 1]; u 2[m]; theta 1[rad]; phi 2[1]; psi
  * 1[rad/m]; phi_l 2[1]; psi_l 1[rad/m]; f 2[N]; m 1[N m] -> K 1[N/m] */
 void planar_modal_attachment_pair_force(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K);
+/* the frame's rows of a force that turns with the section: b 4[m, 1]; u 2[m]; theta 1[rad]; c 2[N] -> g 3[N, N m]; K
+ * 3x3[N, N m] */
+void planar_modal_attachment_follower(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *c, fu_real *g, fu_real *K);
+/* a mode's row of a force that turns with the section; K by eta: b 4[m, 1]; u 2[m]; theta 1[rad]; phi 2[1]; psi
+ * 1[rad/m]; c 2[N] -> g 1[N]; K_frame 3[N/m, N] */
+void planar_modal_attachment_mode_follower(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *c, fu_real *g, fu_real *K_frame);
+/* derivative of mode k's row of a follower force by eta of mode l: b 4[m, 1]; u 2[m]; theta 1[rad]; phi 2[1]; psi
+ * 1[rad/m]; phi_l 2[1]; psi_l 1[rad/m]; c 2[N] -> K 1[N/m] */
+void planar_modal_attachment_pair_follower(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *c, fu_real *K);
 
 /* slide_beam24_rigid: sliding joint of a rigid rider on a beam24 cable */
 /* C, C_s and the Newton step for s: l [m]; x [m]; e 8x3[m, 1]; b 7[m, 1]; u 3[m]; director 3[1] -> C 3[m]; C_s 3[1];
@@ -1306,6 +1372,62 @@ void resistance_force(const fu_real *t, const fu_real *u, const fu_real *f, cons
  * buffer 4[N/m, N s/m, m, 1] -> R 1[N]; R_t 2[N]; R_u 2[N s/m]; R_f 2[1]; R_x 1[N/m] */
 void planar_resistance_force(const fu_real *t, const fu_real *u, const fu_real *f, const fu_real *friction, const fu_real *buffer, fu_real *R, fu_real *R_t, fu_real *R_u, fu_real *R_f, fu_real *R_x);
 
+/* spring: spring and damper between two points in space */
+/* stored energy: stiffness [N/m]; rest_length [m]; gap 3[m] -> U 1[J] */
+void spring_energy(fu_real stiffness, fu_real rest_length, const fu_real *gap, fu_real *U);
+/* power that the damper takes: damping [N s/m]; rest_length [m]; gap 3[m]; gap_rate 3[m/s] -> P 1[W] */
+void spring_dissipation(fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
+/* force along the gap: stiffness [N/m]; damping [N s/m]; rest_length [m]; gap 3[m]; gap_rate 3[m/s] -> f 3[N] */
+void spring_force(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
+/* force along the gap, and its derivatives: stiffness [N/m]; damping [N s/m]; rest_length [m]; gap 3[m]; gap_rate
+ * 3[m/s] -> f 3[N]; K 3x3[N/m]; D 3x3[N s/m] */
+void spring_tangent(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
+/* force over a step, which takes the work that is stored and dissipated: stiffness [N/m]; damping [N s/m];
+ * rest_length [m]; h [s]; gap 3[m]; gap_next 3[m] -> f 3[N]; P 1[W] */
+void spring_discrete_force(fu_real stiffness, fu_real damping, fu_real rest_length, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
+
+/* zero_length_spring: spring and damper of no rest length between two points in space */
+/* stored energy: stiffness [N/m]; rest_length [m]; gap 3[m] -> U 1[J] */
+void zero_length_spring_energy(fu_real stiffness, fu_real rest_length, const fu_real *gap, fu_real *U);
+/* power that the damper takes: damping [N s/m]; rest_length [m]; gap 3[m]; gap_rate 3[m/s] -> P 1[W] */
+void zero_length_spring_dissipation(fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
+/* force along the gap: stiffness [N/m]; damping [N s/m]; rest_length [m]; gap 3[m]; gap_rate 3[m/s] -> f 3[N] */
+void zero_length_spring_force(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
+/* force along the gap, and its derivatives: stiffness [N/m]; damping [N s/m]; rest_length [m]; gap 3[m]; gap_rate
+ * 3[m/s] -> f 3[N]; K 3x3[N/m]; D 3x3[N s/m] */
+void zero_length_spring_tangent(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
+/* force over a step, which takes the work that is stored and dissipated: stiffness [N/m]; damping [N s/m];
+ * rest_length [m]; h [s]; gap 3[m]; gap_next 3[m] -> f 3[N]; P 1[W] */
+void zero_length_spring_discrete_force(fu_real stiffness, fu_real damping, fu_real rest_length, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
+
+/* planar_spring: spring and damper between two points in the plane */
+/* stored energy: stiffness [N/m]; rest_length [m]; gap 2[m] -> U 1[J] */
+void planar_spring_energy(fu_real stiffness, fu_real rest_length, const fu_real *gap, fu_real *U);
+/* power that the damper takes: damping [N s/m]; rest_length [m]; gap 2[m]; gap_rate 2[m/s] -> P 1[W] */
+void planar_spring_dissipation(fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
+/* force along the gap: stiffness [N/m]; damping [N s/m]; rest_length [m]; gap 2[m]; gap_rate 2[m/s] -> f 2[N] */
+void planar_spring_force(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
+/* force along the gap, and its derivatives: stiffness [N/m]; damping [N s/m]; rest_length [m]; gap 2[m]; gap_rate
+ * 2[m/s] -> f 2[N]; K 2x2[N/m]; D 2x2[N s/m] */
+void planar_spring_tangent(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
+/* force over a step, which takes the work that is stored and dissipated: stiffness [N/m]; damping [N s/m];
+ * rest_length [m]; h [s]; gap 2[m]; gap_next 2[m] -> f 2[N]; P 1[W] */
+void planar_spring_discrete_force(fu_real stiffness, fu_real damping, fu_real rest_length, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
+
+/* planar_zero_length_spring: spring and damper of no rest length between two points in the plane */
+/* stored energy: stiffness [N/m]; rest_length [m]; gap 2[m] -> U 1[J] */
+void planar_zero_length_spring_energy(fu_real stiffness, fu_real rest_length, const fu_real *gap, fu_real *U);
+/* power that the damper takes: damping [N s/m]; rest_length [m]; gap 2[m]; gap_rate 2[m/s] -> P 1[W] */
+void planar_zero_length_spring_dissipation(fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
+/* force along the gap: stiffness [N/m]; damping [N s/m]; rest_length [m]; gap 2[m]; gap_rate 2[m/s] -> f 2[N] */
+void planar_zero_length_spring_force(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
+/* force along the gap, and its derivatives: stiffness [N/m]; damping [N s/m]; rest_length [m]; gap 2[m]; gap_rate
+ * 2[m/s] -> f 2[N]; K 2x2[N/m]; D 2x2[N s/m] */
+void planar_zero_length_spring_tangent(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
+/* force over a step, which takes the work that is stored and dissipated: stiffness [N/m]; damping [N s/m];
+ * rest_length [m]; h [s]; gap 2[m]; gap_next 2[m] -> f 2[N]; P 1[W] */
+void planar_zero_length_spring_discrete_force(fu_real stiffness, fu_real damping, fu_real rest_length, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
+
 /* What the engine needs of a element. */
 typedef struct {
     const char *name;
@@ -1351,6 +1473,16 @@ typedef struct {
     void (*inertia_tangent)(fu_real mass, const fu_real *J, const fu_real *w, fu_real *M, fu_real *D);
     void (*kinetic_energy)(fu_real mass, const fu_real *J, const fu_real *w, fu_real *T);
     void (*discrete_point)(const fu_real *b, const fu_real *u, const fu_real *b_next, fu_real *P);
+    void (*force)(const fu_real *b, const fu_real *u, const fu_real *f, fu_real *g, fu_real *K);
+    void (*follower_force)(const fu_real *b, const fu_real *u, const fu_real *c, fu_real *g, fu_real *K);
+    void (*moment)(const fu_real *b, const fu_real *m, fu_real *g, fu_real *K);
+    void (*move)(const fu_real *b, const fu_real *step, fu_real *b_next);
+    void (*move_tangent)(const fu_real *step, fu_real *T);
+    void (*cayley_move)(const fu_real *b, const fu_real *step, fu_real *b_next);
+    void (*cayley_tangent)(const fu_real *step, fu_real *T);
+    void (*halfway)(const fu_real *b, const fu_real *b_next, fu_real *b_half);
+    void (*rate)(const fu_real *b, const fu_real *w, fu_real *b_rate);
+    void (*increment)(const fu_real *b, const fu_real *change, fu_real *step);
 } fu_body_kernels;
 
 /* What the engine needs of a modal. */
@@ -1371,6 +1503,9 @@ typedef struct {
     void (*attachment_force)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *f, const fu_real *m, fu_real *K);
     void (*attachment_mode_force)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *f, const fu_real *m, fu_real *K, fu_real *K_frame);
     void (*attachment_pair_force)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *f, const fu_real *m, fu_real *K);
+    void (*attachment_follower)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *c, fu_real *g, fu_real *K);
+    void (*attachment_mode_follower)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *c, fu_real *g, fu_real *K_frame);
+    void (*attachment_pair_follower)(const fu_real *b, const fu_real *u, const fu_real *theta, const fu_real *phi, const fu_real *psi, const fu_real *phi_l, const fu_real *psi_l, const fu_real *c, fu_real *K);
 } fu_modal_kernels;
 
 /* What the engine needs of a slide. */
@@ -1410,6 +1545,17 @@ typedef struct {
     void (*force)(const fu_real *t, const fu_real *u, const fu_real *f, const fu_real *friction, const fu_real *buffer, fu_real *R, fu_real *R_t, fu_real *R_u, fu_real *R_f, fu_real *R_x);
 } fu_resistance_kernels;
 
+/* What the engine needs of a spring. */
+typedef struct {
+    const char *name;
+    int dim;
+    void (*energy)(fu_real stiffness, fu_real rest_length, const fu_real *gap, fu_real *U);
+    void (*dissipation)(fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
+    void (*force)(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
+    void (*tangent)(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
+    void (*discrete_force)(fu_real stiffness, fu_real damping, fu_real rest_length, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
+} fu_spring_kernels;
+
 /* Every table, one entry a family. */
 typedef struct {
     int n_elements;
@@ -1428,6 +1574,8 @@ typedef struct {
     const fu_joint_kernels *joints;
     int n_resistances;
     const fu_resistance_kernels *resistances;
+    int n_springs;
+    const fu_spring_kernels *springs;
 } fu_tables;
 extern const fu_tables fu_all;
 
@@ -1450,6 +1598,8 @@ static inline const void *fu_find(const fu_tables *tables, const char *role, con
         if (!strcmp(tables->joints[i].name, name)) return &tables->joints[i];
     for (int i = 0; i < tables->n_resistances && !strcmp(role, "resistance"); ++i)
         if (!strcmp(tables->resistances[i].name, name)) return &tables->resistances[i];
+    for (int i = 0; i < tables->n_springs && !strcmp(role, "spring"); ++i)
+        if (!strcmp(tables->springs[i].name, name)) return &tables->springs[i];
     return 0;
 }
 

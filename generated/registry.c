@@ -143,20 +143,25 @@ static const fu_law_kernels laws[] = {
 
 static const fu_body_kernels bodys[] = {
     {"rigid", 3, 7, 6, rigid_point, rigid_point_force, rigid_frame, rigid_inertia_force, rigid_inertia_tangent,
-     rigid_kinetic_energy, rigid_discrete_point},
+     rigid_kinetic_energy, rigid_discrete_point, rigid_force, rigid_follower_force, rigid_moment, rigid_move,
+     rigid_move_tangent, rigid_cayley_move, rigid_cayley_tangent, rigid_halfway, rigid_rate, rigid_increment},
     {"planar_rigid", 2, 4, 3, planar_rigid_point, planar_rigid_point_force, planar_rigid_frame,
-     planar_rigid_inertia_force, planar_rigid_inertia_tangent, planar_rigid_kinetic_energy,
-     planar_rigid_discrete_point},
+     planar_rigid_inertia_force, planar_rigid_inertia_tangent, planar_rigid_kinetic_energy, planar_rigid_discrete_point,
+     planar_rigid_force, planar_rigid_follower_force, planar_rigid_moment, planar_rigid_move, planar_rigid_move_tangent,
+     planar_rigid_cayley_move, planar_rigid_cayley_tangent, planar_rigid_halfway, planar_rigid_rate,
+     planar_rigid_increment},
 };
 
 static const fu_modal_kernels modals[] = {
     {"modal", 3, modal_inertia_force, modal_mass_matrix, modal_inertia_tangent, modal_mode_force, modal_mode_mass,
      modal_mode_tangent, modal_pair_tangent, modal_kinetic_energy, modal_potential_energy, modal_attachment,
-     modal_attachment_mode, modal_attachment_force, modal_attachment_mode_force, modal_attachment_pair_force},
+     modal_attachment_mode, modal_attachment_force, modal_attachment_mode_force, modal_attachment_pair_force,
+     modal_attachment_follower, modal_attachment_mode_follower, modal_attachment_pair_follower},
     {"planar_modal", 2, planar_modal_inertia_force, planar_modal_mass_matrix, planar_modal_inertia_tangent,
      planar_modal_mode_force, planar_modal_mode_mass, planar_modal_mode_tangent, planar_modal_pair_tangent,
      planar_modal_kinetic_energy, planar_modal_potential_energy, planar_modal_attachment, planar_modal_attachment_mode,
-     planar_modal_attachment_force, planar_modal_attachment_mode_force, planar_modal_attachment_pair_force},
+     planar_modal_attachment_force, planar_modal_attachment_mode_force, planar_modal_attachment_pair_force,
+     planar_modal_attachment_follower, planar_modal_attachment_mode_follower, planar_modal_attachment_pair_follower},
 };
 
 static const fu_slide_kernels slides[] = {
@@ -218,6 +223,16 @@ static const fu_joint_kernels joints[] = {
 static const fu_resistance_kernels resistances[] = {
     {"resistance", 3, resistance_force},
     {"planar_resistance", 2, planar_resistance_force},
+};
+
+static const fu_spring_kernels springs[] = {
+    {"spring", 3, spring_energy, spring_dissipation, spring_force, spring_tangent, spring_discrete_force},
+    {"zero_length_spring", 3, zero_length_spring_energy, zero_length_spring_dissipation, zero_length_spring_force,
+     zero_length_spring_tangent, zero_length_spring_discrete_force},
+    {"planar_spring", 2, planar_spring_energy, planar_spring_dissipation, planar_spring_force, planar_spring_tangent,
+     planar_spring_discrete_force},
+    {"planar_zero_length_spring", 2, planar_zero_length_spring_energy, planar_zero_length_spring_dissipation,
+     planar_zero_length_spring_force, planar_zero_length_spring_tangent, planar_zero_length_spring_discrete_force},
 };
 
 /* X(name, arguments) for every kernel: from arrays of pointers, to inputs `a` and outputs `out` */
@@ -499,6 +514,16 @@ static const fu_resistance_kernels resistances[] = {
     X(rigid_inertia_tangent, *a[0], a[1], a[2], out[0], out[1]) \
     X(rigid_kinetic_energy, *a[0], a[1], a[2], out[0]) \
     X(rigid_discrete_point, a[0], a[1], a[2], out[0]) \
+    X(rigid_force, a[0], a[1], a[2], out[0], out[1]) \
+    X(rigid_follower_force, a[0], a[1], a[2], out[0], out[1]) \
+    X(rigid_moment, a[0], a[1], out[0], out[1]) \
+    X(rigid_move, a[0], a[1], out[0]) \
+    X(rigid_move_tangent, a[0], out[0]) \
+    X(rigid_cayley_move, a[0], a[1], out[0]) \
+    X(rigid_cayley_tangent, a[0], out[0]) \
+    X(rigid_halfway, a[0], a[1], out[0]) \
+    X(rigid_rate, a[0], a[1], out[0]) \
+    X(rigid_increment, a[0], a[1], out[0]) \
     X(planar_rigid_point, a[0], a[1], a[2], out[0], out[1], out[2], out[3]) \
     X(planar_rigid_point_force, a[0], a[1], a[2], out[0], out[1], out[2]) \
     X(planar_rigid_frame, a[0], a[1], out[0], out[1], out[2]) \
@@ -506,6 +531,16 @@ static const fu_resistance_kernels resistances[] = {
     X(planar_rigid_inertia_tangent, *a[0], a[1], a[2], out[0], out[1]) \
     X(planar_rigid_kinetic_energy, *a[0], a[1], a[2], out[0]) \
     X(planar_rigid_discrete_point, a[0], a[1], a[2], out[0]) \
+    X(planar_rigid_force, a[0], a[1], a[2], out[0], out[1]) \
+    X(planar_rigid_follower_force, a[0], a[1], a[2], out[0], out[1]) \
+    X(planar_rigid_moment, a[0], a[1], out[0], out[1]) \
+    X(planar_rigid_move, a[0], a[1], out[0]) \
+    X(planar_rigid_move_tangent, a[0], out[0]) \
+    X(planar_rigid_cayley_move, a[0], a[1], out[0]) \
+    X(planar_rigid_cayley_tangent, a[0], out[0]) \
+    X(planar_rigid_halfway, a[0], a[1], out[0]) \
+    X(planar_rigid_rate, a[0], a[1], out[0]) \
+    X(planar_rigid_increment, a[0], a[1], out[0]) \
     X(modal_inertia_force, a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0]) \
     X(modal_mass_matrix, a[0], *a[1], a[2], a[3], out[0]) \
     X(modal_inertia_tangent, a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0], out[1]) \
@@ -520,6 +555,9 @@ static const fu_resistance_kernels resistances[] = {
     X(modal_attachment_force, a[0], a[1], a[2], a[3], a[4], out[0]) \
     X(modal_attachment_mode_force, a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1]) \
     X(modal_attachment_pair_force, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], out[0]) \
+    X(modal_attachment_follower, a[0], a[1], a[2], a[3], out[0], out[1]) \
+    X(modal_attachment_mode_follower, a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
+    X(modal_attachment_pair_follower, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0]) \
     X(planar_modal_inertia_force, a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0]) \
     X(planar_modal_mass_matrix, a[0], *a[1], a[2], a[3], out[0]) \
     X(planar_modal_inertia_tangent, a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0], out[1]) \
@@ -534,6 +572,9 @@ static const fu_resistance_kernels resistances[] = {
     X(planar_modal_attachment_force, a[0], a[1], a[2], a[3], a[4], out[0]) \
     X(planar_modal_attachment_mode_force, a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1]) \
     X(planar_modal_attachment_pair_force, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], out[0]) \
+    X(planar_modal_attachment_follower, a[0], a[1], a[2], a[3], out[0], out[1]) \
+    X(planar_modal_attachment_mode_follower, a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
+    X(planar_modal_attachment_pair_follower, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0]) \
     X(slide_beam24_rigid_constraint, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]) \
     X(slide_beam24_rigid_terms, *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]) \
     X(slide_beam24_rigid_residual, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
@@ -632,6 +673,26 @@ static const fu_resistance_kernels resistances[] = {
     X(joint_planar_locked_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
     X(resistance_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]) \
     X(planar_resistance_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]) \
+    X(spring_energy, *a[0], *a[1], a[2], out[0]) \
+    X(spring_dissipation, *a[0], *a[1], a[2], a[3], out[0]) \
+    X(spring_force, *a[0], *a[1], *a[2], a[3], a[4], out[0]) \
+    X(spring_tangent, *a[0], *a[1], *a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(spring_discrete_force, *a[0], *a[1], *a[2], *a[3], a[4], a[5], out[0], out[1]) \
+    X(zero_length_spring_energy, *a[0], *a[1], a[2], out[0]) \
+    X(zero_length_spring_dissipation, *a[0], *a[1], a[2], a[3], out[0]) \
+    X(zero_length_spring_force, *a[0], *a[1], *a[2], a[3], a[4], out[0]) \
+    X(zero_length_spring_tangent, *a[0], *a[1], *a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(zero_length_spring_discrete_force, *a[0], *a[1], *a[2], *a[3], a[4], a[5], out[0], out[1]) \
+    X(planar_spring_energy, *a[0], *a[1], a[2], out[0]) \
+    X(planar_spring_dissipation, *a[0], *a[1], a[2], a[3], out[0]) \
+    X(planar_spring_force, *a[0], *a[1], *a[2], a[3], a[4], out[0]) \
+    X(planar_spring_tangent, *a[0], *a[1], *a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(planar_spring_discrete_force, *a[0], *a[1], *a[2], *a[3], a[4], a[5], out[0], out[1]) \
+    X(planar_zero_length_spring_energy, *a[0], *a[1], a[2], out[0]) \
+    X(planar_zero_length_spring_dissipation, *a[0], *a[1], a[2], a[3], out[0]) \
+    X(planar_zero_length_spring_force, *a[0], *a[1], *a[2], a[3], a[4], out[0]) \
+    X(planar_zero_length_spring_tangent, *a[0], *a[1], *a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(planar_zero_length_spring_discrete_force, *a[0], *a[1], *a[2], *a[3], a[4], a[5], out[0], out[1]) \
 
 #define FU_CALL(name, ...) static void call_##name(const fu_real *const *a, fu_real *const *out) { name(__VA_ARGS__); }
 FU_EVERY(FU_CALL)
@@ -650,5 +711,6 @@ const fu_tables fu_all = {
     10, slides,
     2, frames,
     20, joints,
-    2, resistances
+    2, resistances,
+    4, springs
 };

@@ -145,21 +145,25 @@ CEILINGS = {
     },
     "rigid": {
         "point": 207, "point_force": 183, "inertia_force": 45, "inertia_tangent": 48, "kinetic_energy": 31,
-        "discrete_point": 230, "frame": 78
+        "discrete_point": 230, "frame": 78, "force": 117, "follower_force": 99, "moment": 93, "move": 93,
+        "move_tangent": 82, "cayley_move": 43, "cayley_tangent": 16, "halfway": 26, "rate": 23, "increment": 24
     },
     "planar_rigid": {
         "point": 40, "point_force": 23, "inertia_force": 3, "inertia_tangent": 0, "kinetic_energy": 9,
-        "discrete_point": 18, "frame": 0
+        "discrete_point": 18, "frame": 0, "force": 18, "follower_force": 15, "moment": 0, "move": 17,
+        "move_tangent": 0, "cayley_move": 22, "cayley_tangent": 4, "halfway": 15, "rate": 2, "increment": 3
     },
     "modal": {
         "inertia_force": 312, "mass_matrix": 105, "inertia_tangent": 675, "mode_force": 137, "mode_mass": 66,
         "mode_tangent": 459, "pair_tangent": 55, "kinetic_energy": 135, "potential_energy": 74, "attachment": 836,
-        "attachment_mode": 151, "attachment_force": 183, "attachment_mode_force": 310, "attachment_pair_force": 164
+        "attachment_mode": 151, "attachment_force": 183, "attachment_mode_force": 310, "attachment_pair_force": 164,
+        "attachment_follower": 169, "attachment_mode_follower": 307, "attachment_pair_follower": 163
     },
     "planar_modal": {
         "inertia_force": 71, "mass_matrix": 13, "inertia_tangent": 80, "mode_force": 31, "mode_mass": 7,
         "mode_tangent": 94, "pair_tangent": 14, "kinetic_energy": 32, "potential_energy": 13, "attachment": 107,
-        "attachment_mode": 11, "attachment_force": 9, "attachment_mode_force": 18, "attachment_pair_force": 10
+        "attachment_mode": 11, "attachment_force": 9, "attachment_mode_force": 18, "attachment_pair_force": 10,
+        "attachment_follower": 35, "attachment_mode_follower": 64, "attachment_pair_follower": 35
     },
     "slide_beam24_rigid": {"constraint": 599, "terms": 1646, "residual": 209, "tangent": 286, "discrete_gradient": 397},
     "slide_cable12_rigid": {
@@ -216,5 +220,9 @@ CEILINGS = {
     "joint_planar_distance": {"force": 27, "motion": 21},
     "joint_planar_locked": {"force": 25, "motion": 23},
     "resistance": {"force": 338},
+    "spring": {"energy": 10, "dissipation": 17, "force": 22, "tangent": 109, "discrete_force": 44},
+    "zero_length_spring": {"energy": 7, "dissipation": 6, "force": 9, "tangent": 9, "discrete_force": 31},
+    "planar_spring": {"energy": 8, "dissipation": 12, "force": 16, "tangent": 58, "discrete_force": 33},
+    "planar_zero_length_spring": {"energy": 5, "dissipation": 4, "force": 6, "tangent": 6, "discrete_force": 21},
     "planar_resistance": {"force": 207},
 }

@@ -110,7 +110,9 @@ class Program:
         self._taken.add(name)
 
     def operations(self) -> dict[str, int]:
-        """Arithmetic operations of one call: additions, multiplications, divisions, square roots."""
+        """Arithmetic operations of one call: additions, multiplications, divisions, square roots; sines and cosines
+        where there are any. Of a choice both cases count.
+        """
         exprs = [e for s in self.stages for _, e in s.definitions]
         exprs += [e for v in self.values.values() for e in v.ravel()]
         count = dict.fromkeys(("add", "mul", "div", "sqrt"), 0)
@@ -142,7 +144,12 @@ def _count(expr: sp.Expr, count: dict[str, int]) -> None:
     if expr.is_Atom:
         return
     args = expr.args
-    if expr.is_Add:
+    if expr.is_Piecewise:
+        args = two_cases(expr)[:2]
+    elif isinstance(expr, (sp.sin, sp.cos)):
+        name = expr.func.__name__
+        count[name] = count.get(name, 0) + 1
+    elif expr.is_Add:
         count["add"] += len(args) - 1
     elif expr.is_Mul:
         args = [a for a in args if a is not sp.S.NegativeOne]
@@ -161,6 +168,17 @@ def _count(expr: sp.Expr, count: dict[str, int]) -> None:
             raise ValueError(f"a power {expr.exp} has no cheap form in C: stage it")
     for arg in args:
         _count(arg, count)
+
+
+def two_cases(expr: sp.Piecewise) -> tuple[sp.Expr, sp.Expr, sp.StrictLessThan]:
+    """Split "a where x < y, else b" into a, b and the condition.
+
+    Raises ValueError for any other choice.
+    """
+    (below, condition), *others = expr.args
+    if len(others) != 1 or others[0][1] != True or not isinstance(condition, sp.StrictLessThan):  # noqa: E712 (SymPy's)
+        raise ValueError(f"{expr}: kernels choose between two cases by a < b")
+    return below, others[0][0], condition
 
 
 def _is_below(expr: sp.Expr) -> bool:
