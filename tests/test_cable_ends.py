@@ -6,8 +6,8 @@ Tolerances without another reason are what the wire's own motion leaves (see wir
 import numpy as np
 import pytest
 from funicular import Buffer, EndOfCableError, Friction, HardStop, Material, Rectangle, Scene, TableSignal
-from scenery import largest, to_the_end
 from scipy.optimize import brentq
+from shared_scenes import largest, to_the_end
 from wires import LENGTH, MASS, G, block, told, unbalanced
 
 every_integrator = pytest.mark.parametrize("integrator", ["genalpha", "radau", "explicit"])

@@ -17,7 +17,7 @@ from funicular import (
 )
 from funicular.parts.settings import RunSettings
 from funicular.solve.diagnosis import unexplained
-from scenery import add_cable
+from shared_scenes import add_cable
 
 
 def wired(youngs_modulus=4e8, elements=3, height=0.05, slope=0.0, damping_time=0.0) -> Scene:

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from funicular import Circle, GeneralSection, Material, Scene
 from funicular.errors import EquilibriumError, FunicularWarning, SceneError, UnknownResultError
-from scenery import add_cable, add_rider
 from scipy.optimize import brentq
+from shared_scenes import add_cable, add_rider
 
 RISE, STIFFNESS = 0.2, 1e6
 

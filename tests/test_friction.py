@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from funicular import Buffer, Friction, HardStop, Material, Ramp, Rectangle, Scene, SceneError, TableSignal, load_run
 from funicular.results import streaming
-from scenery import add_cable, largest
+from shared_scenes import add_cable, largest
 from test_streaming import Killed, content, failing
 from wires import MASS, SLOPE, G, block, told, unbalanced, wire
 

@@ -8,7 +8,7 @@ import pytest
 from funicular import Harmonic, Material, Ramp, Rectangle, Scene, TableSignal
 from funicular.rotations import rotate
 from numpy.testing import assert_allclose
-from scenery import largest
+from shared_scenes import largest
 
 G = 9.81
 SOFT = Material(youngs_modulus=1e7, poisson_ratio=0.3, density=1200)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from funicular import Harmonic, Material, Ramp, Rectangle, Scene
 from funicular import TableSignal as TimeTable
-from scenery import SQUARE, TABLE_1, add_cable, add_rider, largest
 from scipy.special import fresnel
+from shared_scenes import SQUARE, TABLE_1, add_cable, add_rider, largest
 
 
 def ball(scene: Scene, position=(0, 0, 0), mass=2.0, **given):

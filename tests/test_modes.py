@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from funicular import FunicularWarning, GeneralSection, Material, Rectangle, Scene, SceneError
-from scenery import SQUARE, TABLE_1, add_cable
+from shared_scenes import SQUARE, TABLE_1, add_cable
 
 THIN = GeneralSection(area=1e-4, second_moment_about_z=1e-14, second_moment_about_y=1e-14)
 WIRE = Material(youngs_modulus=1e9, poisson_ratio=0, density=1e4)

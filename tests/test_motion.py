@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from funicular import Material, Scene
 from funicular.rotations import rotate
-from scenery import TABLE_1, add_cable, largest
 from scipy.integrate import solve_ivp
+from shared_scenes import TABLE_1, add_cable, largest
 
 J = np.array([1e-3, 2e-3, 3e-3])
 SPIN = np.array([0.05, 5.0, 0.02])

@@ -26,7 +26,7 @@ from funicular.kernels.libraries import load as load_library
 from funicular.scene_file import load_scene, loads
 from funicular.view.plot import save_plots
 from pages import page
-from scenery import SQUARE, TABLE_1
+from shared_scenes import SQUARE, TABLE_1
 from typer.testing import CliRunner
 
 SPEC = '''

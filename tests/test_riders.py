@@ -5,7 +5,7 @@ import pytest
 from funicular import Material, Rectangle, Scene, TableSignal
 from funicular.rotations import rotate
 from numpy.testing import assert_allclose
-from scenery import largest
+from shared_scenes import largest
 from test_joints import INTEGRATORS
 
 G = 9.81

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from funicular import Circle, FunicularWarning, Material, ResultFileError, Scene, SceneError, load_scene
-from scenery import add_cable, one_rider
+from shared_scenes import add_cable, one_rider
 
 
 def crossing_before_an_output(delta: float, **settings):

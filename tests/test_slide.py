@@ -10,9 +10,9 @@ import pytest
 from funicular import EndOfCableError, FunicularWarning, Material, Rectangle, Scene
 from funicular.model.build import build
 from funicular.rotations import rotate
-from scenery import TABLE_1, add_cable, add_rider, largest, one_rider, to_the_end
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
+from shared_scenes import TABLE_1, add_cable, add_rider, largest, one_rider, to_the_end
 
 
 @pytest.fixture(scope="module")

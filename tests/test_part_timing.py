@@ -8,7 +8,7 @@ from funicular import Scene
 from funicular.engine import Engine
 from funicular.integrators import GeneralisedAlpha
 from funicular.model.build import build
-from scenery import one_rider
+from shared_scenes import one_rider
 from test_joints import INTEGRATORS, of_bodies
 from test_newton_matrix import tied
 
