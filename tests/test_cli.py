@@ -7,32 +7,11 @@ from importlib.metadata import version
 from types import ModuleType
 
 import pytest
-from fake_recording import fake_recording
 from funicular import ConvergenceError, EndOfCableError, FunicularWarning, load_run, load_scene
 from funicular.cli import app
-from funicular.results import recording
 from typer.testing import CliRunner
 
 END = 'slide "trolley": reached the end of cable "wire" at t = 0.4 s'
-
-
-@pytest.fixture
-def engine(monkeypatch, tmp_path):
-    """A stand-in for funicular.solve.run, whose recordings are hand-made; runs take place in an empty directory."""
-    module = ModuleType("funicular.solve.run")
-    module.outcome = {}
-    module.calls = []
-
-    def simulate(scene, settings, on_progress, **_):
-        module.calls.append(settings)
-        on_progress(settings.duration / 2)
-        return fake_recording(scene, **module.outcome)
-
-    module.simulate = simulate
-    monkeypatch.setitem(sys.modules, "funicular.solve.run", module)
-    monkeypatch.setattr(recording, "recorded", lambda recorded, *_: recorded)
-    monkeypatch.chdir(tmp_path)
-    return module
 
 
 def funicular(*args: str):

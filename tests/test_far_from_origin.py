@@ -13,7 +13,7 @@ from funicular import (
     SceneError,
     load_run,
 )
-from test_streaming import short
+from interrupted_runs import short
 
 STEEL = Material(youngs_modulus=2e11, poisson_ratio=0.3, density=7850)
 FAR = (0, 2e9, 0)

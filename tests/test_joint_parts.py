@@ -1,10 +1,10 @@
 """Joints as a scene knows them: what is completed, the frames of their ends, and what is refused."""
 
-import re
 import warnings
 
 import numpy as np
 import pytest
+from expectations import refused
 from funicular import Circle, FunicularWarning, Harmonic, Material, Ramp, Scene, SceneError, TableSignal, load_run
 from funicular.checks.frames import cable_frame, end_frame, joint_axes
 from funicular.checks.joint_placement import check_drive
@@ -36,10 +36,6 @@ def planar():
     made.cable("wire", start=(0, 0, 0), end=(2, 0, 0), elements=2, element="cable8p", **THIN)
     made.rigid_body("A", position=(2, 0, 0), **BODY)
     return made
-
-
-def refused(complaint):
-    return pytest.raises(SceneError, match="^" + re.escape(complaint) + "$")
 
 
 def test_ends_and_names_are_completed(scene):

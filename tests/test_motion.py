@@ -5,10 +5,11 @@ Bounds without another reason are about twice what was measured, which a comment
 
 import numpy as np
 import pytest
+from expectations import largest
 from funicular import Material, Scene
 from funicular.rotations import rotate
 from scipy.integrate import solve_ivp
-from shared_scenes import TABLE_1, add_cable, largest
+from shared_scenes import TABLE_1, add_cable
 
 J = np.array([1e-3, 2e-3, 3e-3])
 SPIN = np.array([0.05, 5.0, 0.02])

@@ -22,8 +22,8 @@ from funicular import (
 from funicular.results import (
     streaming,
 )
-from test_cli import engine, funicular  # noqa: F401
-from test_streaming import SETTINGS, content, short, stopped  # noqa: F401
+from interrupted_runs import SETTINGS, content, short
+from test_cli import funicular
 
 TAKEN = "another run is writing it; wait for its end, or give another name$"
 
@@ -107,7 +107,7 @@ def test_many_runs_started_at_once(tmp_path):
 PROCESS = """
 import sys
 sys.path.insert(0, {tests!r})
-from test_streaming import SETTINGS, short
+from interrupted_runs import SETTINGS, short
 from funicular import FunicularError
 try:
     print(short({speed}).run(**SETTINGS, save="x.nc")["A.velocity"][0, 0])
@@ -178,7 +178,7 @@ def test_a_file_system_without_locks(tmp_path, monkeypatch):
         short().run(**SETTINGS, save=tmp_path / "x.nc")
 
 
-def test_what_fails_leaves_nothing_behind(tmp_path, stopped):  # noqa: F811
+def test_what_fails_leaves_nothing_behind(tmp_path, stopped):
     folder = tmp_path / "new"
     folder.mkdir()
     scene = short()
@@ -230,7 +230,7 @@ def without_rows(recording):
     return recording
 
 
-def test_a_run_that_stops_before_its_first_row(engine, tmp_path):  # noqa: F811
+def test_a_run_that_stops_before_its_first_row(engine, tmp_path):
     """No file, no checkpoint, an older file as it was; the run says that it has nothing."""
     whole = engine.simulate
     engine.simulate = lambda *given, **named: without_rows(whole(*given, **named))

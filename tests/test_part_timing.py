@@ -4,12 +4,13 @@ import time
 
 import numpy as np
 import pytest
+from expectations import INTEGRATORS
 from funicular import Scene
 from funicular.engine import Engine
 from funicular.integrators import GeneralisedAlpha
 from funicular.model.build import build
 from shared_scenes import one_rider
-from test_joints import INTEGRATORS, of_bodies
+from test_joints import of_bodies
 from test_newton_matrix import tied
 
 

@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+from expectations import refused
 from funicular import (
     Circle,
     GeneralSection,
@@ -30,10 +31,6 @@ elements = 3
 section = { shape = "rectangle", height = 0.05, width = 0.05 }
 material = { youngs_modulus = 0.4e9, shear_modulus = 0.2e9, density = 4200 }
 """
-
-
-def refused(message: str):
-    return pytest.raises(SceneError, match="^" + re.escape(message) + "$")
 
 
 @pytest.mark.parametrize("name", list(bundled_scenes()))

@@ -1,9 +1,9 @@
 """Frames, drives, friction and ends of slides as a scene knows them, and what is refused of them."""
 
-import re
 
 import numpy as np
 import pytest
+from expectations import refused
 from funicular import (
     Buffer,
     Circle,
@@ -14,7 +14,6 @@ from funicular import (
     Material,
     Ramp,
     Scene,
-    SceneError,
 )
 from funicular.checks.frames import cable_frame, end_frame, slide_axes
 from funicular.parts.attachment import Attachment
@@ -35,10 +34,6 @@ def scene():
     made.cable("link", start=(1, 0, 0), end=(1, 0, -1), elements=2, **THIN)
     made.rigid_body("A", position=(0.5, 0, 0), orientation=(0.6, 0.8, 0, 0), **BODY)
     return made
-
-
-def refused(complaint):
-    return pytest.raises(SceneError, match="^" + re.escape(complaint) + "$")
 
 
 def test_what_a_slide_is_by_itself(scene):

@@ -1,10 +1,7 @@
 """Runs that write while they go on: killed at any instant, they leave a whole file, and go on to the same numbers."""
 
 import fcntl
-import hashlib
-import os
 import random
-import re
 import signal
 import subprocess
 import sys
@@ -30,90 +27,21 @@ from funicular.results import (
     streaming,
 )
 from funicular.results.netcdf import File
+from interrupted_runs import (
+    ANEW,
+    SETTINGS,
+    SOFT,
+    WRITES,
+    Killed,
+    content,
+    failing,
+    file_refused,
+    resumed,
+    short,
+    signed,
+)
 from numpy.testing import assert_array_equal
-
-
-def short(speed: float = 1.0) -> Scene:
-    """A cable of four elements with a rider."""
-    scene = Scene()
-    wire = scene.cable("wire", start=(0, 0, 0), end=(1.5, 0, 0), elements=4, element="cable12",
-                       section=Circle(radius=0.01),
-                       material=Material(youngs_modulus=4e6, poisson_ratio=0, density=4200))
-    scene.pin(wire, s=0.0)
-    scene.pin(wire, s=1.5)
-    body = scene.rigid_body("A", mass=1.0, inertia=(1e-3, 1e-3, 1e-3), position=(0.2, 0, 0), velocity=(speed, 0, 0))
-    scene.slide(body, along=wire, s=0.2, name="trolley")
-    return scene
-
-
-def content(path) -> dict[str, bytes]:
-    run = load_run(path)
-    return {name: run[name].tobytes() for name in ["time", *run.keys()]}
-
-
-class Killed(BaseException):
-    """Stands for kill -9: nothing that the run would still do comes after it."""
-
-
-def failing(monkeypatch, writes: int, error: BaseException):
-    """Raise in place of all writes after so many, half-way through; a number in the header is written or is not."""
-    left = [writes]
-    pwrite, replace = os.pwrite, os.replace
-
-    def fails() -> bool:
-        left[0] -= 1
-        return left[0] < 0
-
-    def put(descriptor, data, at):
-        if fails():
-            pwrite(descriptor, data[: len(data) // 2 if len(data) > 4 else 0], at)
-            raise error
-        return pwrite(descriptor, data, at)
-
-    def move(old, new):
-        if fails():
-            raise error
-        replace(old, new)
-
-    monkeypatch.setattr(os, "pwrite", put)
-    monkeypatch.setattr(os, "replace", move)
-    monkeypatch.setattr(Path, "replace", move)
-    return left
-
-
-SETTINGS = {"duration": 0.2, "output_step": 0.01, "tol": 1e-3}
-WRITES = 65
-"""Of such a run: rows, their number and the checkpoint 20 times; the file's start and its end."""
-
-
-@pytest.fixture(scope="module")
-def uninterrupted(tmp_path_factory):
-    path = tmp_path_factory.mktemp("whole") / "x.nc"
-    short().run(**SETTINGS, save=path)
-    return content(path)
-
-
-@pytest.fixture
-def stopped(tmp_path, monkeypatch):
-    """The file of a run that was killed half-way."""
-    path = tmp_path / "x.nc"
-    with monkeypatch.context() as patch:
-        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
-        failing(patch, WRITES // 2, Killed())
-        with pytest.raises(Killed):
-            short().run(**SETTINGS, save=path)
-    return path
-
-
-def resumed(path, **changes):
-    return short().run(**SETTINGS | changes, save=path, resume=True)
-
-
-def refused(path, message: str):
-    return pytest.raises(ResultFileError, match=rf"^{re.escape(str(path))}: {message}")
-
-
-ANEW = "; start the run anew, without resume$"
+from shared_scenes import cable_scene
 
 
 def test_the_file_holds_what_a_run_in_memory_has(uninterrupted):
@@ -212,7 +140,7 @@ def test_rows_are_written_between_checkpoints(tmp_path, monkeypatch):
 
 
 def test_an_equilibrium_to_start_from(tmp_path, monkeypatch):
-    scene = pendulum()
+    scene = cable_scene(pins=(0.0,), **SOFT)
     scene.pin("wire", s=1.0)
     settings, path = {"duration": 0.1, "tol": 1e-3}, tmp_path / "x.nc"
     scene.run(**settings, initial="equilibrium", save=tmp_path / "whole.nc")
@@ -221,7 +149,7 @@ def test_an_equilibrium_to_start_from(tmp_path, monkeypatch):
         failing(patch, 100, Killed())
         with pytest.raises(Killed):
             scene.run(**settings, initial="equilibrium", save=path)
-    with refused(path, "its run cannot go on from another state" + ANEW):
+    with file_refused(path, "its run cannot go on from another state" + ANEW):
         scene.run(**settings, initial=scene.equilibrium(load_steps=3, tolerance=1e-5), save=path, resume=True)
     scene.run(**settings, initial=scene.equilibrium(), save=path, resume=True)
     assert content(path) == content(tmp_path / "whole.nc")
@@ -276,7 +204,7 @@ def test_a_run_that_ends_early_leaves_its_rows_and_no_checkpoint(tmp_path):
     assert_array_equal(stopped.value.run["trolley.s"], run["trolley.s"])
     assert run["trolley.s"][-1] == pytest.approx(1.5, abs=1e-9)
     assert [p.name for p in tmp_path.iterdir()] == ["x.nc"]
-    with refused(path, r"its run has come to its end \(end_of_cable\): there is nothing to resume" + ANEW):
+    with file_refused(path, r"its run has come to its end \(end_of_cable\): there is nothing to resume" + ANEW):
         short(5.0).run(duration=0.5, output_step=0.01, tol=1e-3, save=path, resume=True)
 
 
@@ -299,8 +227,8 @@ def test_full_disk(tmp_path, monkeypatch, uninterrupted):
     path = tmp_path / "x.nc"
     with monkeypatch.context() as patch:
         failing(patch, 30, OSError(28, "No space left on device"))
-        with refused(path, "the results could not be written: No space left on device; its first 10 times are whole; "
-                           "make room, and go on with resume"):
+        with file_refused(path, "the results could not be written: No space left on device; its first 10 times "
+                                "are whole; make room, and go on with resume"):
             short().run(**SETTINGS, save=path)
     assert len(load_run(path).time) == 10
     assert {p.name for p in tmp_path.iterdir()} == {"x.nc", "x.nc.state"}
@@ -308,45 +236,40 @@ def test_full_disk(tmp_path, monkeypatch, uninterrupted):
     assert content(path) == uninterrupted
 
 
-def signed(checkpoint: bytes) -> bytes:
-    """A checkpoint that was changed, with the digest that is then right."""
-    content = checkpoint.partition(b"\n")[2]
-    return hashlib.sha256(content).hexdigest().encode() + b"\n" + content
-
-
 def test_what_cannot_be_resumed(stopped, tmp_path):
     state, whole = tmp_path / "x.nc.state", (tmp_path / "x.nc.state").read_bytes()
-    with refused(tmp_path / "y.nc", "there is no run to resume: there is no such file" + ANEW):
+    with file_refused(tmp_path / "y.nc", "there is no run to resume: there is no such file" + ANEW):
         resumed(tmp_path / "y.nc")
     with pytest.raises(ResultFileError, match=r"^run: there is nothing to resume without a file of results; name it"):
         short().run(**SETTINGS, resume=True)
-    with refused(stopped, "its run was started with tol = 0.001, and cannot go on with 0.01; resume it with the sett"):
+    with file_refused(stopped, "its run was started with tol = 0.001, and cannot go on with 0.01; "
+                               "resume it with the sett"):
         resumed(stopped, tol=1e-2)
-    with refused(stopped, "its run was started with duration = 0.2, and cannot go on with 0.3;"):
+    with file_refused(stopped, "its run was started with duration = 0.2, and cannot go on with 0.3;"):
         resumed(stopped, duration=0.3)
     other = short()
     other.pin("wire", s=0.75)
-    with refused(stopped, "its run cannot go on with another scene" + ANEW):
+    with file_refused(stopped, "its run cannot go on with another scene" + ANEW):
         other.run(**SETTINGS, save=stopped, resume=True)
     for damaged in (whole[:-1], whole[:20], b"", whole.replace(b"{", b"[", 1), whole[:-1] + bytes([whole[-1] ^ 1])):
         state.write_bytes(damaged)
-        with refused(stopped, r"its checkpoint x\.nc\.state is damaged" + ANEW):
+        with file_refused(stopped, r"its checkpoint x\.nc\.state is damaged" + ANEW):
             resumed(stopped)
     state.write_bytes(signed(whole.replace(b'"programs": "', b'"programs": "0')))
-    with refused(stopped, "its run cannot go on with another version of funicular, NumPy or SciPy" + ANEW):
+    with file_refused(stopped, "its run cannot go on with another version of funicular, NumPy or SciPy" + ANEW):
         resumed(stopped)
     state.write_bytes(whole)
     File(stopped, writable=True).truncate(3)
-    with refused(stopped, "it has 3 times, but its checkpoint is of the one after 10"):
+    with file_refused(stopped, "it has 3 times, but its checkpoint is of the one after 10"):
         resumed(stopped)
     state.unlink()
-    with refused(stopped, r"its checkpoint x\.nc\.state is missing" + ANEW):
+    with file_refused(stopped, r"its checkpoint x\.nc\.state is missing" + ANEW):
         resumed(stopped)
 
 
 def test_auto_goes_on_with_the_same_integrator(stopped):
     """A spectral radius that is given decides for genalpha, also where it is the default."""
-    with refused(stopped, 'its run cannot go on with integrator "genalpha"' + ANEW):
+    with file_refused(stopped, 'its run cannot go on with integrator "genalpha"' + ANEW):
         resumed(stopped, spectral_radius=0.9)
 
 
@@ -354,7 +277,7 @@ def test_two_runs_do_not_write_one_file(stopped):
     writing = File(stopped, writable=True)
     fcntl.flock(writing.descriptor, fcntl.LOCK_EX)
     for resume in (False, True):
-        with refused(stopped, "another run is writing it; wait for its end, or give another name$"):
+        with file_refused(stopped, "another run is writing it; wait for its end, or give another name$"):
             short().run(**SETTINGS, save=stopped, resume=resume)
 
 
@@ -465,18 +388,14 @@ def test_kill_at_20_random_instants(whole, tmp_path):
 MEMORY = """
 import resource, sys
 sys.path.insert(0, {tests!r})
-from test_streaming import pendulum
-pendulum().run(duration={rows} * 1e-3, step=1e-3, output_step=1e-3, save="x.nc")
+from interrupted_runs import SOFT
+from shared_scenes import cable_scene
+cable_scene(pins=(0.0,), **SOFT).run(duration={rows} * 1e-3, step=1e-3, output_step=1e-3, save="x.nc")
 print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 """
 
 
-def pendulum() -> Scene:
-    scene = Scene()
-    scene.cable("wire", start=(0, 0, 0), end=(1, 0, 0), elements=4, element="cable12", section=Circle(radius=0.01),
-                material=Material(youngs_modulus=4e6, poisson_ratio=0, density=4200))
-    scene.pin("wire", s=0.0)
-    return scene
+
 
 
 def peak(rows: int, folder: Path) -> float:
