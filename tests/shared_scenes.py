@@ -10,23 +10,35 @@ G, MASS, LENGTH, SLOPE = 9.81, 2.0, 4.0, 0.5
 """Gravity, mass of the block, length of the heavy wire and its slope: m/s², kg, m, rad."""
 
 
-def add_cable(scene: Scene, name="wire", pins=(0, 1.5), *, start=(0, 0, 0), end=(1.5, 0, 0), elements=3, **given):
-    """Add a cable with pins at these arc lengths, or at both of its ends with pins="ends"; return it."""
-    given = {"section": SQUARE, "material": TABLE_1} | given
-    cable = scene.cable(name, start=start, end=end, elements=elements, **given)
+def add_cable(scene: Scene, name="wire", pins=(0, 1.5), **given):
+    """Add a cable, 1.5 m along x if its keywords name no other shape, with pins at these arc lengths; return it.
+
+    pins: arc lengths in m, or "ends" for both ends; given: keywords of `Scene.cable`.
+    """
+    line = {} if "curve" in given or "points" in given else {"start": (0, 0, 0), "end": (1.5, 0, 0)}
+    cable = scene.cable(name, **line | {"elements": 3, "section": SQUARE, "material": TABLE_1} | given)
     for s in (0.0, cable.length) if pins == "ends" else pins:
         scene.pin(cable, s=s)
     return cable
 
 
-def cable_scene(name="wire", *, length=1.0, pins=(), gravity=(0, -9.81, 0), **given) -> Scene:
-    """Return a scene with one cable of ``length`` m along x: with pins=(0,) a pendulum that starts level.
+def cable_scene(name="wire", *, length=1.0, pins=(), clamps=(), gravity=(0, -9.81, 0), **given) -> Scene:
+    """Return a scene with one cable of ``length`` m along x: a pendulum with pins=(0,), a cantilever with clamps=(0,).
 
-    pins: arc lengths in m, or "ends"; given: keywords of `Scene.cable`, ``end`` in the place of the length.
+    pins: arc lengths in m, or "ends"; clamps: arc lengths; given: keywords of `Scene.cable`, with a shape of its own
+    in the place of the length.
     """
     scene = Scene(gravity=gravity)
-    add_cable(scene, name, pins, **{"end": (length, 0, 0)} | given)
+    line = {} if given.keys() & {"end", "curve", "points"} else {"end": (length, 0, 0)}
+    cable = add_cable(scene, name, pins, **line, **given)
+    for s in clamps:
+        scene.clamp(cable, s=s)
     return scene
+
+
+def structural(element: str) -> dict[str, str]:
+    """Return the keyword of the structural law for a beam, none for a cable."""
+    return {"law": "structural"} if element.startswith("beam") else {}
 
 
 def add_rider(scene: Scene, s: float, speed: float, cable="wire", name="A", slide="trolley", across=(0, 0), **body):

@@ -8,6 +8,7 @@ from funicular import Circle, Material, Scene
 from funicular.engine import Engine
 from funicular.integrators import EnergyMomentum
 from funicular.model.build import build
+from shared_scenes import cable_scene
 from test_energy_integrator import CABLES, PLANAR, balance, changes, crossing, free, momenta
 
 RADII = (0.0, 0.5, 0.8, 1.0)
@@ -127,11 +128,9 @@ def test_order_in_time_is_two(kind):
 
 def pendulum(element: str, stretch: float) -> Scene:
     """A steel wire falls from level; let go 0.1 % too long it rings, at h omega of 12 and more in steps of 1 ms."""
-    scene = Scene()
-    scene.cable("wire", start=(0, 0, 0), end=(1, 0, 0), elements=8, element=element, rest_length=1 / (1 + stretch),
-                section=Circle(radius=1e-3), material=Material(youngs_modulus=2e11, poisson_ratio=0, density=7850))
-    scene.pin("wire", s=0.0)
-    return scene
+    return cable_scene(pins=(0.0,), elements=8, element=element, rest_length=1 / (1 + stretch),
+                       section=Circle(radius=1e-3),
+                       material=Material(youngs_modulus=2e11, poisson_ratio=0, density=7850))
 
 
 @pytest.mark.parametrize("element", ["cable12", "cable8p", "beam24"])

@@ -5,6 +5,7 @@ import warnings
 import numpy as np
 import pytest
 from funicular import Circle, Friction, FunicularWarning, GeneralSection, Material, Rectangle, Scene, SceneError
+from shared_scenes import cable_scene
 
 STEEL = Material(youngs_modulus=2e11, poisson_ratio=0.3, density=7850)
 SQUARE = Rectangle(height=0.02, width=0.02)
@@ -14,12 +15,8 @@ FEW = [pytest.param(n, marks=() if n in (16, 128, 200) else pytest.mark.slow) fo
 
 def beam(elements, element="cable12", rest_length=1.0, section=SQUARE, material=STEEL, **end) -> Scene:
     """1 m between two pins."""
-    scene = Scene(gravity=(0, 0, 0))
-    cable = scene.cable("beam", start=(0, 0, 0), end=(1, 0, 0), elements=elements, element=element, section=section,
-                        material=material, rest_length=rest_length, strain="engineering", **end)
-    scene.pin(cable, s=0.0)
-    scene.pin(cable, s=cable.length)
-    return scene
+    return cable_scene("beam", pins="ends", gravity=(0, 0, 0), elements=elements, element=element, section=section,
+                       material=material, rest_length=rest_length, strain="engineering", **end)
 
 
 def bending(n: int, each: int, compression: float = 0.0) -> np.ndarray:

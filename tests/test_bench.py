@@ -8,6 +8,7 @@ import pytest
 from funicular import Material, Rectangle, Scene, SceneError
 from funicular.bench.bench import Mesh, bench, grid
 from funicular.cli import app
+from shared_scenes import cable_scene
 from typer.testing import CliRunner
 
 TOLS = (1e-3, 1e-4)
@@ -16,11 +17,8 @@ DURATION = 0.2
 
 def swing() -> Scene:
     """A planar pendulum with a pin between two of its elements, so that meshes of an odd number are refused."""
-    scene = Scene()
-    rope = scene.cable("rope", start=(0, 0, 0), end=(1, 0, 0), elements=2, element="cable8p",
-                       section=Rectangle(height=0.02, width=0.02),
-                       material=Material(youngs_modulus=2e6, poisson_ratio=0.0, density=7200))
-    scene.pin(rope, s=0.5)
+    scene = cable_scene("rope", pins=(0.5,), elements=2, element="cable8p", section=Rectangle(height=0.02, width=0.02),
+                        material=Material(youngs_modulus=2e6, poisson_ratio=0.0, density=7200))
     scene.run_settings = {"duration": DURATION, "step": 0.01}
     return scene
 

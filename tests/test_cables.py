@@ -8,6 +8,7 @@ import pytest
 import sliding
 from expectations import energy_error
 from funicular import Material, Rectangle, Scene, SceneError
+from shared_scenes import cable_scene
 
 REFERENCE = Path(__file__).parent / "reference"
 
@@ -21,13 +22,10 @@ sliding_mass = partial(sliding.sliding_mass, strain="engineering")  # S1, and it
 
 def pendulum(strain: str, damping_time=0.0) -> Scene:
     """D0."""
-    scene = Scene()
-    rope = scene.cable("rope", start=(0, 0, 0), end=(1, 0, 0), elements=8, element="cable12", strain=strain,
+    return cable_scene("rope", pins=(0.0,), elements=8, element="cable12", strain=strain,
                        section=Rectangle(height=0.02, width=0.02),
                        material=Material(youngs_modulus=2e6, poisson_ratio=0.0, density=7200,
                                          damping_time=damping_time))
-    scene.pin(rope, s=0.0)
-    return scene
 
 
 def test_sliding_mass_follows_the_reference():

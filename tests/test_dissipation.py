@@ -18,16 +18,15 @@ from funicular import (
 )
 from funicular.parts.settings import RunSettings
 from funicular.solve.diagnosis import unexplained
-from shared_scenes import add_cable
+from shared_scenes import add_cable, cable_scene
 
 
 def wired(youngs_modulus=4e8, elements=3, height=0.05, slope=0.0, damping_time=0.0) -> Scene:
-    scene = Scene()
     along = np.array([np.cos(slope), -np.sin(slope), 0.0])
-    add_cable(scene, end=tuple(1.5 * along), elements=elements, section=Rectangle(height=height, width=height),
-              material=Material(youngs_modulus=youngs_modulus, poisson_ratio=0.0, density=4200,
-                                damping_time=damping_time))
-    return scene
+    return cable_scene(pins=(0, 1.5), end=tuple(1.5 * along), elements=elements,
+                       section=Rectangle(height=height, width=height),
+                       material=Material(youngs_modulus=youngs_modulus, poisson_ratio=0.0, density=4200,
+                                         damping_time=damping_time))
 
 
 def ride(scene: Scene, name: str, s: float, speed: float, mass=1.0, **slide) -> Scene:

@@ -4,15 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from funicular import (
-    Circle,
-    ConvergenceError,
-    FunicularWarning,
-    Material,
-    Scene,
-    SceneError,
-    load_run,
-)
+from funicular import Circle, ConvergenceError, FunicularWarning, Material, Scene, SceneError, load_run
 from interrupted_runs import short
 
 STEEL = Material(youngs_modulus=2e11, poisson_ratio=0.3, density=7850)

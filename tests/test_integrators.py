@@ -8,17 +8,15 @@ from funicular.engine import Engine
 from funicular.integrators import INTEGRATORS, GeneralisedAlpha, Radau
 from funicular.model.build import build
 from funicular.parts.settings import RunSettings
+from shared_scenes import cable_scene
 
 
 def soft(elements: int = 4, youngs_modulus: float = 2e6, damping_time: float = 0.0) -> fu.Scene:
     """A pendulum of cable12, fixed at one end."""
-    scene = fu.Scene()
-    scene.cable("rope", start=(0, 0, 0), end=(1, 0, 0), elements=elements, element="cable12",
-                section=fu.Rectangle(height=0.02, width=0.02),
-                material=fu.Material(youngs_modulus=youngs_modulus, poisson_ratio=0.0, density=1000,
-                                     damping_time=damping_time))
-    scene.pin("rope", s=0.0)
-    return scene
+    return cable_scene("rope", pins=(0.0,), elements=elements, element="cable12",
+                       section=fu.Rectangle(height=0.02, width=0.02),
+                       material=fu.Material(youngs_modulus=youngs_modulus, poisson_ratio=0.0, density=1000,
+                                            damping_time=damping_time))
 
 
 def rider(planar: bool = False) -> fu.Scene:

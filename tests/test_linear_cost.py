@@ -8,6 +8,7 @@ from funicular.integrators import GeneralisedAlpha
 from funicular.model import unknowns as reduction
 from funicular.model.build import build
 from linear_cost import SCENES, ladder, scene
+from shared_scenes import cable_scene
 from test_newton_matrix import SCENES as DIFFICULT
 
 
@@ -21,16 +22,12 @@ def started(scene: Scene) -> Engine:
 
 def rope(youngs_modulus=1e7, damping_time=0.0) -> Scene:
     """Two slides on one element and one on the last: columns of the border that begin in different places."""
-    scene = Scene()
-    wire = scene.cable("wire", start=(0, 0, 0), end=(2, 0, 0), elements=7, element="cable12",
-                       section=Circle(radius=0.01), strain="green",
-                       material=Material(youngs_modulus=youngs_modulus, poisson_ratio=0.3, density=1000,
-                                         damping_time=damping_time))
-    scene.pin(wire, s=0.0)
-    scene.pin(wire, s=2.0)
+    scene = cable_scene(length=2, pins=(0.0, 2.0), elements=7, element="cable12", section=Circle(radius=0.01),
+                        strain="green", material=Material(youngs_modulus=youngs_modulus, poisson_ratio=0.3,
+                                                          density=1000, damping_time=damping_time))
     for k, s in enumerate((0.6, 0.8, 1.9)):
         scene.rigid_body(f"A{k}", mass=0.1, inertia=(1e-4, 1e-4, 1e-4), position=(s, 0, 0), velocity=(1, 0, 0))
-        scene.slide(f"A{k}", along=wire, s=s)
+        scene.slide(f"A{k}", along="wire", s=s)
     return scene
 
 

@@ -10,18 +10,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from funicular import (
-    ConvergenceError,
-    FunicularError,
-    ResultFileError,
-    Scene,
-    SceneError,
-    load_run,
-    load_scene,
-)
-from funicular.results import (
-    streaming,
-)
+from funicular import ConvergenceError, FunicularError, ResultFileError, Scene, SceneError, load_run, load_scene
+from funicular.results import streaming
 from interrupted_runs import SETTINGS, content, short
 from test_cli import funicular
 

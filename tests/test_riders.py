@@ -6,6 +6,7 @@ from expectations import INTEGRATORS, energy_error, largest
 from funicular import Material, Rectangle, Scene, TableSignal
 from funicular.rotations import rotate
 from numpy.testing import assert_allclose
+from shared_scenes import cable_scene
 
 G = 9.81
 SQUARE = Rectangle(height=0.05, width=0.05)
@@ -15,11 +16,7 @@ BOOKS = {"explicit": 1e-4, "radau": 2e-3, "genalpha": 1e-2}
 
 
 def wired(element="cable12", gravity=(0, -G, 0), end=(1.5, 0, 0), pins=(0.0, 1.5), material=SOFT, elements=3) -> Scene:
-    scene = Scene(gravity=gravity)
-    scene.cable("wire", start=(0, 0, 0), end=end, elements=elements, element=element, section=SQUARE, material=material)
-    for s in pins:
-        scene.pin("wire", s=s)
-    return scene
+    return cable_scene(pins=pins, gravity=gravity, end=end, elements=elements, element=element, material=material)
 
 
 def trolley(frame="tangent", element="cable12", at=(0, 0.1, -0.05), **given) -> Scene:

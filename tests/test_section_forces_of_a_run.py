@@ -18,6 +18,7 @@ from funicular.results.section_components import BEAM, CABLE, components
 from funicular.results.section_forces import constitutive
 from funicular.view.plot import draw_section_forces, save_plots
 from numpy.testing import assert_allclose
+from shared_scenes import cable_scene
 
 SOFT = Material(youngs_modulus=1e6, density=1000, poisson_ratio=0.3)
 AXES = np.array([[0.6, 0.8, 0], [-0.8, 0.6, 0], [0, 0, 1]])
@@ -97,10 +98,7 @@ def test_where_a_slide_is(run):
 
 
 def straight(element, **given):
-    scene = Scene()
-    scene.cable("wire", **{"start": (0, 0, 0), "end": (2, 0, 0)} | given, elements=2, element=element,
-                section=Circle(radius=0.1), material=SOFT)
-    return scene
+    return cable_scene(length=2, elements=2, element=element, section=Circle(radius=0.1), material=SOFT, **given)
 
 
 def test_components_of_a_cable(calls):

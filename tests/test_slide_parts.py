@@ -4,17 +4,7 @@
 import numpy as np
 import pytest
 from expectations import refused
-from funicular import (
-    Buffer,
-    Circle,
-    Friction,
-    FunicularWarning,
-    HardStop,
-    Harmonic,
-    Material,
-    Ramp,
-    Scene,
-)
+from funicular import Buffer, Circle, Friction, FunicularWarning, HardStop, Harmonic, Material, Ramp, Scene
 from funicular.checks.frames import cable_frame, end_frame, slide_axes
 from funicular.parts.attachment import Attachment
 from funicular.scene_file import loads

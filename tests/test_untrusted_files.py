@@ -1,4 +1,4 @@
-"""Files are data: nothing that a scene, its arrays or a file of results says is run. Libraries: test_own_element.py."""
+"""Files are data: nothing that a scene, its arrays or its results say is run. Libraries: test_user_elements.py."""
 
 import pickle
 import re
