@@ -65,7 +65,7 @@ def test_the_energy_of_an_oscillator_never_grows(spectral_radius, omega):
 
 
 @pytest.mark.parametrize("kind", [*CABLES, *PLANAR])
-def test_momenta_are_kept_and_the_books_close(kind):
+def test_momenta_are_kept_and_the_energy_balances(kind):
     scene = free(planar=kind in PLANAR, **(CABLES | PLANAR)[kind])
     run = scene.run(duration=0.5, step=5e-4, output_step=0.05, integrator="energy", spectral_radius=0.5)
     errors = balance(run), *map(changes, momenta(scene, run))
@@ -165,7 +165,7 @@ def test_a_spectral_radius_of_one_is_the_integrator_as_it_was():
     assert runs[0]["energy.dissipated"].max() == 0.0
 
 
-def test_crossing_nodes_keeps_the_books():
+def test_crossing_nodes_keeps_the_energy_balance():
     run = crossing(**CABLES["green"]).run(duration=1.0, tol=1e-4, output_step=0.05, integrator="energy",
                                           spectral_radius=0.5)
     assert run.report["element_crossings"] > 0

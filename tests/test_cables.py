@@ -71,7 +71,7 @@ def test_pendulum_follows_the_reference():
     assert np.hypot(r[:, 0] - expected["tip_x_m"], r[:, 1] - expected["tip_y_m"]).max() < 2e-5
 
 
-def test_damped_pendulum_closes_its_books():
+def test_damped_pendulum_balances_its_energy():
     run = pendulum("green", damping_time=2e-3).run(1.0, tol=1e-5)
     assert run["energy.dissipated"][-1] > 0.1  # J, of 14 J exchanged
     assert np.all(np.diff(run["energy.dissipated"]) >= 0)

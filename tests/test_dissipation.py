@@ -4,7 +4,7 @@ import warnings
 
 import numpy as np
 import pytest
-from expectations import energy_error
+from expectations import energy_error, slide_events
 from funicular import (
     Buffer,
     EndOfCableError,
@@ -70,8 +70,8 @@ def test_a_slide_that_a_buffer_lets_go_loses_no_energy_twice(integrator):
     scene = ride(wired(8e7, height=0.02, slope=0.5), "A", 0.8, 2.0,
                  at_end=Buffer(length=0.3, stiffness=300.0, damping=60.0))
     run = run_of(scene, duration=0.5, output_step=0.002, tol=1e-5, integrator=integrator)
-    told = [event["what"] for event in run.report["events"]]
-    assert told.count("left the buffer") and told.count("entered the buffer")
+    events = slide_events(run)
+    assert events.count("left the buffer") and events.count("entered the buffer")
     check(run, 1e-4)
 
 
@@ -106,7 +106,7 @@ def test_whatever_slides_do_dissipation_never_falls(seeds):
         check(run, max(30 * tol, 1e-3))
 
 
-# ---- what the balance cannot explain is told
+# ---- what the balance cannot explain is reported
 
 
 class Stub:
@@ -122,7 +122,7 @@ class Stub:
     (0.011, 0.0, 1e-4, "off by up to 0.011 J, 0.011 of the 1 J exchanged: energy came that nothing did work for"),
     (0.0, 0.02, 1e-6, "off by up to 0.02 J, 0.02 of the 1 J exchanged: energy went that neither"),
     (0.009, 0.009, 1e-6, None), (0.04, 0.0, 1e-3, None), (0.06, 0.0, 1e-3, "take a smaller tol")])
-def test_a_hundredth_of_what_is_exchanged_is_told(grown, lost, tol, says):
+def test_a_hundredth_of_what_is_exchanged_is_reported(grown, lost, tol, says):
     notes = unexplained(Stub(grown, lost, 1.0, 1.0, 1e-9), RunSettings(duration=1.0, tol=tol))
     assert (says is None) == (notes == []) and (says is None or says in notes[0])
 
@@ -130,7 +130,7 @@ def test_a_hundredth_of_what_is_exchanged_is_told(grown, lost, tol, says):
 @pytest.mark.parametrize(("off", "exchanged", "in_motion", "rounding", "noted"), [
     (1e-3, 1e-6, 100.0, 0.0, False), (2e-2, 1e-6, 100.0, 0.0, True),  # a hundredth of a hundredth of what moves
     (2e-2, 1.0, 1.0, 1e-2, False), (2.1e-2, 1.0, 1.0, 1e-2, True)])
-def test_neither_rounding_nor_little_beside_a_steady_motion_is_told(off, exchanged, in_motion, rounding, noted):
+def test_neither_rounding_nor_little_beside_a_steady_motion_is_reported(off, exchanged, in_motion, rounding, noted):
     """Where bodies turn freely hardly anything is exchanged; far from the origin rounding is beyond a hundredth."""
     settings = RunSettings(duration=1.0, tol=1e-4)
     for grown, lost in ((off, 0.0), (0.0, off)):

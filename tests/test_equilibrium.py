@@ -169,7 +169,7 @@ def test_springs_pull_by_their_law(element, given, method):
 
 @pytest.mark.parametrize("at", [(0, 0, 0), (0.1, 0, 0)])
 def test_a_body_hangs_on_its_spring(at):
-    """Below the anchor by the stretched length, turned until the attachment is above its centre."""
+    """Below the attachment by the stretched length, turned until the attached point is above its centre."""
     scene = Scene()
     scene.rigid_body("B", mass=1, inertia=(1e-3, 1e-3, 1e-3), position=(0, -1, 0))
     scene.spring(("B", at), (0, 0, 0), stiffness=100, length=1.0, name="tie")

@@ -48,7 +48,7 @@ def test_a_block_creeps_where_friction_is_regularised(integrator):
     run = block(0.3, friction=Friction(coefficient=0.7, velocity=0.01)).run(1.0, integrator=integrator, tol=1e-6)
     tau = np.tan(SLOPE) / 0.7
     assert run["trolley.s_rate"][-1] == pytest.approx(0.01 * tau / np.sqrt(1 - tau**2), rel=1e-6)
-    # genalpha books by the trapezoidal rule what it does by order 2 in a motion that settles within 1e-3 s
+    # genalpha integrates power by the trapezoidal rule, at order 2, in a motion that comes to rest within 1e-3 s
     assert energy_error(run) < {"genalpha": 1e-6, "radau": 1e-7, "explicit": 1e-9}[integrator]
 
 
@@ -109,7 +109,7 @@ def test_two_that_stop_at_one_instant(integrator):
 
 @pytest.mark.parametrize("model", ["stick", "regularised"])
 def test_integrators_agree_on_a_cable_that_gives_way(model):
-    """And their books close, to tol. The normal force vibrates with the cable: at tol = 1e-5 genalpha is 3e-4 m off."""
+    """And their energy balances, to tol. The normal force vibrates with the cable: genalpha at 1e-5 is 3e-4 m off."""
     runs = {}
     for integrator in INTEGRATORS:
         scene = Scene()
@@ -145,7 +145,7 @@ def test_friction_follows_the_normal_force_that_it_makes(integrator, ahead, mu):
     assert energy_error(run) < 1e-5
 
 
-def test_friction_that_has_no_solution_is_told():
+def test_friction_that_has_no_solution_is_reported():
     with pytest.raises(SceneError, match=r'slide "trolley": friction jams it at the start: .*; take a smaller coeff'):
         rod(-0.1, 0.5).run(0.01)
 

@@ -61,9 +61,9 @@ def test_band_is_factored_as_it_allows(made, size, definite):
 @pytest.mark.parametrize(("name", "shared"), [("three cables", 3), ("ring", 3), ("ladder", 9)])
 def test_joins_leave_the_band_as_narrow_as_one_cable(name, shared):
     """Only positions where more than two elements meet are in the border, and of a ring one."""
-    joined, alone = build(scene(name, 120)), build(scene("pendulum", 40))
-    assert joined.width == alone.width == 11
-    assert joined.n_border_dof - 6 * len(joined.bodies) == shared
+    tied, alone = build(scene(name, 120)), build(scene("pendulum", 40))
+    assert tied.width == alone.width == 11
+    assert tied.n_border_dof - 6 * len(tied.bodies) == shared
 
 
 def test_many_joins_widen_the_band_where_that_is_cheaper():

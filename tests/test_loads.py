@@ -1,4 +1,4 @@
-"""Loads, springs, damping and prescribed motions in runs, against closed forms; the energy books with all of them."""
+"""Loads, springs, damping and prescribed motions in runs, against closed forms; the energy balance with all of them."""
 
 import numpy as np
 import pytest
@@ -104,7 +104,7 @@ def test_a_moment_spins_a_body_and_a_follower_force_turns_with_it():
 
 
 def test_a_follower_force_at_the_end_of_a_cable_has_no_potential():
-    """Its work round a loop is not zero, the books close nevertheless."""
+    """Its work round a loop is not zero, the energy balances nevertheless."""
     scene = Scene()
     add_cable(scene, pins=(0,), elements=4)
     scene.force("wire", s=1.5, value=(0, 60, 0), follower=True)
@@ -114,7 +114,7 @@ def test_a_follower_force_at_the_end_of_a_cable_has_no_potential():
 
 
 @pytest.mark.parametrize("element", ["cable12", "beam24", "cable8p", "beam12p"])
-def test_the_books_close_with_everything_on(element):
+def test_the_energy_balances_with_everything_on(element):
     scene = Scene()
     planar = element in ("cable8p", "beam12p")
     scene.cable("wire", start=(0, 0, 0), end=(1.5, 0, 0), elements=3, element=element, section=SQUARE,
@@ -135,7 +135,7 @@ def test_the_books_close_with_everything_on(element):
 
 
 def test_a_node_moves_as_prescribed():
-    """Where the signal says, and the work on it is what the books say."""
+    """Where the signal says, and the work on it is what the energy balance says."""
     scene = Scene()
     add_cable(scene, pins=(1.5,), elements=4)
     wave = Harmonic(amplitude=0.05, frequency=3.0)

@@ -141,7 +141,7 @@ def test_stiffened_it_flies_like_the_mesh_in_absolute_coordinates(boundary):
     assert distance[1] < distance[0] / 20 and distance[1] < 1e-6, distance
 
 
-def test_anchors_are_derivatives_of_points_and_axes(tmp_path):
+def test_attachments_are_derivatives_of_points_and_axes(tmp_path):
     """Of modal.c: place, axes, P, T, velocities, biases, K against differences."""
     arrays = points(tmp_path)
     model = build(tumbling(tmp_path))

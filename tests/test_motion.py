@@ -78,7 +78,7 @@ def test_a_free_cable_falls_without_strain():
 
 
 @pytest.mark.parametrize("step", [2e-3, 1e-3])
-def test_a_damped_cable_comes_to_rest_and_the_books_close(step):
+def test_a_damped_cable_comes_to_rest_and_the_energy_balances(step):
     """Kelvin-Voigt damping takes the energy that the fall set free; at rest the pins carry the weight."""
     scene = Scene()
     material = Material(youngs_modulus=0.4e9, poisson_ratio=0.0, density=4200, damping_time=0.02)

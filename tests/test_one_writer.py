@@ -111,8 +111,8 @@ def test_processes_started_at_once(tmp_path):
     started = {speed: subprocess.Popen(
         [sys.executable, "-c", PROCESS.format(tests=str(Path(__file__).parent), speed=speed)], cwd=tmp_path, text=True,
         stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) for speed in (1.0, 2.0, 3.0)}
-    told = {speed: process.communicate()[0].strip() for speed, process in started.items()}
-    assert all(text in ("refused", str(speed)) for speed, text in told.items()), told
+    output = {speed: process.communicate()[0].strip() for speed, process in started.items()}
+    assert all(text in ("refused", str(speed)) for speed, text in output.items()), output
     assert [p.name for p in tmp_path.iterdir()] == ["x.nc"]
 
 
@@ -232,6 +232,6 @@ def test_a_run_that_stops_before_its_first_row(engine, tmp_path):
         assert repr(run) == "<funicular.Run: no_convergence, no times, 20 results>"
         assert run.summary().startswith("status: no_convergence before the first output time: there are no results")
         assert run["A.position"].shape == (0, 3) and run.energy_balance().exchanged == 0 and np.size(run.time) == 0
-    told = funicular("run", "paper51", "--plot")
-    assert (told.exit_code, told.stderr) == (1, "error: no step converged\n") and "paper51.nc" not in told.stdout
+    result = funicular("run", "paper51", "--plot")
+    assert (result.exit_code, result.stderr) == (1, "error: no step converged\n") and "paper51.nc" not in result.stdout
     assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("old.nc", "old")]

@@ -1,4 +1,4 @@
-"""Supports, joins, loads and springs: what the scene completes of them, and what it refuses of them."""
+"""Supports, ties, loads and springs: what the scene completes of them, and what it refuses of them."""
 
 
 import numpy as np
@@ -79,8 +79,8 @@ def test_two_supports_on_one_node(scene, held, complaint):
 
 
 def test_joins_that_hold_what_is_held(scene):
-    join = scene.tie("beam", s=2, to="rope", at=0)
-    assert (join.cable, join.s, join.to, join.at, join.rotation) == ("beam", 2, "rope", 0, "rigid")
+    tie = scene.tie("beam", s=2, to="rope", at=0)
+    assert (tie.cable, tie.s, tie.to, tie.at, tie.rotation) == ("beam", 2, "rope", 0, "rigid")
     with refused('tie "tie_2": the nodes are already joined'):
         scene.tie("rope", s=0, to="beam", at=2)
     with refused('tie "tie_2": the nodes are one and the same'):

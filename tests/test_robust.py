@@ -51,7 +51,7 @@ def test_a_step_that_is_divided_is_reported():
     assert "step 0.007 s was made 0.005 s, so that steps end on output times" in run.report["messages"]
 
 
-def test_velocities_that_break_a_joint_are_told():
+def test_velocities_that_break_a_joint_are_reported():
     with pytest.warns(FunicularWarning, match=r"initial velocities broke a joint: changed by up to .* m/s"):
         one_rider(across=(1.0, 0.0)).run(0.001)
 

@@ -220,19 +220,19 @@ def test_forces_between_cuts(name):
                          for side in ("before", "after"))
         assert_allclose(before - after, -run[f"{slide.name}.force"], atol=1e-9 * scale)
     for name, cable in run.scene.cables.items():
-        held = {(support.cable, support.s): run[f"{support.label}.force"] for support in run.scene.supports}
-        tied = {(on, s) for join in run.scene.ties.values() for on, s in ((join.cable, join.s), (join.to, join.at))}
+        supported = {(support.cable, support.s): run[f"{support.label}.force"] for support in run.scene.supports}
+        tied = {(on, s) for tie in run.scene.ties.values() for on, s in ((tie.cable, tie.s), (tie.to, tie.at))}
         riding = {(slide.rider.on, slide.rider.s) for slide in run.scene.slides.values()}
         riding |= {(end.on, end.s) for joint in run.scene.joints.values() for end in (joint.a, joint.b)}
         for s, sign in ((0.0, -1), (cable.length, 1)):
             if (name, s) in tied | riding:
                 continue
-            given = held.get((name, s), np.zeros((len(run.time), 3)))
+            given = supported.get((name, s), np.zeros((len(run.time), 3)))
             at_end = run.section_forces(name, [s])
             assert_allclose(at_end["force"].values[:, 0], sign * given, atol=1e-9 * scale)
-            if (name, s) not in held:
+            if (name, s) not in supported:
                 assert_allclose(at_end["moment"].values, 0, atol=1e-7 * scale)
-        for (on, s), given in held.items():
+        for (on, s), given in supported.items():
             if on == name and 0 < s < cable.length:
                 before, after = (run.section_forces(name, [s], side=side)["force"].values[:, 0]
                                  for side in ("before", "after"))

@@ -164,7 +164,7 @@ def test_the_motion_is_the_same_far_from_the_origin(distance, first_scene):
 # ---- starts
 
 
-def test_a_start_that_breaks_the_joint_is_projected_and_told():
+def test_a_start_that_breaks_the_joint_is_projected_and_reported():
     """The rider strikes the cable at rest: the least change of motion, in the norm of the masses."""
     with pytest.warns(FunicularWarning, match="initial velocities broke a joint"):
         run = one_rider(across=(0.5, 0.2)).run(0.02, step=1e-3, output_step=1e-3)

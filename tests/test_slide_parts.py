@@ -198,8 +198,8 @@ def test_a_flexible_rider_with_a_small_gap(scene):
     scene.clamp("rope", s=0)
     run = scene.run(1e-3)
     assert run["tail_on_rope.residual"].max() < 1e-9
-    assert any(told.startswith("gaps of joints were closed at the start: things moved by up to 0.00")
-               for told in run.report["messages"])
+    assert any(note.startswith("gaps of joints were closed at the start: things moved by up to 0.00")
+               for note in run.report["messages"])
 
 
 def test_round_trip(scene):

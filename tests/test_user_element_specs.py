@@ -14,14 +14,14 @@ from user_element_specs import spec
 
 def refused(file: Path, out: Path) -> str:
     """What the command says of a spec that it refuses; nothing may be written."""
-    with pytest.raises(SpecError) as told:
+    with pytest.raises(SpecError) as error:
         command.main(file, out)
     assert not out.exists()
     assert [p.name for p in out.parent.iterdir()] == [file.name], "nothing is left behind"
-    return str(told.value)
+    return str(error.value)
 
 
-@pytest.mark.parametrize(("changes", "told"), [
+@pytest.mark.parametrize(("changes", "part"), [
     ([("1, x, x**2, x**3", "1, x, x**2, sp.sin(x)"), ("from funicular", "import sympy as sp\nfrom funicular")],
      "basis[3] = sin(x) is not a polynomial"),
     ([("x**3)", "x**3 + x**2)")], "basis[3] = x**3 + x**2 is not a monomial"),
@@ -52,10 +52,10 @@ def refused(file: Path, out: Path) -> str:
     ([('"mine8p"', '"8mine"')], "the name must be letters, digits and _"),
     ([("dim=2", "dim=4")], "dim must be 2 or 3, got 4"),
 ], ids=lambda v: v[:40] if isinstance(v, str) else "")
-def test_an_element_that_cannot_be_is_told_its_property(tmp_path, changes, told):
+def test_an_element_that_cannot_be_is_refused_with_its_property(tmp_path, changes, part):
     message = refused(spec(tmp_path, *changes), tmp_path / "library")
     assert message.startswith(f"{tmp_path / 'mine.py'}: element \"")
-    assert told in message
+    assert part in message
 
 
 def test_a_nodal_condition_that_is_not_linear(tmp_path):
@@ -83,7 +83,7 @@ ENERGY = """
 """
 
 
-@pytest.mark.parametrize(("law", "told"), [
+@pytest.mark.parametrize(("law", "part"), [
     # the strain of a beginner: r_x of the first node along the global x, and not its length
     (STRAIN.format(strain="program.symbols['e'][1, 0] - 1"),
      "the energy is not objective: a rigid rotation changes it from "),
@@ -102,10 +102,10 @@ ENERGY = """
     ("    def damping_forces(self, program, *given):\n        raise RuntimeError('not written yet')\n",
      "line 14: RuntimeError: not written yet"),
 ], ids=["rotation", "translation", "abs", "slack", "root", "pole", "sine", "rest", "stress", "raises"])
-def test_a_law_that_cannot_be_is_told_its_property(tmp_path, law, told, capsys):
+def test_a_law_that_cannot_be_is_refused_with_its_property(tmp_path, law, part, capsys):
     message = refused(spec(tmp_path, law=law), tmp_path / "library")
     assert message.startswith(f"{tmp_path / 'mine.py'}")
-    assert told in message, message
+    assert part in message, message
 
 
 def test_a_law_without_a_name(tmp_path):
@@ -121,17 +121,17 @@ def test_two_elements_of_one_name(tmp_path):
     assert "defines two elements of the name mine8p" in refused(file, tmp_path / "library")
 
 
-@pytest.mark.parametrize(("text", "told"), [
+@pytest.mark.parametrize(("text", "part"), [
     ("x = 1\ny = (2\n", ":2: is not Python: '(' was never closed"),
     ("x = 1\n\ny = 1 / 0\n", ", line 3: ZeroDivisionError: division by zero"),
     ("from funicular.derive.spec import Elephant\n", ", line 1: ImportError: cannot import name 'Elephant'"),
     ("x = 1\n", ": defines no element; write NAME = Element(...)"),
     ("from funicular.derive.spec import Element\nE = Element(name='e')\n", ", line 2: TypeError: "),
 ])
-def test_a_file_that_is_no_spec_is_told_with_its_line(tmp_path, text, told):
+def test_a_file_that_is_no_spec_is_refused_with_its_line(tmp_path, text, part):
     file = tmp_path / "mine.py"
     file.write_text(text)
-    assert refused(file, tmp_path / "library").startswith(f"{file}{told}")
+    assert refused(file, tmp_path / "library").startswith(f"{file}{part}")
 
 
 def test_a_file_that_is_not_there(tmp_path):
@@ -164,6 +164,6 @@ def test_a_directory_of_something_else_is_left_alone(tmp_path):
 @pytest.mark.parametrize("words", [["--spec", "a.py"], ["--out", "d"], ["cable12", "--spec", "a.py", "--out", "d"],
                                    ["--check", "--spec", "a.py", "--out", "d"]])
 def test_the_options_go_together(words):
-    told = CliRunner().invoke(app, ["derive", *words])
-    assert told.exit_code == 2
-    assert "go together" in told.output
+    result = CliRunner().invoke(app, ["derive", *words])
+    assert result.exit_code == 2
+    assert "go together" in result.output

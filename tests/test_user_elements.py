@@ -33,9 +33,9 @@ from user_element_specs import spec
 def derived(tmp_path_factory) -> tuple[Path, str]:
     """A library of the planar cable, and what the command said of it."""
     folder = tmp_path_factory.mktemp("own")
-    told = CliRunner().invoke(app, ["derive", "--spec", str(spec(folder)), "--out", str(folder / "new" / "library")])
-    assert told.exit_code == 0, told.output
-    return folder / "new" / "library", told.output
+    result = CliRunner().invoke(app, ["derive", "--spec", str(spec(folder)), "--out", str(folder / "new" / "library")])
+    assert result.exit_code == 0, result.output
+    return folder / "new" / "library", result.output
 
 
 @pytest.fixture(scope="module")
@@ -113,11 +113,11 @@ def _change(folder: Path, change) -> None:
 
 def test_a_library_of_another_version_is_refused_with_what_mends_it(copied, made):
     _change(copied, lambda content: content.update(interface="0123456789abcdef"))
-    with pytest.raises(LibraryError) as told:
+    with pytest.raises(LibraryError) as error:
         load_library(copied)
     assert "was made for another version of funicular: its tables of kernels are laid out as 0123456789abcdef" in str(
-        told.value)
-    assert f"`funicular derive --spec {made.parents[1] / 'mine.py'} --out {copied}`" in str(told.value)
+        error.value)
+    assert f"`funicular derive --spec {made.parents[1] / 'mine.py'} --out {copied}`" in str(error.value)
 
 
 def test_a_damaged_library_is_refused(copied):
@@ -208,8 +208,8 @@ def test_a_scene_file_does_not_load_a_library(hostile, tmp_path):
         for allowed in ((), (tmp_path,), (tmp_path / "mine", "hostile")):  # from another working directory
             with pytest.raises(SceneError, match=not_allowed(folder)):
                 load_scene(file, libraries=allowed)
-        told = CliRunner().invoke(app, ["run", str(file), "-o", str(tmp_path / "x.nc"), "--library", str(tmp_path)])
-        assert told.exit_code == 1 and re.search(not_allowed(folder), told.stderr)
+        result = CliRunner().invoke(app, ["run", str(file), "-o", str(tmp_path / "x.nc"), "--library", str(tmp_path)])
+        assert result.exit_code == 1 and re.search(not_allowed(folder), result.stderr)
         assert CliRunner().invoke(app, ["bench", str(file)]).exit_code == 1
     with pytest.raises(SceneError, match=re.escape("cable \"wire\": library must be a directory, got '")):
         loads(naming("a\\u0000b"), "x")
@@ -265,9 +265,9 @@ def test_an_allowed_library_is_used(made, tmp_path):
     for allowed in (made, tmp_path / "link"):
         assert load_scene(tmp_path / "scene.toml", libraries=[allowed]).cables["wire"].library == str(made)
         assert load_run(tmp_path / "x.nc", libraries=[allowed]).section_forces("wire").sizes["time"] == 101
-    told = CliRunner().invoke(app, ["run", str(tmp_path / "scene.toml"), "--duration", "0.01", "--plot", "--forces",
+    result = CliRunner().invoke(app, ["run", str(tmp_path / "scene.toml"), "--duration", "0.01", "--plot", "--forces",
                                     "-o", str(tmp_path / "y.nc"), "--library", "nowhere", "--library", str(made)])
-    assert told.exit_code == 0, told.output
+    assert result.exit_code == 0, result.output
 
 
 def test_a_damaged_manifest_is_refused(copied):

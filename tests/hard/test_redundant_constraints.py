@@ -72,8 +72,8 @@ def test_points_that_rounding_cannot_tell_apart_are_named_when_the_run_fails():
 
 
 def test_a_closed_frame_is_resolved():
-    """A triangle of beams, each corner rigid: the three joins of a loop hold what two hold already; nothing moves
-    where nothing pushes, and under weight the corners stay."""
+    """A triangle of beams, each corner rigid: the three ties of a loop constrain what two constrain already; nothing
+    moves where nothing pushes, and under weight the corners stay."""
     scene = Scene()
     corners = [(0, 0, 0), (1, 0, 0), (0.5, 0.8, 0)]
     for k in range(3):
