@@ -9,6 +9,17 @@ SQUARE = Rectangle(height=0.05, width=0.05)
 G, MASS, LENGTH, SLOPE = 9.81, 2.0, 4.0, 0.5
 """Gravity, mass of the block, length of the heavy wire and its slope: m/s², kg, m, rad."""
 
+CABLE = """
+[[cable]]
+name = "wire"
+start = [0, 0, 0]
+end = [1.5, 0, 0]
+elements = 3
+section = { shape = "rectangle", height = 0.05, width = 0.05 }
+material = { youngs_modulus = 0.4e9, shear_modulus = 0.2e9, density = 4200 }
+"""
+"""The cable of Table 1 in a scene file, with a shear modulus in the place of Poisson's ratio."""
+
 
 def add_cable(scene: Scene, name="wire", pins=(0, 1.5), **given):
     """Add a cable, 1.5 m along x if its keywords name no other shape, with pins at these arc lengths; return it.

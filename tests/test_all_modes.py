@@ -41,7 +41,7 @@ def test_and_of_a_planar_beam_once(elements):
 
 @pytest.mark.slow
 def test_two_thousand_elements():
-    """Rounding of the stiffness limits them: 7e-5 measured in the first frequency, within the uncertainty that is reported."""
+    """Rounding of the stiffness limits them: 7e-5 measured in the first frequency, within what is reported."""
     with pytest.warns(FunicularWarning, match="rounding of the stiffness may change the frequencies of modes 1, 2 by"):
         found = beam(2000).modes(8)
     expected = np.sqrt(bending(4, 2))

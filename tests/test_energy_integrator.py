@@ -4,12 +4,12 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from difficult_scenes import loaded
 from funicular import Harmonic, Material, Rectangle, Scene, SceneError
 from funicular.engine import Engine
 from funicular.integrators import EnergyMomentum
 from funicular.model.build import build
 from shared_scenes import cable_scene
-from test_newton_matrix import loaded
 
 CABLES = {"beam24": {"element": "beam24"}, "green": {"element": "cable12", "strain": "green"},
           "engineering": {"element": "cable12", "strain": "engineering"},

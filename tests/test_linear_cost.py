@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from difficult_scenes import SCENES as DIFFICULT
 from funicular import Circle, Material, Scene
 from funicular.engine import Engine
 from funicular.integrators import GeneralisedAlpha
@@ -9,7 +10,6 @@ from funicular.model import unknowns as reduction
 from funicular.model.build import build
 from linear_cost import SCENES, ladder, scene
 from shared_scenes import cable_scene
-from test_newton_matrix import SCENES as DIFFICULT
 
 
 def started(scene: Scene) -> Engine:

@@ -4,6 +4,7 @@ import time
 
 import numpy as np
 import pytest
+from difficult_scenes import tied
 from expectations import INTEGRATORS
 from funicular import Scene
 from funicular.engine import Engine
@@ -11,7 +12,6 @@ from funicular.integrators import GeneralisedAlpha
 from funicular.model.build import build
 from shared_scenes import one_rider
 from test_joints import of_bodies
-from test_newton_matrix import tied
 
 
 @pytest.mark.filterwarnings("ignore:initial velocities broke a joint")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from funicular import Scene, SceneError
 from funicular.scene_file import loads
-from test_scene_file import CABLE
+from shared_scenes import CABLE
 
 MARKER = []
 
