@@ -10,7 +10,7 @@ from .bodies import BODIES, RIDERS, Body, Rider, modal, modal_kernels
 from .bodies import kernels as body_kernels
 from .bodies.point import Point
 from .codegen.family import BodyFamily, CouplingFamily, ElementFamily, Family, LawFamily, SlideFamily
-from .couplings import frame, joint, resistance, slide
+from .couplings import frame, joint, resistance, slide, spring
 from .elements import ELEMENTS
 from .elements import kernels as element_kernels
 from .laws import kernels as law_kernels
@@ -89,6 +89,13 @@ def _joint(dim: int, name: str) -> CouplingFamily:
                           facts={"dim": dim, "rows": joint.rows(dim, name)}, dim=dim)
 
 
+def _spring(name: str, kind: spring.Spring) -> CouplingFamily:
+    length = "" if kind.has_length else " of no rest length"
+    return CouplingFamily(name, f"spring and damper{length} between two points in {_SPACE[kind.dim]}",
+                          partial(spring.build, name), ("couplings.spring",), role="spring", facts={"dim": kind.dim},
+                          dim=kind.dim)
+
+
 def of_element(element: Element) -> list[Family]:
     """Return the families of an element: its own kernels, its laws, and its slide for each rider of its dimension."""
     return [_element(element), *(_law(element, law) for law in element.laws),
@@ -96,7 +103,9 @@ def of_element(element: Element) -> list[Family]:
 
 
 def families() -> dict[str, Family]:
-    """Return every family by name: elements, laws, bodies, the slide of each element and rider, joints, resistances."""
+    """Return every family by name: elements, laws, bodies, the slide of each element and rider, joints, resistances,
+    springs.
+    """
     of_role: dict[str, list[Family]] = {"element": [], "law": [], "slide": []}
     for element in ELEMENTS.values():
         for family in of_element(element):
@@ -105,7 +114,8 @@ def families() -> dict[str, Family]:
     every = [*of_role["element"], *of_role["law"], *map(_body, BODIES.values()),
              *(_modal(name, body) for name, body in modal.FRAMES.items()),
              *of_role["slide"],
-             *map(_frame, frame.FRAMES), *joints, *map(_resistance, resistance.RESISTANCES)]
+             *map(_frame, frame.FRAMES), *joints, *map(_resistance, resistance.RESISTANCES),
+             *(_spring(name, kind) for name, kind in spring.SPRINGS.items())]
     return {f.name: f for f in every}
 
 

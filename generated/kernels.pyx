@@ -12,6 +12,7 @@ from functools import cache
 from importlib import resources
 
 import numpy as np
+from funicular.generated import described
 
 from cpython.pycapsule cimport PyCapsule_New
 
@@ -45,7 +46,7 @@ def __dir__():
 
 @cache
 def _manifest():
-    return json.loads((resources.files("funicular.generated") / "manifest.json").read_text(encoding="utf-8"))["kernels"]
+    return described(json.loads((resources.files("funicular.generated") / "manifest.json").read_text(encoding="utf-8")))
 
 
 def _function(name, int place):

@@ -2,2798 +2,704 @@
 #include "kernels.h"
 
 static const fu_element_kernels elements[] = {
-    {"beam24",
-     2,
-     4,
-     3,
-     beam24_mass,
-     beam24_gravity,
-     beam24_inertia_force,
-     beam24_position,
-     beam24_on_axis,
-     beam24_slopes,
-     beam24_follower_force,
-     beam24_moment
-    },
-    {"cable12",
-     2,
-     2,
-     3,
-     cable12_mass,
-     cable12_gravity,
-     cable12_inertia_force,
-     cable12_position,
-     cable12_on_axis,
-     cable12_slopes,
-     cable12_follower_force,
-     cable12_moment
-    },
-    {"cable18",
-     2,
-     3,
-     3,
-     cable18_mass,
-     cable18_gravity,
-     cable18_inertia_force,
-     cable18_position,
-     cable18_on_axis,
-     cable18_slopes,
-     cable18_follower_force,
-     cable18_moment
-    },
-    {"beam12p",
-     2,
-     3,
-     2,
-     beam12p_mass,
-     beam12p_gravity,
-     beam12p_inertia_force,
-     beam12p_position,
-     beam12p_on_axis,
-     beam12p_slopes,
-     beam12p_follower_force,
-     beam12p_moment
-    },
-    {"cable8p",
-     2,
-     2,
-     2,
-     cable8p_mass,
-     cable8p_gravity,
-     cable8p_inertia_force,
-     cable8p_position,
-     cable8p_on_axis,
-     cable8p_slopes,
-     cable8p_follower_force,
-     cable8p_moment
-    }
+    {"beam24", 2, 4, 3, beam24_mass, beam24_gravity, beam24_inertia_force, beam24_position, beam24_on_axis,
+     beam24_slopes, beam24_follower_force, beam24_moment},
+    {"cable12", 2, 2, 3, cable12_mass, cable12_gravity, cable12_inertia_force, cable12_position, cable12_on_axis,
+     cable12_slopes, cable12_follower_force, cable12_moment},
+    {"cable18", 2, 3, 3, cable18_mass, cable18_gravity, cable18_inertia_force, cable18_position, cable18_on_axis,
+     cable18_slopes, cable18_follower_force, cable18_moment},
+    {"beam12p", 2, 3, 2, beam12p_mass, beam12p_gravity, beam12p_inertia_force, beam12p_position, beam12p_on_axis,
+     beam12p_slopes, beam12p_follower_force, beam12p_moment},
+    {"cable8p", 2, 2, 2, cable8p_mass, cable8p_gravity, cable8p_inertia_force, cable8p_position, cable8p_on_axis,
+     cable8p_slopes, cable8p_follower_force, cable8p_moment},
 };
 
 static const fu_law_kernels laws[] = {
-    {"beam24_continuum",
-     28,
-     0,
-     beam24_continuum_energy,
-     beam24_continuum_elastic_force,
-     beam24_continuum_elastic_tangent,
-     beam24_continuum_discrete_force,
-     beam24_continuum_step_stiffness,
-     beam24_continuum_damping_force,
-     beam24_continuum_damping_tangent,
-     beam24_continuum_dissipation,
-     beam24_continuum_algorithmic_force
-    },
-    {"beam24_continuum_curved",
-     28,
-     0,
-     beam24_continuum_curved_energy,
-     beam24_continuum_curved_elastic_force,
-     beam24_continuum_curved_elastic_tangent,
-     beam24_continuum_curved_discrete_force,
-     beam24_continuum_curved_step_stiffness,
-     beam24_continuum_damping_force,
-     beam24_continuum_damping_tangent,
-     beam24_continuum_dissipation,
-     beam24_continuum_algorithmic_force
-    },
-    {"beam24_structural",
-     0,
-     0,
-     beam24_structural_energy,
-     beam24_structural_elastic_force,
-     beam24_structural_elastic_tangent,
-     0,
-     0,
-     beam24_structural_damping_force,
-     beam24_structural_damping_tangent,
-     beam24_structural_dissipation,
-     0
-    },
-    {"cable12_green_exact",
-     9,
-     1,
-     cable12_green_exact_energy,
-     cable12_green_exact_elastic_force,
-     cable12_green_exact_elastic_tangent,
-     cable12_green_exact_discrete_force,
-     cable12_green_exact_step_stiffness,
-     cable12_green_exact_damping_force,
-     cable12_green_exact_damping_tangent,
-     cable12_green_exact_dissipation,
-     cable12_green_exact_algorithmic_force
-    },
-    {"cable12_green_linear",
-     9,
-     1,
-     cable12_green_linear_energy,
-     cable12_green_linear_elastic_force,
-     cable12_green_linear_elastic_tangent,
-     cable12_green_linear_discrete_force,
-     cable12_green_linear_step_stiffness,
-     cable12_green_exact_damping_force,
-     cable12_green_exact_damping_tangent,
-     cable12_green_exact_dissipation,
-     cable12_green_exact_algorithmic_force
-    },
-    {"cable12_engineering_exact",
-     9,
-     1,
-     cable12_engineering_exact_energy,
-     cable12_engineering_exact_elastic_force,
-     cable12_engineering_exact_elastic_tangent,
-     cable12_engineering_exact_discrete_force,
-     cable12_engineering_exact_step_stiffness,
-     cable12_engineering_exact_damping_force,
-     cable12_engineering_exact_damping_tangent,
-     cable12_engineering_exact_dissipation,
-     cable12_engineering_exact_algorithmic_force
-    },
-    {"cable12_engineering_linear",
-     9,
-     1,
-     cable12_engineering_linear_energy,
-     cable12_engineering_linear_elastic_force,
-     cable12_engineering_linear_elastic_tangent,
-     cable12_engineering_linear_discrete_force,
-     cable12_engineering_linear_step_stiffness,
-     cable12_engineering_exact_damping_force,
-     cable12_engineering_exact_damping_tangent,
-     cable12_engineering_exact_dissipation,
-     cable12_engineering_exact_algorithmic_force
-    },
-    {"cable12_green_exact_assumed",
-     9,
-     1,
-     cable12_green_exact_assumed_energy,
-     cable12_green_exact_assumed_elastic_force,
-     cable12_green_exact_assumed_elastic_tangent,
-     cable12_green_exact_assumed_discrete_force,
-     cable12_green_exact_assumed_step_stiffness,
-     cable12_green_exact_damping_force,
-     cable12_green_exact_damping_tangent,
-     cable12_green_exact_dissipation,
-     cable12_green_exact_algorithmic_force
-    },
-    {"cable12_green_linear_assumed",
-     9,
-     1,
-     cable12_green_linear_assumed_energy,
-     cable12_green_linear_assumed_elastic_force,
-     cable12_green_linear_assumed_elastic_tangent,
-     cable12_green_linear_assumed_discrete_force,
-     cable12_green_linear_assumed_step_stiffness,
-     cable12_green_exact_damping_force,
-     cable12_green_exact_damping_tangent,
-     cable12_green_exact_dissipation,
-     cable12_green_exact_algorithmic_force
-    },
-    {"cable12_engineering_exact_assumed",
-     9,
-     1,
-     cable12_engineering_exact_assumed_energy,
-     cable12_engineering_exact_assumed_elastic_force,
-     cable12_engineering_exact_assumed_elastic_tangent,
-     cable12_engineering_exact_assumed_discrete_force,
-     cable12_engineering_exact_assumed_step_stiffness,
-     cable12_engineering_exact_damping_force,
-     cable12_engineering_exact_damping_tangent,
-     cable12_engineering_exact_dissipation,
-     cable12_engineering_exact_algorithmic_force
-    },
-    {"cable12_engineering_linear_assumed",
-     9,
-     1,
-     cable12_engineering_linear_assumed_energy,
-     cable12_engineering_linear_assumed_elastic_force,
-     cable12_engineering_linear_assumed_elastic_tangent,
-     cable12_engineering_linear_assumed_discrete_force,
-     cable12_engineering_linear_assumed_step_stiffness,
-     cable12_engineering_exact_damping_force,
-     cable12_engineering_exact_damping_tangent,
-     cable12_engineering_exact_dissipation,
-     cable12_engineering_exact_algorithmic_force
-    },
-    {"cable12_green_exact_curved",
-     9,
-     1,
-     cable12_green_exact_curved_energy,
-     cable12_green_exact_curved_elastic_force,
-     cable12_green_exact_curved_elastic_tangent,
-     cable12_green_exact_curved_discrete_force,
-     cable12_green_exact_curved_step_stiffness,
-     cable12_green_exact_damping_force,
-     cable12_green_exact_damping_tangent,
-     cable12_green_exact_dissipation,
-     cable12_green_exact_algorithmic_force
-    },
-    {"cable12_engineering_exact_curved",
-     9,
-     1,
-     cable12_engineering_exact_curved_energy,
-     cable12_engineering_exact_curved_elastic_force,
-     cable12_engineering_exact_curved_elastic_tangent,
-     cable12_engineering_exact_curved_discrete_force,
-     cable12_engineering_exact_curved_step_stiffness,
-     cable12_engineering_exact_damping_force,
-     cable12_engineering_exact_damping_tangent,
-     cable12_engineering_exact_dissipation,
-     cable12_engineering_exact_algorithmic_force
-    },
-    {"cable18_green_exact",
-     17,
-     1,
-     cable18_green_exact_energy,
-     cable18_green_exact_elastic_force,
-     cable18_green_exact_elastic_tangent,
-     cable18_green_exact_discrete_force,
-     cable18_green_exact_step_stiffness,
-     cable18_green_exact_damping_force,
-     cable18_green_exact_damping_tangent,
-     cable18_green_exact_dissipation,
-     cable18_green_exact_algorithmic_force
-    },
-    {"cable18_engineering_exact",
-     17,
-     1,
-     cable18_engineering_exact_energy,
-     cable18_engineering_exact_elastic_force,
-     cable18_engineering_exact_elastic_tangent,
-     cable18_engineering_exact_discrete_force,
-     cable18_engineering_exact_step_stiffness,
-     cable18_engineering_exact_damping_force,
-     cable18_engineering_exact_damping_tangent,
-     cable18_engineering_exact_dissipation,
-     cable18_engineering_exact_algorithmic_force
-    },
-    {"cable18_green_exact_assumed",
-     17,
-     1,
-     cable18_green_exact_assumed_energy,
-     cable18_green_exact_assumed_elastic_force,
-     cable18_green_exact_assumed_elastic_tangent,
-     cable18_green_exact_assumed_discrete_force,
-     cable18_green_exact_assumed_step_stiffness,
-     cable18_green_exact_damping_force,
-     cable18_green_exact_damping_tangent,
-     cable18_green_exact_dissipation,
-     cable18_green_exact_algorithmic_force
-    },
-    {"cable18_engineering_exact_assumed",
-     17,
-     1,
-     cable18_engineering_exact_assumed_energy,
-     cable18_engineering_exact_assumed_elastic_force,
-     cable18_engineering_exact_assumed_elastic_tangent,
-     cable18_engineering_exact_assumed_discrete_force,
-     cable18_engineering_exact_assumed_step_stiffness,
-     cable18_engineering_exact_damping_force,
-     cable18_engineering_exact_damping_tangent,
-     cable18_engineering_exact_dissipation,
-     cable18_engineering_exact_algorithmic_force
-    },
-    {"beam12p_continuum",
-     15,
-     0,
-     beam12p_continuum_energy,
-     beam12p_continuum_elastic_force,
-     beam12p_continuum_elastic_tangent,
-     beam12p_continuum_discrete_force,
-     beam12p_continuum_step_stiffness,
-     beam12p_continuum_damping_force,
-     beam12p_continuum_damping_tangent,
-     beam12p_continuum_dissipation,
-     beam12p_continuum_algorithmic_force
-    },
-    {"beam12p_continuum_curved",
-     15,
-     0,
-     beam12p_continuum_curved_energy,
-     beam12p_continuum_curved_elastic_force,
-     beam12p_continuum_curved_elastic_tangent,
-     beam12p_continuum_curved_discrete_force,
-     beam12p_continuum_curved_step_stiffness,
-     beam12p_continuum_damping_force,
-     beam12p_continuum_damping_tangent,
-     beam12p_continuum_dissipation,
-     beam12p_continuum_algorithmic_force
-    },
-    {"beam12p_structural",
-     0,
-     0,
-     beam12p_structural_energy,
-     beam12p_structural_elastic_force,
-     beam12p_structural_elastic_tangent,
-     0,
-     0,
-     beam12p_structural_damping_force,
-     beam12p_structural_damping_tangent,
-     beam12p_structural_dissipation,
-     0
-    },
-    {"cable8p_green_exact",
-     7,
-     0,
-     cable8p_green_exact_energy,
-     cable8p_green_exact_elastic_force,
-     cable8p_green_exact_elastic_tangent,
-     cable8p_green_exact_discrete_force,
-     cable8p_green_exact_step_stiffness,
-     cable8p_green_exact_damping_force,
-     cable8p_green_exact_damping_tangent,
-     cable8p_green_exact_dissipation,
-     cable8p_green_exact_algorithmic_force
-    },
-    {"cable8p_green_linear",
-     7,
-     0,
-     cable8p_green_linear_energy,
-     cable8p_green_linear_elastic_force,
-     cable8p_green_linear_elastic_tangent,
-     cable8p_green_linear_discrete_force,
-     cable8p_green_linear_step_stiffness,
-     cable8p_green_exact_damping_force,
-     cable8p_green_exact_damping_tangent,
-     cable8p_green_exact_dissipation,
-     cable8p_green_exact_algorithmic_force
-    },
-    {"cable8p_engineering_exact",
-     7,
-     0,
-     cable8p_engineering_exact_energy,
-     cable8p_engineering_exact_elastic_force,
-     cable8p_engineering_exact_elastic_tangent,
-     cable8p_engineering_exact_discrete_force,
-     cable8p_engineering_exact_step_stiffness,
-     cable8p_engineering_exact_damping_force,
-     cable8p_engineering_exact_damping_tangent,
-     cable8p_engineering_exact_dissipation,
-     cable8p_engineering_exact_algorithmic_force
-    },
-    {"cable8p_engineering_linear",
-     7,
-     0,
-     cable8p_engineering_linear_energy,
-     cable8p_engineering_linear_elastic_force,
-     cable8p_engineering_linear_elastic_tangent,
-     cable8p_engineering_linear_discrete_force,
-     cable8p_engineering_linear_step_stiffness,
-     cable8p_engineering_exact_damping_force,
-     cable8p_engineering_exact_damping_tangent,
-     cable8p_engineering_exact_dissipation,
-     cable8p_engineering_exact_algorithmic_force
-    },
-    {"cable8p_green_exact_assumed",
-     7,
-     0,
-     cable8p_green_exact_assumed_energy,
-     cable8p_green_exact_assumed_elastic_force,
-     cable8p_green_exact_assumed_elastic_tangent,
-     cable8p_green_exact_assumed_discrete_force,
-     cable8p_green_exact_assumed_step_stiffness,
-     cable8p_green_exact_damping_force,
-     cable8p_green_exact_damping_tangent,
-     cable8p_green_exact_dissipation,
-     cable8p_green_exact_algorithmic_force
-    },
-    {"cable8p_green_linear_assumed",
-     7,
-     0,
-     cable8p_green_linear_assumed_energy,
-     cable8p_green_linear_assumed_elastic_force,
-     cable8p_green_linear_assumed_elastic_tangent,
-     cable8p_green_linear_assumed_discrete_force,
-     cable8p_green_linear_assumed_step_stiffness,
-     cable8p_green_exact_damping_force,
-     cable8p_green_exact_damping_tangent,
-     cable8p_green_exact_dissipation,
-     cable8p_green_exact_algorithmic_force
-    },
-    {"cable8p_engineering_exact_assumed",
-     7,
-     0,
-     cable8p_engineering_exact_assumed_energy,
-     cable8p_engineering_exact_assumed_elastic_force,
-     cable8p_engineering_exact_assumed_elastic_tangent,
-     cable8p_engineering_exact_assumed_discrete_force,
-     cable8p_engineering_exact_assumed_step_stiffness,
-     cable8p_engineering_exact_damping_force,
-     cable8p_engineering_exact_damping_tangent,
-     cable8p_engineering_exact_dissipation,
-     cable8p_engineering_exact_algorithmic_force
-    },
-    {"cable8p_engineering_linear_assumed",
-     7,
-     0,
-     cable8p_engineering_linear_assumed_energy,
-     cable8p_engineering_linear_assumed_elastic_force,
-     cable8p_engineering_linear_assumed_elastic_tangent,
-     cable8p_engineering_linear_assumed_discrete_force,
-     cable8p_engineering_linear_assumed_step_stiffness,
-     cable8p_engineering_exact_damping_force,
-     cable8p_engineering_exact_damping_tangent,
-     cable8p_engineering_exact_dissipation,
-     cable8p_engineering_exact_algorithmic_force
-    }
+    {"beam24_continuum", 28, 0, beam24_continuum_energy, beam24_continuum_elastic_force,
+     beam24_continuum_elastic_tangent, beam24_continuum_discrete_force, beam24_continuum_step_stiffness,
+     beam24_continuum_damping_force, beam24_continuum_damping_tangent, beam24_continuum_dissipation,
+     beam24_continuum_algorithmic_force},
+    {"beam24_continuum_curved", 28, 0, beam24_continuum_curved_energy, beam24_continuum_curved_elastic_force,
+     beam24_continuum_curved_elastic_tangent, beam24_continuum_curved_discrete_force,
+     beam24_continuum_curved_step_stiffness, beam24_continuum_damping_force, beam24_continuum_damping_tangent,
+     beam24_continuum_dissipation, beam24_continuum_algorithmic_force},
+    {"beam24_structural", 0, 0, beam24_structural_energy, beam24_structural_elastic_force,
+     beam24_structural_elastic_tangent, 0, 0, beam24_structural_damping_force, beam24_structural_damping_tangent,
+     beam24_structural_dissipation, 0},
+    {"cable12_green_exact", 9, 1, cable12_green_exact_energy, cable12_green_exact_elastic_force,
+     cable12_green_exact_elastic_tangent, cable12_green_exact_discrete_force, cable12_green_exact_step_stiffness,
+     cable12_green_exact_damping_force, cable12_green_exact_damping_tangent, cable12_green_exact_dissipation,
+     cable12_green_exact_algorithmic_force},
+    {"cable12_green_linear", 9, 1, cable12_green_linear_energy, cable12_green_linear_elastic_force,
+     cable12_green_linear_elastic_tangent, cable12_green_linear_discrete_force, cable12_green_linear_step_stiffness,
+     cable12_green_exact_damping_force, cable12_green_exact_damping_tangent, cable12_green_exact_dissipation,
+     cable12_green_exact_algorithmic_force},
+    {"cable12_engineering_exact", 9, 1, cable12_engineering_exact_energy, cable12_engineering_exact_elastic_force,
+     cable12_engineering_exact_elastic_tangent, cable12_engineering_exact_discrete_force,
+     cable12_engineering_exact_step_stiffness, cable12_engineering_exact_damping_force,
+     cable12_engineering_exact_damping_tangent, cable12_engineering_exact_dissipation,
+     cable12_engineering_exact_algorithmic_force},
+    {"cable12_engineering_linear", 9, 1, cable12_engineering_linear_energy, cable12_engineering_linear_elastic_force,
+     cable12_engineering_linear_elastic_tangent, cable12_engineering_linear_discrete_force,
+     cable12_engineering_linear_step_stiffness, cable12_engineering_exact_damping_force,
+     cable12_engineering_exact_damping_tangent, cable12_engineering_exact_dissipation,
+     cable12_engineering_exact_algorithmic_force},
+    {"cable12_green_exact_assumed", 9, 1, cable12_green_exact_assumed_energy, cable12_green_exact_assumed_elastic_force,
+     cable12_green_exact_assumed_elastic_tangent, cable12_green_exact_assumed_discrete_force,
+     cable12_green_exact_assumed_step_stiffness, cable12_green_exact_damping_force, cable12_green_exact_damping_tangent,
+     cable12_green_exact_dissipation, cable12_green_exact_algorithmic_force},
+    {"cable12_green_linear_assumed", 9, 1, cable12_green_linear_assumed_energy,
+     cable12_green_linear_assumed_elastic_force, cable12_green_linear_assumed_elastic_tangent,
+     cable12_green_linear_assumed_discrete_force, cable12_green_linear_assumed_step_stiffness,
+     cable12_green_exact_damping_force, cable12_green_exact_damping_tangent, cable12_green_exact_dissipation,
+     cable12_green_exact_algorithmic_force},
+    {"cable12_engineering_exact_assumed", 9, 1, cable12_engineering_exact_assumed_energy,
+     cable12_engineering_exact_assumed_elastic_force, cable12_engineering_exact_assumed_elastic_tangent,
+     cable12_engineering_exact_assumed_discrete_force, cable12_engineering_exact_assumed_step_stiffness,
+     cable12_engineering_exact_damping_force, cable12_engineering_exact_damping_tangent,
+     cable12_engineering_exact_dissipation, cable12_engineering_exact_algorithmic_force},
+    {"cable12_engineering_linear_assumed", 9, 1, cable12_engineering_linear_assumed_energy,
+     cable12_engineering_linear_assumed_elastic_force, cable12_engineering_linear_assumed_elastic_tangent,
+     cable12_engineering_linear_assumed_discrete_force, cable12_engineering_linear_assumed_step_stiffness,
+     cable12_engineering_exact_damping_force, cable12_engineering_exact_damping_tangent,
+     cable12_engineering_exact_dissipation, cable12_engineering_exact_algorithmic_force},
+    {"cable12_green_exact_curved", 9, 1, cable12_green_exact_curved_energy, cable12_green_exact_curved_elastic_force,
+     cable12_green_exact_curved_elastic_tangent, cable12_green_exact_curved_discrete_force,
+     cable12_green_exact_curved_step_stiffness, cable12_green_exact_damping_force, cable12_green_exact_damping_tangent,
+     cable12_green_exact_dissipation, cable12_green_exact_algorithmic_force},
+    {"cable12_engineering_exact_curved", 9, 1, cable12_engineering_exact_curved_energy,
+     cable12_engineering_exact_curved_elastic_force, cable12_engineering_exact_curved_elastic_tangent,
+     cable12_engineering_exact_curved_discrete_force, cable12_engineering_exact_curved_step_stiffness,
+     cable12_engineering_exact_damping_force, cable12_engineering_exact_damping_tangent,
+     cable12_engineering_exact_dissipation, cable12_engineering_exact_algorithmic_force},
+    {"cable18_green_exact", 17, 1, cable18_green_exact_energy, cable18_green_exact_elastic_force,
+     cable18_green_exact_elastic_tangent, cable18_green_exact_discrete_force, cable18_green_exact_step_stiffness,
+     cable18_green_exact_damping_force, cable18_green_exact_damping_tangent, cable18_green_exact_dissipation,
+     cable18_green_exact_algorithmic_force},
+    {"cable18_engineering_exact", 17, 1, cable18_engineering_exact_energy, cable18_engineering_exact_elastic_force,
+     cable18_engineering_exact_elastic_tangent, cable18_engineering_exact_discrete_force,
+     cable18_engineering_exact_step_stiffness, cable18_engineering_exact_damping_force,
+     cable18_engineering_exact_damping_tangent, cable18_engineering_exact_dissipation,
+     cable18_engineering_exact_algorithmic_force},
+    {"cable18_green_exact_assumed", 17, 1, cable18_green_exact_assumed_energy,
+     cable18_green_exact_assumed_elastic_force, cable18_green_exact_assumed_elastic_tangent,
+     cable18_green_exact_assumed_discrete_force, cable18_green_exact_assumed_step_stiffness,
+     cable18_green_exact_damping_force, cable18_green_exact_damping_tangent, cable18_green_exact_dissipation,
+     cable18_green_exact_algorithmic_force},
+    {"cable18_engineering_exact_assumed", 17, 1, cable18_engineering_exact_assumed_energy,
+     cable18_engineering_exact_assumed_elastic_force, cable18_engineering_exact_assumed_elastic_tangent,
+     cable18_engineering_exact_assumed_discrete_force, cable18_engineering_exact_assumed_step_stiffness,
+     cable18_engineering_exact_damping_force, cable18_engineering_exact_damping_tangent,
+     cable18_engineering_exact_dissipation, cable18_engineering_exact_algorithmic_force},
+    {"beam12p_continuum", 15, 0, beam12p_continuum_energy, beam12p_continuum_elastic_force,
+     beam12p_continuum_elastic_tangent, beam12p_continuum_discrete_force, beam12p_continuum_step_stiffness,
+     beam12p_continuum_damping_force, beam12p_continuum_damping_tangent, beam12p_continuum_dissipation,
+     beam12p_continuum_algorithmic_force},
+    {"beam12p_continuum_curved", 15, 0, beam12p_continuum_curved_energy, beam12p_continuum_curved_elastic_force,
+     beam12p_continuum_curved_elastic_tangent, beam12p_continuum_curved_discrete_force,
+     beam12p_continuum_curved_step_stiffness, beam12p_continuum_damping_force, beam12p_continuum_damping_tangent,
+     beam12p_continuum_dissipation, beam12p_continuum_algorithmic_force},
+    {"beam12p_structural", 0, 0, beam12p_structural_energy, beam12p_structural_elastic_force,
+     beam12p_structural_elastic_tangent, 0, 0, beam12p_structural_damping_force, beam12p_structural_damping_tangent,
+     beam12p_structural_dissipation, 0},
+    {"cable8p_green_exact", 7, 0, cable8p_green_exact_energy, cable8p_green_exact_elastic_force,
+     cable8p_green_exact_elastic_tangent, cable8p_green_exact_discrete_force, cable8p_green_exact_step_stiffness,
+     cable8p_green_exact_damping_force, cable8p_green_exact_damping_tangent, cable8p_green_exact_dissipation,
+     cable8p_green_exact_algorithmic_force},
+    {"cable8p_green_linear", 7, 0, cable8p_green_linear_energy, cable8p_green_linear_elastic_force,
+     cable8p_green_linear_elastic_tangent, cable8p_green_linear_discrete_force, cable8p_green_linear_step_stiffness,
+     cable8p_green_exact_damping_force, cable8p_green_exact_damping_tangent, cable8p_green_exact_dissipation,
+     cable8p_green_exact_algorithmic_force},
+    {"cable8p_engineering_exact", 7, 0, cable8p_engineering_exact_energy, cable8p_engineering_exact_elastic_force,
+     cable8p_engineering_exact_elastic_tangent, cable8p_engineering_exact_discrete_force,
+     cable8p_engineering_exact_step_stiffness, cable8p_engineering_exact_damping_force,
+     cable8p_engineering_exact_damping_tangent, cable8p_engineering_exact_dissipation,
+     cable8p_engineering_exact_algorithmic_force},
+    {"cable8p_engineering_linear", 7, 0, cable8p_engineering_linear_energy, cable8p_engineering_linear_elastic_force,
+     cable8p_engineering_linear_elastic_tangent, cable8p_engineering_linear_discrete_force,
+     cable8p_engineering_linear_step_stiffness, cable8p_engineering_exact_damping_force,
+     cable8p_engineering_exact_damping_tangent, cable8p_engineering_exact_dissipation,
+     cable8p_engineering_exact_algorithmic_force},
+    {"cable8p_green_exact_assumed", 7, 0, cable8p_green_exact_assumed_energy, cable8p_green_exact_assumed_elastic_force,
+     cable8p_green_exact_assumed_elastic_tangent, cable8p_green_exact_assumed_discrete_force,
+     cable8p_green_exact_assumed_step_stiffness, cable8p_green_exact_damping_force, cable8p_green_exact_damping_tangent,
+     cable8p_green_exact_dissipation, cable8p_green_exact_algorithmic_force},
+    {"cable8p_green_linear_assumed", 7, 0, cable8p_green_linear_assumed_energy,
+     cable8p_green_linear_assumed_elastic_force, cable8p_green_linear_assumed_elastic_tangent,
+     cable8p_green_linear_assumed_discrete_force, cable8p_green_linear_assumed_step_stiffness,
+     cable8p_green_exact_damping_force, cable8p_green_exact_damping_tangent, cable8p_green_exact_dissipation,
+     cable8p_green_exact_algorithmic_force},
+    {"cable8p_engineering_exact_assumed", 7, 0, cable8p_engineering_exact_assumed_energy,
+     cable8p_engineering_exact_assumed_elastic_force, cable8p_engineering_exact_assumed_elastic_tangent,
+     cable8p_engineering_exact_assumed_discrete_force, cable8p_engineering_exact_assumed_step_stiffness,
+     cable8p_engineering_exact_damping_force, cable8p_engineering_exact_damping_tangent,
+     cable8p_engineering_exact_dissipation, cable8p_engineering_exact_algorithmic_force},
+    {"cable8p_engineering_linear_assumed", 7, 0, cable8p_engineering_linear_assumed_energy,
+     cable8p_engineering_linear_assumed_elastic_force, cable8p_engineering_linear_assumed_elastic_tangent,
+     cable8p_engineering_linear_assumed_discrete_force, cable8p_engineering_linear_assumed_step_stiffness,
+     cable8p_engineering_exact_damping_force, cable8p_engineering_exact_damping_tangent,
+     cable8p_engineering_exact_dissipation, cable8p_engineering_exact_algorithmic_force},
 };
 
 static const fu_body_kernels bodys[] = {
-    {"rigid",
-     3,
-     7,
-     6,
-     rigid_point,
-     rigid_point_force,
-     rigid_frame,
-     rigid_inertia_force,
-     rigid_inertia_tangent,
-     rigid_kinetic_energy,
-     rigid_discrete_point
-    },
-    {"planar_rigid",
-     2,
-     4,
-     3,
-     planar_rigid_point,
-     planar_rigid_point_force,
-     planar_rigid_frame,
-     planar_rigid_inertia_force,
-     planar_rigid_inertia_tangent,
-     planar_rigid_kinetic_energy,
-     planar_rigid_discrete_point
-    }
+    {"rigid", 3, 7, 6, rigid_point, rigid_point_force, rigid_frame, rigid_inertia_force, rigid_inertia_tangent,
+     rigid_kinetic_energy, rigid_discrete_point, rigid_force, rigid_follower_force, rigid_moment, rigid_move,
+     rigid_move_tangent, rigid_cayley_move, rigid_cayley_tangent, rigid_halfway, rigid_rate, rigid_increment},
+    {"planar_rigid", 2, 4, 3, planar_rigid_point, planar_rigid_point_force, planar_rigid_frame,
+     planar_rigid_inertia_force, planar_rigid_inertia_tangent, planar_rigid_kinetic_energy, planar_rigid_discrete_point,
+     planar_rigid_force, planar_rigid_follower_force, planar_rigid_moment, planar_rigid_move, planar_rigid_move_tangent,
+     planar_rigid_cayley_move, planar_rigid_cayley_tangent, planar_rigid_halfway, planar_rigid_rate,
+     planar_rigid_increment},
 };
 
 static const fu_modal_kernels modals[] = {
-    {"modal",
-     3,
-     modal_inertia_force,
-     modal_mass_matrix,
-     modal_inertia_tangent,
-     modal_mode_force,
-     modal_mode_mass,
-     modal_mode_tangent,
-     modal_pair_tangent,
-     modal_kinetic_energy,
-     modal_potential_energy,
-     modal_attachment,
-     modal_attachment_mode,
-     modal_attachment_force,
-     modal_attachment_mode_force,
-     modal_attachment_pair_force
-    },
-    {"planar_modal",
-     2,
-     planar_modal_inertia_force,
-     planar_modal_mass_matrix,
-     planar_modal_inertia_tangent,
-     planar_modal_mode_force,
-     planar_modal_mode_mass,
-     planar_modal_mode_tangent,
-     planar_modal_pair_tangent,
-     planar_modal_kinetic_energy,
-     planar_modal_potential_energy,
-     planar_modal_attachment,
-     planar_modal_attachment_mode,
-     planar_modal_attachment_force,
-     planar_modal_attachment_mode_force,
-     planar_modal_attachment_pair_force
-    }
+    {"modal", 3, modal_inertia_force, modal_mass_matrix, modal_inertia_tangent, modal_mode_force, modal_mode_mass,
+     modal_mode_tangent, modal_pair_tangent, modal_kinetic_energy, modal_potential_energy, modal_attachment,
+     modal_attachment_mode, modal_attachment_force, modal_attachment_mode_force, modal_attachment_pair_force,
+     modal_attachment_follower, modal_attachment_mode_follower, modal_attachment_pair_follower},
+    {"planar_modal", 2, planar_modal_inertia_force, planar_modal_mass_matrix, planar_modal_inertia_tangent,
+     planar_modal_mode_force, planar_modal_mode_mass, planar_modal_mode_tangent, planar_modal_pair_tangent,
+     planar_modal_kinetic_energy, planar_modal_potential_energy, planar_modal_attachment, planar_modal_attachment_mode,
+     planar_modal_attachment_force, planar_modal_attachment_mode_force, planar_modal_attachment_pair_force,
+     planar_modal_attachment_follower, planar_modal_attachment_mode_follower, planar_modal_attachment_pair_follower},
 };
 
 static const fu_slide_kernels slides[] = {
-    {"slide_beam24_rigid",
-     30,
-     3,
-     slide_beam24_rigid_constraint,
-     slide_beam24_rigid_terms,
-     slide_beam24_rigid_residual,
-     slide_beam24_rigid_tangent,
-     slide_beam24_rigid_discrete_gradient
-    },
-    {"slide_beam24_point",
-     27,
-     3,
-     slide_beam24_point_constraint,
-     slide_beam24_point_terms,
-     slide_beam24_point_residual,
-     slide_beam24_point_tangent,
-     slide_beam24_point_discrete_gradient
-    },
-    {"slide_cable12_rigid",
-     18,
-     3,
-     slide_cable12_rigid_constraint,
-     slide_cable12_rigid_terms,
-     slide_cable12_rigid_residual,
-     slide_cable12_rigid_tangent,
-     slide_cable12_rigid_discrete_gradient
-    },
-    {"slide_cable12_point",
-     15,
-     3,
-     slide_cable12_point_constraint,
-     slide_cable12_point_terms,
-     slide_cable12_point_residual,
-     slide_cable12_point_tangent,
-     slide_cable12_point_discrete_gradient
-    },
-    {"slide_cable18_rigid",
-     24,
-     3,
-     slide_cable18_rigid_constraint,
-     slide_cable18_rigid_terms,
-     slide_cable18_rigid_residual,
-     slide_cable18_rigid_tangent,
-     slide_cable18_rigid_discrete_gradient
-    },
-    {"slide_cable18_point",
-     21,
-     3,
-     slide_cable18_point_constraint,
-     slide_cable18_point_terms,
-     slide_cable18_point_residual,
-     slide_cable18_point_tangent,
-     slide_cable18_point_discrete_gradient
-    },
-    {"slide_beam12p_planar_rigid",
-     15,
-     2,
-     slide_beam12p_planar_rigid_constraint,
-     slide_beam12p_planar_rigid_terms,
-     slide_beam12p_planar_rigid_residual,
-     slide_beam12p_planar_rigid_tangent,
-     slide_beam12p_planar_rigid_discrete_gradient
-    },
-    {"slide_beam12p_planar_point",
-     14,
-     2,
-     slide_beam12p_planar_point_constraint,
-     slide_beam12p_planar_point_terms,
-     slide_beam12p_planar_point_residual,
-     slide_beam12p_planar_point_tangent,
-     slide_beam12p_planar_point_discrete_gradient
-    },
-    {"slide_cable8p_planar_rigid",
-     11,
-     2,
-     slide_cable8p_planar_rigid_constraint,
-     slide_cable8p_planar_rigid_terms,
-     slide_cable8p_planar_rigid_residual,
-     slide_cable8p_planar_rigid_tangent,
-     slide_cable8p_planar_rigid_discrete_gradient
-    },
-    {"slide_cable8p_planar_point",
-     10,
-     2,
-     slide_cable8p_planar_point_constraint,
-     slide_cable8p_planar_point_terms,
-     slide_cable8p_planar_point_residual,
-     slide_cable8p_planar_point_tangent,
-     slide_cable8p_planar_point_discrete_gradient
-    }
+    {"slide_beam24_rigid", 30, 3, slide_beam24_rigid_constraint, slide_beam24_rigid_terms, slide_beam24_rigid_residual,
+     slide_beam24_rigid_tangent, slide_beam24_rigid_discrete_gradient},
+    {"slide_beam24_point", 27, 3, slide_beam24_point_constraint, slide_beam24_point_terms, slide_beam24_point_residual,
+     slide_beam24_point_tangent, slide_beam24_point_discrete_gradient},
+    {"slide_cable12_rigid", 18, 3, slide_cable12_rigid_constraint, slide_cable12_rigid_terms,
+     slide_cable12_rigid_residual, slide_cable12_rigid_tangent, slide_cable12_rigid_discrete_gradient},
+    {"slide_cable12_point", 15, 3, slide_cable12_point_constraint, slide_cable12_point_terms,
+     slide_cable12_point_residual, slide_cable12_point_tangent, slide_cable12_point_discrete_gradient},
+    {"slide_cable18_rigid", 24, 3, slide_cable18_rigid_constraint, slide_cable18_rigid_terms,
+     slide_cable18_rigid_residual, slide_cable18_rigid_tangent, slide_cable18_rigid_discrete_gradient},
+    {"slide_cable18_point", 21, 3, slide_cable18_point_constraint, slide_cable18_point_terms,
+     slide_cable18_point_residual, slide_cable18_point_tangent, slide_cable18_point_discrete_gradient},
+    {"slide_beam12p_planar_rigid", 15, 2, slide_beam12p_planar_rigid_constraint, slide_beam12p_planar_rigid_terms,
+     slide_beam12p_planar_rigid_residual, slide_beam12p_planar_rigid_tangent,
+     slide_beam12p_planar_rigid_discrete_gradient},
+    {"slide_beam12p_planar_point", 14, 2, slide_beam12p_planar_point_constraint, slide_beam12p_planar_point_terms,
+     slide_beam12p_planar_point_residual, slide_beam12p_planar_point_tangent,
+     slide_beam12p_planar_point_discrete_gradient},
+    {"slide_cable8p_planar_rigid", 11, 2, slide_cable8p_planar_rigid_constraint, slide_cable8p_planar_rigid_terms,
+     slide_cable8p_planar_rigid_residual, slide_cable8p_planar_rigid_tangent,
+     slide_cable8p_planar_rigid_discrete_gradient},
+    {"slide_cable8p_planar_point", 10, 2, slide_cable8p_planar_point_constraint, slide_cable8p_planar_point_terms,
+     slide_cable8p_planar_point_residual, slide_cable8p_planar_point_tangent,
+     slide_cable8p_planar_point_discrete_gradient},
 };
 
 static const fu_frame_kernels frames[] = {
-    {"frame",
-     3,
-     frame_axes,
-     frame_motion,
-     frame_moment
-    },
-    {"planar_frame",
-     2,
-     planar_frame_axes,
-     planar_frame_motion,
-     planar_frame_moment
-    }
+    {"frame", 3, frame_axes, frame_motion, frame_moment},
+    {"planar_frame", 2, planar_frame_axes, planar_frame_motion, planar_frame_moment},
 };
 
 static const fu_joint_kernels joints[] = {
-    {"joint_spherical",
-     3,
-     3,
-     joint_spherical_force,
-     joint_spherical_motion
-    },
-    {"joint_revolute",
-     3,
-     5,
-     joint_revolute_force,
-     joint_revolute_motion
-    },
-    {"joint_revolute_angle",
-     3,
-     6,
-     joint_revolute_angle_force,
-     joint_revolute_angle_motion
-    },
-    {"joint_universal",
-     3,
-     4,
-     joint_universal_force,
-     joint_universal_motion
-    },
-    {"joint_cylindrical",
-     3,
-     4,
-     joint_cylindrical_force,
-     joint_cylindrical_motion
-    },
-    {"joint_cylindrical_angle",
-     3,
-     5,
-     joint_cylindrical_angle_force,
-     joint_cylindrical_angle_motion
-    },
-    {"joint_cylindrical_distance",
-     3,
-     5,
-     joint_cylindrical_distance_force,
-     joint_cylindrical_distance_motion
-    },
-    {"joint_prismatic",
-     3,
-     5,
-     joint_prismatic_force,
-     joint_prismatic_motion
-    },
-    {"joint_prismatic_distance",
-     3,
-     6,
-     joint_prismatic_distance_force,
-     joint_prismatic_distance_motion
-    },
-    {"joint_weld",
-     3,
-     6,
-     joint_weld_force,
-     joint_weld_motion
-    },
-    {"joint_distance",
-     3,
-     1,
-     joint_distance_force,
-     joint_distance_motion
-    },
-    {"joint_aligned",
-     3,
-     2,
-     joint_aligned_force,
-     joint_aligned_motion
-    },
-    {"joint_locked",
-     3,
-     3,
-     joint_locked_force,
-     joint_locked_motion
-    },
-    {"joint_planar_spherical",
-     2,
-     2,
-     joint_planar_spherical_force,
-     joint_planar_spherical_motion
-    },
-    {"joint_planar_revolute_angle",
-     2,
-     3,
-     joint_planar_revolute_angle_force,
-     joint_planar_revolute_angle_motion
-    },
-    {"joint_planar_prismatic",
-     2,
-     2,
-     joint_planar_prismatic_force,
-     joint_planar_prismatic_motion
-    },
-    {"joint_planar_prismatic_distance",
-     2,
-     3,
-     joint_planar_prismatic_distance_force,
-     joint_planar_prismatic_distance_motion
-    },
-    {"joint_planar_weld",
-     2,
-     3,
-     joint_planar_weld_force,
-     joint_planar_weld_motion
-    },
-    {"joint_planar_distance",
-     2,
-     1,
-     joint_planar_distance_force,
-     joint_planar_distance_motion
-    },
-    {"joint_planar_locked",
-     2,
-     1,
-     joint_planar_locked_force,
-     joint_planar_locked_motion
-    }
+    {"joint_spherical", 3, 3, joint_spherical_force, joint_spherical_motion},
+    {"joint_revolute", 3, 5, joint_revolute_force, joint_revolute_motion},
+    {"joint_revolute_angle", 3, 6, joint_revolute_angle_force, joint_revolute_angle_motion},
+    {"joint_universal", 3, 4, joint_universal_force, joint_universal_motion},
+    {"joint_cylindrical", 3, 4, joint_cylindrical_force, joint_cylindrical_motion},
+    {"joint_cylindrical_angle", 3, 5, joint_cylindrical_angle_force, joint_cylindrical_angle_motion},
+    {"joint_cylindrical_distance", 3, 5, joint_cylindrical_distance_force, joint_cylindrical_distance_motion},
+    {"joint_prismatic", 3, 5, joint_prismatic_force, joint_prismatic_motion},
+    {"joint_prismatic_distance", 3, 6, joint_prismatic_distance_force, joint_prismatic_distance_motion},
+    {"joint_weld", 3, 6, joint_weld_force, joint_weld_motion},
+    {"joint_distance", 3, 1, joint_distance_force, joint_distance_motion},
+    {"joint_aligned", 3, 2, joint_aligned_force, joint_aligned_motion},
+    {"joint_locked", 3, 3, joint_locked_force, joint_locked_motion},
+    {"joint_planar_spherical", 2, 2, joint_planar_spherical_force, joint_planar_spherical_motion},
+    {"joint_planar_revolute_angle", 2, 3, joint_planar_revolute_angle_force, joint_planar_revolute_angle_motion},
+    {"joint_planar_prismatic", 2, 2, joint_planar_prismatic_force, joint_planar_prismatic_motion},
+    {"joint_planar_prismatic_distance", 2, 3, joint_planar_prismatic_distance_force,
+     joint_planar_prismatic_distance_motion},
+    {"joint_planar_weld", 2, 3, joint_planar_weld_force, joint_planar_weld_motion},
+    {"joint_planar_distance", 2, 1, joint_planar_distance_force, joint_planar_distance_motion},
+    {"joint_planar_locked", 2, 1, joint_planar_locked_force, joint_planar_locked_motion},
 };
 
 static const fu_resistance_kernels resistances[] = {
-    {"resistance",
-     3,
-     resistance_force
-    },
-    {"planar_resistance",
-     2,
-     planar_resistance_force
-    }
+    {"resistance", 3, resistance_force},
+    {"planar_resistance", 2, planar_resistance_force},
 };
 
-static void call_beam24_mass(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_mass(*a[0], *a[1], a[2], out[0]);
-}
-static void call_beam24_gravity(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_gravity(*a[0], *a[1], a[2], a[3], out[0]);
-}
-static void call_beam24_inertia_force(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_inertia_force(a[0], a[1], out[0]);
-}
-static void call_beam24_position(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_position(*a[0], a[1], a[2], out[0], out[1]);
-}
-static void call_beam24_on_axis(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_on_axis(*a[0], *a[1], out[0], out[1]);
-}
-static void call_beam24_slopes(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_slopes(*a[0], *a[1], out[0]);
-}
-static void call_beam24_follower_force(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_follower_force(*a[0], *a[1], a[2], a[3], out[0], out[1]);
-}
-static void call_beam24_moment(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_moment(*a[0], *a[1], a[2], a[3], out[0], out[1]);
-}
-static void call_cable12_mass(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_mass(*a[0], *a[1], a[2], out[0]);
-}
-static void call_cable12_gravity(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_gravity(*a[0], *a[1], a[2], a[3], out[0]);
-}
-static void call_cable12_inertia_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_inertia_force(a[0], a[1], out[0]);
-}
-static void call_cable12_position(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_position(*a[0], a[1], a[2], out[0], out[1]);
-}
-static void call_cable12_on_axis(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_on_axis(*a[0], *a[1], out[0], out[1]);
-}
-static void call_cable12_slopes(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_slopes(*a[0], *a[1], out[0]);
-}
-static void call_cable12_follower_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_follower_force(*a[0], *a[1], a[2], a[3], out[0], out[1]);
-}
-static void call_cable12_moment(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_moment(*a[0], *a[1], a[2], a[3], out[0], out[1]);
-}
-static void call_cable18_mass(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_mass(*a[0], *a[1], a[2], out[0]);
-}
-static void call_cable18_gravity(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_gravity(*a[0], *a[1], a[2], a[3], out[0]);
-}
-static void call_cable18_inertia_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_inertia_force(a[0], a[1], out[0]);
-}
-static void call_cable18_position(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_position(*a[0], a[1], a[2], out[0], out[1]);
-}
-static void call_cable18_on_axis(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_on_axis(*a[0], *a[1], out[0], out[1]);
-}
-static void call_cable18_slopes(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_slopes(*a[0], *a[1], out[0]);
-}
-static void call_cable18_follower_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_follower_force(*a[0], *a[1], a[2], a[3], out[0], out[1]);
-}
-static void call_cable18_moment(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_moment(*a[0], *a[1], a[2], a[3], out[0], out[1]);
-}
-static void call_beam12p_mass(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_mass(*a[0], *a[1], a[2], out[0]);
-}
-static void call_beam12p_gravity(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_gravity(*a[0], *a[1], a[2], a[3], out[0]);
-}
-static void call_beam12p_inertia_force(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_inertia_force(a[0], a[1], out[0]);
-}
-static void call_beam12p_position(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_position(*a[0], a[1], a[2], out[0], out[1]);
-}
-static void call_beam12p_on_axis(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_on_axis(*a[0], *a[1], out[0], out[1]);
-}
-static void call_beam12p_slopes(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_slopes(*a[0], *a[1], out[0]);
-}
-static void call_beam12p_follower_force(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_follower_force(*a[0], *a[1], a[2], a[3], out[0], out[1]);
-}
-static void call_beam12p_moment(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_moment(*a[0], *a[1], a[2], a[3], out[0], out[1]);
-}
-static void call_cable8p_mass(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_mass(*a[0], *a[1], a[2], out[0]);
-}
-static void call_cable8p_gravity(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_gravity(*a[0], *a[1], a[2], a[3], out[0]);
-}
-static void call_cable8p_inertia_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_inertia_force(a[0], a[1], out[0]);
-}
-static void call_cable8p_position(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_position(*a[0], a[1], a[2], out[0], out[1]);
-}
-static void call_cable8p_on_axis(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_on_axis(*a[0], *a[1], out[0], out[1]);
-}
-static void call_cable8p_slopes(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_slopes(*a[0], *a[1], out[0]);
-}
-static void call_cable8p_follower_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_follower_force(*a[0], *a[1], a[2], a[3], out[0], out[1]);
-}
-static void call_cable8p_moment(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_moment(*a[0], *a[1], a[2], a[3], out[0], out[1]);
-}
-static void call_beam24_continuum_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_continuum_stiffness(*a[0], a[1], out[0]);
-}
-static void call_beam24_continuum_energy(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_continuum_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_beam24_continuum_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_continuum_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_beam24_continuum_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_continuum_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_beam24_continuum_discrete_force(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_continuum_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_beam24_continuum_step_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_continuum_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_beam24_continuum_damping_force(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_continuum_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_beam24_continuum_damping_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_continuum_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
-}
-static void call_beam24_continuum_dissipation(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_continuum_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_beam24_continuum_algorithmic_force(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_continuum_algorithmic_force(*a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]);
-}
-static void call_beam24_continuum_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_continuum_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
-}
-static void call_beam24_continuum_curved_stiffness_at(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_continuum_curved_stiffness_at(*a[0], a[1], a[2], a[3], out[0], out[1]);
-}
-static void call_beam24_continuum_curved_energy(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_continuum_curved_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_beam24_continuum_curved_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_continuum_curved_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_beam24_continuum_curved_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_continuum_curved_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_beam24_continuum_curved_discrete_force(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_continuum_curved_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_beam24_continuum_curved_step_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_continuum_curved_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_beam24_continuum_curved_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_continuum_curved_section_forces(*a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]);
-}
-static void call_beam24_structural_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_structural_stiffness(*a[0], a[1], a[2], out[0]);
-}
-static void call_beam24_structural_energy(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_structural_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_beam24_structural_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_structural_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_beam24_structural_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_structural_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_beam24_structural_damping_force(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_structural_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_beam24_structural_damping_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_structural_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
-}
-static void call_beam24_structural_dissipation(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_structural_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_beam24_structural_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    beam24_structural_section_forces(*a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]);
-}
-static void call_cable12_green_exact_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_stiffness(*a[0], a[1], out[0]);
-}
-static void call_cable12_green_exact_energy(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_green_exact_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_green_exact_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_green_exact_discrete_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable12_green_exact_step_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable12_green_exact_damping_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_cable12_green_exact_damping_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
-}
-static void call_cable12_green_exact_dissipation(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_cable12_green_exact_algorithmic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_algorithmic_force(*a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]);
-}
-static void call_cable12_green_exact_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
-}
-static void call_cable12_green_linear_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_linear_stiffness(*a[0], a[1], out[0]);
-}
-static void call_cable12_green_linear_energy(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_linear_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_green_linear_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_linear_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_green_linear_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_linear_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_green_linear_discrete_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_linear_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable12_green_linear_step_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_linear_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable12_green_linear_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_linear_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
-}
-static void call_cable12_engineering_exact_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_stiffness(*a[0], a[1], out[0]);
-}
-static void call_cable12_engineering_exact_energy(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_engineering_exact_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_engineering_exact_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_engineering_exact_discrete_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable12_engineering_exact_step_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable12_engineering_exact_damping_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_cable12_engineering_exact_damping_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
-}
-static void call_cable12_engineering_exact_dissipation(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_cable12_engineering_exact_algorithmic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_algorithmic_force(*a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]);
-}
-static void call_cable12_engineering_exact_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
-}
-static void call_cable12_engineering_linear_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_linear_stiffness(*a[0], a[1], out[0]);
-}
-static void call_cable12_engineering_linear_energy(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_linear_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_engineering_linear_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_linear_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_engineering_linear_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_linear_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_engineering_linear_discrete_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_linear_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable12_engineering_linear_step_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_linear_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable12_engineering_linear_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_linear_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
-}
-static void call_cable12_green_exact_assumed_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_assumed_stiffness(*a[0], a[1], out[0]);
-}
-static void call_cable12_green_exact_assumed_energy(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_assumed_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_green_exact_assumed_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_assumed_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_green_exact_assumed_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_assumed_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_green_exact_assumed_discrete_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_assumed_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable12_green_exact_assumed_step_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_assumed_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable12_green_exact_assumed_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_assumed_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
-}
-static void call_cable12_green_linear_assumed_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_linear_assumed_stiffness(*a[0], a[1], out[0]);
-}
-static void call_cable12_green_linear_assumed_energy(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_linear_assumed_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_green_linear_assumed_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_linear_assumed_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_green_linear_assumed_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_linear_assumed_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_green_linear_assumed_discrete_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_linear_assumed_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable12_green_linear_assumed_step_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_linear_assumed_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable12_green_linear_assumed_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_linear_assumed_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
-}
-static void call_cable12_engineering_exact_assumed_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_assumed_stiffness(*a[0], a[1], out[0]);
-}
-static void call_cable12_engineering_exact_assumed_energy(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_assumed_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_engineering_exact_assumed_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_assumed_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_engineering_exact_assumed_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_assumed_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_engineering_exact_assumed_discrete_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_assumed_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable12_engineering_exact_assumed_step_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_assumed_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable12_engineering_exact_assumed_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_assumed_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
-}
-static void call_cable12_engineering_linear_assumed_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_linear_assumed_stiffness(*a[0], a[1], out[0]);
-}
-static void call_cable12_engineering_linear_assumed_energy(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_linear_assumed_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_engineering_linear_assumed_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_linear_assumed_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_engineering_linear_assumed_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_linear_assumed_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_engineering_linear_assumed_discrete_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_linear_assumed_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable12_engineering_linear_assumed_step_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_linear_assumed_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable12_engineering_linear_assumed_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_linear_assumed_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
-}
-static void call_cable12_green_exact_curved_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_curved_stiffness(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_green_exact_curved_energy(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_curved_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_green_exact_curved_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_curved_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_green_exact_curved_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_curved_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_green_exact_curved_discrete_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_curved_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable12_green_exact_curved_step_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_curved_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable12_green_exact_curved_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_green_exact_curved_section_forces(*a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]);
-}
-static void call_cable12_engineering_exact_curved_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_curved_stiffness(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_engineering_exact_curved_energy(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_curved_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_engineering_exact_curved_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_curved_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_engineering_exact_curved_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_curved_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable12_engineering_exact_curved_discrete_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_curved_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable12_engineering_exact_curved_step_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_curved_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable12_engineering_exact_curved_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    cable12_engineering_exact_curved_section_forces(*a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]);
-}
-static void call_cable18_green_exact_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_green_exact_stiffness(*a[0], a[1], out[0]);
-}
-static void call_cable18_green_exact_energy(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_green_exact_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable18_green_exact_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_green_exact_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable18_green_exact_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_green_exact_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable18_green_exact_discrete_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_green_exact_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable18_green_exact_step_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_green_exact_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable18_green_exact_damping_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_green_exact_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_cable18_green_exact_damping_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_green_exact_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
-}
-static void call_cable18_green_exact_dissipation(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_green_exact_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_cable18_green_exact_algorithmic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_green_exact_algorithmic_force(*a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]);
-}
-static void call_cable18_green_exact_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_green_exact_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
-}
-static void call_cable18_engineering_exact_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_engineering_exact_stiffness(*a[0], a[1], out[0]);
-}
-static void call_cable18_engineering_exact_energy(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_engineering_exact_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable18_engineering_exact_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_engineering_exact_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable18_engineering_exact_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_engineering_exact_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable18_engineering_exact_discrete_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_engineering_exact_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable18_engineering_exact_step_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_engineering_exact_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable18_engineering_exact_damping_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_engineering_exact_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_cable18_engineering_exact_damping_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_engineering_exact_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
-}
-static void call_cable18_engineering_exact_dissipation(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_engineering_exact_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_cable18_engineering_exact_algorithmic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_engineering_exact_algorithmic_force(*a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]);
-}
-static void call_cable18_engineering_exact_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_engineering_exact_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
-}
-static void call_cable18_green_exact_assumed_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_green_exact_assumed_stiffness(*a[0], a[1], out[0]);
-}
-static void call_cable18_green_exact_assumed_energy(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_green_exact_assumed_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable18_green_exact_assumed_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_green_exact_assumed_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable18_green_exact_assumed_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_green_exact_assumed_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable18_green_exact_assumed_discrete_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_green_exact_assumed_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable18_green_exact_assumed_step_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_green_exact_assumed_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable18_green_exact_assumed_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_green_exact_assumed_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
-}
-static void call_cable18_engineering_exact_assumed_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_engineering_exact_assumed_stiffness(*a[0], a[1], out[0]);
-}
-static void call_cable18_engineering_exact_assumed_energy(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_engineering_exact_assumed_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable18_engineering_exact_assumed_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_engineering_exact_assumed_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable18_engineering_exact_assumed_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_engineering_exact_assumed_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable18_engineering_exact_assumed_discrete_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_engineering_exact_assumed_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable18_engineering_exact_assumed_step_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_engineering_exact_assumed_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable18_engineering_exact_assumed_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    cable18_engineering_exact_assumed_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
-}
-static void call_beam12p_continuum_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_continuum_stiffness(*a[0], a[1], out[0]);
-}
-static void call_beam12p_continuum_energy(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_continuum_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_beam12p_continuum_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_continuum_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_beam12p_continuum_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_continuum_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_beam12p_continuum_discrete_force(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_continuum_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_beam12p_continuum_step_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_continuum_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_beam12p_continuum_damping_force(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_continuum_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_beam12p_continuum_damping_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_continuum_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
-}
-static void call_beam12p_continuum_dissipation(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_continuum_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_beam12p_continuum_algorithmic_force(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_continuum_algorithmic_force(*a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]);
-}
-static void call_beam12p_continuum_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_continuum_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
-}
-static void call_beam12p_continuum_curved_stiffness_at(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_continuum_curved_stiffness_at(*a[0], a[1], a[2], a[3], out[0], out[1]);
-}
-static void call_beam12p_continuum_curved_energy(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_continuum_curved_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_beam12p_continuum_curved_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_continuum_curved_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_beam12p_continuum_curved_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_continuum_curved_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_beam12p_continuum_curved_discrete_force(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_continuum_curved_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_beam12p_continuum_curved_step_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_continuum_curved_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_beam12p_continuum_curved_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_continuum_curved_section_forces(*a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]);
-}
-static void call_beam12p_structural_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_structural_stiffness(*a[0], a[1], a[2], out[0]);
-}
-static void call_beam12p_structural_energy(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_structural_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_beam12p_structural_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_structural_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_beam12p_structural_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_structural_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_beam12p_structural_damping_force(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_structural_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_beam12p_structural_damping_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_structural_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
-}
-static void call_beam12p_structural_dissipation(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_structural_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_beam12p_structural_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    beam12p_structural_section_forces(*a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]);
-}
-static void call_cable8p_green_exact_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_exact_stiffness(*a[0], a[1], out[0]);
-}
-static void call_cable8p_green_exact_energy(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_exact_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable8p_green_exact_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_exact_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable8p_green_exact_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_exact_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable8p_green_exact_discrete_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_exact_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable8p_green_exact_step_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_exact_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable8p_green_exact_damping_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_exact_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_cable8p_green_exact_damping_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_exact_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
-}
-static void call_cable8p_green_exact_dissipation(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_exact_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_cable8p_green_exact_algorithmic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_exact_algorithmic_force(*a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]);
-}
-static void call_cable8p_green_exact_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_exact_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
-}
-static void call_cable8p_green_linear_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_linear_stiffness(*a[0], a[1], out[0]);
-}
-static void call_cable8p_green_linear_energy(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_linear_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable8p_green_linear_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_linear_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable8p_green_linear_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_linear_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable8p_green_linear_discrete_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_linear_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable8p_green_linear_step_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_linear_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable8p_green_linear_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_linear_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
-}
-static void call_cable8p_engineering_exact_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_exact_stiffness(*a[0], a[1], out[0]);
-}
-static void call_cable8p_engineering_exact_energy(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_exact_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable8p_engineering_exact_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_exact_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable8p_engineering_exact_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_exact_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable8p_engineering_exact_discrete_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_exact_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable8p_engineering_exact_step_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_exact_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable8p_engineering_exact_damping_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_exact_damping_force(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_cable8p_engineering_exact_damping_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_exact_damping_tangent(*a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]);
-}
-static void call_cable8p_engineering_exact_dissipation(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_exact_dissipation(*a[0], a[1], a[2], a[3], *a[4], out[0]);
-}
-static void call_cable8p_engineering_exact_algorithmic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_exact_algorithmic_force(*a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]);
-}
-static void call_cable8p_engineering_exact_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_exact_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
-}
-static void call_cable8p_engineering_linear_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_linear_stiffness(*a[0], a[1], out[0]);
-}
-static void call_cable8p_engineering_linear_energy(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_linear_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable8p_engineering_linear_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_linear_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable8p_engineering_linear_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_linear_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable8p_engineering_linear_discrete_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_linear_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable8p_engineering_linear_step_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_linear_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable8p_engineering_linear_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_linear_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
-}
-static void call_cable8p_green_exact_assumed_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_exact_assumed_stiffness(*a[0], a[1], out[0]);
-}
-static void call_cable8p_green_exact_assumed_energy(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_exact_assumed_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable8p_green_exact_assumed_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_exact_assumed_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable8p_green_exact_assumed_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_exact_assumed_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable8p_green_exact_assumed_discrete_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_exact_assumed_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable8p_green_exact_assumed_step_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_exact_assumed_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable8p_green_exact_assumed_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_exact_assumed_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
-}
-static void call_cable8p_green_linear_assumed_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_linear_assumed_stiffness(*a[0], a[1], out[0]);
-}
-static void call_cable8p_green_linear_assumed_energy(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_linear_assumed_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable8p_green_linear_assumed_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_linear_assumed_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable8p_green_linear_assumed_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_linear_assumed_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable8p_green_linear_assumed_discrete_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_linear_assumed_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable8p_green_linear_assumed_step_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_linear_assumed_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable8p_green_linear_assumed_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_green_linear_assumed_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
-}
-static void call_cable8p_engineering_exact_assumed_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_exact_assumed_stiffness(*a[0], a[1], out[0]);
-}
-static void call_cable8p_engineering_exact_assumed_energy(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_exact_assumed_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable8p_engineering_exact_assumed_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_exact_assumed_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable8p_engineering_exact_assumed_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_exact_assumed_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable8p_engineering_exact_assumed_discrete_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_exact_assumed_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable8p_engineering_exact_assumed_step_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_exact_assumed_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable8p_engineering_exact_assumed_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_exact_assumed_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
-}
-static void call_cable8p_engineering_linear_assumed_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_linear_assumed_stiffness(*a[0], a[1], out[0]);
-}
-static void call_cable8p_engineering_linear_assumed_energy(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_linear_assumed_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable8p_engineering_linear_assumed_elastic_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_linear_assumed_elastic_force(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable8p_engineering_linear_assumed_elastic_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_linear_assumed_elastic_tangent(*a[0], a[1], a[2], out[0]);
-}
-static void call_cable8p_engineering_linear_assumed_discrete_force(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_linear_assumed_discrete_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable8p_engineering_linear_assumed_step_stiffness(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_linear_assumed_step_stiffness(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_cable8p_engineering_linear_assumed_section_forces(const fu_real *const *a, fu_real *const *out)
-{
-    cable8p_engineering_linear_assumed_section_forces(*a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]);
-}
-static void call_rigid_point(const fu_real *const *a, fu_real *const *out)
-{
-    rigid_point(a[0], a[1], a[2], out[0], out[1], out[2], out[3]);
-}
-static void call_rigid_point_force(const fu_real *const *a, fu_real *const *out)
-{
-    rigid_point_force(a[0], a[1], a[2], out[0], out[1], out[2]);
-}
-static void call_rigid_frame(const fu_real *const *a, fu_real *const *out)
-{
-    rigid_frame(a[0], a[1], out[0], out[1], out[2]);
-}
-static void call_rigid_inertia_force(const fu_real *const *a, fu_real *const *out)
-{
-    rigid_inertia_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_rigid_inertia_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    rigid_inertia_tangent(*a[0], a[1], a[2], out[0], out[1]);
-}
-static void call_rigid_kinetic_energy(const fu_real *const *a, fu_real *const *out)
-{
-    rigid_kinetic_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_rigid_discrete_point(const fu_real *const *a, fu_real *const *out)
-{
-    rigid_discrete_point(a[0], a[1], a[2], out[0]);
-}
-static void call_planar_rigid_point(const fu_real *const *a, fu_real *const *out)
-{
-    planar_rigid_point(a[0], a[1], a[2], out[0], out[1], out[2], out[3]);
-}
-static void call_planar_rigid_point_force(const fu_real *const *a, fu_real *const *out)
-{
-    planar_rigid_point_force(a[0], a[1], a[2], out[0], out[1], out[2]);
-}
-static void call_planar_rigid_frame(const fu_real *const *a, fu_real *const *out)
-{
-    planar_rigid_frame(a[0], a[1], out[0], out[1], out[2]);
-}
-static void call_planar_rigid_inertia_force(const fu_real *const *a, fu_real *const *out)
-{
-    planar_rigid_inertia_force(*a[0], a[1], a[2], a[3], out[0]);
-}
-static void call_planar_rigid_inertia_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    planar_rigid_inertia_tangent(*a[0], a[1], a[2], out[0], out[1]);
-}
-static void call_planar_rigid_kinetic_energy(const fu_real *const *a, fu_real *const *out)
-{
-    planar_rigid_kinetic_energy(*a[0], a[1], a[2], out[0]);
-}
-static void call_planar_rigid_discrete_point(const fu_real *const *a, fu_real *const *out)
-{
-    planar_rigid_discrete_point(a[0], a[1], a[2], out[0]);
-}
-static void call_modal_inertia_force(const fu_real *const *a, fu_real *const *out)
-{
-    modal_inertia_force(a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0]);
-}
-static void call_modal_mass_matrix(const fu_real *const *a, fu_real *const *out)
-{
-    modal_mass_matrix(a[0], *a[1], a[2], a[3], out[0]);
-}
-static void call_modal_inertia_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    modal_inertia_tangent(a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0], out[1]);
-}
-static void call_modal_mode_force(const fu_real *const *a, fu_real *const *out)
-{
-    modal_mode_force(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0]);
-}
-static void call_modal_mode_mass(const fu_real *const *a, fu_real *const *out)
-{
-    modal_mode_mass(a[0], a[1], a[2], out[0]);
-}
-static void call_modal_mode_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    modal_mode_tangent(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3]);
-}
-static void call_modal_pair_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    modal_pair_tangent(a[0], a[1], a[2], a[3], a[4], out[0], out[1]);
-}
-static void call_modal_kinetic_energy(const fu_real *const *a, fu_real *const *out)
-{
-    modal_kinetic_energy(a[0], a[1], *a[2], a[3], a[4], a[5], a[6], *a[7], out[0]);
-}
-static void call_modal_potential_energy(const fu_real *const *a, fu_real *const *out)
-{
-    modal_potential_energy(a[0], a[1], *a[2], a[3], out[0]);
-}
-static void call_modal_attachment(const fu_real *const *a, fu_real *const *out)
-{
-    modal_attachment(a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7]);
-}
-static void call_modal_attachment_mode(const fu_real *const *a, fu_real *const *out)
-{
-    modal_attachment_mode(a[0], a[1], a[2], a[3], a[4], out[0], out[1]);
-}
-static void call_modal_attachment_force(const fu_real *const *a, fu_real *const *out)
-{
-    modal_attachment_force(a[0], a[1], a[2], a[3], a[4], out[0]);
-}
-static void call_modal_attachment_mode_force(const fu_real *const *a, fu_real *const *out)
-{
-    modal_attachment_mode_force(a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1]);
-}
-static void call_modal_attachment_pair_force(const fu_real *const *a, fu_real *const *out)
-{
-    modal_attachment_pair_force(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], out[0]);
-}
-static void call_planar_modal_inertia_force(const fu_real *const *a, fu_real *const *out)
-{
-    planar_modal_inertia_force(a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0]);
-}
-static void call_planar_modal_mass_matrix(const fu_real *const *a, fu_real *const *out)
-{
-    planar_modal_mass_matrix(a[0], *a[1], a[2], a[3], out[0]);
-}
-static void call_planar_modal_inertia_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    planar_modal_inertia_tangent(a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0], out[1]);
-}
-static void call_planar_modal_mode_force(const fu_real *const *a, fu_real *const *out)
-{
-    planar_modal_mode_force(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0]);
-}
-static void call_planar_modal_mode_mass(const fu_real *const *a, fu_real *const *out)
-{
-    planar_modal_mode_mass(a[0], a[1], a[2], out[0]);
-}
-static void call_planar_modal_mode_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    planar_modal_mode_tangent(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3]);
-}
-static void call_planar_modal_pair_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    planar_modal_pair_tangent(a[0], a[1], a[2], a[3], a[4], out[0], out[1]);
-}
-static void call_planar_modal_kinetic_energy(const fu_real *const *a, fu_real *const *out)
-{
-    planar_modal_kinetic_energy(a[0], a[1], *a[2], a[3], a[4], a[5], a[6], *a[7], out[0]);
-}
-static void call_planar_modal_potential_energy(const fu_real *const *a, fu_real *const *out)
-{
-    planar_modal_potential_energy(a[0], a[1], *a[2], a[3], out[0]);
-}
-static void call_planar_modal_attachment(const fu_real *const *a, fu_real *const *out)
-{
-    planar_modal_attachment(a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7]);
-}
-static void call_planar_modal_attachment_mode(const fu_real *const *a, fu_real *const *out)
-{
-    planar_modal_attachment_mode(a[0], a[1], a[2], a[3], a[4], out[0], out[1]);
-}
-static void call_planar_modal_attachment_force(const fu_real *const *a, fu_real *const *out)
-{
-    planar_modal_attachment_force(a[0], a[1], a[2], a[3], a[4], out[0]);
-}
-static void call_planar_modal_attachment_mode_force(const fu_real *const *a, fu_real *const *out)
-{
-    planar_modal_attachment_mode_force(a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1]);
-}
-static void call_planar_modal_attachment_pair_force(const fu_real *const *a, fu_real *const *out)
-{
-    planar_modal_attachment_pair_force(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], out[0]);
-}
-static void call_slide_beam24_rigid_constraint(const fu_real *const *a, fu_real *const *out)
-{
-    slide_beam24_rigid_constraint(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]);
-}
-static void call_slide_beam24_rigid_terms(const fu_real *const *a, fu_real *const *out)
-{
-    slide_beam24_rigid_terms(*a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]);
-}
-static void call_slide_beam24_rigid_residual(const fu_real *const *a, fu_real *const *out)
-{
-    slide_beam24_rigid_residual(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
-}
-static void call_slide_beam24_rigid_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    slide_beam24_rigid_tangent(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
-}
-static void call_slide_beam24_rigid_discrete_gradient(const fu_real *const *a, fu_real *const *out)
-{
-    slide_beam24_rigid_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
-}
-static void call_slide_beam24_point_constraint(const fu_real *const *a, fu_real *const *out)
-{
-    slide_beam24_point_constraint(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]);
-}
-static void call_slide_beam24_point_terms(const fu_real *const *a, fu_real *const *out)
-{
-    slide_beam24_point_terms(*a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]);
-}
-static void call_slide_beam24_point_residual(const fu_real *const *a, fu_real *const *out)
-{
-    slide_beam24_point_residual(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
-}
-static void call_slide_beam24_point_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    slide_beam24_point_tangent(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
-}
-static void call_slide_beam24_point_discrete_gradient(const fu_real *const *a, fu_real *const *out)
-{
-    slide_beam24_point_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
-}
-static void call_slide_cable12_rigid_constraint(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable12_rigid_constraint(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]);
-}
-static void call_slide_cable12_rigid_terms(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable12_rigid_terms(*a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]);
-}
-static void call_slide_cable12_rigid_residual(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable12_rigid_residual(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
-}
-static void call_slide_cable12_rigid_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable12_rigid_tangent(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
-}
-static void call_slide_cable12_rigid_discrete_gradient(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable12_rigid_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
-}
-static void call_slide_cable12_point_constraint(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable12_point_constraint(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]);
-}
-static void call_slide_cable12_point_terms(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable12_point_terms(*a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]);
-}
-static void call_slide_cable12_point_residual(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable12_point_residual(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
-}
-static void call_slide_cable12_point_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable12_point_tangent(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
-}
-static void call_slide_cable12_point_discrete_gradient(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable12_point_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
-}
-static void call_slide_cable18_rigid_constraint(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable18_rigid_constraint(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]);
-}
-static void call_slide_cable18_rigid_terms(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable18_rigid_terms(*a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]);
-}
-static void call_slide_cable18_rigid_residual(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable18_rigid_residual(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
-}
-static void call_slide_cable18_rigid_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable18_rigid_tangent(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
-}
-static void call_slide_cable18_rigid_discrete_gradient(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable18_rigid_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
-}
-static void call_slide_cable18_point_constraint(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable18_point_constraint(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]);
-}
-static void call_slide_cable18_point_terms(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable18_point_terms(*a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]);
-}
-static void call_slide_cable18_point_residual(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable18_point_residual(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
-}
-static void call_slide_cable18_point_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable18_point_tangent(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
-}
-static void call_slide_cable18_point_discrete_gradient(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable18_point_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
-}
-static void call_slide_beam12p_planar_rigid_constraint(const fu_real *const *a, fu_real *const *out)
-{
-    slide_beam12p_planar_rigid_constraint(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]);
-}
-static void call_slide_beam12p_planar_rigid_terms(const fu_real *const *a, fu_real *const *out)
-{
-    slide_beam12p_planar_rigid_terms(*a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]);
-}
-static void call_slide_beam12p_planar_rigid_residual(const fu_real *const *a, fu_real *const *out)
-{
-    slide_beam12p_planar_rigid_residual(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
-}
-static void call_slide_beam12p_planar_rigid_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    slide_beam12p_planar_rigid_tangent(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
-}
-static void call_slide_beam12p_planar_rigid_discrete_gradient(const fu_real *const *a, fu_real *const *out)
-{
-    slide_beam12p_planar_rigid_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
-}
-static void call_slide_beam12p_planar_point_constraint(const fu_real *const *a, fu_real *const *out)
-{
-    slide_beam12p_planar_point_constraint(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]);
-}
-static void call_slide_beam12p_planar_point_terms(const fu_real *const *a, fu_real *const *out)
-{
-    slide_beam12p_planar_point_terms(*a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]);
-}
-static void call_slide_beam12p_planar_point_residual(const fu_real *const *a, fu_real *const *out)
-{
-    slide_beam12p_planar_point_residual(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
-}
-static void call_slide_beam12p_planar_point_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    slide_beam12p_planar_point_tangent(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
-}
-static void call_slide_beam12p_planar_point_discrete_gradient(const fu_real *const *a, fu_real *const *out)
-{
-    slide_beam12p_planar_point_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
-}
-static void call_slide_cable8p_planar_rigid_constraint(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable8p_planar_rigid_constraint(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]);
-}
-static void call_slide_cable8p_planar_rigid_terms(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable8p_planar_rigid_terms(*a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]);
-}
-static void call_slide_cable8p_planar_rigid_residual(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable8p_planar_rigid_residual(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
-}
-static void call_slide_cable8p_planar_rigid_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable8p_planar_rigid_tangent(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
-}
-static void call_slide_cable8p_planar_rigid_discrete_gradient(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable8p_planar_rigid_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
-}
-static void call_slide_cable8p_planar_point_constraint(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable8p_planar_point_constraint(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]);
-}
-static void call_slide_cable8p_planar_point_terms(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable8p_planar_point_terms(*a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]);
-}
-static void call_slide_cable8p_planar_point_residual(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable8p_planar_point_residual(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
-}
-static void call_slide_cable8p_planar_point_tangent(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable8p_planar_point_tangent(*a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
-}
-static void call_slide_cable8p_planar_point_discrete_gradient(const fu_real *const *a, fu_real *const *out)
-{
-    slide_cable8p_planar_point_discrete_gradient(*a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]);
-}
-static void call_frame_axes(const fu_real *const *a, fu_real *const *out)
-{
-    frame_axes(a[0], a[1], out[0], out[1]);
-}
-static void call_frame_motion(const fu_real *const *a, fu_real *const *out)
-{
-    frame_motion(a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
-}
-static void call_frame_moment(const fu_real *const *a, fu_real *const *out)
-{
-    frame_moment(a[0], a[1], a[2], out[0], out[1]);
-}
-static void call_planar_frame_axes(const fu_real *const *a, fu_real *const *out)
-{
-    planar_frame_axes(a[0], a[1], out[0], out[1]);
-}
-static void call_planar_frame_motion(const fu_real *const *a, fu_real *const *out)
-{
-    planar_frame_motion(a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1]);
-}
-static void call_planar_frame_moment(const fu_real *const *a, fu_real *const *out)
-{
-    planar_frame_moment(a[0], a[1], a[2], out[0], out[1]);
-}
-static void call_joint_spherical_force(const fu_real *const *a, fu_real *const *out)
-{
-    joint_spherical_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
-}
-static void call_joint_spherical_motion(const fu_real *const *a, fu_real *const *out)
-{
-    joint_spherical_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
-}
-static void call_joint_revolute_force(const fu_real *const *a, fu_real *const *out)
-{
-    joint_revolute_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
-}
-static void call_joint_revolute_motion(const fu_real *const *a, fu_real *const *out)
-{
-    joint_revolute_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
-}
-static void call_joint_revolute_angle_force(const fu_real *const *a, fu_real *const *out)
-{
-    joint_revolute_angle_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
-}
-static void call_joint_revolute_angle_motion(const fu_real *const *a, fu_real *const *out)
-{
-    joint_revolute_angle_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
-}
-static void call_joint_universal_force(const fu_real *const *a, fu_real *const *out)
-{
-    joint_universal_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
-}
-static void call_joint_universal_motion(const fu_real *const *a, fu_real *const *out)
-{
-    joint_universal_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
-}
-static void call_joint_cylindrical_force(const fu_real *const *a, fu_real *const *out)
-{
-    joint_cylindrical_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
-}
-static void call_joint_cylindrical_motion(const fu_real *const *a, fu_real *const *out)
-{
-    joint_cylindrical_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
-}
-static void call_joint_cylindrical_angle_force(const fu_real *const *a, fu_real *const *out)
-{
-    joint_cylindrical_angle_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
-}
-static void call_joint_cylindrical_angle_motion(const fu_real *const *a, fu_real *const *out)
-{
-    joint_cylindrical_angle_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
-}
-static void call_joint_cylindrical_distance_force(const fu_real *const *a, fu_real *const *out)
-{
-    joint_cylindrical_distance_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
-}
-static void call_joint_cylindrical_distance_motion(const fu_real *const *a, fu_real *const *out)
-{
-    joint_cylindrical_distance_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
-}
-static void call_joint_prismatic_force(const fu_real *const *a, fu_real *const *out)
-{
-    joint_prismatic_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
-}
-static void call_joint_prismatic_motion(const fu_real *const *a, fu_real *const *out)
-{
-    joint_prismatic_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
-}
-static void call_joint_prismatic_distance_force(const fu_real *const *a, fu_real *const *out)
-{
-    joint_prismatic_distance_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
-}
-static void call_joint_prismatic_distance_motion(const fu_real *const *a, fu_real *const *out)
-{
-    joint_prismatic_distance_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
-}
-static void call_joint_weld_force(const fu_real *const *a, fu_real *const *out)
-{
-    joint_weld_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
-}
-static void call_joint_weld_motion(const fu_real *const *a, fu_real *const *out)
-{
-    joint_weld_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
-}
-static void call_joint_distance_force(const fu_real *const *a, fu_real *const *out)
-{
-    joint_distance_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
-}
-static void call_joint_distance_motion(const fu_real *const *a, fu_real *const *out)
-{
-    joint_distance_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
-}
-static void call_joint_aligned_force(const fu_real *const *a, fu_real *const *out)
-{
-    joint_aligned_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
-}
-static void call_joint_aligned_motion(const fu_real *const *a, fu_real *const *out)
-{
-    joint_aligned_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
-}
-static void call_joint_locked_force(const fu_real *const *a, fu_real *const *out)
-{
-    joint_locked_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
-}
-static void call_joint_locked_motion(const fu_real *const *a, fu_real *const *out)
-{
-    joint_locked_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
-}
-static void call_joint_planar_spherical_force(const fu_real *const *a, fu_real *const *out)
-{
-    joint_planar_spherical_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
-}
-static void call_joint_planar_spherical_motion(const fu_real *const *a, fu_real *const *out)
-{
-    joint_planar_spherical_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
-}
-static void call_joint_planar_revolute_angle_force(const fu_real *const *a, fu_real *const *out)
-{
-    joint_planar_revolute_angle_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
-}
-static void call_joint_planar_revolute_angle_motion(const fu_real *const *a, fu_real *const *out)
-{
-    joint_planar_revolute_angle_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
-}
-static void call_joint_planar_prismatic_force(const fu_real *const *a, fu_real *const *out)
-{
-    joint_planar_prismatic_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
-}
-static void call_joint_planar_prismatic_motion(const fu_real *const *a, fu_real *const *out)
-{
-    joint_planar_prismatic_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
-}
-static void call_joint_planar_prismatic_distance_force(const fu_real *const *a, fu_real *const *out)
-{
-    joint_planar_prismatic_distance_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
-}
-static void call_joint_planar_prismatic_distance_motion(const fu_real *const *a, fu_real *const *out)
-{
-    joint_planar_prismatic_distance_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
-}
-static void call_joint_planar_weld_force(const fu_real *const *a, fu_real *const *out)
-{
-    joint_planar_weld_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
-}
-static void call_joint_planar_weld_motion(const fu_real *const *a, fu_real *const *out)
-{
-    joint_planar_weld_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
-}
-static void call_joint_planar_distance_force(const fu_real *const *a, fu_real *const *out)
-{
-    joint_planar_distance_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
-}
-static void call_joint_planar_distance_motion(const fu_real *const *a, fu_real *const *out)
-{
-    joint_planar_distance_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
-}
-static void call_joint_planar_locked_force(const fu_real *const *a, fu_real *const *out)
-{
-    joint_planar_locked_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]);
-}
-static void call_joint_planar_locked_motion(const fu_real *const *a, fu_real *const *out)
-{
-    joint_planar_locked_motion(a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]);
-}
-static void call_resistance_force(const fu_real *const *a, fu_real *const *out)
-{
-    resistance_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]);
-}
-static void call_planar_resistance_force(const fu_real *const *a, fu_real *const *out)
-{
-    planar_resistance_force(a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]);
-}
+static const fu_spring_kernels springs[] = {
+    {"spring", 3, spring_energy, spring_dissipation, spring_force, spring_tangent, spring_discrete_force},
+    {"zero_length_spring", 3, zero_length_spring_energy, zero_length_spring_dissipation, zero_length_spring_force,
+     zero_length_spring_tangent, zero_length_spring_discrete_force},
+    {"planar_spring", 2, planar_spring_energy, planar_spring_dissipation, planar_spring_force, planar_spring_tangent,
+     planar_spring_discrete_force},
+    {"planar_zero_length_spring", 2, planar_zero_length_spring_energy, planar_zero_length_spring_dissipation,
+     planar_zero_length_spring_force, planar_zero_length_spring_tangent, planar_zero_length_spring_discrete_force},
+};
 
+/* X(name, arguments) for every kernel: from arrays of pointers, to inputs `a` and outputs `out` */
+#define FU_EVERY(X) \
+    X(beam24_mass, *a[0], *a[1], a[2], out[0]) \
+    X(beam24_gravity, *a[0], *a[1], a[2], a[3], out[0]) \
+    X(beam24_inertia_force, a[0], a[1], out[0]) \
+    X(beam24_position, *a[0], a[1], a[2], out[0], out[1]) \
+    X(beam24_on_axis, *a[0], *a[1], out[0], out[1]) \
+    X(beam24_slopes, *a[0], *a[1], out[0]) \
+    X(beam24_follower_force, *a[0], *a[1], a[2], a[3], out[0], out[1]) \
+    X(beam24_moment, *a[0], *a[1], a[2], a[3], out[0], out[1]) \
+    X(cable12_mass, *a[0], *a[1], a[2], out[0]) \
+    X(cable12_gravity, *a[0], *a[1], a[2], a[3], out[0]) \
+    X(cable12_inertia_force, a[0], a[1], out[0]) \
+    X(cable12_position, *a[0], a[1], a[2], out[0], out[1]) \
+    X(cable12_on_axis, *a[0], *a[1], out[0], out[1]) \
+    X(cable12_slopes, *a[0], *a[1], out[0]) \
+    X(cable12_follower_force, *a[0], *a[1], a[2], a[3], out[0], out[1]) \
+    X(cable12_moment, *a[0], *a[1], a[2], a[3], out[0], out[1]) \
+    X(cable18_mass, *a[0], *a[1], a[2], out[0]) \
+    X(cable18_gravity, *a[0], *a[1], a[2], a[3], out[0]) \
+    X(cable18_inertia_force, a[0], a[1], out[0]) \
+    X(cable18_position, *a[0], a[1], a[2], out[0], out[1]) \
+    X(cable18_on_axis, *a[0], *a[1], out[0], out[1]) \
+    X(cable18_slopes, *a[0], *a[1], out[0]) \
+    X(cable18_follower_force, *a[0], *a[1], a[2], a[3], out[0], out[1]) \
+    X(cable18_moment, *a[0], *a[1], a[2], a[3], out[0], out[1]) \
+    X(beam12p_mass, *a[0], *a[1], a[2], out[0]) \
+    X(beam12p_gravity, *a[0], *a[1], a[2], a[3], out[0]) \
+    X(beam12p_inertia_force, a[0], a[1], out[0]) \
+    X(beam12p_position, *a[0], a[1], a[2], out[0], out[1]) \
+    X(beam12p_on_axis, *a[0], *a[1], out[0], out[1]) \
+    X(beam12p_slopes, *a[0], *a[1], out[0]) \
+    X(beam12p_follower_force, *a[0], *a[1], a[2], a[3], out[0], out[1]) \
+    X(beam12p_moment, *a[0], *a[1], a[2], a[3], out[0], out[1]) \
+    X(cable8p_mass, *a[0], *a[1], a[2], out[0]) \
+    X(cable8p_gravity, *a[0], *a[1], a[2], a[3], out[0]) \
+    X(cable8p_inertia_force, a[0], a[1], out[0]) \
+    X(cable8p_position, *a[0], a[1], a[2], out[0], out[1]) \
+    X(cable8p_on_axis, *a[0], *a[1], out[0], out[1]) \
+    X(cable8p_slopes, *a[0], *a[1], out[0]) \
+    X(cable8p_follower_force, *a[0], *a[1], a[2], a[3], out[0], out[1]) \
+    X(cable8p_moment, *a[0], *a[1], a[2], a[3], out[0], out[1]) \
+    X(beam24_continuum_stiffness, *a[0], a[1], out[0]) \
+    X(beam24_continuum_energy, *a[0], a[1], a[2], out[0]) \
+    X(beam24_continuum_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(beam24_continuum_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(beam24_continuum_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(beam24_continuum_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(beam24_continuum_damping_force, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
+    X(beam24_continuum_damping_tangent, *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]) \
+    X(beam24_continuum_dissipation, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
+    X(beam24_continuum_algorithmic_force, *a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]) \
+    X(beam24_continuum_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
+    X(beam24_continuum_curved_stiffness_at, *a[0], a[1], a[2], a[3], out[0], out[1]) \
+    X(beam24_continuum_curved_energy, *a[0], a[1], a[2], out[0]) \
+    X(beam24_continuum_curved_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(beam24_continuum_curved_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(beam24_continuum_curved_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(beam24_continuum_curved_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(beam24_continuum_curved_section_forces, *a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]) \
+    X(beam24_structural_stiffness, *a[0], a[1], a[2], out[0]) \
+    X(beam24_structural_energy, *a[0], a[1], a[2], out[0]) \
+    X(beam24_structural_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(beam24_structural_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(beam24_structural_damping_force, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
+    X(beam24_structural_damping_tangent, *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]) \
+    X(beam24_structural_dissipation, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
+    X(beam24_structural_section_forces, *a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]) \
+    X(cable12_green_exact_stiffness, *a[0], a[1], out[0]) \
+    X(cable12_green_exact_energy, *a[0], a[1], a[2], out[0]) \
+    X(cable12_green_exact_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(cable12_green_exact_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(cable12_green_exact_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable12_green_exact_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable12_green_exact_damping_force, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
+    X(cable12_green_exact_damping_tangent, *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]) \
+    X(cable12_green_exact_dissipation, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
+    X(cable12_green_exact_algorithmic_force, *a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]) \
+    X(cable12_green_exact_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
+    X(cable12_green_linear_stiffness, *a[0], a[1], out[0]) \
+    X(cable12_green_linear_energy, *a[0], a[1], a[2], out[0]) \
+    X(cable12_green_linear_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(cable12_green_linear_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(cable12_green_linear_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable12_green_linear_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable12_green_linear_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
+    X(cable12_engineering_exact_stiffness, *a[0], a[1], out[0]) \
+    X(cable12_engineering_exact_energy, *a[0], a[1], a[2], out[0]) \
+    X(cable12_engineering_exact_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(cable12_engineering_exact_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(cable12_engineering_exact_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable12_engineering_exact_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable12_engineering_exact_damping_force, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
+    X(cable12_engineering_exact_damping_tangent, *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]) \
+    X(cable12_engineering_exact_dissipation, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
+    X(cable12_engineering_exact_algorithmic_force, *a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]) \
+    X(cable12_engineering_exact_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
+    X(cable12_engineering_linear_stiffness, *a[0], a[1], out[0]) \
+    X(cable12_engineering_linear_energy, *a[0], a[1], a[2], out[0]) \
+    X(cable12_engineering_linear_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(cable12_engineering_linear_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(cable12_engineering_linear_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable12_engineering_linear_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable12_engineering_linear_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
+    X(cable12_green_exact_assumed_stiffness, *a[0], a[1], out[0]) \
+    X(cable12_green_exact_assumed_energy, *a[0], a[1], a[2], out[0]) \
+    X(cable12_green_exact_assumed_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(cable12_green_exact_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(cable12_green_exact_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable12_green_exact_assumed_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable12_green_exact_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
+    X(cable12_green_linear_assumed_stiffness, *a[0], a[1], out[0]) \
+    X(cable12_green_linear_assumed_energy, *a[0], a[1], a[2], out[0]) \
+    X(cable12_green_linear_assumed_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(cable12_green_linear_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(cable12_green_linear_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable12_green_linear_assumed_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable12_green_linear_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
+    X(cable12_engineering_exact_assumed_stiffness, *a[0], a[1], out[0]) \
+    X(cable12_engineering_exact_assumed_energy, *a[0], a[1], a[2], out[0]) \
+    X(cable12_engineering_exact_assumed_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(cable12_engineering_exact_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(cable12_engineering_exact_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable12_engineering_exact_assumed_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable12_engineering_exact_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
+    X(cable12_engineering_linear_assumed_stiffness, *a[0], a[1], out[0]) \
+    X(cable12_engineering_linear_assumed_energy, *a[0], a[1], a[2], out[0]) \
+    X(cable12_engineering_linear_assumed_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(cable12_engineering_linear_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(cable12_engineering_linear_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable12_engineering_linear_assumed_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable12_engineering_linear_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
+    X(cable12_green_exact_curved_stiffness, *a[0], a[1], a[2], out[0]) \
+    X(cable12_green_exact_curved_energy, *a[0], a[1], a[2], out[0]) \
+    X(cable12_green_exact_curved_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(cable12_green_exact_curved_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(cable12_green_exact_curved_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable12_green_exact_curved_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable12_green_exact_curved_section_forces, *a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]) \
+    X(cable12_engineering_exact_curved_stiffness, *a[0], a[1], a[2], out[0]) \
+    X(cable12_engineering_exact_curved_energy, *a[0], a[1], a[2], out[0]) \
+    X(cable12_engineering_exact_curved_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(cable12_engineering_exact_curved_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(cable12_engineering_exact_curved_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable12_engineering_exact_curved_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable12_engineering_exact_curved_section_forces, *a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]) \
+    X(cable18_green_exact_stiffness, *a[0], a[1], out[0]) \
+    X(cable18_green_exact_energy, *a[0], a[1], a[2], out[0]) \
+    X(cable18_green_exact_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(cable18_green_exact_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(cable18_green_exact_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable18_green_exact_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable18_green_exact_damping_force, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
+    X(cable18_green_exact_damping_tangent, *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]) \
+    X(cable18_green_exact_dissipation, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
+    X(cable18_green_exact_algorithmic_force, *a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]) \
+    X(cable18_green_exact_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
+    X(cable18_engineering_exact_stiffness, *a[0], a[1], out[0]) \
+    X(cable18_engineering_exact_energy, *a[0], a[1], a[2], out[0]) \
+    X(cable18_engineering_exact_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(cable18_engineering_exact_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(cable18_engineering_exact_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable18_engineering_exact_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable18_engineering_exact_damping_force, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
+    X(cable18_engineering_exact_damping_tangent, *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]) \
+    X(cable18_engineering_exact_dissipation, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
+    X(cable18_engineering_exact_algorithmic_force, *a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]) \
+    X(cable18_engineering_exact_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
+    X(cable18_green_exact_assumed_stiffness, *a[0], a[1], out[0]) \
+    X(cable18_green_exact_assumed_energy, *a[0], a[1], a[2], out[0]) \
+    X(cable18_green_exact_assumed_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(cable18_green_exact_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(cable18_green_exact_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable18_green_exact_assumed_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable18_green_exact_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
+    X(cable18_engineering_exact_assumed_stiffness, *a[0], a[1], out[0]) \
+    X(cable18_engineering_exact_assumed_energy, *a[0], a[1], a[2], out[0]) \
+    X(cable18_engineering_exact_assumed_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(cable18_engineering_exact_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(cable18_engineering_exact_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable18_engineering_exact_assumed_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable18_engineering_exact_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
+    X(beam12p_continuum_stiffness, *a[0], a[1], out[0]) \
+    X(beam12p_continuum_energy, *a[0], a[1], a[2], out[0]) \
+    X(beam12p_continuum_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(beam12p_continuum_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(beam12p_continuum_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(beam12p_continuum_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(beam12p_continuum_damping_force, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
+    X(beam12p_continuum_damping_tangent, *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]) \
+    X(beam12p_continuum_dissipation, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
+    X(beam12p_continuum_algorithmic_force, *a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]) \
+    X(beam12p_continuum_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
+    X(beam12p_continuum_curved_stiffness_at, *a[0], a[1], a[2], a[3], out[0], out[1]) \
+    X(beam12p_continuum_curved_energy, *a[0], a[1], a[2], out[0]) \
+    X(beam12p_continuum_curved_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(beam12p_continuum_curved_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(beam12p_continuum_curved_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(beam12p_continuum_curved_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(beam12p_continuum_curved_section_forces, *a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]) \
+    X(beam12p_structural_stiffness, *a[0], a[1], a[2], out[0]) \
+    X(beam12p_structural_energy, *a[0], a[1], a[2], out[0]) \
+    X(beam12p_structural_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(beam12p_structural_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(beam12p_structural_damping_force, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
+    X(beam12p_structural_damping_tangent, *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]) \
+    X(beam12p_structural_dissipation, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
+    X(beam12p_structural_section_forces, *a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]) \
+    X(cable8p_green_exact_stiffness, *a[0], a[1], out[0]) \
+    X(cable8p_green_exact_energy, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_green_exact_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_green_exact_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_green_exact_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable8p_green_exact_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable8p_green_exact_damping_force, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
+    X(cable8p_green_exact_damping_tangent, *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]) \
+    X(cable8p_green_exact_dissipation, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
+    X(cable8p_green_exact_algorithmic_force, *a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]) \
+    X(cable8p_green_exact_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
+    X(cable8p_green_linear_stiffness, *a[0], a[1], out[0]) \
+    X(cable8p_green_linear_energy, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_green_linear_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_green_linear_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_green_linear_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable8p_green_linear_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable8p_green_linear_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
+    X(cable8p_engineering_exact_stiffness, *a[0], a[1], out[0]) \
+    X(cable8p_engineering_exact_energy, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_engineering_exact_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_engineering_exact_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_engineering_exact_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable8p_engineering_exact_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable8p_engineering_exact_damping_force, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
+    X(cable8p_engineering_exact_damping_tangent, *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]) \
+    X(cable8p_engineering_exact_dissipation, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
+    X(cable8p_engineering_exact_algorithmic_force, *a[0], a[1], a[2], a[3], *a[4], a[5], out[0], out[1]) \
+    X(cable8p_engineering_exact_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
+    X(cable8p_engineering_linear_stiffness, *a[0], a[1], out[0]) \
+    X(cable8p_engineering_linear_energy, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_engineering_linear_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_engineering_linear_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_engineering_linear_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable8p_engineering_linear_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable8p_engineering_linear_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
+    X(cable8p_green_exact_assumed_stiffness, *a[0], a[1], out[0]) \
+    X(cable8p_green_exact_assumed_energy, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_green_exact_assumed_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_green_exact_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_green_exact_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable8p_green_exact_assumed_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable8p_green_exact_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
+    X(cable8p_green_linear_assumed_stiffness, *a[0], a[1], out[0]) \
+    X(cable8p_green_linear_assumed_energy, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_green_linear_assumed_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_green_linear_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_green_linear_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable8p_green_linear_assumed_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable8p_green_linear_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
+    X(cable8p_engineering_exact_assumed_stiffness, *a[0], a[1], out[0]) \
+    X(cable8p_engineering_exact_assumed_energy, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_engineering_exact_assumed_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_engineering_exact_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_engineering_exact_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable8p_engineering_exact_assumed_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable8p_engineering_exact_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
+    X(cable8p_engineering_linear_assumed_stiffness, *a[0], a[1], out[0]) \
+    X(cable8p_engineering_linear_assumed_energy, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_engineering_linear_assumed_elastic_force, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_engineering_linear_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
+    X(cable8p_engineering_linear_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable8p_engineering_linear_assumed_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
+    X(cable8p_engineering_linear_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
+    X(rigid_point, a[0], a[1], a[2], out[0], out[1], out[2], out[3]) \
+    X(rigid_point_force, a[0], a[1], a[2], out[0], out[1], out[2]) \
+    X(rigid_frame, a[0], a[1], out[0], out[1], out[2]) \
+    X(rigid_inertia_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(rigid_inertia_tangent, *a[0], a[1], a[2], out[0], out[1]) \
+    X(rigid_kinetic_energy, *a[0], a[1], a[2], out[0]) \
+    X(rigid_discrete_point, a[0], a[1], a[2], out[0]) \
+    X(rigid_force, a[0], a[1], a[2], out[0], out[1]) \
+    X(rigid_follower_force, a[0], a[1], a[2], out[0], out[1]) \
+    X(rigid_moment, a[0], a[1], out[0], out[1]) \
+    X(rigid_move, a[0], a[1], out[0]) \
+    X(rigid_move_tangent, a[0], out[0]) \
+    X(rigid_cayley_move, a[0], a[1], out[0]) \
+    X(rigid_cayley_tangent, a[0], out[0]) \
+    X(rigid_halfway, a[0], a[1], out[0]) \
+    X(rigid_rate, a[0], a[1], out[0]) \
+    X(rigid_increment, a[0], a[1], out[0]) \
+    X(planar_rigid_point, a[0], a[1], a[2], out[0], out[1], out[2], out[3]) \
+    X(planar_rigid_point_force, a[0], a[1], a[2], out[0], out[1], out[2]) \
+    X(planar_rigid_frame, a[0], a[1], out[0], out[1], out[2]) \
+    X(planar_rigid_inertia_force, *a[0], a[1], a[2], a[3], out[0]) \
+    X(planar_rigid_inertia_tangent, *a[0], a[1], a[2], out[0], out[1]) \
+    X(planar_rigid_kinetic_energy, *a[0], a[1], a[2], out[0]) \
+    X(planar_rigid_discrete_point, a[0], a[1], a[2], out[0]) \
+    X(planar_rigid_force, a[0], a[1], a[2], out[0], out[1]) \
+    X(planar_rigid_follower_force, a[0], a[1], a[2], out[0], out[1]) \
+    X(planar_rigid_moment, a[0], a[1], out[0], out[1]) \
+    X(planar_rigid_move, a[0], a[1], out[0]) \
+    X(planar_rigid_move_tangent, a[0], out[0]) \
+    X(planar_rigid_cayley_move, a[0], a[1], out[0]) \
+    X(planar_rigid_cayley_tangent, a[0], out[0]) \
+    X(planar_rigid_halfway, a[0], a[1], out[0]) \
+    X(planar_rigid_rate, a[0], a[1], out[0]) \
+    X(planar_rigid_increment, a[0], a[1], out[0]) \
+    X(modal_inertia_force, a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0]) \
+    X(modal_mass_matrix, a[0], *a[1], a[2], a[3], out[0]) \
+    X(modal_inertia_tangent, a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0], out[1]) \
+    X(modal_mode_force, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0]) \
+    X(modal_mode_mass, a[0], a[1], a[2], out[0]) \
+    X(modal_mode_tangent, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3]) \
+    X(modal_pair_tangent, a[0], a[1], a[2], a[3], a[4], out[0], out[1]) \
+    X(modal_kinetic_energy, a[0], a[1], *a[2], a[3], a[4], a[5], a[6], *a[7], out[0]) \
+    X(modal_potential_energy, a[0], a[1], *a[2], a[3], out[0]) \
+    X(modal_attachment, a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7]) \
+    X(modal_attachment_mode, a[0], a[1], a[2], a[3], a[4], out[0], out[1]) \
+    X(modal_attachment_force, a[0], a[1], a[2], a[3], a[4], out[0]) \
+    X(modal_attachment_mode_force, a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1]) \
+    X(modal_attachment_pair_force, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], out[0]) \
+    X(modal_attachment_follower, a[0], a[1], a[2], a[3], out[0], out[1]) \
+    X(modal_attachment_mode_follower, a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
+    X(modal_attachment_pair_follower, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0]) \
+    X(planar_modal_inertia_force, a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0]) \
+    X(planar_modal_mass_matrix, a[0], *a[1], a[2], a[3], out[0]) \
+    X(planar_modal_inertia_tangent, a[0], a[1], a[2], a[3], *a[4], a[5], a[6], a[7], a[8], a[9], a[10], out[0], out[1]) \
+    X(planar_modal_mode_force, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0]) \
+    X(planar_modal_mode_mass, a[0], a[1], a[2], out[0]) \
+    X(planar_modal_mode_tangent, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3]) \
+    X(planar_modal_pair_tangent, a[0], a[1], a[2], a[3], a[4], out[0], out[1]) \
+    X(planar_modal_kinetic_energy, a[0], a[1], *a[2], a[3], a[4], a[5], a[6], *a[7], out[0]) \
+    X(planar_modal_potential_energy, a[0], a[1], *a[2], a[3], out[0]) \
+    X(planar_modal_attachment, a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7]) \
+    X(planar_modal_attachment_mode, a[0], a[1], a[2], a[3], a[4], out[0], out[1]) \
+    X(planar_modal_attachment_force, a[0], a[1], a[2], a[3], a[4], out[0]) \
+    X(planar_modal_attachment_mode_force, a[0], a[1], a[2], a[3], a[4], a[5], a[6], out[0], out[1]) \
+    X(planar_modal_attachment_pair_force, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], out[0]) \
+    X(planar_modal_attachment_follower, a[0], a[1], a[2], a[3], out[0], out[1]) \
+    X(planar_modal_attachment_mode_follower, a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
+    X(planar_modal_attachment_pair_follower, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0]) \
+    X(slide_beam24_rigid_constraint, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]) \
+    X(slide_beam24_rigid_terms, *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]) \
+    X(slide_beam24_rigid_residual, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
+    X(slide_beam24_rigid_tangent, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
+    X(slide_beam24_rigid_discrete_gradient, *a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]) \
+    X(slide_beam24_point_constraint, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]) \
+    X(slide_beam24_point_terms, *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]) \
+    X(slide_beam24_point_residual, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
+    X(slide_beam24_point_tangent, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
+    X(slide_beam24_point_discrete_gradient, *a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]) \
+    X(slide_cable12_rigid_constraint, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]) \
+    X(slide_cable12_rigid_terms, *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]) \
+    X(slide_cable12_rigid_residual, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
+    X(slide_cable12_rigid_tangent, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
+    X(slide_cable12_rigid_discrete_gradient, *a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]) \
+    X(slide_cable12_point_constraint, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]) \
+    X(slide_cable12_point_terms, *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]) \
+    X(slide_cable12_point_residual, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
+    X(slide_cable12_point_tangent, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
+    X(slide_cable12_point_discrete_gradient, *a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]) \
+    X(slide_cable18_rigid_constraint, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]) \
+    X(slide_cable18_rigid_terms, *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]) \
+    X(slide_cable18_rigid_residual, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
+    X(slide_cable18_rigid_tangent, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
+    X(slide_cable18_rigid_discrete_gradient, *a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]) \
+    X(slide_cable18_point_constraint, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]) \
+    X(slide_cable18_point_terms, *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]) \
+    X(slide_cable18_point_residual, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
+    X(slide_cable18_point_tangent, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
+    X(slide_cable18_point_discrete_gradient, *a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]) \
+    X(slide_beam12p_planar_rigid_constraint, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]) \
+    X(slide_beam12p_planar_rigid_terms, *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]) \
+    X(slide_beam12p_planar_rigid_residual, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
+    X(slide_beam12p_planar_rigid_tangent, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
+    X(slide_beam12p_planar_rigid_discrete_gradient, *a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]) \
+    X(slide_beam12p_planar_point_constraint, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]) \
+    X(slide_beam12p_planar_point_terms, *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]) \
+    X(slide_beam12p_planar_point_residual, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
+    X(slide_beam12p_planar_point_tangent, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
+    X(slide_beam12p_planar_point_discrete_gradient, *a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]) \
+    X(slide_cable8p_planar_rigid_constraint, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]) \
+    X(slide_cable8p_planar_rigid_terms, *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]) \
+    X(slide_cable8p_planar_rigid_residual, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
+    X(slide_cable8p_planar_rigid_tangent, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
+    X(slide_cable8p_planar_rigid_discrete_gradient, *a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]) \
+    X(slide_cable8p_planar_point_constraint, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1], out[2], out[3]) \
+    X(slide_cable8p_planar_point_terms, *a[0], *a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1], out[2], out[3], out[4], out[5], out[6], out[7], out[8]) \
+    X(slide_cable8p_planar_point_residual, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
+    X(slide_cable8p_planar_point_tangent, *a[0], *a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
+    X(slide_cable8p_planar_point_discrete_gradient, *a[0], *a[1], *a[2], a[3], a[4], a[5], a[6], out[0]) \
+    X(frame_axes, a[0], a[1], out[0], out[1]) \
+    X(frame_motion, a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
+    X(frame_moment, a[0], a[1], a[2], out[0], out[1]) \
+    X(planar_frame_axes, a[0], a[1], out[0], out[1]) \
+    X(planar_frame_motion, a[0], a[1], a[2], a[3], a[4], a[5], out[0], out[1]) \
+    X(planar_frame_moment, a[0], a[1], a[2], out[0], out[1]) \
+    X(joint_spherical_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(joint_spherical_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
+    X(joint_revolute_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(joint_revolute_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
+    X(joint_revolute_angle_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(joint_revolute_angle_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
+    X(joint_universal_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(joint_universal_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
+    X(joint_cylindrical_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(joint_cylindrical_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
+    X(joint_cylindrical_angle_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(joint_cylindrical_angle_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
+    X(joint_cylindrical_distance_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(joint_cylindrical_distance_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
+    X(joint_prismatic_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(joint_prismatic_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
+    X(joint_prismatic_distance_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(joint_prismatic_distance_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
+    X(joint_weld_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(joint_weld_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
+    X(joint_distance_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(joint_distance_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
+    X(joint_aligned_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(joint_aligned_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
+    X(joint_locked_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(joint_locked_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
+    X(joint_planar_spherical_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(joint_planar_spherical_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
+    X(joint_planar_revolute_angle_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(joint_planar_revolute_angle_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
+    X(joint_planar_prismatic_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(joint_planar_prismatic_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
+    X(joint_planar_prismatic_distance_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(joint_planar_prismatic_distance_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
+    X(joint_planar_weld_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(joint_planar_weld_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
+    X(joint_planar_distance_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(joint_planar_distance_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
+    X(joint_planar_locked_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(joint_planar_locked_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
+    X(resistance_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]) \
+    X(planar_resistance_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]) \
+    X(spring_energy, *a[0], *a[1], a[2], out[0]) \
+    X(spring_dissipation, *a[0], *a[1], a[2], a[3], out[0]) \
+    X(spring_force, *a[0], *a[1], *a[2], a[3], a[4], out[0]) \
+    X(spring_tangent, *a[0], *a[1], *a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(spring_discrete_force, *a[0], *a[1], *a[2], *a[3], a[4], a[5], out[0], out[1]) \
+    X(zero_length_spring_energy, *a[0], *a[1], a[2], out[0]) \
+    X(zero_length_spring_dissipation, *a[0], *a[1], a[2], a[3], out[0]) \
+    X(zero_length_spring_force, *a[0], *a[1], *a[2], a[3], a[4], out[0]) \
+    X(zero_length_spring_tangent, *a[0], *a[1], *a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(zero_length_spring_discrete_force, *a[0], *a[1], *a[2], *a[3], a[4], a[5], out[0], out[1]) \
+    X(planar_spring_energy, *a[0], *a[1], a[2], out[0]) \
+    X(planar_spring_dissipation, *a[0], *a[1], a[2], a[3], out[0]) \
+    X(planar_spring_force, *a[0], *a[1], *a[2], a[3], a[4], out[0]) \
+    X(planar_spring_tangent, *a[0], *a[1], *a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(planar_spring_discrete_force, *a[0], *a[1], *a[2], *a[3], a[4], a[5], out[0], out[1]) \
+    X(planar_zero_length_spring_energy, *a[0], *a[1], a[2], out[0]) \
+    X(planar_zero_length_spring_dissipation, *a[0], *a[1], a[2], a[3], out[0]) \
+    X(planar_zero_length_spring_force, *a[0], *a[1], *a[2], a[3], a[4], out[0]) \
+    X(planar_zero_length_spring_tangent, *a[0], *a[1], *a[2], a[3], a[4], out[0], out[1], out[2]) \
+    X(planar_zero_length_spring_discrete_force, *a[0], *a[1], *a[2], *a[3], a[4], a[5], out[0], out[1]) \
+
+#define FU_CALL(name, ...) static void call_##name(const fu_real *const *a, fu_real *const *out) { name(__VA_ARGS__); }
+FU_EVERY(FU_CALL)
+
+#define FU_NAMED(name, ...) { #name, call_##name },
 const fu_kernel fu_kernels[] = {
-    {"beam24_mass", call_beam24_mass},
-    {"beam24_gravity", call_beam24_gravity},
-    {"beam24_inertia_force", call_beam24_inertia_force},
-    {"beam24_position", call_beam24_position},
-    {"beam24_on_axis", call_beam24_on_axis},
-    {"beam24_slopes", call_beam24_slopes},
-    {"beam24_follower_force", call_beam24_follower_force},
-    {"beam24_moment", call_beam24_moment},
-    {"cable12_mass", call_cable12_mass},
-    {"cable12_gravity", call_cable12_gravity},
-    {"cable12_inertia_force", call_cable12_inertia_force},
-    {"cable12_position", call_cable12_position},
-    {"cable12_on_axis", call_cable12_on_axis},
-    {"cable12_slopes", call_cable12_slopes},
-    {"cable12_follower_force", call_cable12_follower_force},
-    {"cable12_moment", call_cable12_moment},
-    {"cable18_mass", call_cable18_mass},
-    {"cable18_gravity", call_cable18_gravity},
-    {"cable18_inertia_force", call_cable18_inertia_force},
-    {"cable18_position", call_cable18_position},
-    {"cable18_on_axis", call_cable18_on_axis},
-    {"cable18_slopes", call_cable18_slopes},
-    {"cable18_follower_force", call_cable18_follower_force},
-    {"cable18_moment", call_cable18_moment},
-    {"beam12p_mass", call_beam12p_mass},
-    {"beam12p_gravity", call_beam12p_gravity},
-    {"beam12p_inertia_force", call_beam12p_inertia_force},
-    {"beam12p_position", call_beam12p_position},
-    {"beam12p_on_axis", call_beam12p_on_axis},
-    {"beam12p_slopes", call_beam12p_slopes},
-    {"beam12p_follower_force", call_beam12p_follower_force},
-    {"beam12p_moment", call_beam12p_moment},
-    {"cable8p_mass", call_cable8p_mass},
-    {"cable8p_gravity", call_cable8p_gravity},
-    {"cable8p_inertia_force", call_cable8p_inertia_force},
-    {"cable8p_position", call_cable8p_position},
-    {"cable8p_on_axis", call_cable8p_on_axis},
-    {"cable8p_slopes", call_cable8p_slopes},
-    {"cable8p_follower_force", call_cable8p_follower_force},
-    {"cable8p_moment", call_cable8p_moment},
-    {"beam24_continuum_stiffness", call_beam24_continuum_stiffness},
-    {"beam24_continuum_energy", call_beam24_continuum_energy},
-    {"beam24_continuum_elastic_force", call_beam24_continuum_elastic_force},
-    {"beam24_continuum_elastic_tangent", call_beam24_continuum_elastic_tangent},
-    {"beam24_continuum_discrete_force", call_beam24_continuum_discrete_force},
-    {"beam24_continuum_step_stiffness", call_beam24_continuum_step_stiffness},
-    {"beam24_continuum_damping_force", call_beam24_continuum_damping_force},
-    {"beam24_continuum_damping_tangent", call_beam24_continuum_damping_tangent},
-    {"beam24_continuum_dissipation", call_beam24_continuum_dissipation},
-    {"beam24_continuum_algorithmic_force", call_beam24_continuum_algorithmic_force},
-    {"beam24_continuum_section_forces", call_beam24_continuum_section_forces},
-    {"beam24_continuum_curved_stiffness_at", call_beam24_continuum_curved_stiffness_at},
-    {"beam24_continuum_curved_energy", call_beam24_continuum_curved_energy},
-    {"beam24_continuum_curved_elastic_force", call_beam24_continuum_curved_elastic_force},
-    {"beam24_continuum_curved_elastic_tangent", call_beam24_continuum_curved_elastic_tangent},
-    {"beam24_continuum_curved_discrete_force", call_beam24_continuum_curved_discrete_force},
-    {"beam24_continuum_curved_step_stiffness", call_beam24_continuum_curved_step_stiffness},
-    {"beam24_continuum_curved_section_forces", call_beam24_continuum_curved_section_forces},
-    {"beam24_structural_stiffness", call_beam24_structural_stiffness},
-    {"beam24_structural_energy", call_beam24_structural_energy},
-    {"beam24_structural_elastic_force", call_beam24_structural_elastic_force},
-    {"beam24_structural_elastic_tangent", call_beam24_structural_elastic_tangent},
-    {"beam24_structural_damping_force", call_beam24_structural_damping_force},
-    {"beam24_structural_damping_tangent", call_beam24_structural_damping_tangent},
-    {"beam24_structural_dissipation", call_beam24_structural_dissipation},
-    {"beam24_structural_section_forces", call_beam24_structural_section_forces},
-    {"cable12_green_exact_stiffness", call_cable12_green_exact_stiffness},
-    {"cable12_green_exact_energy", call_cable12_green_exact_energy},
-    {"cable12_green_exact_elastic_force", call_cable12_green_exact_elastic_force},
-    {"cable12_green_exact_elastic_tangent", call_cable12_green_exact_elastic_tangent},
-    {"cable12_green_exact_discrete_force", call_cable12_green_exact_discrete_force},
-    {"cable12_green_exact_step_stiffness", call_cable12_green_exact_step_stiffness},
-    {"cable12_green_exact_damping_force", call_cable12_green_exact_damping_force},
-    {"cable12_green_exact_damping_tangent", call_cable12_green_exact_damping_tangent},
-    {"cable12_green_exact_dissipation", call_cable12_green_exact_dissipation},
-    {"cable12_green_exact_algorithmic_force", call_cable12_green_exact_algorithmic_force},
-    {"cable12_green_exact_section_forces", call_cable12_green_exact_section_forces},
-    {"cable12_green_linear_stiffness", call_cable12_green_linear_stiffness},
-    {"cable12_green_linear_energy", call_cable12_green_linear_energy},
-    {"cable12_green_linear_elastic_force", call_cable12_green_linear_elastic_force},
-    {"cable12_green_linear_elastic_tangent", call_cable12_green_linear_elastic_tangent},
-    {"cable12_green_linear_discrete_force", call_cable12_green_linear_discrete_force},
-    {"cable12_green_linear_step_stiffness", call_cable12_green_linear_step_stiffness},
-    {"cable12_green_linear_section_forces", call_cable12_green_linear_section_forces},
-    {"cable12_engineering_exact_stiffness", call_cable12_engineering_exact_stiffness},
-    {"cable12_engineering_exact_energy", call_cable12_engineering_exact_energy},
-    {"cable12_engineering_exact_elastic_force", call_cable12_engineering_exact_elastic_force},
-    {"cable12_engineering_exact_elastic_tangent", call_cable12_engineering_exact_elastic_tangent},
-    {"cable12_engineering_exact_discrete_force", call_cable12_engineering_exact_discrete_force},
-    {"cable12_engineering_exact_step_stiffness", call_cable12_engineering_exact_step_stiffness},
-    {"cable12_engineering_exact_damping_force", call_cable12_engineering_exact_damping_force},
-    {"cable12_engineering_exact_damping_tangent", call_cable12_engineering_exact_damping_tangent},
-    {"cable12_engineering_exact_dissipation", call_cable12_engineering_exact_dissipation},
-    {"cable12_engineering_exact_algorithmic_force", call_cable12_engineering_exact_algorithmic_force},
-    {"cable12_engineering_exact_section_forces", call_cable12_engineering_exact_section_forces},
-    {"cable12_engineering_linear_stiffness", call_cable12_engineering_linear_stiffness},
-    {"cable12_engineering_linear_energy", call_cable12_engineering_linear_energy},
-    {"cable12_engineering_linear_elastic_force", call_cable12_engineering_linear_elastic_force},
-    {"cable12_engineering_linear_elastic_tangent", call_cable12_engineering_linear_elastic_tangent},
-    {"cable12_engineering_linear_discrete_force", call_cable12_engineering_linear_discrete_force},
-    {"cable12_engineering_linear_step_stiffness", call_cable12_engineering_linear_step_stiffness},
-    {"cable12_engineering_linear_section_forces", call_cable12_engineering_linear_section_forces},
-    {"cable12_green_exact_assumed_stiffness", call_cable12_green_exact_assumed_stiffness},
-    {"cable12_green_exact_assumed_energy", call_cable12_green_exact_assumed_energy},
-    {"cable12_green_exact_assumed_elastic_force", call_cable12_green_exact_assumed_elastic_force},
-    {"cable12_green_exact_assumed_elastic_tangent", call_cable12_green_exact_assumed_elastic_tangent},
-    {"cable12_green_exact_assumed_discrete_force", call_cable12_green_exact_assumed_discrete_force},
-    {"cable12_green_exact_assumed_step_stiffness", call_cable12_green_exact_assumed_step_stiffness},
-    {"cable12_green_exact_assumed_section_forces", call_cable12_green_exact_assumed_section_forces},
-    {"cable12_green_linear_assumed_stiffness", call_cable12_green_linear_assumed_stiffness},
-    {"cable12_green_linear_assumed_energy", call_cable12_green_linear_assumed_energy},
-    {"cable12_green_linear_assumed_elastic_force", call_cable12_green_linear_assumed_elastic_force},
-    {"cable12_green_linear_assumed_elastic_tangent", call_cable12_green_linear_assumed_elastic_tangent},
-    {"cable12_green_linear_assumed_discrete_force", call_cable12_green_linear_assumed_discrete_force},
-    {"cable12_green_linear_assumed_step_stiffness", call_cable12_green_linear_assumed_step_stiffness},
-    {"cable12_green_linear_assumed_section_forces", call_cable12_green_linear_assumed_section_forces},
-    {"cable12_engineering_exact_assumed_stiffness", call_cable12_engineering_exact_assumed_stiffness},
-    {"cable12_engineering_exact_assumed_energy", call_cable12_engineering_exact_assumed_energy},
-    {"cable12_engineering_exact_assumed_elastic_force", call_cable12_engineering_exact_assumed_elastic_force},
-    {"cable12_engineering_exact_assumed_elastic_tangent", call_cable12_engineering_exact_assumed_elastic_tangent},
-    {"cable12_engineering_exact_assumed_discrete_force", call_cable12_engineering_exact_assumed_discrete_force},
-    {"cable12_engineering_exact_assumed_step_stiffness", call_cable12_engineering_exact_assumed_step_stiffness},
-    {"cable12_engineering_exact_assumed_section_forces", call_cable12_engineering_exact_assumed_section_forces},
-    {"cable12_engineering_linear_assumed_stiffness", call_cable12_engineering_linear_assumed_stiffness},
-    {"cable12_engineering_linear_assumed_energy", call_cable12_engineering_linear_assumed_energy},
-    {"cable12_engineering_linear_assumed_elastic_force", call_cable12_engineering_linear_assumed_elastic_force},
-    {"cable12_engineering_linear_assumed_elastic_tangent", call_cable12_engineering_linear_assumed_elastic_tangent},
-    {"cable12_engineering_linear_assumed_discrete_force", call_cable12_engineering_linear_assumed_discrete_force},
-    {"cable12_engineering_linear_assumed_step_stiffness", call_cable12_engineering_linear_assumed_step_stiffness},
-    {"cable12_engineering_linear_assumed_section_forces", call_cable12_engineering_linear_assumed_section_forces},
-    {"cable12_green_exact_curved_stiffness", call_cable12_green_exact_curved_stiffness},
-    {"cable12_green_exact_curved_energy", call_cable12_green_exact_curved_energy},
-    {"cable12_green_exact_curved_elastic_force", call_cable12_green_exact_curved_elastic_force},
-    {"cable12_green_exact_curved_elastic_tangent", call_cable12_green_exact_curved_elastic_tangent},
-    {"cable12_green_exact_curved_discrete_force", call_cable12_green_exact_curved_discrete_force},
-    {"cable12_green_exact_curved_step_stiffness", call_cable12_green_exact_curved_step_stiffness},
-    {"cable12_green_exact_curved_section_forces", call_cable12_green_exact_curved_section_forces},
-    {"cable12_engineering_exact_curved_stiffness", call_cable12_engineering_exact_curved_stiffness},
-    {"cable12_engineering_exact_curved_energy", call_cable12_engineering_exact_curved_energy},
-    {"cable12_engineering_exact_curved_elastic_force", call_cable12_engineering_exact_curved_elastic_force},
-    {"cable12_engineering_exact_curved_elastic_tangent", call_cable12_engineering_exact_curved_elastic_tangent},
-    {"cable12_engineering_exact_curved_discrete_force", call_cable12_engineering_exact_curved_discrete_force},
-    {"cable12_engineering_exact_curved_step_stiffness", call_cable12_engineering_exact_curved_step_stiffness},
-    {"cable12_engineering_exact_curved_section_forces", call_cable12_engineering_exact_curved_section_forces},
-    {"cable18_green_exact_stiffness", call_cable18_green_exact_stiffness},
-    {"cable18_green_exact_energy", call_cable18_green_exact_energy},
-    {"cable18_green_exact_elastic_force", call_cable18_green_exact_elastic_force},
-    {"cable18_green_exact_elastic_tangent", call_cable18_green_exact_elastic_tangent},
-    {"cable18_green_exact_discrete_force", call_cable18_green_exact_discrete_force},
-    {"cable18_green_exact_step_stiffness", call_cable18_green_exact_step_stiffness},
-    {"cable18_green_exact_damping_force", call_cable18_green_exact_damping_force},
-    {"cable18_green_exact_damping_tangent", call_cable18_green_exact_damping_tangent},
-    {"cable18_green_exact_dissipation", call_cable18_green_exact_dissipation},
-    {"cable18_green_exact_algorithmic_force", call_cable18_green_exact_algorithmic_force},
-    {"cable18_green_exact_section_forces", call_cable18_green_exact_section_forces},
-    {"cable18_engineering_exact_stiffness", call_cable18_engineering_exact_stiffness},
-    {"cable18_engineering_exact_energy", call_cable18_engineering_exact_energy},
-    {"cable18_engineering_exact_elastic_force", call_cable18_engineering_exact_elastic_force},
-    {"cable18_engineering_exact_elastic_tangent", call_cable18_engineering_exact_elastic_tangent},
-    {"cable18_engineering_exact_discrete_force", call_cable18_engineering_exact_discrete_force},
-    {"cable18_engineering_exact_step_stiffness", call_cable18_engineering_exact_step_stiffness},
-    {"cable18_engineering_exact_damping_force", call_cable18_engineering_exact_damping_force},
-    {"cable18_engineering_exact_damping_tangent", call_cable18_engineering_exact_damping_tangent},
-    {"cable18_engineering_exact_dissipation", call_cable18_engineering_exact_dissipation},
-    {"cable18_engineering_exact_algorithmic_force", call_cable18_engineering_exact_algorithmic_force},
-    {"cable18_engineering_exact_section_forces", call_cable18_engineering_exact_section_forces},
-    {"cable18_green_exact_assumed_stiffness", call_cable18_green_exact_assumed_stiffness},
-    {"cable18_green_exact_assumed_energy", call_cable18_green_exact_assumed_energy},
-    {"cable18_green_exact_assumed_elastic_force", call_cable18_green_exact_assumed_elastic_force},
-    {"cable18_green_exact_assumed_elastic_tangent", call_cable18_green_exact_assumed_elastic_tangent},
-    {"cable18_green_exact_assumed_discrete_force", call_cable18_green_exact_assumed_discrete_force},
-    {"cable18_green_exact_assumed_step_stiffness", call_cable18_green_exact_assumed_step_stiffness},
-    {"cable18_green_exact_assumed_section_forces", call_cable18_green_exact_assumed_section_forces},
-    {"cable18_engineering_exact_assumed_stiffness", call_cable18_engineering_exact_assumed_stiffness},
-    {"cable18_engineering_exact_assumed_energy", call_cable18_engineering_exact_assumed_energy},
-    {"cable18_engineering_exact_assumed_elastic_force", call_cable18_engineering_exact_assumed_elastic_force},
-    {"cable18_engineering_exact_assumed_elastic_tangent", call_cable18_engineering_exact_assumed_elastic_tangent},
-    {"cable18_engineering_exact_assumed_discrete_force", call_cable18_engineering_exact_assumed_discrete_force},
-    {"cable18_engineering_exact_assumed_step_stiffness", call_cable18_engineering_exact_assumed_step_stiffness},
-    {"cable18_engineering_exact_assumed_section_forces", call_cable18_engineering_exact_assumed_section_forces},
-    {"beam12p_continuum_stiffness", call_beam12p_continuum_stiffness},
-    {"beam12p_continuum_energy", call_beam12p_continuum_energy},
-    {"beam12p_continuum_elastic_force", call_beam12p_continuum_elastic_force},
-    {"beam12p_continuum_elastic_tangent", call_beam12p_continuum_elastic_tangent},
-    {"beam12p_continuum_discrete_force", call_beam12p_continuum_discrete_force},
-    {"beam12p_continuum_step_stiffness", call_beam12p_continuum_step_stiffness},
-    {"beam12p_continuum_damping_force", call_beam12p_continuum_damping_force},
-    {"beam12p_continuum_damping_tangent", call_beam12p_continuum_damping_tangent},
-    {"beam12p_continuum_dissipation", call_beam12p_continuum_dissipation},
-    {"beam12p_continuum_algorithmic_force", call_beam12p_continuum_algorithmic_force},
-    {"beam12p_continuum_section_forces", call_beam12p_continuum_section_forces},
-    {"beam12p_continuum_curved_stiffness_at", call_beam12p_continuum_curved_stiffness_at},
-    {"beam12p_continuum_curved_energy", call_beam12p_continuum_curved_energy},
-    {"beam12p_continuum_curved_elastic_force", call_beam12p_continuum_curved_elastic_force},
-    {"beam12p_continuum_curved_elastic_tangent", call_beam12p_continuum_curved_elastic_tangent},
-    {"beam12p_continuum_curved_discrete_force", call_beam12p_continuum_curved_discrete_force},
-    {"beam12p_continuum_curved_step_stiffness", call_beam12p_continuum_curved_step_stiffness},
-    {"beam12p_continuum_curved_section_forces", call_beam12p_continuum_curved_section_forces},
-    {"beam12p_structural_stiffness", call_beam12p_structural_stiffness},
-    {"beam12p_structural_energy", call_beam12p_structural_energy},
-    {"beam12p_structural_elastic_force", call_beam12p_structural_elastic_force},
-    {"beam12p_structural_elastic_tangent", call_beam12p_structural_elastic_tangent},
-    {"beam12p_structural_damping_force", call_beam12p_structural_damping_force},
-    {"beam12p_structural_damping_tangent", call_beam12p_structural_damping_tangent},
-    {"beam12p_structural_dissipation", call_beam12p_structural_dissipation},
-    {"beam12p_structural_section_forces", call_beam12p_structural_section_forces},
-    {"cable8p_green_exact_stiffness", call_cable8p_green_exact_stiffness},
-    {"cable8p_green_exact_energy", call_cable8p_green_exact_energy},
-    {"cable8p_green_exact_elastic_force", call_cable8p_green_exact_elastic_force},
-    {"cable8p_green_exact_elastic_tangent", call_cable8p_green_exact_elastic_tangent},
-    {"cable8p_green_exact_discrete_force", call_cable8p_green_exact_discrete_force},
-    {"cable8p_green_exact_step_stiffness", call_cable8p_green_exact_step_stiffness},
-    {"cable8p_green_exact_damping_force", call_cable8p_green_exact_damping_force},
-    {"cable8p_green_exact_damping_tangent", call_cable8p_green_exact_damping_tangent},
-    {"cable8p_green_exact_dissipation", call_cable8p_green_exact_dissipation},
-    {"cable8p_green_exact_algorithmic_force", call_cable8p_green_exact_algorithmic_force},
-    {"cable8p_green_exact_section_forces", call_cable8p_green_exact_section_forces},
-    {"cable8p_green_linear_stiffness", call_cable8p_green_linear_stiffness},
-    {"cable8p_green_linear_energy", call_cable8p_green_linear_energy},
-    {"cable8p_green_linear_elastic_force", call_cable8p_green_linear_elastic_force},
-    {"cable8p_green_linear_elastic_tangent", call_cable8p_green_linear_elastic_tangent},
-    {"cable8p_green_linear_discrete_force", call_cable8p_green_linear_discrete_force},
-    {"cable8p_green_linear_step_stiffness", call_cable8p_green_linear_step_stiffness},
-    {"cable8p_green_linear_section_forces", call_cable8p_green_linear_section_forces},
-    {"cable8p_engineering_exact_stiffness", call_cable8p_engineering_exact_stiffness},
-    {"cable8p_engineering_exact_energy", call_cable8p_engineering_exact_energy},
-    {"cable8p_engineering_exact_elastic_force", call_cable8p_engineering_exact_elastic_force},
-    {"cable8p_engineering_exact_elastic_tangent", call_cable8p_engineering_exact_elastic_tangent},
-    {"cable8p_engineering_exact_discrete_force", call_cable8p_engineering_exact_discrete_force},
-    {"cable8p_engineering_exact_step_stiffness", call_cable8p_engineering_exact_step_stiffness},
-    {"cable8p_engineering_exact_damping_force", call_cable8p_engineering_exact_damping_force},
-    {"cable8p_engineering_exact_damping_tangent", call_cable8p_engineering_exact_damping_tangent},
-    {"cable8p_engineering_exact_dissipation", call_cable8p_engineering_exact_dissipation},
-    {"cable8p_engineering_exact_algorithmic_force", call_cable8p_engineering_exact_algorithmic_force},
-    {"cable8p_engineering_exact_section_forces", call_cable8p_engineering_exact_section_forces},
-    {"cable8p_engineering_linear_stiffness", call_cable8p_engineering_linear_stiffness},
-    {"cable8p_engineering_linear_energy", call_cable8p_engineering_linear_energy},
-    {"cable8p_engineering_linear_elastic_force", call_cable8p_engineering_linear_elastic_force},
-    {"cable8p_engineering_linear_elastic_tangent", call_cable8p_engineering_linear_elastic_tangent},
-    {"cable8p_engineering_linear_discrete_force", call_cable8p_engineering_linear_discrete_force},
-    {"cable8p_engineering_linear_step_stiffness", call_cable8p_engineering_linear_step_stiffness},
-    {"cable8p_engineering_linear_section_forces", call_cable8p_engineering_linear_section_forces},
-    {"cable8p_green_exact_assumed_stiffness", call_cable8p_green_exact_assumed_stiffness},
-    {"cable8p_green_exact_assumed_energy", call_cable8p_green_exact_assumed_energy},
-    {"cable8p_green_exact_assumed_elastic_force", call_cable8p_green_exact_assumed_elastic_force},
-    {"cable8p_green_exact_assumed_elastic_tangent", call_cable8p_green_exact_assumed_elastic_tangent},
-    {"cable8p_green_exact_assumed_discrete_force", call_cable8p_green_exact_assumed_discrete_force},
-    {"cable8p_green_exact_assumed_step_stiffness", call_cable8p_green_exact_assumed_step_stiffness},
-    {"cable8p_green_exact_assumed_section_forces", call_cable8p_green_exact_assumed_section_forces},
-    {"cable8p_green_linear_assumed_stiffness", call_cable8p_green_linear_assumed_stiffness},
-    {"cable8p_green_linear_assumed_energy", call_cable8p_green_linear_assumed_energy},
-    {"cable8p_green_linear_assumed_elastic_force", call_cable8p_green_linear_assumed_elastic_force},
-    {"cable8p_green_linear_assumed_elastic_tangent", call_cable8p_green_linear_assumed_elastic_tangent},
-    {"cable8p_green_linear_assumed_discrete_force", call_cable8p_green_linear_assumed_discrete_force},
-    {"cable8p_green_linear_assumed_step_stiffness", call_cable8p_green_linear_assumed_step_stiffness},
-    {"cable8p_green_linear_assumed_section_forces", call_cable8p_green_linear_assumed_section_forces},
-    {"cable8p_engineering_exact_assumed_stiffness", call_cable8p_engineering_exact_assumed_stiffness},
-    {"cable8p_engineering_exact_assumed_energy", call_cable8p_engineering_exact_assumed_energy},
-    {"cable8p_engineering_exact_assumed_elastic_force", call_cable8p_engineering_exact_assumed_elastic_force},
-    {"cable8p_engineering_exact_assumed_elastic_tangent", call_cable8p_engineering_exact_assumed_elastic_tangent},
-    {"cable8p_engineering_exact_assumed_discrete_force", call_cable8p_engineering_exact_assumed_discrete_force},
-    {"cable8p_engineering_exact_assumed_step_stiffness", call_cable8p_engineering_exact_assumed_step_stiffness},
-    {"cable8p_engineering_exact_assumed_section_forces", call_cable8p_engineering_exact_assumed_section_forces},
-    {"cable8p_engineering_linear_assumed_stiffness", call_cable8p_engineering_linear_assumed_stiffness},
-    {"cable8p_engineering_linear_assumed_energy", call_cable8p_engineering_linear_assumed_energy},
-    {"cable8p_engineering_linear_assumed_elastic_force", call_cable8p_engineering_linear_assumed_elastic_force},
-    {"cable8p_engineering_linear_assumed_elastic_tangent", call_cable8p_engineering_linear_assumed_elastic_tangent},
-    {"cable8p_engineering_linear_assumed_discrete_force", call_cable8p_engineering_linear_assumed_discrete_force},
-    {"cable8p_engineering_linear_assumed_step_stiffness", call_cable8p_engineering_linear_assumed_step_stiffness},
-    {"cable8p_engineering_linear_assumed_section_forces", call_cable8p_engineering_linear_assumed_section_forces},
-    {"rigid_point", call_rigid_point},
-    {"rigid_point_force", call_rigid_point_force},
-    {"rigid_frame", call_rigid_frame},
-    {"rigid_inertia_force", call_rigid_inertia_force},
-    {"rigid_inertia_tangent", call_rigid_inertia_tangent},
-    {"rigid_kinetic_energy", call_rigid_kinetic_energy},
-    {"rigid_discrete_point", call_rigid_discrete_point},
-    {"planar_rigid_point", call_planar_rigid_point},
-    {"planar_rigid_point_force", call_planar_rigid_point_force},
-    {"planar_rigid_frame", call_planar_rigid_frame},
-    {"planar_rigid_inertia_force", call_planar_rigid_inertia_force},
-    {"planar_rigid_inertia_tangent", call_planar_rigid_inertia_tangent},
-    {"planar_rigid_kinetic_energy", call_planar_rigid_kinetic_energy},
-    {"planar_rigid_discrete_point", call_planar_rigid_discrete_point},
-    {"modal_inertia_force", call_modal_inertia_force},
-    {"modal_mass_matrix", call_modal_mass_matrix},
-    {"modal_inertia_tangent", call_modal_inertia_tangent},
-    {"modal_mode_force", call_modal_mode_force},
-    {"modal_mode_mass", call_modal_mode_mass},
-    {"modal_mode_tangent", call_modal_mode_tangent},
-    {"modal_pair_tangent", call_modal_pair_tangent},
-    {"modal_kinetic_energy", call_modal_kinetic_energy},
-    {"modal_potential_energy", call_modal_potential_energy},
-    {"modal_attachment", call_modal_attachment},
-    {"modal_attachment_mode", call_modal_attachment_mode},
-    {"modal_attachment_force", call_modal_attachment_force},
-    {"modal_attachment_mode_force", call_modal_attachment_mode_force},
-    {"modal_attachment_pair_force", call_modal_attachment_pair_force},
-    {"planar_modal_inertia_force", call_planar_modal_inertia_force},
-    {"planar_modal_mass_matrix", call_planar_modal_mass_matrix},
-    {"planar_modal_inertia_tangent", call_planar_modal_inertia_tangent},
-    {"planar_modal_mode_force", call_planar_modal_mode_force},
-    {"planar_modal_mode_mass", call_planar_modal_mode_mass},
-    {"planar_modal_mode_tangent", call_planar_modal_mode_tangent},
-    {"planar_modal_pair_tangent", call_planar_modal_pair_tangent},
-    {"planar_modal_kinetic_energy", call_planar_modal_kinetic_energy},
-    {"planar_modal_potential_energy", call_planar_modal_potential_energy},
-    {"planar_modal_attachment", call_planar_modal_attachment},
-    {"planar_modal_attachment_mode", call_planar_modal_attachment_mode},
-    {"planar_modal_attachment_force", call_planar_modal_attachment_force},
-    {"planar_modal_attachment_mode_force", call_planar_modal_attachment_mode_force},
-    {"planar_modal_attachment_pair_force", call_planar_modal_attachment_pair_force},
-    {"slide_beam24_rigid_constraint", call_slide_beam24_rigid_constraint},
-    {"slide_beam24_rigid_terms", call_slide_beam24_rigid_terms},
-    {"slide_beam24_rigid_residual", call_slide_beam24_rigid_residual},
-    {"slide_beam24_rigid_tangent", call_slide_beam24_rigid_tangent},
-    {"slide_beam24_rigid_discrete_gradient", call_slide_beam24_rigid_discrete_gradient},
-    {"slide_beam24_point_constraint", call_slide_beam24_point_constraint},
-    {"slide_beam24_point_terms", call_slide_beam24_point_terms},
-    {"slide_beam24_point_residual", call_slide_beam24_point_residual},
-    {"slide_beam24_point_tangent", call_slide_beam24_point_tangent},
-    {"slide_beam24_point_discrete_gradient", call_slide_beam24_point_discrete_gradient},
-    {"slide_cable12_rigid_constraint", call_slide_cable12_rigid_constraint},
-    {"slide_cable12_rigid_terms", call_slide_cable12_rigid_terms},
-    {"slide_cable12_rigid_residual", call_slide_cable12_rigid_residual},
-    {"slide_cable12_rigid_tangent", call_slide_cable12_rigid_tangent},
-    {"slide_cable12_rigid_discrete_gradient", call_slide_cable12_rigid_discrete_gradient},
-    {"slide_cable12_point_constraint", call_slide_cable12_point_constraint},
-    {"slide_cable12_point_terms", call_slide_cable12_point_terms},
-    {"slide_cable12_point_residual", call_slide_cable12_point_residual},
-    {"slide_cable12_point_tangent", call_slide_cable12_point_tangent},
-    {"slide_cable12_point_discrete_gradient", call_slide_cable12_point_discrete_gradient},
-    {"slide_cable18_rigid_constraint", call_slide_cable18_rigid_constraint},
-    {"slide_cable18_rigid_terms", call_slide_cable18_rigid_terms},
-    {"slide_cable18_rigid_residual", call_slide_cable18_rigid_residual},
-    {"slide_cable18_rigid_tangent", call_slide_cable18_rigid_tangent},
-    {"slide_cable18_rigid_discrete_gradient", call_slide_cable18_rigid_discrete_gradient},
-    {"slide_cable18_point_constraint", call_slide_cable18_point_constraint},
-    {"slide_cable18_point_terms", call_slide_cable18_point_terms},
-    {"slide_cable18_point_residual", call_slide_cable18_point_residual},
-    {"slide_cable18_point_tangent", call_slide_cable18_point_tangent},
-    {"slide_cable18_point_discrete_gradient", call_slide_cable18_point_discrete_gradient},
-    {"slide_beam12p_planar_rigid_constraint", call_slide_beam12p_planar_rigid_constraint},
-    {"slide_beam12p_planar_rigid_terms", call_slide_beam12p_planar_rigid_terms},
-    {"slide_beam12p_planar_rigid_residual", call_slide_beam12p_planar_rigid_residual},
-    {"slide_beam12p_planar_rigid_tangent", call_slide_beam12p_planar_rigid_tangent},
-    {"slide_beam12p_planar_rigid_discrete_gradient", call_slide_beam12p_planar_rigid_discrete_gradient},
-    {"slide_beam12p_planar_point_constraint", call_slide_beam12p_planar_point_constraint},
-    {"slide_beam12p_planar_point_terms", call_slide_beam12p_planar_point_terms},
-    {"slide_beam12p_planar_point_residual", call_slide_beam12p_planar_point_residual},
-    {"slide_beam12p_planar_point_tangent", call_slide_beam12p_planar_point_tangent},
-    {"slide_beam12p_planar_point_discrete_gradient", call_slide_beam12p_planar_point_discrete_gradient},
-    {"slide_cable8p_planar_rigid_constraint", call_slide_cable8p_planar_rigid_constraint},
-    {"slide_cable8p_planar_rigid_terms", call_slide_cable8p_planar_rigid_terms},
-    {"slide_cable8p_planar_rigid_residual", call_slide_cable8p_planar_rigid_residual},
-    {"slide_cable8p_planar_rigid_tangent", call_slide_cable8p_planar_rigid_tangent},
-    {"slide_cable8p_planar_rigid_discrete_gradient", call_slide_cable8p_planar_rigid_discrete_gradient},
-    {"slide_cable8p_planar_point_constraint", call_slide_cable8p_planar_point_constraint},
-    {"slide_cable8p_planar_point_terms", call_slide_cable8p_planar_point_terms},
-    {"slide_cable8p_planar_point_residual", call_slide_cable8p_planar_point_residual},
-    {"slide_cable8p_planar_point_tangent", call_slide_cable8p_planar_point_tangent},
-    {"slide_cable8p_planar_point_discrete_gradient", call_slide_cable8p_planar_point_discrete_gradient},
-    {"frame_axes", call_frame_axes},
-    {"frame_motion", call_frame_motion},
-    {"frame_moment", call_frame_moment},
-    {"planar_frame_axes", call_planar_frame_axes},
-    {"planar_frame_motion", call_planar_frame_motion},
-    {"planar_frame_moment", call_planar_frame_moment},
-    {"joint_spherical_force", call_joint_spherical_force},
-    {"joint_spherical_motion", call_joint_spherical_motion},
-    {"joint_revolute_force", call_joint_revolute_force},
-    {"joint_revolute_motion", call_joint_revolute_motion},
-    {"joint_revolute_angle_force", call_joint_revolute_angle_force},
-    {"joint_revolute_angle_motion", call_joint_revolute_angle_motion},
-    {"joint_universal_force", call_joint_universal_force},
-    {"joint_universal_motion", call_joint_universal_motion},
-    {"joint_cylindrical_force", call_joint_cylindrical_force},
-    {"joint_cylindrical_motion", call_joint_cylindrical_motion},
-    {"joint_cylindrical_angle_force", call_joint_cylindrical_angle_force},
-    {"joint_cylindrical_angle_motion", call_joint_cylindrical_angle_motion},
-    {"joint_cylindrical_distance_force", call_joint_cylindrical_distance_force},
-    {"joint_cylindrical_distance_motion", call_joint_cylindrical_distance_motion},
-    {"joint_prismatic_force", call_joint_prismatic_force},
-    {"joint_prismatic_motion", call_joint_prismatic_motion},
-    {"joint_prismatic_distance_force", call_joint_prismatic_distance_force},
-    {"joint_prismatic_distance_motion", call_joint_prismatic_distance_motion},
-    {"joint_weld_force", call_joint_weld_force},
-    {"joint_weld_motion", call_joint_weld_motion},
-    {"joint_distance_force", call_joint_distance_force},
-    {"joint_distance_motion", call_joint_distance_motion},
-    {"joint_aligned_force", call_joint_aligned_force},
-    {"joint_aligned_motion", call_joint_aligned_motion},
-    {"joint_locked_force", call_joint_locked_force},
-    {"joint_locked_motion", call_joint_locked_motion},
-    {"joint_planar_spherical_force", call_joint_planar_spherical_force},
-    {"joint_planar_spherical_motion", call_joint_planar_spherical_motion},
-    {"joint_planar_revolute_angle_force", call_joint_planar_revolute_angle_force},
-    {"joint_planar_revolute_angle_motion", call_joint_planar_revolute_angle_motion},
-    {"joint_planar_prismatic_force", call_joint_planar_prismatic_force},
-    {"joint_planar_prismatic_motion", call_joint_planar_prismatic_motion},
-    {"joint_planar_prismatic_distance_force", call_joint_planar_prismatic_distance_force},
-    {"joint_planar_prismatic_distance_motion", call_joint_planar_prismatic_distance_motion},
-    {"joint_planar_weld_force", call_joint_planar_weld_force},
-    {"joint_planar_weld_motion", call_joint_planar_weld_motion},
-    {"joint_planar_distance_force", call_joint_planar_distance_force},
-    {"joint_planar_distance_motion", call_joint_planar_distance_motion},
-    {"joint_planar_locked_force", call_joint_planar_locked_force},
-    {"joint_planar_locked_motion", call_joint_planar_locked_motion},
-    {"resistance_force", call_resistance_force},
-    {"planar_resistance_force", call_planar_resistance_force},
+    FU_EVERY(FU_NAMED)
 };
 const int fu_n_kernels = sizeof fu_kernels / sizeof fu_kernels[0];
 
@@ -2805,5 +711,6 @@ const fu_tables fu_all = {
     10, slides,
     2, frames,
     20, joints,
-    2, resistances
+    2, resistances,
+    4, springs
 };

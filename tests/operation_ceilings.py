@@ -45,18 +45,18 @@ CEILINGS = {
         "discrete_force": 823, "step_stiffness": 675
     },
     "cable12_green_exact": {
-        "stiffness": 0, "energy": 251, "elastic_force": 476, "elastic_tangent": 1681, "damping_force": 561,
-        "damping_tangent": 3501, "dissipation": 301, "section_forces": 258,
-        "discrete_force": 892, "step_stiffness": 161, "algorithmic_force": 577
+        "stiffness": 0, "energy": 251, "elastic_force": 476, "elastic_tangent": 1681, "damping_force": 423,
+        "damping_tangent": 1761, "dissipation": 301, "section_forces": 258,
+        "discrete_force": 892, "step_stiffness": 161, "algorithmic_force": 439
     },
     "cable12_green_linear": {
         "stiffness": 0, "energy": 150, "elastic_force": 222, "elastic_tangent": 661, "section_forces": 156,
         "discrete_force": 407, "step_stiffness": 161
     },
     "cable12_engineering_exact": {
-        "stiffness": 0, "energy": 266, "elastic_force": 501, "elastic_tangent": 1741, "damping_force": 594,
-        "damping_tangent": 3759, "dissipation": 325, "section_forces": 260,
-        "discrete_force": 907, "step_stiffness": 161, "algorithmic_force": 610
+        "stiffness": 0, "energy": 266, "elastic_force": 501, "elastic_tangent": 1741, "damping_force": 450,
+        "damping_tangent": 1842, "dissipation": 325, "section_forces": 260,
+        "discrete_force": 907, "step_stiffness": 161, "algorithmic_force": 466
     },
     "cable12_engineering_linear": {
         "stiffness": 0, "energy": 165, "elastic_force": 257, "elastic_tangent": 746, "section_forces": 161,
@@ -79,14 +79,14 @@ CEILINGS = {
         "discrete_force": 516, "step_stiffness": 164
     },
     "cable18_green_exact": {
-        "stiffness": 0, "energy": 410, "elastic_force": 788, "elastic_tangent": 5134, "damping_force": 1776,
-        "damping_tangent": 12942, "dissipation": 1023, "section_forces": 516,
-        "discrete_force": 1363, "step_stiffness": 980, "algorithmic_force": 1808
+        "stiffness": 0, "energy": 410, "elastic_force": 788, "elastic_tangent": 5134, "damping_force": 1500,
+        "damping_tangent": 9086, "dissipation": 1023, "section_forces": 516,
+        "discrete_force": 1363, "step_stiffness": 980, "algorithmic_force": 1532
     },
     "cable18_engineering_exact": {
-        "stiffness": 0, "energy": 425, "elastic_force": 813, "elastic_tangent": 5194, "damping_force": 1831,
-        "damping_tangent": 13372, "dissipation": 1063, "section_forces": 518,
-        "discrete_force": 1378, "step_stiffness": 980, "algorithmic_force": 1863
+        "stiffness": 0, "energy": 425, "elastic_force": 813, "elastic_tangent": 5194, "damping_force": 1545,
+        "damping_tangent": 9221, "dissipation": 1063, "section_forces": 518,
+        "discrete_force": 1378, "step_stiffness": 980, "algorithmic_force": 1577
     },
     "cable18_green_exact_assumed": {
         "stiffness": 0, "energy": 459, "elastic_force": 842, "elastic_tangent": 6608, "section_forces": 693,
@@ -102,18 +102,18 @@ CEILINGS = {
         "discrete_force": 455, "step_stiffness": 337, "algorithmic_force": 411
     },
     "cable8p_green_exact": {
-        "stiffness": 0, "energy": 194, "elastic_force": 356, "elastic_tangent": 990, "damping_force": 338,
-        "damping_tangent": 1374, "dissipation": 205, "section_forces": 182,
-        "discrete_force": 685, "step_stiffness": 127, "algorithmic_force": 350
+        "stiffness": 0, "energy": 194, "elastic_force": 356, "elastic_tangent": 990, "damping_force": 286,
+        "damping_tangent": 902, "dissipation": 205, "section_forces": 182,
+        "discrete_force": 685, "step_stiffness": 127, "algorithmic_force": 298
     },
     "cable8p_green_linear": {
         "stiffness": 0, "energy": 112, "elastic_force": 154, "elastic_tangent": 351, "section_forces": 102,
         "discrete_force": 284, "step_stiffness": 127
     },
     "cable8p_engineering_exact": {
-        "stiffness": 0, "energy": 209, "elastic_force": 381, "elastic_tangent": 1050, "damping_force": 362,
-        "damping_tangent": 1506, "dissipation": 223, "section_forces": 184,
-        "discrete_force": 700, "step_stiffness": 127, "algorithmic_force": 374
+        "stiffness": 0, "energy": 209, "elastic_force": 381, "elastic_tangent": 1050, "damping_force": 307,
+        "damping_tangent": 959, "dissipation": 223, "section_forces": 184,
+        "discrete_force": 700, "step_stiffness": 127, "algorithmic_force": 319
     },
     "cable8p_engineering_linear": {
         "stiffness": 0, "energy": 127, "elastic_force": 189, "elastic_tangent": 436, "section_forces": 107,
@@ -145,21 +145,25 @@ CEILINGS = {
     },
     "rigid": {
         "point": 207, "point_force": 183, "inertia_force": 45, "inertia_tangent": 48, "kinetic_energy": 31,
-        "discrete_point": 230, "frame": 78
+        "discrete_point": 230, "frame": 78, "force": 117, "follower_force": 99, "moment": 93, "move": 93,
+        "move_tangent": 82, "cayley_move": 43, "cayley_tangent": 16, "halfway": 26, "rate": 23, "increment": 24
     },
     "planar_rigid": {
         "point": 40, "point_force": 23, "inertia_force": 3, "inertia_tangent": 0, "kinetic_energy": 9,
-        "discrete_point": 18, "frame": 0
+        "discrete_point": 18, "frame": 0, "force": 18, "follower_force": 15, "moment": 0, "move": 17,
+        "move_tangent": 0, "cayley_move": 22, "cayley_tangent": 4, "halfway": 15, "rate": 2, "increment": 3
     },
     "modal": {
         "inertia_force": 312, "mass_matrix": 105, "inertia_tangent": 675, "mode_force": 137, "mode_mass": 66,
         "mode_tangent": 459, "pair_tangent": 55, "kinetic_energy": 135, "potential_energy": 74, "attachment": 836,
-        "attachment_mode": 151, "attachment_force": 183, "attachment_mode_force": 310, "attachment_pair_force": 164
+        "attachment_mode": 151, "attachment_force": 183, "attachment_mode_force": 310, "attachment_pair_force": 164,
+        "attachment_follower": 169, "attachment_mode_follower": 307, "attachment_pair_follower": 163
     },
     "planar_modal": {
         "inertia_force": 71, "mass_matrix": 13, "inertia_tangent": 80, "mode_force": 31, "mode_mass": 7,
         "mode_tangent": 94, "pair_tangent": 14, "kinetic_energy": 32, "potential_energy": 13, "attachment": 107,
-        "attachment_mode": 11, "attachment_force": 9, "attachment_mode_force": 18, "attachment_pair_force": 10
+        "attachment_mode": 11, "attachment_force": 9, "attachment_mode_force": 18, "attachment_pair_force": 10,
+        "attachment_follower": 35, "attachment_mode_follower": 64, "attachment_pair_follower": 35
     },
     "slide_beam24_rigid": {"constraint": 599, "terms": 1646, "residual": 209, "tangent": 286, "discrete_gradient": 397},
     "slide_cable12_rigid": {
@@ -216,5 +220,9 @@ CEILINGS = {
     "joint_planar_distance": {"force": 27, "motion": 21},
     "joint_planar_locked": {"force": 25, "motion": 23},
     "resistance": {"force": 338},
+    "spring": {"energy": 10, "dissipation": 17, "force": 22, "tangent": 109, "discrete_force": 44},
+    "zero_length_spring": {"energy": 7, "dissipation": 6, "force": 9, "tangent": 9, "discrete_force": 31},
+    "planar_spring": {"energy": 8, "dissipation": 12, "force": 16, "tangent": 58, "discrete_force": 33},
+    "planar_zero_length_spring": {"energy": 5, "dissipation": 4, "force": 6, "tangent": 6, "discrete_force": 21},
     "planar_resistance": {"force": 207},
 }

@@ -10,7 +10,7 @@ from funicular.derive.laws.continuum.continuum import Form
 from funicular.derive.spec import ASSUMED_LAWS, CABLE_LAWS, Element, l, x, y, z
 from funicular.derive.verify.samples.element import element_state, loads
 from funicular.derive.verify.samples.shapes import reference, rotation, section
-from funicular.generated import kernels
+from funicular.generated import described, kernels
 from funicular.kernels.elements import manifest
 from funicular.model.constants import element_constants
 
@@ -71,7 +71,7 @@ class Elastic:
     def damping(self, name: str, e: np.ndarray, v: np.ndarray, tau: float) -> np.ndarray:
         """A kernel of the damping, the law's own or the one that it shares: as many constants as that one takes."""
         full = families()[self._family].kernel(name)
-        size, = next(a["shape"] for a in manifest()["kernels"][full]["inputs"] if a["name"] == "A")
+        size, = next(a["shape"] for a in described(manifest())[full]["inputs"] if a["name"] == "A")
         return kernel(full)(self.l, e, v, self.A[:size], tau)
 
 

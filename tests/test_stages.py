@@ -2,12 +2,14 @@
 
 import math
 import random
+import re
 
 import mpmath
 import numpy as np
 import pytest
 import sympy as sp
 from funicular.derive.algebra import section_integrals as moments
+from funicular.derive.algebra.stumpff import SERIES_BELOW, stumpff
 from funicular.derive.codegen.c_printer import c_expression
 from funicular.derive.codegen.program import DirectionalDerivative, Program, jacobian
 from funicular.derive.verify.exact import ExactProgram, source
@@ -131,6 +133,8 @@ def test_operations_are_counted():
     (-a, "-a"),
     (sp.Rational(1, 3), "1.0/3.0"),
     (sp.sqrt(a), "FU_SQRT(a)"),
+    (b * sp.sin(2 * a), "b*FU_SIN(2.0*a)"),
+    (b * sp.Piecewise((a + 1, a < 2), (sp.cos(a), True)), "b*(FU_REAL(a) < 2.0 ? a + 1.0 : FU_COS(a))"),
     ((a + b) ** 2, "(a + b)*(a + b)"),
     (a - (b + c), "a - b - c"),
     (sp.Float(0.1) * a - sp.Float(0.7745966692414834) * b, "0.1*a - 0.7745966692414834*b"),
@@ -139,10 +143,35 @@ def test_printed_c(expr, text):
     assert c_expression(expr) == text
 
 
-@pytest.mark.parametrize("expr", [sp.sin(a), a**sp.Rational(1, 3), sp.pi, a**b])
+@pytest.mark.parametrize("expr", [sp.tan(a), a**sp.Rational(1, 3), sp.pi, a**b])
 def test_the_printer_refuses_what_is_not_arithmetic(expr):
     with pytest.raises(ValueError, match="kernel form"):
         c_expression(expr)
+
+
+@pytest.mark.parametrize("condition", [a <= 2, a > 2, sp.And(a < 2, b < 2)])
+def test_a_choice_is_between_two_cases(condition):
+    for expr in (sp.Piecewise((a, condition), (b, True)), sp.Piecewise((a, a < 1), (b, a < 2), (c, True)),
+                 sp.Piecewise((a, a < 1))):
+        with pytest.raises(ValueError, match="two cases"):
+            c_expression(expr)
+
+
+@pytest.mark.parametrize("k", range(4))
+def test_stumpff_functions_keep_their_digits(k):
+    """In doubles, against 50 digits, on both sides of where series and quotients part."""
+    p = Program("stumpff", "", "")
+    x = p.input("x", (), "1", "")
+    p.stage("all")
+    p.output("c", stumpff(p, "value", k, x, p.define("root", sp.sqrt(x))), "1", "")
+    in_c = c_expression(p.definition[sp.Symbol("value")])
+    choice = re.fullmatch(r"\(FU_REAL\(x\) < [^ ]* \? (.*) : (.*)\)", in_c)
+    for value in (0.0, 1e-300, 1e-8, 0.1, 0.249, 0.25, 0.5, 0.999, 1.0, 1.001, 4.0, 30.0):
+        names = {"x": value, "root": math.sqrt(value), "FU_SIN": math.sin, "FU_COS": math.cos}
+        with mpmath.workdps(60):
+            exact = sum((-mpmath.mpf(value))**j / mpmath.factorial(2 * j + k) for j in range(60))
+            error = abs(eval(choice[1 if value < SERIES_BELOW[k] else 2], names) - exact)
+        assert error < 1e-15 / math.factorial(k)
 
 
 def test_printed_c_and_exact_source_say_the_same():

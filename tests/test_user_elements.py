@@ -176,7 +176,8 @@ def hostile(tmp_path) -> tuple[Path, Path]:
 def described(folder: Path, shared: Path, name: str = "") -> None:
     """A manifest of one element, its digests right."""
     here = manifest()
-    content = {"interface": here["interface"], "elements": {"cable12": here["elements"]["cable12"]}, "kernels": {},
+    content = {"interface": here["interface"], "elements": {"cable12": here["elements"]["cable12"]},
+               "arguments": [], "kernels": {},
                "tools": {}, "families": {}, "files": {},
                "library": {"spec": "x.py", "file": name or shared.name,
                            "sha256": hashlib.sha256(shared.read_bytes()).hexdigest()}}
@@ -229,7 +230,7 @@ def test_all_libraries_of_a_file_are_looked_at_first(hostile, tmp_path):
 def test_a_file_of_results_does_not_load_a_library(hostile, tmp_path):
     folder, marker = hostile
     run = loads(naming("x").replace('library = "x"\n', ""), "x").run()
-    run.scene_toml = naming(folder)
+    run._scene_text = run._scene_text._replace(toml=naming(folder))
     run.save(tmp_path / "x.nc")
     read = load_run(tmp_path / "x.nc")
     assert len(read.time) == 101 and read["wire.nodal_vectors"].shape[0] == 101

@@ -71,6 +71,22 @@ class Body(Rider, Protocol):
     def SOURCE(self) -> str:  # noqa: N802
         """Return where its equations are from."""
 
+    @property
+    def WINDING(self) -> int:  # noqa: N802
+        """Return the angle of the body over that of its attitude: 2 for quaternions, 1 for complex numbers."""
+
+    def product(self, p: np.ndarray, q: np.ndarray) -> np.ndarray:
+        """Return the product of two attitudes: the rotation q in body axes after p."""
+
+    def exponential(self, program: Program, psi: np.ndarray) -> np.ndarray:
+        """Return the attitude, of unit size, that the rotation vector psi is."""
+
+    def exponential_tangent(self, program: Program, psi: np.ndarray) -> np.ndarray:
+        """Return T, the turn in body axes by a change of psi: dtheta = T dpsi."""
+
+    def cayley(self, half: np.ndarray) -> np.ndarray:
+        """Return the attitude, not of unit size, that half of a Cayley vector is."""
+
     def turning_inertia(self, J: np.ndarray) -> np.ndarray:
         """Return the part of the inertia J (3, 3) that the rotations of this body meet, kg m^2."""
 

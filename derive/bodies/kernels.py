@@ -9,13 +9,14 @@ import numpy as np
 
 from ..algebra.tangent_frame import cross
 from ..codegen.program import DirectionalDerivative, Program
+from . import load_kernels, moves
 from .body import Body, Rider
 
 
 def build(body: Body) -> list[Program]:
     """Return the programs of every kernel of a body."""
     return [point(body), point_force(body), frame(body), inertia_force(body), inertia_tangent(body),
-            kinetic_energy(body), discrete_point(body)]
+            kinetic_energy(body), discrete_point(body), *load_kernels.build(body), *moves.build(body)]
 
 
 def _position(p: Program, body: Body, b: np.ndarray, u: np.ndarray):

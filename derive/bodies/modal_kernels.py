@@ -31,7 +31,7 @@ def build(name: str, frame: Body) -> list[Program]:
     return [make(name, frame) for make in (
         inertia_force, mass_matrix, inertia_tangent, mode_force_, mode_mass, mode_tangent, pair_tangent,
         kinetic_energy, potential_energy, attachment, attachment_mode, attachment_force, attachment_mode_force,
-        attachment_pair_force)]
+        attachment_pair_force, attachment_follower, attachment_mode_follower, attachment_pair_follower)]
 
 
 def inertia_force(name: str, frame: Body) -> Program:
@@ -167,10 +167,20 @@ class Point:
         self.scale = p.define("inv_theta", 1 / (1 + self.theta.dot(self.theta) / 4))
         self.at = frame.origin(self.b) + frame.arm(p, self.A, self.u)
 
+    def section_in_body(self) -> np.ndarray:
+        """Return C, by columns the axes of the section in body axes."""
+        tilde = skew(self.theta)
+        return np.eye(len(tilde), dtype=int) + self.scale * (tilde + tilde.dot(tilde) / 2)
+
     def section(self) -> np.ndarray:
         """Return A C, by columns the axes of the section."""
-        tilde = skew(self.theta)
-        return self.A.dot(np.eye(len(tilde), dtype=int) + self.scale * (tilde + tilde.dot(tilde) / 2))
+        return self.A.dot(self.section_in_body())
+
+    def follower(self) -> np.ndarray:
+        """Declare the input c, a force along the axes of the section, and return it in body axes."""
+        c = self.program.input("c", len(self.u), "N", "force on the point, along the axes of the section")
+        self.program.stage("force in body axes")
+        return self.program.vector("F", self.section_in_body().dot(c))
 
     def relative(self, rate: np.ndarray) -> np.ndarray:
         """Turn of the section in body axes by this rate of theta."""
@@ -281,6 +291,47 @@ def attachment_pair_force(name: str, frame: Body) -> Program:
     phi, psi = point.mode()
     phi_l, psi_l = point.mode("_l")
     force = point.mode_force(phi, psi, *point.loads())
+    p.stage("derivative")
+    p.output("K", point.by_mode(phi_l, psi_l, np.array([force])), "N/m", "by eta_l")
+    return p
+
+
+def attachment_follower(name: str, frame: Body) -> Program:
+    """Return the kernel of the frame's rows of a follower force, and of K of the frame."""
+    p = Program(f"{name}_attachment_follower", "the frame's rows of a force that turns with the section", SOURCE)
+    point = Point(p, frame)
+    local = point.follower()
+    force = np.concatenate([point.A.dot(local), vector_product(point.u, local)])
+    p.stage("derivatives")
+    p.output("g", force, "N, N m", "force in global axes, moment about the origin in body axes")
+    p.output("K", point.by_frame(force), "N, N m", "by translation and rotation")
+    return p
+
+
+def attachment_mode_follower(name: str, frame: Body) -> Program:
+    """Return the kernel of a mode's row of a follower force, which the frame's motion does not change, and of K of the
+    frame by the mode.
+    """
+    p = Program(f"{name}_attachment_mode_follower", "a mode's row of a force that turns with the section; K by eta",
+                SOURCE)
+    point = Point(p, frame)
+    phi, psi = point.mode()
+    local = point.follower()
+    p.output("g", phi.dot(local), "N", "the mode's row")
+    p.stage("derivatives")
+    rows = np.concatenate([point.A.dot(local), vector_product(point.u, local)])
+    p.output("K_frame", point.by_mode(phi, psi, rows), "N/m, N", "of the frame's rows by eta")
+    return p
+
+
+def attachment_pair_follower(name: str, frame: Body) -> Program:
+    """Return the kernel of K between modes of a follower force."""
+    p = Program(f"{name}_attachment_pair_follower", "derivative of mode k's row of a follower force by eta of mode l",
+                SOURCE)
+    point = Point(p, frame)
+    phi, _ = point.mode()
+    phi_l, psi_l = point.mode("_l")
+    force = phi.dot(point.follower())
     p.stage("derivative")
     p.output("K", point.by_mode(phi_l, psi_l, np.array([force])), "N/m", "by eta_l")
     return p

@@ -12,6 +12,7 @@ import sympy as sp
 from ..codegen.program import DirectionalDerivative, Program
 
 NAME, DIM, N_CONFIGURATION, N_VELOCITY = "planar_rigid", 2, 4, 3
+WINDING = 1  # the body's angle over the complex number's
 DOC, SOURCE = "planar rigid body", "paper eq 12 (q_r) in the plane"
 
 
@@ -28,6 +29,27 @@ def velocity(program: Program) -> np.ndarray:
 def attachment(program: Program) -> np.ndarray:
     """Declare the input u, a point of the body, and return it."""
     return program.input("u", DIM, "m", "point in body axes from the mass centre")
+
+
+def product(p: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """Return the product of complex numbers: the rotation q after p."""
+    return np.array([p[0] * q[0] - p[1] * q[1], p[0] * q[1] + p[1] * q[0]])
+
+
+def exponential(program: Program, psi: np.ndarray) -> np.ndarray:
+    """Return the unit complex number of an angle."""
+    program.stage("complex number of the angle")
+    return np.array([program.define("cosine", sp.cos(psi[0])), program.define("sine", sp.sin(psi[0]))])
+
+
+def exponential_tangent(program: Program, psi: np.ndarray) -> np.ndarray:
+    """Return one: angles add up."""
+    return np.eye(1, dtype=int)
+
+
+def cayley(half: np.ndarray) -> np.ndarray:
+    """Return the complex number of the tangent of half an angle, not of unit size."""
+    return np.array([1 - half[0] ** 2, 2 * half[0]])
 
 
 def axes(program: Program, b: np.ndarray) -> np.ndarray:

@@ -10,10 +10,12 @@ from __future__ import annotations
 import numpy as np
 import sympy as sp
 
+from ..algebra.stumpff import stumpff
 from ..algebra.tangent_frame import cross
 from ..codegen.program import DirectionalDerivative, Program
 
 NAME, DIM, N_CONFIGURATION, N_VELOCITY = "rigid", 3, 7, 6
+WINDING = 2  # the body's angle over the quaternion's
 DOC, SOURCE = "rigid body", "paper eq 12 (q_r); Haug 1989, ch. 9"
 
 
@@ -35,8 +37,44 @@ def attachment(program: Program) -> np.ndarray:
 def rotation(q: np.ndarray) -> np.ndarray:
     """Return A(q) (3, 3), from body to global axes."""
     w, v = q[0], q[1:]
-    skew = np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
-    return np.eye(3, dtype=int) + 2 * (w * skew + skew.dot(skew))
+    across = skew(v)
+    return np.eye(3, dtype=int) + 2 * (w * across + across.dot(across))
+
+
+def skew(v: np.ndarray) -> np.ndarray:
+    """Return v~ (3, 3), with v~ u = v x u."""
+    return np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
+
+
+def product(p: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """Return Hamilton's product of quaternions: the rotation q in body axes after p."""
+    return np.concatenate([[p[0] * q[0] - p[1:].dot(q[1:])], p[0] * q[1:] + q[0] * p[1:] + cross(p[1:], q[1:])])
+
+
+def exponential(program: Program, psi: np.ndarray) -> np.ndarray:
+    """Return the unit quaternion of a rotation vector: cosine, and sine along its direction, of half its length."""
+    program.stage("half of the rotation vector")
+    half = program.vector("half", psi / 2)
+    square = program.define("square", half.dot(half))
+    root = program.define("angle", sp.sqrt(square))
+    program.stage("its quaternion")
+    sine = stumpff(program, "c1", 1, square, root)
+    return np.array([stumpff(program, "c0", 0, square, root), *program.vector("sine", sine * half)])
+
+
+def exponential_tangent(program: Program, psi: np.ndarray) -> np.ndarray:
+    """Return T = sum_k (-psi~)^k/(k + 1)!, which psi~^3 = -psi.psi psi~ makes I - c_2 psi~ + c_3 psi~^2."""
+    program.stage("rotation vector")
+    square = program.define("square", psi.dot(psi))
+    root = program.define("angle", sp.sqrt(square))
+    c2, c3 = (stumpff(program, f"c{k}", k, square, root) for k in (2, 3))
+    across = skew(psi)
+    return np.eye(3, dtype=int) - c2 * across + c3 * across.dot(across)
+
+
+def cayley(half: np.ndarray) -> np.ndarray:
+    """Return the quaternion of half of a Cayley vector, not of unit size."""
+    return np.array([1, *half])
 
 
 def axes(program: Program, b: np.ndarray) -> np.ndarray:

@@ -1,7 +1,8 @@
 """SymPy expressions to C text: the same text on every machine.
 
 Order is SymPy's canonical one, small integer powers become products, rationals become quotients of doubles
-that the compiler folds, and square roots go through FU_SQRT so that the same text serves double and complex.
+that the compiler folds, and square roots, sines and cosines go through macros so that the same text serves double and
+complex.
 """
 # ruff: noqa: N802  (SymPy dispatches on these names)
 
@@ -11,11 +12,14 @@ import sympy as sp
 from sympy.printing.c import C99CodePrinter
 from sympy.printing.precedence import PRECEDENCE
 
+from .program import two_cases
+
+_PRINTED = (sp.Symbol, sp.Rational, sp.Float, sp.Add, sp.Mul, sp.Pow, sp.sin, sp.cos, sp.Piecewise)
 _ADD, _MUL, _ATOM = PRECEDENCE["Add"], PRECEDENCE["Mul"], PRECEDENCE["Atom"]
 
 
 class KernelPrinter(C99CodePrinter):
-    """C99 with products for powers; raises on anything that is not plain arithmetic."""
+    """C99 with products for powers; raises on anything but plain arithmetic, sine, cosine, a choice of two."""
 
     def _print_Symbol(self, expr):
         return expr.name
@@ -65,9 +69,20 @@ class KernelPrinter(C99CodePrinter):
             text += f"/({denominator})" if len(below) > 1 or "*" in denominator else f"/{denominator}"
         return text
 
+    def _print_sin(self, expr):
+        return f"FU_SIN({self._print(expr.args[0])})"
+
+    def _print_cos(self, expr):
+        return f"FU_COS({self._print(expr.args[0])})"
+
+    def _print_Piecewise(self, expr):
+        below, above, condition = two_cases(expr)
+        return (f"(FU_REAL({self._print(condition.lhs)}) < {self._print(condition.rhs)} ? {self._print(below)} "
+                f": {self._print(above)})")
+
     def _print(self, expr, **kwargs):
-        # SymPy's printer knows sines and constants; the kernels must not
-        if not isinstance(expr, (sp.Symbol, sp.Rational, sp.Float, sp.Add, sp.Mul, sp.Pow)):
+        # SymPy's printer knows many functions and constants; the kernels must not
+        if not isinstance(expr, _PRINTED):
             raise ValueError(f"{type(expr).__name__} has no kernel form: {expr}")
         return super()._print(expr, **kwargs)
 

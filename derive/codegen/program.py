@@ -72,14 +72,14 @@ class Program:
         """Open a stage; the definitions that follow belong to it."""
         self.stages.append(Stage(title))
 
-    def define(self, name: str, expr: sp.Expr, derivative_of: sp.Expr | None = None) -> sp.Expr:
+    def define(self, name: str, expr: sp.Expr, derivative_of: sp.Expr | None = None, alias: bool = False) -> sp.Expr:
         """Give an expression a name. Numbers and bare symbols pass through: a name would say nothing more.
 
         `derivative_of` is an expression that differs from this one by a constant: derivatives are taken of that one
-        instead.
+        instead. With `alias` a bare symbol gets the name too, so that it is called as its like at other points are.
         """
         expr = sp.sympify(expr)
-        if expr.is_Number or expr.is_Symbol:
+        if expr.is_Number or (expr.is_Symbol and not alias):
             return expr
         unique, n = name, 2
         while unique in self._taken:
@@ -95,9 +95,10 @@ class Program:
         symbol = sp.Symbol(name)
         return symbol if self.definition.get(symbol) == expr else self.define(name, expr)
 
-    def vector(self, name: str, components: Iterable[sp.Expr]) -> np.ndarray:
-        """Define a vector component by component: name_x, name_y, name_z."""
-        return np.array([self.define(f"{name}_{axis}", c) for axis, c in zip(AXES, components, strict=False)])
+    def vector(self, name: str, components: Iterable[sp.Expr], alias: bool = False) -> np.ndarray:
+        """Define a vector component by component: name_x, name_y, name_z; `alias` as in `define`."""
+        return np.array([self.define(f"{name}_{axis}", c, alias=alias)
+                         for axis, c in zip(AXES, components, strict=False)])
 
     def output(self, name: str, value: Any, unit: str, doc: str) -> None:
         """Declare an output and its expressions (array_like; a scalar becomes shape (1,))."""
@@ -109,7 +110,9 @@ class Program:
         self._taken.add(name)
 
     def operations(self) -> dict[str, int]:
-        """Arithmetic operations of one call: additions, multiplications, divisions, square roots."""
+        """Arithmetic operations of one call: additions, multiplications, divisions, square roots; sines and cosines
+        where there are any. Of a choice both cases count.
+        """
         exprs = [e for s in self.stages for _, e in s.definitions]
         exprs += [e for v in self.values.values() for e in v.ravel()]
         count = dict.fromkeys(("add", "mul", "div", "sqrt"), 0)
@@ -141,7 +144,12 @@ def _count(expr: sp.Expr, count: dict[str, int]) -> None:
     if expr.is_Atom:
         return
     args = expr.args
-    if expr.is_Add:
+    if expr.is_Piecewise:
+        args = two_cases(expr)[:2]
+    elif isinstance(expr, (sp.sin, sp.cos)):
+        name = expr.func.__name__
+        count[name] = count.get(name, 0) + 1
+    elif expr.is_Add:
         count["add"] += len(args) - 1
     elif expr.is_Mul:
         args = [a for a in args if a is not sp.S.NegativeOne]
@@ -160,6 +168,17 @@ def _count(expr: sp.Expr, count: dict[str, int]) -> None:
             raise ValueError(f"a power {expr.exp} has no cheap form in C: stage it")
     for arg in args:
         _count(arg, count)
+
+
+def two_cases(expr: sp.Piecewise) -> tuple[sp.Expr, sp.Expr, sp.StrictLessThan]:
+    """Split "a where x < y, else b" into a, b and the condition.
+
+    Raises ValueError for any other choice.
+    """
+    (below, condition), *others = expr.args
+    if len(others) != 1 or others[0][1] != True or not isinstance(condition, sp.StrictLessThan):  # noqa: E712 (SymPy's)
+        raise ValueError(f"{expr}: kernels choose between two cases by a < b")
+    return below, others[0][0], condition
 
 
 def _is_below(expr: sp.Expr) -> bool:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import textwrap
 from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass, replace
 from importlib import metadata
@@ -15,12 +16,14 @@ import jinja2
 
 from .c_printer import c_expression
 from .family import Family, FamilyError
+from .loops import sections
 from .program import Argument, Program
 from .provenance import deciding, spec_hash
 
 TOOLS = ("sympy", "mpmath", "jinja2")
+WIDTH = 120
 HEADER, REGISTRY = "kernels.h", "registry.c"
-COMMON = (HEADER, REGISTRY, "blocks.h", "blocks.c", "kernels.pyx", "__init__.py")
+COMMON = (HEADER, REGISTRY, "blocks.h", "blocks.c", "kernels.pyx", "__init__.py", "__main__.py")
 """Files of all families; a library has the first two."""
 BLOCKS = ("elastic_force", "elastic_tangent", "damping_force")
 """Kernels of a law that are compiled for several elements at once as well (blocks.c), unless ..."""
@@ -78,13 +81,11 @@ def recorded(family: Family, manifest: dict) -> Derived | None:
     if family.name not in manifest.get("families", {}):
         return None
     entry = manifest["families"][family.name]
-    kernels = [Recorded(name, k["doc"], k["source"], _arguments(k["inputs"]), _arguments(k["outputs"]), k["operations"])
-               for name, k in manifest["kernels"].items() if k["family"] == family.name]
-    return Derived(replace(family, doc=entry["doc"]), kernels, entry["sources"], entry["spec_hash"])
-
-
-def _arguments(entries: list[dict]) -> list[Argument]:
-    return [Argument(e["name"], tuple(e["shape"]), e["unit"], e["doc"]) for e in entries]
+    every = [Argument(a["name"], tuple(a["shape"]), a["unit"], a["doc"]) for a in manifest["arguments"]]
+    kernels = [Recorded(name, k["doc"], k["source"], [every[a] for a in k["inputs"]], [every[a] for a in k["outputs"]],
+                        k["operations"]) for name, k in manifest["kernels"].items() if k["family"] == family.name]
+    sources = [manifest["sources"][k] for k in entry["sources"]]
+    return Derived(replace(family, doc=entry["doc"]), kernels, sources, entry["spec_hash"])
 
 
 @dataclass(frozen=True)
@@ -136,16 +137,17 @@ def render(every: list[Derived], wanted: Iterable[str], done: Callable[[str], No
     environment = jinja2.Environment(loader=jinja2.PackageLoader("funicular.derive.codegen"), trim_blocks=True,
                                      lstrip_blocks=True, keep_trailing_newline=True,
                                      undefined=jinja2.StrictUndefined)
-    environment.filters["c"], environment.filters["number"] = c_expression, _number
     files = {}
     for derived in every:
         if derived.family.name in wanted:
             text = environment.get_template("family.c.jinja").render(
-                derived=derived, signature=signature, operations=_operations_text, blocks=block_kernels(derived))
+                derived=derived, signature=signature, operations=_operations_text, blocks=block_kernels(derived),
+                sections=sections, plain=c_expression, number=_number)
             files[f"{derived.family.name}.c"] = text
             done(derived.family.name)
     blocks = {name for derived in every for name in block_kernels(derived)}
     common = {"every": every, "tables": tables(every, like), "signature": signature, "call": _call, "blocks": blocks,
+              "about": _about, "entry": _entry,
               "laws": [derived for derived in every if block_kernels(derived)], "kernels": BLOCKS}
     for name in COMMON if like is None else (HEADER, REGISTRY):
         files[name] = environment.get_template(f"{name}.jinja").render(**common)
@@ -163,12 +165,15 @@ def tools() -> dict[str, str]:
 
 
 def manifest(every: list[Derived], files: dict[str, str], like: dict | None = None, more: dict | None = None) -> str:
-    """What was generated, from what, with which tools; `like` as in `render`, `more` is added."""
-    def arguments(of: list[Argument]) -> list[dict]:
-        return [{"name": a.name, "shape": list(a.shape), "unit": a.unit, "doc": a.doc} for a in of]
+    """What was generated, from what, with which tools; `like` as in `render`, `more` is added.
 
-    kernels = {p.name: {"doc": p.doc, "source": p.source, "family": d.family.name, "inputs": arguments(p.inputs),
-                        "outputs": arguments(p.outputs), "operations": p.operations()}
+    "arguments" and "sources" are listed once; kernels and families have their numbers in these lists.
+    """
+    arguments = _Numbered()
+    sources = _Numbered()
+    kernels = {p.name: {"doc": p.doc, "source": p.source, "family": d.family.name,
+                        "inputs": [arguments.number(a) for a in p.inputs],
+                        "outputs": [arguments.number(a) for a in p.outputs], "operations": p.operations()}
                for d in every for p in d.programs}
     laid_out = layout(tables(every, like))
     content = {"tools": tools(),
@@ -176,10 +181,37 @@ def manifest(every: list[Derived], files: dict[str, str], like: dict | None = No
                "tables": laid_out,
                "elements": {d.family.name: _element(d.family, every) for d in every if d.family.role == "element"},
                "families": {d.family.name: {"doc": d.family.doc, "spec_hash": d.spec_hash,
-                                            "sources": d.sources} for d in every},
+                                            "sources": [sources.number(s) for s in d.sources]} for d in every},
+               "sources": list(sources.every),
                "files": {name: digest(text) for name, text in sorted(files.items())},
+               "arguments": [{"name": a.name, "shape": list(a.shape), "unit": a.unit, "doc": a.doc}
+                             for a in arguments.every],
                "kernels": kernels} | (more or {})
-    return json.dumps(content, indent=1) + "\n"
+    return json_text(content)
+
+
+class _Numbered:
+    """Things in the order in which they came first."""
+
+    def __init__(self):
+        self.every: dict = {}
+
+    def number(self, thing) -> int:
+        """Its place among them."""
+        return self.every.setdefault(thing, len(self.every))
+
+
+def json_text(content: dict) -> str:
+    """JSON with a line for each entry of each part."""
+    parts = []
+    for name, part in content.items():
+        rows = part if isinstance(part, list) else [part]
+        lines = ([f"{json.dumps(key)}: {json.dumps(value)}" for key, value in part.items()] if isinstance(part, dict)
+                 else [json.dumps(row) for row in rows])
+        first, last = "{}" if isinstance(part, dict) else "[]" if isinstance(part, list) else ("", "")
+        inner = ",\n  ".join(lines)
+        parts.append(f' {json.dumps(name)}: ' + (f"{first}\n  {inner}\n {last}" if first else inner))
+    return "{\n" + ",\n".join(parts) + "\n}\n"
 
 
 def _element(family: Family, every: list[Derived]) -> dict:
@@ -202,6 +234,24 @@ def signature(program: Program | Recorded) -> str:
     """Return the C parameters of a kernel, inputs before outputs."""
     inputs = [f"fu_real {a.name}" if a.shape == () else f"const fu_real *{a.name}" for a in program.inputs]
     return ", ".join([*inputs, *(f"fu_real *{a.name}" for a in program.outputs)])
+
+
+def _about(program: Program | Recorded) -> list[str]:
+    """Comment on a kernel: what it gives, shapes and units of its arguments."""
+    def shown(arguments: list[Argument]) -> str:
+        return "; ".join(f"{a.name} {'x'.join(map(str, a.shape))}[{a.unit}]" if a.shape else f"{a.name} [{a.unit}]"
+                         for a in arguments)
+
+    text = f"{program.doc}: {shown(program.inputs)} -> {shown(program.outputs)}"
+    lines = textwrap.wrap(text, WIDTH - 6, break_long_words=False, break_on_hyphens=False)
+    return [f"{' *' if k else '/*'} {line}{' */' if k == len(lines) - 1 else ''}" for k, line in enumerate(lines)]
+
+
+def _entry(derived: Derived, table: Table) -> list[str]:
+    """A family's entry in the table of its role."""
+    values = [f'"{derived.family.name}"', *map(str, derived.family.facts.values()),
+              *(derived.family.kernel(suffix) for suffix in table.kernels)]
+    return textwrap.wrap(f"{{{', '.join(values)}}},", WIDTH - 4, subsequent_indent=" ", break_long_words=False)
 
 
 def block_kernels(derived: Derived) -> list[str]:

@@ -75,7 +75,7 @@ def write_manifest(every: list[Derived], files: dict[str, str], spec: Path, shar
                         "compiler": " ".join([*compiler(), *FLAGS])}}
     content = json.loads(emit.manifest(every, files, like=manifest()["tables"], more=more))
     content["library"]["digest"] = manifest_digest(content)
-    (shared.parent / MANIFEST).write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8", newline="\n")
+    (shared.parent / MANIFEST).write_text(emit.json_text(content), encoding="utf-8", newline="\n")
     return content
 
 

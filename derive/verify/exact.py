@@ -8,7 +8,7 @@ import mpmath
 import numpy as np
 import sympy as sp
 
-from ..codegen.program import Program
+from ..codegen.program import Program, two_cases
 
 DIGITS = 50
 
@@ -30,6 +30,11 @@ def source(expr: sp.Expr) -> str:
     if expr.is_Pow and (2 * expr.exp).is_Integer:
         base = source(expr.base)
         return f"sqrt({base})**{int(2 * expr.exp)}" if expr.exp.q == 2 else f"{base}**{int(expr.exp)}"
+    if isinstance(expr, (sp.sin, sp.cos)):
+        return f"{expr.func.__name__}({source(expr.args[0])})"
+    if expr.is_Piecewise:
+        below, above, condition = two_cases(expr)
+        return f"({source(below)} if {source(condition.lhs)} < {source(condition.rhs)} else {source(above)})"
     raise ValueError(f"{type(expr).__name__} is not plain arithmetic: {expr}")
 
 
@@ -47,7 +52,8 @@ class ExactProgram:
         results = (f"[{', '.join(source(e) for e in self.program.values[a.name].ravel())}]"
                    for a in self.program.outputs)
         lines.append(f"    return [{', '.join(results)}]")
-        space = {"sqrt": mpmath.mp.sqrt, "q": lambda p, q: mpmath.mpf(p) / q, "number": mpmath.mpf}
+        space = {"sqrt": mpmath.mp.sqrt, "sin": mpmath.mp.sin, "cos": mpmath.mp.cos,
+                 "q": lambda p, q: mpmath.mpf(p) / q, "number": mpmath.mpf}
         exec(compile("\n".join(lines), f"<{self.program.name} at {DIGITS} digits>", "exec"), space)
         return space["kernel"]
 

@@ -69,6 +69,8 @@ def _tiny(family: Family, s: State, random: np.random.Generator) -> dict[str, np
         changes |= rider.at_rest(near)
         changes["b"] = rider.moved(np, changes["b"], TINY * random.normal(size=rider.n_velocity))
         changes["b_next"] = rider.moved(np, changes["b"], TINY * random.normal(size=rider.n_velocity))
+    if family.role == "body":
+        changes["step"] = TINY * s["step"]
     return changes
 
 
@@ -85,6 +87,8 @@ def _turned(family: Family, s: State, random: np.random.Generator) -> dict[str, 
         turn = np.zeros(rider.n_velocity)
         turn[rider.rotations][:1] = TURN
         changes["b"] = rider.moved(np, changes["b"], turn)
+    if family.role == "body":
+        changes["step"] = TURN / np.linalg.norm(s["step"][rider.rotations]) * s["step"]
     return changes | following(family, s | changes, random)
 
 

@@ -17,6 +17,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+from funicular.generated import described as described_kernels
 from pydantic import ValidationError
 
 from ..errors import FunicularError, SceneError, shown_path
@@ -184,11 +185,12 @@ def _open(path: Path, content: dict) -> Library:
         if file.is_symlink() or hashlib.sha256(file.read_bytes()).hexdigest() != described["sha256"]:
             raise LibraryError(f'"{path}" is damaged: {file.name} is not the file that was made', again)
         shared = ctypes.CDLL(str(file))
-        kernels = SimpleNamespace(**{name: Kernel(shared, name, entry) for name, entry in content["kernels"].items()})
+        kernels = SimpleNamespace(**{name: Kernel(shared, name, entry)
+                                     for name, entry in described_kernels(content).items()})
         tables = ctypes.addressof(ctypes.c_char.in_dll(shared, "fu_all"))
     except OSError as error:
         raise LibraryError(f'"{path}" cannot be loaded here: {error}', again) from None
-    except (AttributeError, ValueError) as error:  # a name that the shared object does not have
+    except (AttributeError, IndexError, ValueError) as error:  # a name or argument that is not there
         if isinstance(error, LibraryError):
             raise
         raise LibraryError(f'"{path}" is damaged: {file.name} lacks what its {MANIFEST} names: {error}',

@@ -28,8 +28,8 @@ class _Argument(_Described):
 class _Kernel(_Described):
     doc: str
     source: str
-    inputs: list[_Argument]
-    outputs: list[_Argument]
+    inputs: list[int]
+    outputs: list[int]
 
 
 class _Element(_Described):
@@ -45,6 +45,7 @@ class Manifest(_Described):
     interface: str
     library: _Shared
     elements: dict[str, _Element]
+    arguments: list[_Argument]
     kernels: dict[str, _Kernel]
     tools: dict[str, str]
     families: dict[str, dict]

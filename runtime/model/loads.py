@@ -62,11 +62,13 @@ class LoadModel:
 class PointForceModel:
     """A force between two points; unknown: the place of its force.
 
-    type: the engine's type of coupling; parameters: those of its law, in the order that the engine has them;
-    is_damped: whether the force depends on velocities; mass: scale of its equations, kg.
+    type: the engine's type of coupling, and the role of its kernels; kernel: their name; parameters: those of its law,
+    in the order that the engine has them; is_damped: whether the force depends on velocities; mass: scale of its
+    equations, kg.
     """
 
     type: str
+    kernel: str
     name: str
     ends: list[AttachmentModel]
     dim: int
@@ -150,5 +152,6 @@ class Actions:
     def point_force(self, part, unknown: int) -> PointForceModel:
         """Return the model of a spring or the like, whose force is unknown number `unknown` beyond the dofs."""
         ends = [self.attachments.model(part.a), self.attachments.model(part.b)]
-        return PointForceModel(part.kind, part.name, ends, self.scene.dim, unknown, part.parameters, part.is_damped,
-                               max(end.mass for end in ends))
+        dim = self.scene.dim
+        return PointForceModel(part.kind, part.kernel(dim), part.name, ends, dim, unknown, part.parameters,
+                               part.is_damped, max(end.mass for end in ends))

@@ -174,4 +174,5 @@ class Model:
                       | {slide.kernel for slide in self.slides} | {body.kernel for body in self.bodies}
                       | {joint.kernel for joint in self.joints}
                       | {slide.resistance for slide in self.slides if slide.resistance}
+                      | {spring.kernel for spring in self.springs}
                       | {body.modal_kernel for body in self.bodies if body.modes})

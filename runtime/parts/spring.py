@@ -33,6 +33,10 @@ class Spring(Part):
         """Stiffness, damping and length, as the engine's law takes them (engine/couplings/springs.c)."""
         return self.stiffness, self.damping, self.length or 0.0
 
+    def kernel(self, dim: int) -> str:
+        """Return the name of the kernels of its law in space or in the plane (derive/couplings/spring.py)."""
+        return ("planar_" if dim == 2 else "") + ("spring" if self.length else "zero_length_spring")
+
     @property
     def is_damped(self) -> bool:
         """Whether its force depends on velocities."""

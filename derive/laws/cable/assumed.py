@@ -83,13 +83,13 @@ class AssumedCable(Cable):
         points, names = self.axial_points, "abc" if self.curvature == "exact" else "a"
         every = self._at_points(program, "", names, points, c)
         strains, bending = [], []
+        weighted = [self._weighted(program, points, g, "EI", EI) for g in range(len(points)) if names == "abc"]
         for g, (invariants, *_) in enumerate(every):
             if names == "a":
                 strains.append(self._axial_strain(program, f"_{g}", *invariants))
                 bending.append(sp.S.Zero)
                 continue
-            stiffness = self._weighted(program, points, g, "EI", EI)
-            strain, k2, _ = self.measures(program, f"_{g}", invariants, stiffness)
+            strain, k2, _ = self.measures(program, f"_{g}", invariants, weighted[g])
             strains.append(strain)
             bending.append(k2)
         stresses = self._stresses(program, A, w, points, strains)
@@ -136,7 +136,7 @@ class AssumedCable(Cable):
             even, odd = (program.define(f"{kind}_N_{here}", sum(
                 2 * point.weight * point.value[m] * N[m] for m in range(first, self.degree, 2)))
                 for kind, first in (("even", 0), ("odd", 1)))
-            found[here] = program.define(f"stress_{here}", even + odd if there != here else even)
+            found[here] = program.define(f"stress_{here}", even + odd if there != here else even, alias=True)
             if there != here:
                 found[there] = program.define(f"stress_{there}", even - odd)
         return found

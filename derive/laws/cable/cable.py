@@ -171,8 +171,10 @@ class Cable(Damping):
         EA, EI = program.define("EA_l", A[0] / (2 * w)), program.define("EI_l", 2 * A[1] * w)
         if self.curvature == "exact":
             points = self.bending_points
-            for g, (invariants, *at) in enumerate(self._at_points(program, "", "abc", points, c)):
-                axial, bending = (self._weighted(program, points, g, *stiff) for stiff in (("EA", EA), ("EI", EI)))
+            every = self._at_points(program, "", "abc", points, c)
+            weighted = [[self._weighted(program, points, g, *stiff) for stiff in (("EA", EA), ("EI", EI))]
+                        for g in range(len(points))]
+            for g, ((invariants, *at), (axial, bending)) in enumerate(zip(every, weighted, strict=True)):
                 strain, k2, _ = self.measures(program, f"_{g}", invariants, bending)
                 yield Term("abc", axial * strain**2 + k2, invariants, *at)
             return

@@ -8,16 +8,20 @@ Damping need not be integrated exactly: as many points as the degree.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
+from itertools import groupby
 
 import numpy as np
 import sympy as sp
 
 from ...algebra.gram import Gram
-from ...codegen.program import DirectionalDerivative, Program, jacobian
+from ...codegen.program import Program
 from ...spec import Element, x
-from .blocks import named_blocks, spread
+from .blocks import PointBlocks, named_block, named_blocks, spread
 from .points import Point
+
+Pair = tuple[np.ndarray, np.ndarray]
+"""A vector at a point and its rate, (dim,) each."""
 
 
 class Damping:
@@ -48,102 +52,177 @@ class Damping:
         degree = sum(sp.sympify(monomial).free_symbols <= {x} for monomial in element.basis) - 1
         return {"rates": degree + (degree - 1) * element.dim, "spins": int(element.dim == 3)}
 
-    def _rates(self, program: Program, A, tau, c, dc, w) -> Iterator[tuple]:
-        """At every point: factors of the strain vectors in r' and (l/2) r'', weight times viscosity, positions and
-        rates of the two (one where the strain is measured), rates of the measures.
-        """
+    def _points(self, program: Program, A: np.ndarray, tau: sp.Expr, c: np.ndarray, dc: np.ndarray,
+                w: sp.Expr) -> list[AxialPoint | BendingPoint]:
+        """Return the quadrature points with the rates there, in two stages."""
         program.stage("rate of axial strain at the quadrature points")
         viscosity = program.define("EA_tau", tau * A[0] / (2 * w))
-        for g, point in enumerate(self.points(self.degree)):
-            r1, d1 = self._at_point(program, f"{g}", "1", point.value, c, dc)
-            rate = r1.dot(d1)
-            if self.strain == "engineering":
-                rate = rate * program.define(f"inv_{g}", 1 / program.define(f"len_{g}", sp.sqrt(r1.dot(r1))))
-            yield [point.value], point.weight * viscosity, r1, d1, [program.define(f"deps_{g}", rate)]
+        axial: list[AxialPoint | BendingPoint] = [
+            AxialPoint(program, f"{g}", point, point.weight * viscosity,
+                       self._at_point(program, f"{g}", "1", point.value, c, dc), self.strain == "engineering")
+            for g, point in enumerate(self.points(self.degree))]
         program.stage("rate of curvature at the quadrature points")
         viscosity = program.define("EI_tau", 2 * tau * A[1] * w)
-        for g, point in enumerate(self.points(self.degree - 1)):
-            r1, d1 = self._at_point(program, f"b{g}", "1", point.value, c, dc)
-            r2, d2 = self._at_point(program, f"b{g}", "2", point.slope, c, dc)
-            inverse = program.define(f"inv_b{g}", 1 / program.define(f"len_b{g}", sp.sqrt(r1.dot(r1))))
-            i = program.vector(f"i_b{g}", inverse * r1)
-            stretch = program.define(f"stretch_b{g}", i.dot(d1))
-            turn = program.vector(f"di_b{g}", inverse * (d1 - stretch * i))
-            along, across = program.define(f"along_b{g}", i.dot(r2)), program.define(f"across_b{g}", turn.dot(r2))
-            rate = program.vector(f"rate_b{g}", d2 - (along * turn - across * i))
-            yield ([point.value, point.slope], point.weight * viscosity, np.concatenate([r1, r2]),
-                   np.concatenate([d1, d2]), list(rate))
+        return axial + [BendingPoint(program, f"b{g}", point, point.weight * viscosity,
+                                     self._at_point(program, f"b{g}", "1", point.value, c, dc),
+                                     self._at_point(program, f"b{g}", "2", point.slope, c, dc))
+                        for g, point in enumerate(self.points(self.degree - 1))]
 
-    def _at_point(self, program: Program, tag: str, order: str, series, c, dc) -> tuple[np.ndarray, np.ndarray]:
+    def _at_point(self, program: Program, tag: str, order: str, series, c, dc) -> Pair:
+        """Return the sum of a series of strain vectors at a point, and that of their rates."""
         r, d = (program.vector(f"{name}{order}_{tag}",
                                np.asarray(sum(series[k] * v[m] for k, m in enumerate(self.axis_indices))))
                 for name, v in (("r", c), ("d", dc)))
         return r, d
 
-    def _damping_points(self, program, A, tau, c, dc, w, strain: Callable = list) -> Iterator[tuple]:
-        """At every point: factors, positions, rates, forces on r' (and (l/2) r''); strain: of the rates there, what the
-        stress follows.
-        """
-        for factors, viscosity, still, moving, rates in list(self._rates(program, A, tau, c, dc, w)):
-            by_rate = jacobian(program, np.array(rates), list(moving))
-            stress = strain(rates)
-            force = [program.define(f"F_{s.name}", viscosity * sum(e * d for e, d in zip(stress, column, strict=True)))
-                     for s, column in zip(moving, by_rate.T, strict=True)]
-            yield factors, still, moving, np.array(force)
-
     def damping_forces(self, program: Program, A: np.ndarray, tau: sp.Expr, c: np.ndarray, dc: np.ndarray,
                        w: sp.Expr) -> np.ndarray:
         """Return the damping forces on the strain vectors, (vectors, dim), N m."""
-        return self._summed(program, list(self._damping_points(program, A, tau, c, dc, w)))
+        points = self._points(program, A, tau, c, dc, w)
+        return self._summed(program, [(point, point.forces(point.rates)) for point in points])
 
     def algorithmic_forces(self, program: Program, A: np.ndarray, weight: sp.Expr, relaxed_strain: np.ndarray,
                            c: np.ndarray, dc: np.ndarray, w: sp.Expr) -> tuple[np.ndarray, Sequence[sp.Expr]]:
         """Return the forces on strain vectors of the stiffnesses times weight dE - relaxed_strain, and dE, the rates
         that dc makes.
         """
+        points = self._points(program, A, sp.S.One, c, dc, w)
+        program.stage("forces at the quadrature points")
+        forces: list[tuple[AxialPoint | BendingPoint, list[np.ndarray]]] = []
         dE: list[sp.Expr] = []
+        for point in points:
+            excess = [program.define(f"excess_{s.name}", weight * s - relaxed_strain[k])
+                      for k, s in enumerate(point.rates, len(dE))]
+            forces.append((point, point.forces(np.array(excess))))
+            dE.extend(point.rates)
+        return self._summed(program, forces), dE
 
-        def strain(rates):
-            dE.extend(rates)
-            return [program.define(f"excess_{s.name}", weight * s - relaxed_strain[k])
-                    for k, s in enumerate(rates, len(dE) - len(rates))]
-
-        return self._summed(program, list(self._damping_points(program, A, sp.S.One, c, dc, w, strain))), dE
-
-    def _summed(self, program: Program, points: list[tuple]) -> np.ndarray:
-        """Return forces on strain vectors from those at the points."""
-        dim = self.gram.element.dim
-        f: np.ndarray = np.zeros((len(self.gram.names), dim), dtype=object)
-        for factors, _, _, force in points:
+    def _summed(self, program: Program,
+                points: list[tuple[AxialPoint | BendingPoint, list[np.ndarray]]]) -> np.ndarray:
+        """Return forces on strain vectors from those at the points, in a stage."""
+        f: np.ndarray = np.zeros((len(self.gram.names), self.gram.element.dim), dtype=object)
+        for point, forces in points:
             for k, m in enumerate(self.axis_indices):
-                f[m] = f[m] + sum(x[k] * force[i * dim:(i + 1) * dim] for i, x in enumerate(factors))
+                f[m] = f[m] + sum(x[k] * force for x, force in zip(point.series, forces, strict=True))
         program.stage("forces on strain vectors")
         return np.array([program.vector(f"f_{name}", v) for name, v in zip(self.gram.names, f, strict=True)])
 
     def damping_blocks(self, program: Program, A: np.ndarray, tau: sp.Expr, c: np.ndarray, dc: np.ndarray,
                        rate: sp.Expr, w: sp.Expr) -> np.ndarray:
-        """df/dc + rate df/d(dc) over strain vectors."""
-        dim = self.gram.element.dim
-        rules: dict[int, tuple[list, list]] = {}
-        for factors, still, moving, force in list(self._damping_points(program, A, tau, c, dc, w)):
-            columns = []
-            for s, v in zip(still, moving, strict=True):
-                others = {o: 0 for o in (*still, *moving) if o not in (s, v)}
-                columns.append(DirectionalDerivative(program, f"d_{s.name}", {s: 1, v: rate, **others}).array(force))
-            K = np.array([[program.define(f"K_{a.name}_{b.name}", columns[j][i]) for j, b in enumerate(still)]
-                          for i, a in enumerate(still)])
-            d = range(len(factors))
-            parts = {(i, j): K[i * dim:(i + 1) * dim, j * dim:(j + 1) * dim] for i in d for j in d}
-            for kept, new in zip(rules.setdefault(len(factors), ([], [])), (factors, parts), strict=True):
-                kept.append(new)
+        """Return df/dc + rate df/d(dc) over strain vectors, (vectors, vectors, dim, dim)."""
+        points = self._points(program, A, tau, c, dc, w)
+        program.stage("derivatives at the quadrature points")
         total = np.array(0)
-        for order, (series, blocks) in rules.items():
-            total = total + spread(program, f"d{order}", series, blocks, symmetric=False)
+        for order, of_order in groupby(points, key=lambda point: len(point.series)):
+            group = list(of_order)
+            total = total + spread(program, f"d{order}", [point.series for point in group],
+                                   [point.blocks(rate) for point in group], symmetric=False)
         program.stage("blocks over strain vectors")
         return named_blocks(program, self.gram.names, total, symmetric=False)
 
     def dissipation(self, program: Program, A: np.ndarray, tau: sp.Expr, c: np.ndarray, dc: np.ndarray,
                     w: sp.Expr) -> sp.Expr:
         """Return the dissipated power, W."""
-        return sum(viscosity * sum(e * e for e in rates)
-                   for _, viscosity, _, _, rates in list(self._rates(program, A, tau, c, dc, w)))
+        return sum(point.viscosity * point.rates.dot(point.rates) for point in self._points(program, A, tau, c, dc, w))
+
+
+class AxialPoint:
+    """Rate of the axial strain where it is integrated.
+
+    series: factors of the strain vectors in r'; viscosity: times the weight; rates: of the strain.
+    """
+
+    def __init__(self, program: Program, tag: str, point: Point, viscosity: sp.Expr, r1: Pair, engineering: bool):
+        self.program, self.tag, self.viscosity, self.series = program, tag, viscosity, [point.value]
+        self.r, self.d = r1
+        self.inverse = sp.S.One
+        if engineering:
+            self.inverse = program.define(f"inv_{tag}", 1 / program.define(f"len_{tag}", sp.sqrt(self.r.dot(self.r))))
+        self.engineering = engineering
+        self.rates = np.array([program.define(f"deps_{tag}", self.r.dot(self.d) * self.inverse)])
+
+    def forces(self, stress: np.ndarray) -> list[np.ndarray]:
+        """Return the force on r' of a stress in units of the viscosity: stress times d(rate)/d(dr'/dt)."""
+        return [self._vector("F", self._force(stress) * self.r)]
+
+    def _force(self, stress: np.ndarray) -> sp.Expr:
+        return self.program.define(f"N_{self.tag}", self.viscosity * stress[0] * self.inverse)
+
+    def blocks(self, rate: sp.Expr) -> PointBlocks:
+        """Return dF/dr' + rate dF/d(dr'/dt)."""
+        N, eye = self._force(self.rates), np.eye(len(self.r), dtype=int)
+        if not self.engineering:
+            along, across = self.r, self.viscosity * (self.d + rate * self.r)
+        else:
+            # with the tangent i and its rate turn: d(i) = (1 - i i) dr/|r|, d(strain rate) = (turn + rate i) . dr
+            along = self._vector("i", self.inverse * self.r)
+            turn = self._vector("di", self.inverse * (self.d - self.rates[0] * along))
+            across = self.viscosity * (turn + rate * along) - N * along
+        return {(0, 0): named_block(self.program, f"K_{self.tag}",
+                                    N * eye + np.outer(along, self._vector("by", across)))}
+
+    def _vector(self, name: str, value: np.ndarray) -> np.ndarray:
+        return self.program.vector(f"{name}_{self.tag}", value)
+
+
+class BendingPoint:
+    """Rate of (l/2) r'' as seen from the tangent, where it is integrated: D_t r2 = d2 - (i.r2) di + (di.r2) i.
+
+    series: factors of the strain vectors in r1 = r' and r2 = (l/2) r''; viscosity: times the weight; rates: D_t r2.
+    """
+
+    def __init__(self, program: Program, tag: str, point: Point, viscosity: sp.Expr, first: Pair, second: Pair):
+        self.program, self.tag, self.viscosity, self.series = program, tag, viscosity, [point.value, point.slope]
+        (r1, d1), (self.r2, self.d2) = first, second
+        self.inverse = program.define(f"inv_{tag}", 1 / program.define(f"len_{tag}", sp.sqrt(r1.dot(r1))))
+        self.i = self._vector("i", self.inverse * r1)
+        self.stretch = self._number("stretch", self.i.dot(d1))
+        self.turn = self._vector("di", self.inverse * (d1 - self.stretch * self.i))
+        self.along = self._number("along", self.i.dot(self.r2))
+        self.across = self._number("across", self.turn.dot(self.r2))
+        self.rates = self._vector("rate", self.d2 - (self.along * self.turn - self.across * self.i))
+
+    def forces(self, stress: np.ndarray) -> list[np.ndarray]:
+        """Return the forces on r1 and r2 of a stress in units of the viscosity: stress . d(D_t r2)/d(dr1/dt) and
+        stress . d(D_t r2)/d(dr2/dt).
+
+        d(di) = (1 - i i) d(dr1/dt)/|r1|, and (stress.i) r2 - (i.r2) stress is across i already.
+        """
+        inward = self._number("inward", self.viscosity * self.inverse * self.i.dot(stress))
+        lever = self._number("lever", self.viscosity * self.inverse * self.along)
+        return [self._vector("F1", inward * self.r2 - lever * stress), self._vector("F2", self.viscosity * stress)]
+
+    def blocks(self, rate: sp.Expr) -> PointBlocks:
+        """Return dF/dr + rate dF/d(dr/dt) of the forces F1 = viscosity/|r1| h, h = growth r2 - along D_t r2, with
+        growth the rate of along = i.r2, and F2 = viscosity D_t r2.
+
+        With p = r2 - along i: d(i) = (1 - i i) dr1/|r1|, d(along) = p.dr1/|r1| + i.dr2, d(di) = W dr1 with
+        W = k (1 - i i) - (i di + di i)/|r1| and k = (rate - stretch/|r1|)/|r1|.
+        """
+        i, turn, inv, along, eye = self.i, self.turn, self.inverse, self.along, np.eye(len(self.i), dtype=int)
+        k = self._number("k", inv * (rate - self.stretch * inv))
+        level = self._number("level", inv * self.across - along * k)
+        p = self._vector("p", self.r2 - along * i)
+        by_turn = self._vector("by_turn", inv * (along * i - p))
+        by_i = self._vector("by_i", k * p - self._number("by_i_i", inv * self.across + level) * i)
+        second = {"1": level * eye + np.outer(turn, by_turn) + np.outer(i, by_i),
+                  "2": rate * eye + np.outer(i, turn) - np.outer(turn, i)}
+        K21, K22 = (named_block(self.program, f"K2{n}_{self.tag}", self.viscosity * block)
+                    for n, block in second.items())
+        stiff = self._number("stiff", self.viscosity * inv)
+        lever = self._number("lever", along * inv)
+        growth = self._number("growth", self.rates.dot(i))
+        pushed = self._vector("pushed", stiff * (inv * self.d2 + k * p - inv * along * turn - 2 * inv * growth * i))
+        turned = self._vector("turned", stiff * by_turn)
+        K11 = np.outer(self.r2, pushed) + np.outer(self.rates, turned) - lever * K21
+        follows = self._vector("follows", stiff * (rate * i + turn))
+        stiff_i = self._vector("stiff_i", stiff * i)
+        K12 = stiff * growth * eye + np.outer(self.r2, follows) - np.outer(self.rates, stiff_i) - lever * K22
+        return {(0, 0): named_block(self.program, f"K11_{self.tag}", K11),
+                (0, 1): named_block(self.program, f"K12_{self.tag}", K12), (1, 0): K21, (1, 1): K22}
+
+    def _number(self, name: str, value: sp.Expr) -> sp.Expr:
+        return self.program.define(f"{name}_{self.tag}", value)
+
+    def _vector(self, name: str, value: np.ndarray) -> np.ndarray:
+        return self.program.vector(f"{name}_{self.tag}", value)

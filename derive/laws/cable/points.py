@@ -38,9 +38,9 @@ def values(program: Program, name: str, series: Series, c: Sequence[np.ndarray])
                             if not same)
             alike, opposite = (_vector(program, f"{name}_{kind}{here}", part)
                                for kind, part in (("even", alike), ("odd", opposite)))
-            found[there] = program.vector(f"{name}_{there}", alike - opposite)
+            found[there] = program.vector(f"{name}_{there}", alike - opposite, alias=True)
             alike = alike + opposite
-        found[here] = program.vector(f"{name}_{here}", alike)
+        found[here] = program.vector(f"{name}_{here}", alike, alias=True)
     return found
 
 

@@ -10,6 +10,7 @@ from ...codegen.family import BodyFamily
 from ..motion import RIDERS
 from ..numbers import EPS, Numbers, State
 from .measures import FAR, Invariance, quantised, relative
+from .moves import moves
 
 
 def body(family: BodyFamily, k: Numbers, s: State) -> Iterator[Invariance]:
@@ -35,5 +36,6 @@ def body(family: BodyFamily, k: Numbers, s: State) -> Iterator[Invariance]:
     M = k("inertia_tangent", s)["M"]
     yield "the gyroscopic moment does no work", abs(still @ s["w"]) / relative(f, 1), 32 * EPS
     yield "f . w is the rate of the kinetic energy", abs(f @ s["w"] - s["w"] @ M @ s["a"]) / relative(f, 1), 64 * EPS
+    yield from moves(rider, k, s)
     T = k("kinetic_energy", s)["T"][0]
     yield "kinetic energy is w . M w / 2", abs(s["w"] @ M @ s["w"] / 2 / T - 1), 8 * EPS

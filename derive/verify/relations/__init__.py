@@ -7,11 +7,11 @@ from typing import Any
 
 from ...codegen.family import Family
 from ..methods import Relation
-from . import body, element, frame, joint, law, modal, resistance, slide
+from . import body, element, frame, joint, law, modal, resistance, slide, spring
 
 OF_ROLE: dict[str, Callable[[Any], list[Relation]]] = {
     "element": element.element, "law": law.law, "slide": slide.slide, "body": body.body, "modal": modal.modal,
-    "frame": frame.frame, "joint": joint.joint, "resistance": resistance.resistance}
+    "frame": frame.frame, "joint": joint.joint, "resistance": resistance.resistance, "spring": spring.spring}
 
 
 def relations(family: Family) -> list[Relation]:

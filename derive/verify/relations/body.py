@@ -9,6 +9,7 @@ import numpy as np
 from ...codegen.family import BodyFamily
 from ..methods import Relation
 from ..motion import RIDERS, cross, exponential, spin, swung_axes, turned
+from .moves import loads, moves
 from .paths import entry, from_kernel, unit
 
 
@@ -60,6 +61,8 @@ def body(family: BodyFamily) -> list[Relation]:
         Relation("inertia_tangent", "M", "df/da", 1, from_kernel("inertia_force", "f", a=entry("a")), n),
         Relation("inertia_tangent", "D", "df/dw", 1, from_kernel("inertia_force", "f", w=entry("w")), n),
         Relation("kinetic_energy", "T", "Σ ½ m v² of point masses", 0, kinetic_energy),
+        *loads(rider),
+        *moves(rider),
     ]
 
 

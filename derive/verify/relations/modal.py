@@ -159,6 +159,16 @@ def mode_pulled(k: Numbers, s: State, **changes) -> np.ndarray:
     return out["P"].dot(s["f"]) + out["T"].dot(s["m"])
 
 
+def followed(k: Numbers, s: State) -> np.ndarray:
+    """Return the force c along the axes of the section, in global axes."""
+    return k("attachment", s)["axes"].dot(s["c"])
+
+
+def follower(kernel: str) -> Callable:
+    """Return the force g of a kernel as a function of the state, changed."""
+    return lambda k, s, **changes: k(kernel, s, **changes)["g"]
+
+
 def modal(family: BodyFamily) -> list[Relation]:
     """Return the relations of every output of a modal body's kernels."""
     p = Paths(family)
@@ -209,6 +219,16 @@ def _of_attachment(p: Paths) -> list[Relation]:
         Relation("attachment_mode_force", "K_frame", "d(P' f + T' m) of the frame by eta", 1, by_mode(pulled, 0)),
         Relation("attachment_pair_force", "K", "d(P' f + T' m) of the mode by eta of the other", 1,
                  by_mode(mode_pulled, 1)),
+        Relation("attachment_follower", "g", "P' (axes c)", 0,
+                 lambda k, s, t, j: k("attachment", s)["P"].T.dot(followed(k, s))),
+        Relation("attachment_follower", "K", "dg by translation and rotation", 1,
+                 p.by_frame(follower("attachment_follower")), n),
+        Relation("attachment_mode_follower", "g", "P' (axes c) of the mode", 0,
+                 lambda k, s, t, j: k("attachment_mode", s)["P"].dot(followed(k, s))),
+        Relation("attachment_mode_follower", "K_frame", "dg of the frame by eta", 1,
+                 by_mode(follower("attachment_follower"), 0)),
+        Relation("attachment_pair_follower", "K", "dg of the mode by eta of the other", 1,
+                 by_mode(follower("attachment_mode_follower"), 1)),
     ]
 
 

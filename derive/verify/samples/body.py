@@ -12,16 +12,21 @@ from .step import following
 
 
 def sample(family: BodyFamily, exact: Numbers, random: np.random.Generator) -> State:
-    """Return a body in any attitude with velocities and accelerations, its mass and inertia, and a force on a point."""
-    dim = RIDERS[family.rider].dim
+    """Return a body in any attitude with velocities and accelerations, its mass and inertia, a force on a point, a
+    step, a change of the configuration, and a force c in body axes.
+    """
+    rider = RIDERS[family.rider]
+    dim = rider.dim
     state = rider_state(family, random.normal(size=dim), random)
     state |= following(family, state, random.spawn(1)[0])
-    return state | {"f": random.normal(size=dim)}
+    of_step = random.spawn(1)[0]
+    return state | {"f": random.normal(size=dim), "step": of_step.normal(size=rider.n_velocity),
+                    "change": of_step.normal(size=len(state["b"])), "c": of_step.normal(size=dim)}
 
 
 def at_rest(family: BodyFamily, exact: Numbers, first: State) -> State:
-    """Return the first sample, not turned, its point on the x axis."""
-    return first | unturned(family)
+    """Return the first sample, not turned, its point on the x axis, with a step of zero."""
+    return first | unturned(family) | {"step": 0 * first["step"]}
 
 
 def rider_state(family: BodyFamily, near: np.ndarray, random: np.random.Generator) -> State:

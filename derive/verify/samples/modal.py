@@ -37,6 +37,7 @@ def _points(random: np.random.Generator, dim: int) -> State:
             "psis": random.uniform(0.5, 1.5, (MODES, turns)), "m": random.normal(size=turns)}
     # of one sign: what cancels by chance would be held to digits that it has not
     made |= {name: random.uniform(-0.8, -0.2, MODES) for name in RATES}
+    made["c"] = random.uniform(0.5, 1.5, dim)
     return made | integrals(made)
 
 

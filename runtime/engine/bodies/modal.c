@@ -243,3 +243,28 @@ void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *s
                                       K + (frame + k) * n + frame + l);
     }
 }
+
+/* A force c along the axes of the section at a point, with which it turns: g its generalised force, K (n x n) the
+ * derivative of g by the body's dofs. The row of a mode does not see the frame's motion. */
+void fu_modal_attachment_follower(const fu_body *body, const fu_modal_attachment *spot, const double *b, const double *c,
+                                  double *g, double *K)
+{
+    const fu_modal_kernels *kernel = body->shape->kernel;
+    const int dim = body->kernel->dim, frame = body->kernel->velocity, turns = frame - dim, n = fu_body_dofs(body);
+    double u[3], theta[3], of_frame[36], column[6];
+    point_of(body, spot, eta_of(body, b), 0, u, theta);
+    kernel->attachment_follower(b, u, theta, c, g, of_frame);
+    for (int i = 0; i < frame; ++i)
+        for (int j = 0; j < frame; ++j) K[i * n + j] = of_frame[i * frame + j];
+    for (int k = 0; k < body->modes; ++k) {
+        const double *phi = spot->phi + k * dim, *psi = spot->psi + k * turns;
+        kernel->attachment_mode_follower(b, u, theta, phi, psi, c, g + frame + k, column);
+        for (int i = 0; i < frame; ++i) {
+            K[(frame + k) * n + i] = 0.0;
+            K[i * n + frame + k] = column[i];
+        }
+        for (int l = 0; l < body->modes; ++l)
+            kernel->attachment_pair_follower(b, u, theta, phi, psi, spot->phi + l * dim, spot->psi + l * turns, c,
+                                         K + (frame + k) * n + frame + l);
+    }
+}

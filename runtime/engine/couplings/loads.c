@@ -8,40 +8,27 @@ static double scale_at(const fu_model *model, int signal, double t)
     return signal < 0 ? 1.0 : fu_signal_at(&model->signals[signal], t, 0, 0);
 }
 
-/* The same as below on a point of a modal body; what follows turns with the section there. */
+/* A load on a point of a modal body, as `generalised` below; what follows turns with the section there. */
 static int on_modes(const fu_model *model, const fu_load *load, const double *q, double *g, double *K)
 {
     const fu_body *body = &model->bodies[load->on];
-    const int dim = model->dim, turns = dim == 3 ? 3 : 1, n = fu_body_dofs(body), in_plane = dim == 2;
+    const int dim = model->dim, turns = dim == 3 ? 3 : 1, n = fu_body_dofs(body);
     const double *b = q + body->configuration, *c = load->c;
     double P[3 * FU_ATTACHMENT_COORDINATES], T[3 * FU_ATTACHMENT_COORDINATES], f[3] = {0.0}, m[3] = {0.0};
     fu_modal_point at;
+    if (load->kind == FU_BODY_FOLLOWER) {
+        fu_modal_attachment_follower(body, &load->spot, b, c, g, K);
+        return n;
+    }
     fu_modal_attachment_state(body, &load->spot, b, model->zero, &at, P, T);
-    if (load->kind == FU_BODY_MOMENT) memcpy(m, c + (in_plane ? 2 : 0), sizeof(double) * (size_t)turns);
-    else if (load->kind == FU_BODY_FORCE) memcpy(f, c, sizeof(double) * (size_t)dim);
-    else
-        for (int d = 0; d < dim; ++d)
-            for (int e = 0; e < dim; ++e) f[d] += at.axes[d * dim + e] * c[e];
+    if (load->kind == FU_BODY_MOMENT) memcpy(m, c + (dim == 2 ? 2 : 0), sizeof(double) * (size_t)turns);
+    else memcpy(f, c, sizeof(double) * (size_t)dim);
     for (int i = 0; i < n; ++i) {
         g[i] = 0.0;
         for (int d = 0; d < dim; ++d) g[i] += P[d * n + i] * f[d];
         for (int d = 0; d < turns; ++d) g[i] += T[d * n + i] * m[d];
     }
     fu_modal_attachment_force(body, &load->spot, b, f, m, K);
-    if (load->kind != FU_BODY_FOLLOWER) return n;
-    for (int j = 0; j < n; ++j) {
-        double turned[3]; /* T dq x f */
-        if (in_plane) {
-            turned[0] = -T[j] * f[1];
-            turned[1] = T[j] * f[0];
-        } else
-            for (int d = 0; d < 3; ++d) {
-                const int e = (d + 1) % 3, l = (d + 2) % 3;
-                turned[d] = T[e * n + j] * f[l] - T[l * n + j] * f[e];
-            }
-        for (int i = 0; i < n; ++i)
-            for (int d = 0; d < dim; ++d) K[i * n + j] += P[d * n + i] * turned[d];
-    }
     return n;
 }
 
@@ -57,46 +44,14 @@ static int generalised(const fu_model *model, const fu_load *load, const double 
         return cable->coordinates;
     }
     const fu_body *body = &model->bodies[load->on];
-    const int dim = body->kernel->dim, n = body->kernel->velocity;
-    const double *b = q + body->configuration, *c = load->c, *u = load->u;
-    double p[3], p_q[18], unused[36];
+    const fu_body_kernels *kernel = body->kernel;
+    const double *b = q + body->configuration, *c = load->c;
     *first = body->dof;
     if (body->modes) return on_modes(model, load, q, g, K);
-    for (int i = 0; i < n; ++i) g[i] = 0.0;
-    for (int i = 0; i < n * n; ++i) K[i] = 0.0;
-    switch (load->kind) {
-    case FU_BODY_FORCE:
-        body->kernel->point_force(b, u, c, p, p_q, K);
-        for (int i = 0; i < n; ++i)
-            for (int d = 0; d < dim; ++d) g[i] += p_q[d * n + i] * c[d];
-        break;
-    case FU_BODY_FOLLOWER: /* the force is A c: where the body's point c stands from its centre */
-        body->kernel->point_force(b, c, c, p, p_q, unused);
-        for (int d = 0; d < dim; ++d) {
-            g[d] = p[d] - b[d];
-            for (int i = dim; i < n; ++i) K[d * n + i] = p_q[d * n + i];
-        }
-        if (dim == 2) g[2] = u[0] * c[1] - u[1] * c[0];
-        else
-            for (int i = 0; i < 3; ++i)
-                g[3 + i] = u[(i + 1) % 3] * c[(i + 2) % 3] - u[(i + 2) % 3] * c[(i + 1) % 3];
-        break;
-    default: /* FU_BODY_MOMENT, A' c: c along each body axis */
-        if (dim == 2) {
-            g[2] = c[2];
-            break;
-        }
-        for (int i = 0; i < 3; ++i) {
-            const double axis[3] = {i == 0, i == 1, i == 2};
-            body->kernel->point_force(b, axis, c, p, p_q, unused);
-            for (int d = 0; d < 3; ++d) {
-                g[3 + i] += (p[d] - b[d]) * c[d];
-                for (int j = 3; j < 6; ++j) K[(3 + i) * 6 + j] += p_q[d * 6 + j] * c[d];
-            }
-        }
-        break;
-    }
-    return n;
+    if (load->kind == FU_BODY_FORCE) kernel->force(b, load->u, c, g, K);
+    else if (load->kind == FU_BODY_FOLLOWER) kernel->follower_force(b, load->u, c, g, K);
+    else kernel->moment(b, c + (kernel->dim == 2 ? 2 : 0), g, K);
+    return kernel->velocity;
 }
 
 static void external_force(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f)

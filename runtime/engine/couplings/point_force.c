@@ -25,13 +25,12 @@ static void gap_of(const fu_model *model, const fu_point_force *between, const d
     }
 }
 
-/* The force on the first point by the law, and its derivatives by gap and rate. */
-static void force_at(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double force[3],
-                     double by_gap[9], double by_rate[9])
+/* The force on the first point by the law. */
+static void force_at(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double force[3])
 {
     double gap[3], rate[3];
     gap_of(model, (const fu_point_force *)coupling, state->q, state->v, gap, rate);
-    coupling->type->law->force(coupling, gap, rate, force, by_gap, by_rate);
+    coupling->type->law->force(coupling, gap, rate, force);
 }
 
 /* The force over a step, and the power that it dissipates. */
@@ -89,9 +88,9 @@ static void own_rows(const fu_coupling *coupling, const fu_equations *at, const 
 void fu_point_force_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
                              double *own)
 {
-    double force[3], by_gap[9], by_rate[9];
+    double force[3];
     add_forces(model, (const fu_point_force *)coupling, at->next->q, at->next->forces + coupling->force, f);
-    force_at(model, coupling, at->next, force, by_gap, by_rate);
+    force_at(model, coupling, at->next, force);
     own_rows(coupling, at, force, own);
 }
 
@@ -134,8 +133,9 @@ static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_
     const fu_point_force *between = (const fu_point_force *)coupling;
     const int dim = between->dim, row = fu_extra(model, coupling->unknown);
     const double unit = fu_row_unit(weights.inertia, coupling->scale[0]), stiffness = weights.stiffness;
-    double force[3], by_gap[9], by_rate[9];
-    force_at(model, coupling, state, force, by_gap, by_rate);
+    double gap[3], rate[3], force[3], by_gap[9], by_rate[9];
+    gap_of(model, between, state->q, state->v, gap, rate);
+    coupling->type->law->tangent(coupling, gap, rate, force, by_gap, by_rate);
     for (int d = 0; d < dim; ++d) fu_add(model, system, row + d, row + d, unit);
     for (int e = 0; e < 2; ++e) {
         fu_attachment_state at;
@@ -182,17 +182,16 @@ double fu_point_force_step_dissipation(const fu_model *model, const fu_coupling 
 
 void fu_point_force_force(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f)
 {
-    double force[3], by_gap[9], by_rate[9];
-    force_at(model, coupling, state, force, by_gap, by_rate);
+    double force[3];
+    force_at(model, coupling, state, force);
     add_forces(model, (const fu_point_force *)coupling, state->q, force, f);
 }
 
 void fu_point_force_outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                             const double *acceleration, const fu_accelerator *work, double *out)
 {
-    double by_gap[9], by_rate[9];
     (void)acceleration, (void)work;
-    force_at(model, coupling, state, out, by_gap, by_rate);
+    force_at(model, coupling, state, out);
 }
 
 void fu_point_force_take(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state)

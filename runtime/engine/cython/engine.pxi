@@ -148,6 +148,7 @@ cdef extern from "engine.h" nogil:
         fu_modal_attachment spot
     ctypedef struct fu_point_force:
         fu_coupling base
+        const void *kernels
         fu_attachment ends[2]
         int dim
         double parameters[8]

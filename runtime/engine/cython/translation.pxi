@@ -218,6 +218,7 @@ cdef class Translation(Arrays):
         for i, force in enumerate(model.springs):
             p = &self.point_forces[i]
             self._coupling(&p.base, force.type, i, force.unknown, [force.mass] * force.dim)
+            p.kernels = _found(tables, force.type, force.kernel)
             p.base.is_damped, p.dim = force.is_damped, force.dim
             if len(force.parameters) > FU_MAX_PARAMETERS:
                 raise ValueError(f"{force.type}: more parameters than the engine's {FU_MAX_PARAMETERS}")

@@ -70,5 +70,7 @@ void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *s
                      double *P, double *T);
 void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *spot, const double *b, const double *f, const double *m,
                            double *K);
+void fu_modal_attachment_follower(const fu_body *body, const fu_modal_attachment *spot, const double *b, const double *c,
+                                  double *g, double *K);
 
 #endif

@@ -42,9 +42,10 @@ typedef struct {
 
 /* The law of a force along the gap between two points; couplings/point_force.c does the rest. */
 typedef struct {
-    /* force on the first point, and its derivatives by gap and rate (dim x dim, row by row) */
-    void (*force)(const fu_coupling *coupling, const double *gap, const double *rate, double *force, double *by_gap,
-                  double *by_rate);
+    /* force on the first point; the same with its derivatives by gap and rate (dim x dim, row by row) */
+    void (*force)(const fu_coupling *coupling, const double *gap, const double *rate, double *force);
+    void (*tangent)(const fu_coupling *coupling, const double *gap, const double *rate, double *force, double *by_gap,
+                    double *by_rate);
     /* force over a step that does as much work as the energy changes, and dissipates the power that is returned */
     double (*step_force)(const fu_coupling *coupling, const double *gap, const double *gap_next, double h, double *force);
     double (*energy)(const fu_coupling *coupling, const double *gap);

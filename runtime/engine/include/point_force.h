@@ -10,6 +10,7 @@
 /* A force along the gap between the points of two attachments, by the law of its type and the parameters of that. */
 typedef struct {
     fu_coupling base;
+    const void *kernels; /* of its law: derive/couplings/ */
     fu_attachment ends[2];
     int dim;
     double parameters[FU_MAX_PARAMETERS];

@@ -1,0 +1,185 @@
+"""Blocks of assignments that repeat with other names, as those at the points of a quadrature do, are printed once.
+
+Names that such blocks have at one place become entries of an array: a_0, a_1, a_2 are a[0], a[1], a[2], and FU_EACH
+(kernels.h) repeats the block with the index a constant. The order of the assignments stays as it is.
+
+Enters: items, texts of one or more assignments each. Leaves: items of which some stand for several, and the arrays.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+NAME = re.compile(r"(?<![\w.])[A-Za-z_]\w*")
+MOST, LONGEST = 9, 90
+"""Repetitions that FU_EACH knows, and items in a block."""
+LEAST = 3
+"""Items that a repetition must save."""
+
+
+@dataclass
+class Item:
+    """A text of one or more assignments, or a block of items, how often it repeats, and the variable for that.
+
+    constant: the name that is declared with its value, empty where it is an array's entry.
+    """
+
+    text: str
+    constant: str = ""
+    block: list[Item] = field(default_factory=list)
+    times: int = 0
+
+    @cached_property
+    def shape(self) -> tuple:
+        """What items of repeated blocks have in common."""
+        return bool(self.constant), self.times, NAME.sub("#", self.text)
+
+    def lines(self) -> list[str]:
+        """Lines of C."""
+        if not self.times:
+            return [self.text if self.text.startswith("FU_") or self.text.endswith(";") else f"{self.text};"]
+        inner = [line for item in self.block for line in item.lines()]
+        return [f"FU_EACH({self.text}, {self.times},", *(f"    {line}" for line in inner[:-1]), f"    {inner[-1]})"]
+
+
+@dataclass
+class Arrays:
+    """Arrays over repetitions: names of the entries by array, with the C sizes that each entry has itself."""
+
+    sizes: Mapping[str, str]
+    taken: set[str]
+    entries: dict[str, list[str]] = field(default_factory=dict)
+    of: dict[str, tuple[str, int]] = field(default_factory=dict)
+
+    def index(self, names: Sequence[str], variable: str, new: dict[tuple[str, ...], str]) -> str | None:
+        """What stands for these names of one place in a block, by repetition; `new` takes an array to be.
+        None where they are no array.
+        """
+        if len(set(names)) == 1:
+            return names[0]
+        if any(name not in self.sizes or self.sizes[name] != self.sizes[names[0]] for name in names):
+            return None
+        known = {self.of[name][0] for name in names if name in self.of}
+        if known:
+            order = {name: k for name, (_, k) in ((n, self.of[n]) for n in names if n in self.of)}
+            if len(known) > 1 or len(order) < len(set(names)):
+                return None
+            place = _progression([order[name] for name in names], variable)
+            return place and f"{known.pop()}[{place}]"
+        distinct = next((other for other in new if set(names) <= set(other)), tuple(dict.fromkeys(names)))
+        if any(set(other) & set(distinct) for other in new if other != distinct):
+            return None
+        place = _progression([distinct.index(name) for name in names], variable)
+        base = new.get(distinct) or self._base(distinct, set(new.values()))
+        if not (place and base):
+            return None
+        new[distinct] = base
+        return f"{base}[{place}]"
+
+    def _base(self, names: Sequence[str], others: set[str]) -> str:
+        """What names have in common that differ in numbers only; empty where they have nothing, or others are called
+        so.
+        """
+        parts = [re.split(r"(\d+)", name) for name in names]
+        if len({len(p) for p in parts}) > 1:
+            return ""
+        base = ""
+        for number, column in enumerate(zip(*parts, strict=True)):
+            alike = len(set(column)) == 1
+            if not alike and number % 2 == 0:
+                return ""
+            base = base + column[0] if alike else base.removesuffix("_")
+        free = (name for name in (base, f"{base}_at") if name not in self.taken and name not in others)
+        return next(free, "") if base.isidentifier() else ""
+
+    def add(self, names: Sequence[str], base: str) -> None:
+        """Make an array of these names."""
+        self.entries[base] = list(names)
+        self.taken.add(base)
+        self.of.update((name, (base, k)) for k, name in enumerate(names))
+
+    def placed(self, text: str) -> str:
+        """A text with the entries of arrays."""
+        def entry(found: re.Match) -> str:
+            name, place = self.of.get(found[0], (found[0], None))
+            return name if place is None else f"{name}[{place}]"
+
+        return NAME.sub(entry, text)
+
+
+def _progression(places: Sequence[int], variable: str) -> str | None:
+    """The expression in a variable 0, 1, ... that gives these numbers: a step of one, up, down, or up and down."""
+    first, last = places[0], places[-1]
+    turns = range(len(places))
+    if all(k == first for k in places):
+        return str(first)
+    if all(k == first + t for t, k in zip(turns, places, strict=True)):
+        return f"{variable} + {first}" if first else variable
+    if all(k == first - t for t, k in zip(turns, places, strict=True)):
+        return f"{first} - {variable}"
+    if first == last == 0 and all(k == min(t, len(places) - 1 - t) for t, k in zip(turns, places, strict=True)):
+        return f"{variable} < {len(places) // 2} ? {variable} : {len(places) - 1} - {variable}"
+    return None
+
+
+def fold(stages: Sequence[list[Item]], sizes: Mapping[str, str], taken: set[str], variable: str) -> Arrays:
+    """Replace repeated blocks in the stages by items that stand for them; returns the arrays that this makes.
+
+    sizes: C sizes by local name, "" for a number; taken: names that no array may have.
+    """
+    arrays = Arrays(sizes, set(taken))
+    for times in range(MOST, 1, -1):
+        for items in stages:
+            start = 0
+            while start < len(items):
+                found = _longest(items, start, times, arrays, variable)
+                if found:
+                    items[start:start + times * len(found)] = [Item(variable, block=found, times=times)]
+                start += 1
+    for items in stages:
+        for item in items:
+            _place(item, arrays)
+    return arrays
+
+
+def _place(item: Item, arrays: Arrays) -> None:
+    item.text = arrays.placed(item.text)
+    if item.constant in arrays.of:
+        item.constant = ""
+    for inner in item.block:
+        _place(inner, arrays)
+
+
+def _longest(items: Sequence[Item], start: int, times: int, arrays: Arrays, variable: str) -> list[Item] | None:
+    """The longest block at a place that stands there so many times, with the variable in it."""
+    for length in range(min(LONGEST, (len(items) - start) // times), 0, -1):
+        if length * (times - 1) < LEAST:
+            return None
+        if items[start].shape != items[start + length].shape:
+            continue
+        blocks = [items[start + k * length:start + (k + 1) * length] for k in range(times)]
+        if all(one.shape == other.shape and not one.times
+               for block in blocks[1:] for one, other in zip(blocks[0], block, strict=True)):
+            new: dict[tuple[str, ...], str] = {}
+            folded = [item for k in range(length)
+                      if (item := _folded([block[k] for block in blocks], arrays, variable, new))]
+            if len(folded) == length:
+                for names, base in new.items():
+                    arrays.add(names, base)
+                return folded
+    return None
+
+
+def _folded(items: Sequence[Item], arrays: Arrays, variable: str, new: dict) -> Item | None:
+    """One item for these, None where their names are no entries of arrays."""
+    found = []
+    for names in zip(*(NAME.findall(item.text) for item in items), strict=True):
+        entry = arrays.index(names, variable, new)
+        if entry is None:
+            return None
+        found.append(entry)
+    entries = iter(found)
+    return Item(NAME.sub(lambda _: next(entries), items[0].text))
