@@ -13,6 +13,7 @@ from funicular.parts.settings import EquilibriumSettings, ModeSettings, RunSetti
 from funicular.parts.validation import LIMITS, OTHER_LIMITS
 from funicular.scene_file import loads
 from random_scenes import DATA, NUMBERS, OBJECTS, WORDS
+from shared_scenes import CABLE as WIRE
 from typer.testing import CliRunner
 
 SQUARE = fu.Rectangle(height=0.05, width=0.05)
@@ -189,17 +190,6 @@ def test_bounds_are_stated(make, complaint):
     with pytest.raises(fu.SceneError) as refused:
         make()
     assert str(refused.value) == complaint
-
-
-WIRE = """
-[[cable]]
-name = "wire"
-start = [0, 0, 0]
-end = [1.5, 0, 0]
-elements = 3
-section = { shape = "rectangle", height = 0.05, width = 0.05 }
-material = { youngs_modulus = 0.4e9, shear_modulus = 0.2e9, density = 4200 }
-"""
 
 
 @pytest.mark.parametrize(
