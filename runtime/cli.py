@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, TextIO
 
 import typer
 
@@ -56,9 +56,10 @@ def _told_without_traceback() -> Iterator[None]:
     """Errors and warnings of funicular become a line on stderr each; an error ends the command with 1."""
     from .errors import FunicularError, FunicularWarning
 
-    def tell(message, category, *place) -> None:
+    def tell(message: Warning | str, category: type[Warning], filename: str, lineno: int,
+             file: TextIO | None = None, line: str | None = None) -> None:
         if not issubclass(category, FunicularWarning):
-            return show(message, category, *place)
+            return show(message, category, filename, lineno, file, line)
         print(f"note: {message}", file=sys.stderr)
 
     with warnings.catch_warnings():
@@ -196,7 +197,7 @@ def _listed(text: str | None) -> list[str] | None:
 
 def _numbers(text: str) -> list[float]:
     try:
-        return list(map(float, _listed(text)))
+        return [float(word) for word in _listed(text) or ()]
     except ValueError as error:
         raise typer.BadParameter(f"--tols: {error}") from None
 
@@ -220,7 +221,7 @@ def derive(
     """Derive the equations and write generated/, or compare it with them; or make a library of your own elements."""
     if (spec is None) != (out is None) or (spec is not None and (names or check)):
         raise typer.BadParameter("--spec FILE and --out DIR go together, and with nothing else")
-    if spec is None:
+    if spec is None or out is None:
         from funicular.derive.pipeline import main
 
         raise typer.Exit(main(names or [], check))

@@ -6,14 +6,21 @@ POSIX systems take their own calls. The others are for Windows, where `fcntl` an
 from __future__ import annotations
 
 import ctypes
+import importlib
 import os
 import threading
+from typing import Any
 
-try:
-    import fcntl
-except ModuleNotFoundError:
-    fcntl = None
-    import msvcrt
+
+def _module(name: str) -> Any:
+    """Return a module of Python's, None where this system lacks it."""
+    try:
+        return importlib.import_module(name)
+    except ModuleNotFoundError:
+        return None
+
+
+fcntl, msvcrt = _module("fcntl"), _module("msvcrt")  # one of the two, for POSIX and for Windows
 
 # Flags of os.open: bytes as they are, none for child processes, and no links, where a system has such a flag.
 BYTES = getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_NOINHERIT", 0)
@@ -74,6 +81,7 @@ def machine_memory() -> int:
     if hasattr(os, "sysconf"):
         return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     status = (ctypes.c_uint64 * 8)(64)  # MEMORYSTATUSEX: its size and the load in the first word, then the total
-    if not ctypes.windll.kernel32.GlobalMemoryStatusEx(status):
-        raise ctypes.WinError()
+    windows: Any = ctypes  # whose names for Windows type checkers miss elsewhere
+    if not windows.windll.kernel32.GlobalMemoryStatusEx(status):
+        raise windows.WinError()
     return status[1]

@@ -52,7 +52,7 @@ class Scene(SceneMethods):
         Returns the part as it stands in the scene. Raises SceneError.
         """
         if part.is_named():
-            if part.name is None:
+            if part.given_name is None:
                 part = part.model_copy(update={"name": self.free_name(type(part))})
             self.check_name(part)
         if isinstance(part, ModalBody):

@@ -195,19 +195,19 @@ def relative(scene: Scene, found: dict[str, np.ndarray], exact: dict[str, np.nda
 def bench(scene: Scene, grid: Grid, tell: Callable[[str], None] = lambda text: None) -> Bench:
     """Run the grid; tell: is told what is being done. What fails is kept as a row that says how."""
     result = Bench(scene, grid, [], {}, None)
-    scenes: dict[Mesh, Scene | str] = {}
+    scenes: dict[Mesh, Scene] = {}
+    failures: dict[Mesh, str] = {}
     for mesh in grid.meshes:
         tell(f"reference, {mesh} elements")
         try:
             scenes[mesh] = mesh.scene(scene)
             result.references[mesh] = _reference(scenes[mesh], mesh, grid)
         except FunicularError as error:
-            scenes[mesh] = str(error)
+            failures[mesh] = str(error)
     _compare_meshes(result, tell)
     for integrator in grid.integrators:
         for mesh in grid.meshes:
-            failed = scenes[mesh] if isinstance(scenes[mesh], str) else None
-            result.rows += [Row(integrator, mesh, tol, failed=failed) for tol in grid.tols]
+            result.rows += [Row(integrator, mesh, tol, failed=failures.get(mesh)) for tol in grid.tols]
     for turn in range(grid.repetitions):
         for row in result.rows:
             if row.failed is None and (turn == 0 or row.cpu[0] < LONG):

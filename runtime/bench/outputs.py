@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from ..checks.placement import node_of
@@ -33,7 +35,7 @@ def check_output(scene: SceneData, name: str) -> None:
 
 def known_outputs(scene: SceneData) -> list[str]:
     """Names of outputs, but for places of cables given by their arc-length."""
-    parts = {"bodies": scene.bodies, "slides": scene.slides, "springs": scene.springs}
+    parts: dict[str, Iterable[str]] = {"bodies": scene.bodies, "slides": scene.slides, "springs": scene.springs}
     results = [f"{name}.{quantity}" for group, named in parts.items() for name in named
                for quantity in QUANTITIES[group] if quantity not in ("orientation", "multiplier")]
     return results + [f"{name}.{place}" for name in scene.cables for place in PLACES] + list(ENERGIES)
@@ -68,7 +70,9 @@ def trajectory(scene: SceneData, run: Run, name: str) -> np.ndarray:
     """(time, components): an output of a run of ``scene``."""
     if name in run:
         return run[name].reshape(len(run.time), -1)
-    cable, s = _place(scene, name)
+    if (place := _place(scene, name)) is None:
+        raise KeyError(name)
+    cable, s = place
     described = scene.cables[cable]
     length = described.length / described.elements
     element = min(int(s / length * (1 + 1e-12)), described.elements - 1)

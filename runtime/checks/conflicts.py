@@ -35,7 +35,7 @@ def _holds_position(support: Support) -> bool:
 
 
 def _node(scene: SceneData, end: Attachment) -> Node | None:
-    if end.on not in scene.cables or (node := scene.cables[end.on].node_at(end.s)) is None:
+    if end.on not in scene.cables or (node := scene.cables[end.on].node_at(end.arc_length)) is None:
         return None
     return end.on, node
 
@@ -74,7 +74,9 @@ def _clash(scene: SceneData, joint: Joint, other: Joint, ends: tuple[Attachment,
 
 def move_as_one(scene: SceneData, one: Attachment, other: Attachment) -> bool:
     """Whether two ends are on one body, both on the ground, or at one place of a cable."""
-    return one.on == other.on and (one.s is None or abs(one.s - other.s) <= EXACT * scene.cables[one.on].length)
+    if one.on not in scene.cables:
+        return one.on == other.on
+    return one.on == other.on and abs(one.arc_length - other.arc_length) <= EXACT * scene.cables[one.on].length
 
 
 def called(end: Attachment) -> str:

@@ -67,7 +67,7 @@ def end_frame(scene: SceneData, end: Attachment, up=None) -> np.ndarray:
     if end.on in scene.bodies:
         return scene.bodies[end.on].axes
     cable = scene.cables[end.on]
-    return section_frame(cable, end.s) if draws_section(cable) else cable_frame(cable, end.s, up)
+    return section_frame(cable, end.arc_length) if draws_section(cable) else cable_frame(cable, end.arc_length, up)
 
 
 def joint_axes(scene: SceneData, joint: Joint) -> JointAxes:

@@ -53,7 +53,7 @@ def check_joint(scene: SceneData, joint: Joint) -> None:
 
 def check_drive(scene: SceneData, joint: Joint) -> None:
     """A run that starts as drawn must not begin with a jump."""
-    if not joint.is_driven:
+    if joint.prescribed is None:
         return
     name, start = DRIVEN[joint.pair], 0.0
     size = 1.0 if name == "angle" else scene_size(scene, joint)

@@ -23,6 +23,11 @@ class EnergyMomentum(Integrator):
     takes_modal_bodies = takes_friction_and_stops = False
     needs_discrete_gradient = True
 
+    @classmethod
+    def of(cls, spectral_radius: float) -> Integrator:
+        """See `Integrator.of`."""
+        return cls(spectral_radius)
+
     @property
     def parameters(self) -> np.ndarray:
         """Return lag in steps, viscosity, inertia, and the weight that follows from them.

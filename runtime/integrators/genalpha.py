@@ -18,6 +18,11 @@ class GeneralisedAlpha(Integrator):
     default_spectral_radius = 0.9
     loses_energy_by_spectral_radius = True
 
+    @classmethod
+    def of(cls, spectral_radius: float) -> Integrator:
+        """See `Integrator.of`."""
+        return cls(spectral_radius)
+
     @property
     def parameters(self) -> np.ndarray:
         """Return alpha_m, alpha_f, beta, gamma."""

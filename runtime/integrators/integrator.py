@@ -67,7 +67,7 @@ class Integrator(ABC):
     @classmethod
     def of(cls, spectral_radius: float) -> Integrator:
         """Return the integrator with this spectral radius at infinite frequency, if it has one."""
-        return cls() if cls.default_spectral_radius is None else cls(spectral_radius)
+        return cls()
 
     @classmethod
     def cost(cls, demands: Demands) -> tuple[float, str] | None:

@@ -63,18 +63,19 @@ class AttachmentBuilder:
         none = np.zeros(0)
         axes = self._axes(axes)
         if attachment.on is None:
-            return AttachmentModel(-1, -1, 0, -1, attachment.at, none, none, 0.0, 0.0, axes=axes)
+            return AttachmentModel(-1, -1, 0, -1, attachment.point, none, none, 0.0, 0.0, axes=axes)
         if attachment.on in self.body_index:
             body = self.bodies[self.body_index[attachment.on]]
             length = float(np.sqrt(np.max(np.linalg.eigvalsh(body.inertia)) / body.mass))
             part = self.scene.bodies[attachment.on]
             if isinstance(part, ModalBody):
                 return AttachmentModel(-1, self.body_index[attachment.on], 0, -1, (0.0,) * 3, none, none, body.mass,
-                                       length, axes=axes, spot=self._spot(part.spot(attachment.at)))
-            return AttachmentModel(-1, self.body_index[attachment.on], 0, -1, part.arm(attachment.at), none, none,
+                                       length, axes=axes, spot=self._spot(part.spot(attachment.point)))
+            return AttachmentModel(-1, self.body_index[attachment.on], 0, -1, part.arm(attachment.point), none, none,
                                    body.mass, length, axes=axes)
-        found = self._on_cable(attachment.on, attachment.s, axes, up, draws_section(self.scene.cables[attachment.on]))
-        found.element, x = self.element(attachment.on, attachment.s)
+        found = self._on_cable(attachment.on, attachment.arc_length, axes, up,
+                               draws_section(self.scene.cables[attachment.on]))
+        found.element, x = self.element(attachment.on, attachment.arc_length)
         model = self.cables[found.cable]
         found.N = model.kernel("on_axis")(model.length, x)[0]
         if axes is not None:

@@ -19,8 +19,11 @@ def body_models(scene: SceneData, at: int) -> list[BodyModel]:
     dim, made, dof = scene.dim, [], at
     kernel, n_configuration, n_velocity = BODIES[dim]
     for body in scene.bodies.values():
-        shape = _shape(body, np.array(scene.gravity)[:dim]) if isinstance(body, ModalBody) else None
-        centre = np.zeros(3) if shape else np.array(body.centre)
+        shape, centre = None, np.zeros(3)
+        if isinstance(body, ModalBody):
+            shape = _shape(body, np.array(scene.gravity)[:dim])
+        else:
+            centre = np.array(body.centre)
         made.append(BodyModel(body.name, kernel, body.mass, np.array(body.inertia), centre, at, dof, shape))
         at += n_configuration + made[-1].modes
         dof += n_velocity + made[-1].modes
@@ -43,10 +46,10 @@ def configuration_of(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
     if isinstance(body, ModalBody):
         (position, orientation), modes = body.frame, np.zeros(body.shape.n)
     else:
-        position, orientation, modes = body.point(body.centre), body.orientation, np.zeros(0)
+        position, orientation, modes = body.point(body.centre), np.array(body.orientation), np.zeros(0)
     if dim == 2:
         w, _, _, z = orientation
-        orientation = w * w - z * z, 2 * w * z
+        orientation = np.array([w * w - z * z, 2 * w * z])
     return np.array([*position[:dim], *orientation, *modes])
 
 

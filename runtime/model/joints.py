@@ -62,11 +62,12 @@ def joint_model(attachments: AttachmentBuilder, joint: Joint, signal: Callable[[
             turned = True
     base = 0.0
     if joint.pair == "distance":
+        assert joint.length is not None, f"{joint.where} is not complete"
         base = 0.0 if driven else joint.length
     elif driven and DRIVEN[joint.pair] == "distance":
         base = float(joint.axes[:, 2] @ (point_of(scene, joint.b) - point_of(scene, joint.a)))
-    model = _model(joint.name, kind, scene.dim, ends, unknown, multiplier,
-                   signal(joint.prescribed) if driven else -1, base)
+    model = _model(joint.name or "", kind, scene.dim, ends, unknown, multiplier,
+                   -1 if joint.prescribed is None else signal(joint.prescribed), base)
     model.reversed = turned
     return model
 
@@ -86,7 +87,7 @@ def frame_joint_model(attachments: AttachmentBuilder, slide: Slide, number: int,
 def _model(name: str, kind: str, dim: int, ends: list[AttachmentModel], unknown: int, multiplier: int, signal: int,
           base: float) -> JointModel:
     kernel = f"joint_{'planar_' * (dim == 2)}{kind}"
-    return JointModel(name, kernel, tuple(ends), unknown, multiplier, signal, base, _scales(kernel, dim, ends))
+    return JointModel(name, kernel, (ends[0], ends[1]), unknown, multiplier, signal, base, _scales(kernel, dim, ends))
 
 
 def _scales(kernel: str, dim: int, ends: list[AttachmentModel]) -> np.ndarray:

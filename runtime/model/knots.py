@@ -33,7 +33,8 @@ def knots(model: Model, duration: float, tol: float) -> tuple[np.ndarray, np.nda
     found = [each for number, signal in enumerate(model.signals)
              for each in _of_signal(signal, number in driving, tol)
              if ONE_INSTANT * duration < each[0] < (1 - ONE_INSTANT) * duration]
-    times, jumps = [], []
+    times: list[float] = []
+    jumps: list[float] = []
     for time, jump in sorted(found):
         if times and time - times[-1] <= ONE_INSTANT * duration:
             times[-1], jumps[-1] = time, max(jump, jumps[-1])

@@ -53,7 +53,7 @@ class LoadModel:
     on: int
     element: int
     x: float
-    u: tuple[float, float, float]
+    u: tuple[float, ...]
     c: tuple[float, float, float]
     spot: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
 
@@ -96,7 +96,7 @@ class Actions:
 
     def _scale(self, signal) -> tuple[int, float]:
         """Number and constant factor of a load's scale."""
-        return (-1, signal.value(0.0)) if isinstance(signal, Constant) else (self.signal(signal), 1.0)
+        return (-1, float(signal.value(0.0))) if isinstance(signal, Constant) else (self.signal(signal), 1.0)
 
     def load(self, load: Force | DistributedForce | Moment) -> None:
         """Add a load."""
@@ -105,6 +105,7 @@ class Actions:
         if isinstance(load, DistributedForce):
             self._distributed(load, number, value)
         elif load.on in self.cable_index:
+            assert load.s is not None, f"{load.where} is not complete"
             points = [(*self.attachments.element(load.on, load.s), 1.0)]
             if isinstance(load, Moment):
                 self._turning(CABLE_MOMENT, number, load.on, points, value)
@@ -114,7 +115,7 @@ class Actions:
             kind = BODY_MOMENT if isinstance(load, Moment) else BODY_FOLLOWER if load.follower else BODY_FORCE
             attachment = Attachment(on=load.on, s=load.s, at=getattr(load, "at", None))
             on = self.attachments.model(placed_attachment(self.scene, attachment, load.where))
-            self.turning.append(LoadModel(kind, number, on.body, 0, 0.0, on.u, tuple(value), on.spot))
+            self.turning.append(LoadModel(kind, number, on.body, 0, 0.0, on.u, (value[0], value[1], value[2]), on.spot))
 
     def _distributed(self, load: DistributedForce, number: int, value: np.ndarray) -> None:
         model = self.cables[self.cable_index[load.cable]]

@@ -5,8 +5,8 @@ Coordinates, unknowns and their order are those of engine/include/engine.h.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any, Protocol
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -19,6 +19,18 @@ from .attachments import AttachmentModel
 from .joints import JointModel
 from .loads import DeadLoad, LoadModel, PointForceModel, SignalModel
 from .unknowns import Node
+
+
+class Kernel(Protocol):
+    """A generated function, with the shapes of its arguments by name."""
+
+    shapes: dict[str, tuple[int, ...]]
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Return what it computes of one set of arguments."""
+
+    def rows(self, n: int, *arguments: Any) -> Any:
+        """Return what it computes of n sets of arguments: of each, n along the first axis, or one for all."""
 
 
 @dataclass
@@ -44,7 +56,7 @@ class CableModel:
         """Its part of q, v and the dofs."""
         return slice(self.first, self.first + int(np.prod(self.shape)))
 
-    def kernel(self, name: str) -> Callable:
+    def kernel(self, name: str) -> Kernel:
         """A kernel of its element."""
         return getattr(kernels_of(self.library), f"{self.element}_{name}")
 

@@ -120,7 +120,9 @@ def _following(S: np.ndarray) -> dict[int, list[int]]:
             return {}
     except np.linalg.LinAlgError:
         pass
-    L, kept, found = np.zeros_like(S), [], {}
+    L = np.zeros_like(S)
+    kept: list[int] = []
+    found: dict[int, list[int]] = {}
     for row in range(len(S)):
         n = len(kept)
         factor = solve_triangular(L[:n, :n], S[kept, row], lower=True) if n else np.zeros(0)

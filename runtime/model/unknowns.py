@@ -265,7 +265,8 @@ def _strung(touches: csr_array) -> tuple[np.ndarray, int]:
     """
     n_elements, n = touches.shape
     shared = triu(touches @ touches.T, 1).tocoo()
-    beside, chain = [[] for _ in range(n_elements)], list(range(n_elements))
+    beside: list[list[int]] = [[] for _ in range(n_elements)]
+    chain = list(range(n_elements))
 
     def root(e: int) -> int:
         while chain[e] != e:
@@ -278,7 +279,8 @@ def _strung(touches: csr_array) -> tuple[np.ndarray, int]:
             beside[a].append(b)
             beside[b].append(a)
             chain[root(a)] = root(b)
-    string, at = [], np.full(n_elements, -1)
+    string: list[int] = []
+    at = np.full(n_elements, -1)
     for end in (e for e in range(n_elements) if len(beside[e]) < 2):
         following = [end] if at[end] < 0 else []
         while following:
@@ -321,7 +323,7 @@ def supports(scene: SceneData, nodes: dict[str, list[Node]], signal) -> Supports
     made = Supports()
 
     def at(cable: str, s: float) -> Node:
-        return nodes[cable][scene.cables[cable].node_at(s)]
+        return nodes[cable][scene.cables[cable].node(s)]
 
     rooted = []
     for pin in scene.pins:

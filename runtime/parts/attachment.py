@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Annotated, Any
 
+import numpy as np
 from pydantic import PlainValidator
 
-from .validation import Part, Vector, finite, number, show, shown, vector, xyz
+from .validation import Part, Vector, finite, number, show, shown, vector3, xyz
 
 
 class Attachment(Part):
@@ -19,6 +20,18 @@ class Attachment(Part):
     on: str | None = None
     s: Annotated[float, finite("m")] | None = None
     at: Annotated[Vector, xyz("m")] | None = None
+
+    @property
+    def arc_length(self) -> float:
+        """Return s in m, of a complete attachment to a cable."""
+        assert self.s is not None, f"{self!r} is not complete"
+        return self.s
+
+    @property
+    def point(self) -> Vector:
+        """Return the point in m, of a complete attachment to a body or to the ground."""
+        assert self.at is not None, f"{self!r} is not complete"
+        return self.at
 
     def data(self) -> Any:
         """As a scene file has it: [x, y, z], "A", ["A", [x, y, z]] or ["wire", s]."""
@@ -42,12 +55,12 @@ def _attachment(value: Any) -> Attachment:
     if not isinstance(value, list | tuple) or len(value) not in (2, 3):
         raise ValueError(f"must be an end, got {shown(value)}", remedy)
     if len(value) == 3:
-        return Attachment(at=vector(value, "m"))
+        return Attachment(at=vector3(value, "m"))
     on, place = getattr(value[0], "name", value[0]), value[1]
     if not isinstance(on, str):
         raise ValueError(f"must be an end, got {shown(value)}", remedy)
-    if isinstance(place, list | tuple) or (hasattr(place, "tolist") and getattr(place, "ndim", 0)):
-        return Attachment(on=on, at=vector(place, "m"))
+    if isinstance(place, list | tuple) or (isinstance(place, np.ndarray) and place.ndim):
+        return Attachment(on=on, at=vector3(place, "m"))
     return Attachment(on=on, s=number(place, "m"))
 
 

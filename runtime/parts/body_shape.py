@@ -163,4 +163,5 @@ def of_file(path: str, orthogonal: bool) -> Shape:
     for name in ARRAYS:
         if name not in arrays:
             raise ValueError(f'"{path}" has no array {name}', near(name, arrays) if arrays else "")
-    return of_points(*(arrays[name] for name in ARRAYS), arrays.get("rotations"), orthogonal)
+    nodes, modes, masses, stiffness = (arrays[name] for name in ARRAYS)
+    return of_points(nodes, modes, masses, stiffness, arrays.get("rotations"), orthogonal)

@@ -89,7 +89,7 @@ class Cable(Part):
     elements: Count
     library: Annotated[str | None, PlainValidator(_library)] = None
     element: Annotated[str, PlainValidator(_element)] = "beam24"
-    law: str = None
+    law: str = None  # type: ignore[assignment]  # `_with_a_law` chooses one where none is given
     strain: Annotated[str | None, one_of(("green", "engineering"), optional=True)] = None
     curvature: Annotated[str | None, one_of(("exact", "linear"), optional=True)] = None
     membrane: Annotated[str | None, one_of(cable_laws.MEMBRANES, optional=True)] = None
@@ -135,7 +135,7 @@ class Cable(Part):
         if self.points is None and not all(ends):
             missing = "end is" if ends[0] else "start is" if ends[1] else "start and end, or points, are"
             raise ValueError(f"{missing} missing")
-        if self.points is None and self.start == self.end:
+        if self.start is not None and self.end is not None and self.start == self.end:
             raise ValueError(
                 f"start and end must be different points, got {show(self.start)} and {show(self.end, 'm')}")
         self._refuse_what_leaves_the_plane()
@@ -182,7 +182,7 @@ class Cable(Part):
         if self._has_up:
             return self.up
         least = int(np.argmin(np.abs(self._shape.tangent(0.0))))
-        return tuple(float(k == least) for k in range(3))
+        return float(least == 0), float(least == 1), float(least == 2)
 
     def _refuse_coarse_elements(self) -> None:
         """An element whose slope loses the direction of the curve could not even be drawn."""
@@ -233,7 +233,8 @@ class Cable(Part):
 
     @property
     def _way(self) -> tuple[tuple[float, ...], ...]:
-        return self.points if self.points is not None else (self.start, self.end)
+        ends = tuple(end for end in (self.start, self.end) if end is not None)
+        return ends if self.points is None else self.points
 
     @property
     def _shape(self) -> curves.Line | curves.Spline:
@@ -355,6 +356,12 @@ class Cable(Part):
     def nearest_s(self, point: np.ndarray) -> float:
         """Arc-length of the point of the drawn cable nearest to ``point``, in m."""
         return self._shape.nearest(point) / self.stretch
+
+    def node(self, s: float) -> int:
+        """Return the number of the node at arc-length ``s`` in m; a check has found that there is one."""
+        node = self.node_at(s)
+        assert node is not None, f"{self.where} has no node at {s}"
+        return node
 
     def node_at(self, s: float) -> int | None:
         """The node at arc-length ``s``, None if there is none."""

@@ -242,7 +242,7 @@ def _closer(at: Callable[[float], tuple[float, ...]], u: np.ndarray) -> np.ndarr
         far = (gap > CLOSE * extent) | turns[1:] | turns[:-1]
         if not far.any():
             return known
-        for k in np.flatnonzero(far & (chords < SHARP * extent)):
+        for k in np.flatnonzero(far & (chords < SHARP * extent)).tolist():
             _refuse_a_jump(at, u[max(k - 1, 0)], u[min(k + 2, len(u) - 1)], SHARP * extent)
             _refuse_a_kink(at, u[k], u[k + 1], new[k], gap[k], chords[k] / extent)
         if len(u) > 4 * MOST_SAMPLES:

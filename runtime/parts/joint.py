@@ -82,7 +82,7 @@ class Joint(Part):
 
     @model_validator(mode="after")
     def _has_axes_square_to_each_other(self) -> Joint:
-        if self.pair == "universal":
+        if self.pair == "universal" and self.axis is not None and self.second_axis is not None:
             cosine = np.dot(self.axis, self.second_axis) / np.linalg.norm(self.axis) / np.linalg.norm(self.second_axis)
             if abs(cosine) > 1e-6:
                 raise ValueError("axis and second_axis must be perpendicular, got "

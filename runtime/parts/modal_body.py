@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 import numpy as np
 from pydantic import PlainValidator, PrivateAttr, model_validator
@@ -124,7 +124,7 @@ class ModalBody(Part):
                              "add it to a scene, and take what `Scene.add` returns")
         return self._of_mesh(self)
 
-    def with_modes_by(self, of_mesh: Callable[[ModalBody], Shape]) -> ModalBody:
+    def with_modes_by(self, of_mesh: Callable[[ModalBody], Shape]) -> Self:
         """Return a copy that has the modes of its mesh made by ``of_mesh``, once, when they are first asked for."""
         copy = self.model_copy()
         copy._of_mesh = of_mesh
@@ -154,15 +154,15 @@ class ModalBody(Part):
         It is a node, or goes with a node's section, where sections turn: of a beam any point across its axis there.
         Raises ValueError(cause, remedy).
         """
-        shape, at = self.shape, np.array(at, dtype=float)
-        distance = np.linalg.norm(shape.nodes - at, axis=1)
+        shape, point = self.shape, np.array(at, dtype=float)
+        distance = np.linalg.norm(shape.nodes - point, axis=1)
         node, size = int(np.argmin(distance)), max(float(np.ptp(shape.nodes, axis=0).max()), 1.0)
-        arm = at - shape.nodes[node]
+        arm = point - shape.nodes[node]
         along = abs(arm[0]) if self.data is None else 0.0 if shape.rotations.any() else distance[node]
         if along > EXACT * size:
-            raise ValueError(f"{show(at, 'm')} is no node of the body",
+            raise ValueError(f"{show(point, 'm')} is no node of the body",
                              f"the nearest is at {show(shape.nodes[node], 'm')}")
-        return at, shape.modes[:, node] + np.cross(shape.rotations[:, node], arm), shape.rotations[:, node]
+        return point, shape.modes[:, node] + np.cross(shape.rotations[:, node], arm), shape.rotations[:, node]
 
     def point(self, at: Vector) -> np.ndarray:
         """(3,): where the body's point ``at`` (m, body axes) starts, in m."""

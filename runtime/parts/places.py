@@ -14,12 +14,12 @@ Node = tuple[str, int]
 
 def node_of(scene: SceneData, support: Support) -> Node:
     """The node that a support of the scene holds."""
-    return support.cable, scene.cables[support.cable].node_at(support.s)
+    return support.cable, scene.cables[support.cable].node(support.s)
 
 
 def ends_of(scene: SceneData, tie: Tie) -> tuple[Node, Node]:
     """The nodes that a tie of the scene joins: that of its cable, and the other one."""
-    return ((tie.cable, scene.cables[tie.cable].node_at(tie.s)), (tie.to, scene.cables[tie.to].node_at(tie.at)))
+    return ((tie.cable, scene.cables[tie.cable].node(tie.s)), (tie.to, scene.cables[tie.to].node(tie.at)))
 
 
 def joined(scene: SceneData, node: Node, without: Tie | None = None) -> set[Node]:
@@ -48,4 +48,6 @@ def point_of(scene: SceneData, end: Attachment) -> np.ndarray:
     """(3,): where a complete end starts, in m."""
     if end.on is None:
         return np.array(end.at)
-    return scene.bodies[end.on].point(end.at) if end.on in scene.bodies else scene.cables[end.on].point(end.s)
+    if end.on in scene.bodies:
+        return scene.bodies[end.on].point(end.point)
+    return scene.cables[end.on].point(end.arc_length)

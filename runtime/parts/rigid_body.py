@@ -11,7 +11,7 @@ from pydantic import PlainValidator
 
 from ..rotations import rotate
 from .plane import across, in_plane
-from .validation import EXACT, Name, Part, Vector, positive, show, vector, xyz
+from .validation import EXACT, Name, Part, Vector, positive, show, vector, vector3, xyz
 
 Quaternion = tuple[float, float, float, float]
 
@@ -31,13 +31,14 @@ def _inertia(value: Any) -> tuple[Vector, Vector, Vector]:
         raise ValueError(f"must be positive, got the principal moments {shown}")
     if large > (small + middle) * (1 + EXACT):
         raise ValueError(f"is not that of a body: no principal moment exceeds the sum of the others, got {shown}")
-    return tuple(map(tuple, matrix.tolist()))
+    first, second, third = (vector3(row) for row in matrix)
+    return first, second, third
 
 
 def unit_quaternion(value: Any) -> Quaternion:
     """A unit quaternion, rounded to one."""
-    quaternion = vector(value, size=4)
-    norm = math.hypot(*quaternion)
+    w, x, y, z = vector(value, size=4)
+    quaternion, norm = (w, x, y, z), math.hypot(w, x, y, z)
     if abs(norm - 1) > 1e-3:
         raise ValueError(
             f"must be a unit quaternion (w, x, y, z), got {show(quaternion)}, of length {norm:.6g}",
@@ -45,7 +46,7 @@ def unit_quaternion(value: Any) -> Quaternion:
         )
     if abs(norm - 1) < 1e-15:  # already rounded to a unit: dividing again would only move the last digit
         return quaternion
-    return tuple(component / norm for component in quaternion)
+    return w / norm, x / norm, y / norm, z / norm
 
 
 class RigidBody(Part):
@@ -75,7 +76,8 @@ class RigidBody(Part):
 
     def arm(self, at: Vector) -> tuple[float, float, float]:
         """The point ``at`` from the centre of mass, in body axes, in m: what the engine knows it by."""
-        return tuple(a - c for a, c in zip(at, self.centre, strict=True))
+        (x, y, z), (x0, y0, z0) = at, self.centre
+        return x - x0, y - y0, z - z0
 
     def point(self, at: Vector) -> np.ndarray:
         """(3,): where the body's point ``at`` (m, body axes) starts, in m."""

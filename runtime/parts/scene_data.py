@@ -94,7 +94,7 @@ class SceneData:
         """Store a part in its group, as it is."""
         group = getattr(self, part.group)
         if isinstance(group, dict):
-            group[part.name] = part
+            group[part.given_name] = part
         else:
             group.append(part)
 
@@ -109,11 +109,13 @@ class SceneData:
 
     def check_name(self, part: Part) -> None:
         """Raise SceneError where the name of a part is taken."""
-        if (other := self.part_named(part.name, part.group)) is not None:
+        name = part.given_name
+        assert name is not None, f"{part.where} has no name yet"
+        if (other := self.part_named(name, part.group)) is not None:
             article = "an" if part.kind == "event" else "a"
             raise SceneError(part.where, f"there is already {article} {other.kind} of that name",
                              "give each part its own name")
-        if part.name in RESERVED:
+        if name in RESERVED:
             raise SceneError(part.where, "that name is taken by the results", "give another one")
 
     def free_name(self, part: type[Part]) -> str:

@@ -16,6 +16,7 @@ from ..errors import SceneError, near
 from ..kernels.libraries import check_allowed, resolved
 from .attachment import Attachment
 from .end_stops import Stop
+from .event import Event
 from .kinds import PARTS
 from .scene_data import SceneData
 from .section import Section
@@ -126,7 +127,7 @@ def dumps(scene: SceneData) -> str:
     lines, parts = [f"gravity = {as_toml(scene.gravity)}"], list(scene.parts())
     for kind in PARTS:
         for part in parts:
-            if part.kind == kind == "event" and part.function is not None:
+            if part.kind == kind and isinstance(part, Event) and part.function is not None:
                 lines += ["", f"# {part.where} watches a function, which only Python can hold"]
             elif part.kind == kind:
                 lines += ["", f"[[{kind}]]", *_lines(_data(part))]

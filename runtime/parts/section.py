@@ -24,7 +24,7 @@ def _factors(value: Any) -> tuple[float, float]:
     factors = vector(value, size=2)
     if not min(factors) > 0:
         raise ValueError(f"must be positive, got {show(factors)}", "give (ky, kz), 1 for no correction")
-    return factors
+    return factors[0], factors[1]
 
 
 TorsionConstant = Annotated[float, positive("m⁴")]
@@ -44,7 +44,7 @@ class Section(Part):
     def __getattr__(self, name: str) -> Any:
         """Refuse an attribute that there is not; of an older version's, say what it is called now."""
         check_renamed(f"{type(self).__name__!r} object", name, dir(type(self)))
-        return super().__getattr__(name)
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
     def moments(self) -> np.ndarray:
         """The even moments up to order 4.

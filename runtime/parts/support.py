@@ -80,11 +80,11 @@ def _displacement(value: Any) -> Displacement | None:
     if not isinstance(value, list | tuple) or len(value) != 3:
         raise ValueError(f"must be 3 signals or numbers, got {shown(value)}",
                          'give 0 for a direction without motion, "free" for one that is not prescribed')
-    made = tuple(None if each is None or each == FREE else _component(axis, each)
+    x, y, z = (None if each is None or each == FREE else _component(axis, each)
                  for axis, each in zip("xyz", value, strict=True))
-    if not any(made):
+    if x is y is z is None:
         raise ValueError("leaves all directions free", "leave it out, or give a signal or number for one of them")
-    return made
+    return x, y, z
 
 
 def _component(axis: str, value: Any) -> Signal:

@@ -13,7 +13,7 @@ import math
 import reprlib
 from collections.abc import Iterable, Iterator
 from numbers import Integral, Real
-from typing import Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainValidator, ValidationError, model_validator
@@ -90,6 +90,12 @@ def vector(value: Any, unit: str = "", size: int = 3) -> tuple[float, ...]:
                          f"than 1e-7 m, got {show(numbers, unit)}", "draw the scene nearer to the origin")
     _in_range(numbers, unit, show(numbers, unit))
     return numbers
+
+
+def vector3(value: Any, unit: str = "") -> Vector:
+    """Return ``value`` as three finite floats within `LIMITS`; ValueError if it is anything else."""
+    x, y, z = vector(value, unit)
+    return x, y, z
 
 
 def show(value: float | tuple[float, ...] | np.ndarray, unit: str = "") -> str:
@@ -195,9 +201,10 @@ def list_of(unit: str = "", *, least: int) -> PlainValidator:
 def _count(value: Any) -> int:
     if isinstance(value, bool) or not isinstance(value, Integral) or value < 1:
         raise ValueError(f"must be a whole number, 1 or more, got {shown(value)}")
-    if value > MOST:
-        raise ValueError(f"must not exceed {MOST}, got {shown(int(value))}")
-    return int(value)
+    count = int(value)
+    if count > MOST:
+        raise ValueError(f"must not exceed {MOST}, got {shown(count)}")
+    return count
 
 
 def _flag(value: Any) -> bool:
@@ -223,18 +230,24 @@ Reference = Annotated[str, BeforeValidator(lambda value: getattr(value, "name", 
 Vector = tuple[float, float, float]
 
 
-class _TranslatingType(type(BaseModel)):
+if TYPE_CHECKING:
+    from pydantic._internal._model_construction import ModelMetaclass
+else:
+    ModelMetaclass = type(BaseModel)  # pydantic exports its metaclass in no other way
+
+
+class _TranslatingType(ModelMetaclass):
     """Makes a constructor call raise `SceneError`.
 
     In the metaclass and not in ``__init__``, so that a model inside another one still reports to pydantic,
     which knows the path to it.
     """
 
-    def __call__(cls, /, **data):
+    def __call__(cls, /, **data):  # noqa: N805  it is a metaclass
         try:
             return super().__call__(**data)
         except ValidationError as error:
-            raise _scene_error(cls.place(data), error) from None
+            raise _scene_error(cls.place(data), error) from None  # type: ignore[attr-defined]  # of its one user, Part
 
 
 class Part(BaseModel, metaclass=_TranslatingType):
@@ -266,6 +279,11 @@ class Part(BaseModel, metaclass=_TranslatingType):
     def is_named(cls) -> bool:
         """Whether such parts have names, by which a scene and its results know them."""
         return "name" in cls.model_fields
+
+    @property
+    def given_name(self) -> str | None:
+        """Return its name, None where it has none, or none yet."""
+        return getattr(self, "name", None)
 
     @property
     def where(self) -> str:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..kernels.libraries import kernels_of
 from ..model.attachments import CARRIED, UP, AttachmentModel
@@ -26,7 +28,7 @@ class Instants:
     time: np.ndarray
     q: np.ndarray
     v: np.ndarray
-    value: object
+    value: Callable[[str], np.ndarray]
     load: float = 1.0
     weight: float = 1.0
 
@@ -55,7 +57,7 @@ class Spread:
     f: np.ndarray
 
 
-def at_element(cable: CableModel, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def at_element(cable: CableModel, s: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """Elements that hold arc-lengths s, and x in them; at a node the element that begins there."""
     element = np.clip((np.asarray(s) // cable.length).astype(int), 0, cable.n_elements - 1)
     return element, s - element * cable.length
@@ -110,6 +112,7 @@ class CableActions:
                 self._distributed(load, self.number[on], scale)
                 continue
             cable = self.model.cables[self.number[on]]
+            assert load.s is not None, f"{load.where} is not complete"
             element, x = at_element(cable, load.s)
             if isinstance(load, Moment):
                 component = np.array(load.value)[slice(2, 3) if self.dim == 2 else slice(0, 3)]
@@ -136,6 +139,7 @@ class CableActions:
 
     def _distributed(self, load: DistributedForce, number: int, scale: np.ndarray) -> None:
         cable, value = self.model.cables[number], np.array(load.value)
+        assert load.start is not None and load.stop is not None, f"{load.where} is not complete"
         is_r = positions(cable)
         for element in range(cable.n_elements):
             start = max(load.start - element * cable.length, 0.0)

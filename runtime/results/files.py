@@ -47,7 +47,7 @@ def check_writable(path: str | os.PathLike) -> Path:
     except ValueError as error:  # a NUL, half of a surrogate pair
         cause, remedy = f"this is no path: {error}", "give another one"
     except OSError as error:
-        cause, remedy = error.strerror, "give a path in a directory that exists and is yours to write to"
+        cause, remedy = error.strerror or str(error), "give a path in a directory that exists and is yours to write to"
         if error.errno == errno.ENAMETOOLONG:
             remedy = "give a shorter name, below 240 bytes"
     raise ResultFileError(f"{shown_path(path)}: the results cannot be written here: {cause}; {remedy}") from None

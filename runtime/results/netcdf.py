@@ -46,9 +46,9 @@ class File:
         Raises OSError, ValueError where it is no such file, was cut short or has a damaged header.
         """
         self.path = os.fspath(path)
-        self.descriptor = descriptor
         if descriptor is None:
-            self.descriptor = os.open(path, (os.O_RDWR if writable else os.O_RDONLY) | BYTES)
+            descriptor = os.open(path, (os.O_RDWR if writable else os.O_RDONLY) | BYTES)
+        self.descriptor = descriptor
         self.close = weakref.finalize(self, os.close, self.descriptor)
         size = os.fstat(self.descriptor).st_size
         self.rows, self.attributes, places, self.entries = self._head(size)
@@ -118,7 +118,7 @@ class File:
         for start in range(0, rows, len(block)):
             part = block[: rows - start]
             at = self._first + start * self.row_bytes
-            if read_into(self.descriptor, memoryview(part.view("u1")), at) != part.nbytes:
+            if read_into(self.descriptor, memoryview(part.view("u1").data), at) != part.nbytes:
                 raise OSError(f"{self.path}: was cut short while it was read")
             yield start, part
 
@@ -158,7 +158,7 @@ class File:
     def copy_rows(self, source: File) -> None:
         """Add all rows of a file with the same variables, but for those that it leaves out."""
         for block in source._kept_blocks():
-            self.write(self.rows, {name: block[name] for name in self._row.names if name != ROW_CHECKSUM})
+            self.write(self.rows, {name: block[name] for name in self._row.names or () if name != ROW_CHECKSUM})
 
     def truncate(self, rows: int) -> None:
         """Drop the rows from `rows` on."""
@@ -201,7 +201,8 @@ class Stored(Mapping[str, Variable]):
 
     def __init__(self, file: File, names: list[str]):
         """names: of those variables."""
-        self.file, self._names, self._read = file, dict.fromkeys(names), {}
+        self.file, self._names = file, dict.fromkeys(names)
+        self._read: dict[str, Variable] = {}
 
     def __getitem__(self, name: str) -> Variable:
         """A variable with its values."""

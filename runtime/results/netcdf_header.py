@@ -114,11 +114,14 @@ def parsed(header: bytes) -> tuple[int, dict, dict[str, tuple[int, int]], dict[s
     if header[:at] != MAGIC:
         raise ValueError("it does not begin as the classic format with 64-bit offsets does")
 
-    def ints(count: int = 1) -> tuple[int, ...]:
+    def ints(count: int) -> tuple[int, ...]:
         nonlocal at
         found = struct.unpack_from(f">{count}i", header, at)
         at += 4 * count
         return found
+
+    def integer() -> int:
+        return ints(1)[0]
 
     def data(size: int) -> bytes:
         nonlocal at
@@ -131,7 +134,7 @@ def parsed(header: bytes) -> tuple[int, dict, dict[str, tuple[int, int]], dict[s
     def attributes() -> tuple[dict, dict]:
         found, places = {}, {}
         for _ in range(ints(2)[1]):
-            name = data(*ints()).decode()
+            name = data(integer()).decode()
             kind, count = ints(2)
             dtype = np.dtype(_TYPES[kind])
             places[name] = at, count
@@ -144,13 +147,13 @@ def parsed(header: bytes) -> tuple[int, dict, dict[str, tuple[int, int]], dict[s
             raise ValueError("the header is damaged")
         return value
 
-    rows = known(*ints(), 2**31)
-    dims = [(data(*ints()).decode(), known(*ints(), 2**31)) for _ in range(ints(2)[1])]
+    rows = known(integer(), 2**31)
+    dims = [(data(integer()).decode(), known(integer(), 2**31)) for _ in range(ints(2)[1])]
     general, places = attributes()
     entries = {}
     for _ in range(ints(2)[1]):
-        name = data(*ints()).decode()
-        along = [dims[known(k, len(dims) - 1)] for k in ints(known(*ints(), len(dims)))]
+        name = data(integer()).decode()
+        along = [dims[known(k, len(dims) - 1)] for k in ints(known(integer(), len(dims)))]
         labels, _ = attributes()
         kind, _ = ints(2)
         (begin,) = struct.unpack_from(">q", header, at)

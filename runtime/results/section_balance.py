@@ -103,7 +103,7 @@ def _of_inertia(cable: Cable, model: CableModel, cuts: Cuts, e: np.ndarray, a: n
     places, weights = np.polynomial.legendre.leggauss(2 * sum(set(name) <= set("r_x") for name in model.vectors))
     density = cable.material.density
     area, yy, zz = cable.section.mass_moments()[:3]
-    force = moment = 0.0
+    force = moment = np.zeros(3)
     across = [(k, I) for k, (name, I) in enumerate((("r_y", yy), ("r_z", zz)), start=1) if name in model.vectors]
     for place, weight in zip((1 + places) / 2, weights / 2, strict=True):
         x = cuts.x * place
@@ -129,7 +129,7 @@ def _of_spread(model: CableModel, spread, x: np.ndarray, e: np.ndarray) -> tuple
     x: (T or 1, n) in m; e: (T, n, vectors, 3).
     """
     places, weights = np.polynomial.legendre.leggauss(len(spread.x))
-    force = moment = 0.0
+    force = moment = np.zeros(3)
     length = x - spread.start
     for place, weight in zip((1 + places) / 2, weights / 2, strict=True):
         at = spread.start + place * length

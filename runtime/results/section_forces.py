@@ -11,6 +11,7 @@ from ..errors import FunicularError, UnknownResultError, near
 from ..kernels.libraries import kernels_of
 from ..model.model import Model
 from ..parts.cable import EXACT, Cable
+from ..parts.load import DistributedForce
 from ..parts.scene_data import SceneData
 from ..parts.section_stiffness import section_stiffness
 from ..parts.validation import show
@@ -91,10 +92,10 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
         return {"force": force, "moment": moment} | components(cable, force, moment, axes, strain)
     actions = CableActions(scene, model, at)
     forces = element_forces(scene, model, at, actions, number, at_rest)
-    *balance, change = balanced(cable, of, forces, actions, number, cuts)
+    balance_force, balance_moment, change = balanced(cable, of, forces, actions, number, cuts)
     taut = moment if cable.is_curved else taut_bending(  # a bent wire that is drawn straight has a moment
-        cable, balance[0], change, axes, cuts, lambda: kinks(scene, cable, of, forces, actions, number))
-    return balanced_components(cable, balance, (force, moment), taut, axes, strain)
+        cable, balance_force, change, axes, cuts, lambda: kinks(scene, cable, of, forces, actions, number))
+    return balanced_components(cable, (balance_force, balance_moment), (force, moment), taut, axes, strain)
 
 
 def of_run(run: Results, name: str, s: np.ndarray, chosen=slice(None), *, method: str = "balance",
@@ -142,15 +143,17 @@ def rest_instants(state: RestState) -> Instants:
 def jumps(scene: SceneData, name: str) -> np.ndarray:
     """Arc-lengths of the cable at which something that stays there holds on: inside, in order."""
     cable = scene.cables[name]
-    places = [load.s for load in scene.loads.values() if getattr(load, "on", None) == name]
+    places: list[float | None] = []
+    for load in scene.loads.values():
+        if isinstance(load, DistributedForce):
+            places += [load.start, load.stop] if load.cable == name else []
+        elif load.on == name:
+            places.append(load.s)
     attachments = [*(slide.rider for slide in scene.slides.values()), *scene.attachments()]
     places += [attachment.s for attachment in attachments if attachment.on == name]
     places += [support.s for support in scene.supports if support.cable == name]
     for tie in scene.ties.values():
         places += [s for on, s in ((tie.cable, tie.s), (tie.to, tie.at)) if on == name]
-    for load in scene.loads.values():
-        if getattr(load, "cable", None) == name:
-            places += [load.start, load.stop]
     beside = BESIDE * cable.length
     return np.array(sorted({float(s) for s in places if s is not None and beside < s < cable.length - beside}))
 
@@ -167,26 +170,26 @@ def with_sides(cable: Cable, s: np.ndarray, places: np.ndarray) -> np.ndarray:
     return np.sort(np.concatenate([np.broadcast_to(s, (*sides.shape[:-1], len(s))), sides], axis=-1), axis=-1)
 
 
-def dataset(state: Results | RestState, name: str, s=None, *, method: str = "balance",
+def dataset(state: Results | RestState, cable: Cable | str, s=None, *, method: str = "balance",
             side: str = "after") -> xarray.Dataset:
     """See `Run.section_forces`; of an equilibrium without the time."""
     import xarray  # 0.5 s, for those who ask for it
 
-    scene, name = state.scene, getattr(name, "name", name)
+    scene, name = state.scene, cable.name if isinstance(cable, Cable) else cable
     if name not in scene.cables:
         raise UnknownResultError(f'there is no cable "{name}"; {near(name, scene.cables)}')
     for word, value, known in (("method", method, METHODS), ("side", side, SIDES)):
         if value not in known:
             raise FunicularError(f'section forces of "{name}": {word} must be '
                                  + " or ".join(f'"{each}"' for each in known) + f", got {value!r}")
-    cable, over_time = scene.cables[name], hasattr(state, "time")
-    s, follows = _places(state, cable, s, over_time)
+    drawn, over_time = scene.cables[name], not isinstance(state, RestState)
+    s, follows = _places(state, drawn, s, over_time)
     compute: Callable = of_run if over_time else of_equilibrium
     values = compute(state, name, s, method=method, side=side)
-    label = GLOBAL | labels(cable)
+    label = GLOBAL | labels(drawn)
     coords: dict = {"xyz": ["x", "y", "z"]}
     told = {"units": "m", "long_name": "undeformed arc-length"}
-    if over_time:
+    if not isinstance(state, RestState):
         coords["time"] = ("time", state.time, {"units": "s", "long_name": "time"})
     if follows:
         coords["s"] = ("time", s[:, 0], told) if over_time else ((), s[0, 0], told)
@@ -197,7 +200,7 @@ def dataset(state: Results | RestState, name: str, s=None, *, method: str = "bal
     return xarray.Dataset(
         {key: (dims[: value[index].ndim], value[index], {"units": label[key][0], "long_name": label[key][1]})
          for key, value in values.items()},
-        coords, {"cable": name, "element": cable.element, "law": cable.law, "method": method, "side": side})
+        coords, {"cable": name, "element": drawn.element, "law": drawn.law, "method": method, "side": side})
 
 
 def _places(state: Results | RestState, cable: Cable, s, over_time: bool) -> tuple[np.ndarray, bool]:

@@ -8,7 +8,7 @@ from ..model.model import CableModel
 from ..model.states import spatial
 from ..parts.cable import Cable
 from ..parts.scene_data import SceneData
-from ..parts.support import Clamp, Motion, Tie
+from ..parts.support import Clamp, Motion, Support
 from .cable_loads import CableActions, positions, shape_on_axis
 from .nodal_forces import ElementForces
 from .section_balance import Cuts, balanced, resultants
@@ -46,22 +46,23 @@ def _of_actions(cable, model, forces, actions, number, force_at) -> list[Kink]:
 def _of_nodes(scene: SceneData, cable: Cable, model: CableModel, forces: ElementForces, force_at) -> list[Kink]:
     """Supports and joins; a section that they keep from turning holds the direction of the line."""
     found: list[Kink] = []
-    places: dict[int, bool] = {}
-    for part in (*scene.supports, *scene.ties.values()):
-        ends = [(part.cable, part.s)] + ([(part.to, part.at)] if isinstance(part, Tie) else [])
-        for on, s in ends:
-            if on == cable.name:
-                node = cable.node_at(s)
-                places[node] = places.get(node, False) or _holds(part)
+    directed: dict[int, bool] = {}  # nodes, and whether their section keeps its direction
+    ends = [(support.cable, support.s, _keeps_direction(support)) for support in scene.supports]
+    for tie in scene.ties.values():
+        ends += [(tie.cable, tie.s, tie.rotation == "rigid"), (tie.to, tie.at, tie.rotation == "rigid")]
+    for on, at_s, keeps in ends:
+        if on == cable.name:
+            node = cable.node(at_s)
+            directed[node] = directed.get(node, False) or keeps
     times = len(forces.e)
-    for node, is_held in places.items():
+    for node, is_directed in directed.items():
         s = np.full(times, node * model.length)
         first, last = node == 0, node == cable.elements
         element, at = (node - 1, len(model.vectors)) if last else (node, 0)
         direction = _normal(model, spatial(forces.e[:, element, at : at + len(model.vectors)]))
         sides = [(False, -1)] * (not first) + [(True, 1)] * (not last)
         n = {side: force_at(s[:, None], after)[:, 0] for after, side in sides}
-        if is_held:
+        if is_directed:
             found += [held(s, direction, force, side) for side, force in n.items()]
         elif len(n) == 2:
             found.append(Kink(s, n[-1], n[1], np.zeros((times, 3))))
@@ -76,6 +77,5 @@ def _normal(model: CableModel, vectors: np.ndarray) -> np.ndarray:
     return np.cross(named["r_y"], named.get("r_z", np.array([0.0, 0.0, 1.0])))
 
 
-def _holds(part) -> bool:
-    return (isinstance(part, Clamp) or (isinstance(part, Motion) and part.rotation is not None)
-            or (isinstance(part, Tie) and part.rotation == "rigid"))
+def _keeps_direction(support: Support) -> bool:
+    return isinstance(support, Clamp) or (isinstance(support, Motion) and support.rotation is not None)

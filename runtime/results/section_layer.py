@@ -35,8 +35,8 @@ def held(s: np.ndarray, direction: np.ndarray, force: np.ndarray, side: int) -> 
     """A section whose direction (T, 3) is held, as a kink of which there is one half: that with this force."""
     along = np.sum(direction * force, axis=-1) / np.sum(direction**2, axis=-1)
     mirrored = 2 * along[:, None] * direction - force
-    pair = (mirrored, force) if side > 0 else (force, mirrored)
-    return Kink(s, *pair, np.zeros_like(force), side)
+    before, after = (mirrored, force) if side > 0 else (force, mirrored)
+    return Kink(s, before, after, np.zeros_like(force), side)
 
 
 Stiffness = Callable[[np.ndarray], np.ndarray]

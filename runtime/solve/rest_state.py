@@ -74,7 +74,7 @@ class RestState:
     layout: dict[str, list] = field(default_factory=dict, repr=False)
 
     @classmethod
-    def of(cls, problem: StaticProblem, stability: Stability, heading: np.ndarray | None = None) -> RestState:
+    def of(cls, problem: StaticProblem, stability: Stability, heading: np.ndarray | None = None) -> Self:
         """Read the static state of a problem, under the load that is on; heading: of the path there."""
         left = problem.residual()
         units = np.where(problem.weight > 0, problem.weight, np.inf)

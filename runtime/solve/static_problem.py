@@ -65,10 +65,10 @@ class StaticProblem:
         """The scene's size in m."""
         model = self.model
         lengths = [cable.length * cable.n_elements for cable in model.cables]
-        lengths += [np.linalg.norm(model.q[b.configuration : b.configuration + model.dim]) for b in model.bodies]
+        lengths += [float(np.linalg.norm(model.q[b.configuration : b.configuration + model.dim])) for b in model.bodies]
         gaps = [attachment_points(model, s.ends[1], model.q[None]) - attachment_points(model, s.ends[0], model.q[None])
                 for s in model.springs]
-        return max([*lengths, *(np.linalg.norm(gap) for gap in gaps)], default=0.0) or 1.0
+        return max([*lengths, *(float(np.linalg.norm(gap)) for gap in gaps)], default=0.0) or 1.0
 
     def load(self, fraction: float) -> None:
         """Put this fraction of all loads on; of gravity, too, unless the settings say that it stays whole."""

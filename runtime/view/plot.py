@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -21,8 +21,9 @@ from ..rotations import rotate
 if TYPE_CHECKING:
     from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure
+    from matplotlib.typing import RcKeyType
 
-STYLE = {
+STYLE: dict[RcKeyType, Any] = {
     "font.size": 10,
     "axes.spines.top": False,
     "axes.spines.right": False,
@@ -123,15 +124,15 @@ def rider_path(run: Run, slide: str) -> np.ndarray:
 def attachment_path(run: Run, attachment: Attachment) -> np.ndarray:
     """(time, 3): where an attachment was, in m."""
     if attachment.on is None:
-        return np.broadcast_to(attachment.at, (len(run.time), 3))
+        return np.broadcast_to(attachment.point, (len(run.time), 3))
     body = run.scene.bodies.get(attachment.on)
     if isinstance(body, ModalBody):
-        node = np.argmin(np.linalg.norm(body.shape.nodes - attachment.at, axis=1))
+        node = np.argmin(np.linalg.norm(body.shape.nodes - attachment.point, axis=1))
         return run[f"{attachment.on}.nodes"][:, node]
     if body is not None:
-        return run[f"{attachment.on}.position"] + rotate(run[f"{attachment.on}.orientation"], attachment.at)
+        return run[f"{attachment.on}.position"] + rotate(run[f"{attachment.on}.orientation"], attachment.point)
     points = centreline(run[f"{attachment.on}.nodal_vectors"], run.coords[f"{attachment.on}.node"].values)
-    return points[:, round(attachment.s / run.scene.cables[attachment.on].length * (points.shape[1] - 1))]
+    return points[:, round(attachment.arc_length / run.scene.cables[attachment.on].length * (points.shape[1] - 1))]
 
 
 def held_points(run: Run) -> dict[str, np.ndarray]:
@@ -184,7 +185,8 @@ def draw_shape(run: Run) -> Figure | None:
             label=None if number else "path of the rider",
         )
         axes.scatter(
-            *path[shown].T,
+            path[shown, 0],
+            path[shown, 1],
             c=colour.to_rgba(run.time[shown]),
             s=42,
             edgecolors="0.1",
@@ -196,13 +198,13 @@ def draw_shape(run: Run) -> Figure | None:
     for number, name in enumerate(name for name in scene.bodies if name not in riding):
         path = run[f"{name}.position"] @ plane.T
         axes.plot(*path.T, color="0.25", linewidth=0.9, linestyle=":", zorder=3)
-        axes.scatter(*path[shown].T, c=colour.to_rgba(run.time[shown]), marker="h", s=48, edgecolors="0.1",
-                     linewidths=0.8, zorder=4, label=None if number else "body")
+        axes.scatter(path[shown, 0], path[shown, 1], c=colour.to_rgba(run.time[shown]), marker="h", s=48,
+                     edgecolors="0.1", linewidths=0.8, zorder=4, label=None if number else "body")
     for marker, label, supports in (("^", "pin", scene.pins), ("s", "clamp", scene.clamps),
                                     ("D", "moved", scene.motions)):
         if supports:
             held = np.array([scene.cables[support.cable].point(support.s) for support in supports]) @ plane.T
-            axes.scatter(*held.T, marker=marker, s=60, color="0.1", zorder=5, label=label)
+            axes.scatter(held[:, 0], held[:, 1], marker=marker, s=60, color="0.1", zorder=5, label=label)
     _set_scales(axes, view)
     if axes.get_legend_handles_labels()[0]:
         axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
