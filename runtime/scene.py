@@ -129,6 +129,19 @@ class Scene(SceneMethods):
             raise SceneError("run", f"resume must be true or false, got {shown(resume)}")
         if resume and settings.save is None:
             raise ResultFileError("run: there is nothing to resume without a file of results; name it with save")
+        run = self._simulated(settings, state, resume, progress)
+        match run.status:
+            case "end_of_cable":
+                raise EndOfCableError(run.report["message"], run)
+            case "no_convergence":
+                raise ConvergenceError(run.report["message"], run)
+            case "interrupted":
+                warnings.warn(run.report["message"], FunicularWarning, stacklevel=2)
+        return run
+
+    def _simulated(self, settings: RunSettings, state: Equilibrium | None, resume: bool,
+                   progress: bool | Callable[[float], None] | None) -> Run:
+        """Return the run with these settings, however it ended, from a state or as the settings say."""
         from .results.streaming import Stream  # brings SciPy and the engine
 
         saving = nullcontext() if settings.save is None else Stream(settings.save, self, settings, resume,
@@ -142,16 +155,8 @@ class Scene(SceneMethods):
             with progress_bar(settings.duration, progress) as on_progress:
                 simulation = simulate(self, settings, on_progress, initial=state, stream=stream)
             recording = recorded(simulation, self, settings)
-            run = (stream.finish(recording) if stream
-                   else Run.from_recording(recording, self, settings, self.from_toml))
-        match recording.status:
-            case "end_of_cable":
-                raise EndOfCableError(recording.message, run)
-            case "no_convergence":
-                raise ConvergenceError(recording.message, run)
-            case "interrupted":
-                warnings.warn(recording.message, FunicularWarning, stacklevel=2)
-        return run
+            return (stream.finish(recording) if stream
+                    else Run.from_recording(recording, self, settings, self.from_toml))
 
     def equilibrium(
         self,

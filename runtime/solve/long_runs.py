@@ -59,7 +59,7 @@ class LongRun:
         if not self._told:
             self._told = True
             warnings.warn(f"the run needs about {self._steps + more:.2g} steps, {_duration(more / rate)} at the "
-                          f"present rate of {rate:.2g} a second: {self._why()}", FunicularWarning, stacklevel=5)
+                          f"present rate of {rate:.2g} a second: {self._why()}", FunicularWarning, stacklevel=6)
 
     def notes(self) -> list[str]:
         """For the report: how many steps the run has taken or was to take, and why; empty for a run of few steps."""

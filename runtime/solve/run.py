@@ -96,7 +96,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     messages += changed.gaps
     warned = _broken_velocities(model, changed.velocities) + velocity_jumps(scene, settings.duration)
     for message in warned:
-        warnings.warn(message, FunicularWarning, stacklevel=3)
+        warnings.warn(message, FunicularWarning, stacklevel=4)
     messages += warned
     if status is None:
         if stream is not None:
@@ -110,7 +110,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
         for note in [*notes(engine, settings), *straight_struts.notes(scene, model, engine),
                      *reduced_strain.notes(scene, model, rows["time"], rows["q"])]:
             messages.append(note)
-            warnings.warn(note, FunicularWarning, stacklevel=3)
+            warnings.warn(note, FunicularWarning, stacklevel=4)
     return Simulation(model, engine, watcher, status, messages, reason, set_up, total, cpu)
 
 

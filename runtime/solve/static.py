@@ -8,6 +8,7 @@ comes to rest without them.
 from __future__ import annotations
 
 import warnings
+from typing import Generic, TypeVar
 
 from ..errors import EquilibriumError, FunicularWarning
 from ..parts.scene_data import SceneData
@@ -17,6 +18,8 @@ from .rest_state import CriticalPoint, RestState
 from .stability import stability
 from .stable_search import find_rest
 from .static_problem import StaticProblem
+
+S = TypeVar("S", bound=RestState)
 
 SMALLEST_STEP = 1e-3
 """Of the load: where smaller steps do not converge either, the search ends."""
