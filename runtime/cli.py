@@ -52,7 +52,7 @@ def _options(
 
 
 @contextmanager
-def _told_without_traceback() -> Iterator[None]:
+def _reported_without_traceback() -> Iterator[None]:
     """Errors and warnings of funicular become a line on stderr each; an error ends the command with 1."""
     from .errors import FunicularError, FunicularWarning
 
@@ -106,7 +106,7 @@ def run(
     from .results.files import check_writable
     from .scene_file import load_scene
 
-    with _told_without_traceback():
+    with _reported_without_traceback():
         described = load_scene(scene, library or ())
         path = Path(output or described.run_settings.get("save") or f"{Path(scene).stem}.nc")
         pictures = plot_dir or (path.parent if plot or forces else None)
@@ -169,7 +169,7 @@ def bench(
 ) -> None:
     """Measure error against time over integrators, tolerances and meshes.
 
-    The reference is computed, too, and how far it is converged is told. Combinations that fail are told, as well.
+    The reference is computed, too, and its own error is reported. Combinations that fail are reported, too.
     """
     from rich.console import Console
 
@@ -178,7 +178,7 @@ def bench(
     from .results.files import check_writable
     from .scene_file import load_scene
 
-    with _told_without_traceback():
+    with _reported_without_traceback():
         described, name = load_scene(scene, library or ()), f"{Path(scene).stem}-bench"
         numbers = _numbers(tols)
         tried = grid(described, integrators=_listed(integrators), tols=numbers, elements=_listed(elements),
@@ -227,7 +227,7 @@ def derive(
         raise typer.Exit(main(names or [], check))
     from funicular.derive.user_elements.command import main as make_library
 
-    with _told_without_traceback():
+    with _reported_without_traceback():
         make_library(spec, out)
 
 

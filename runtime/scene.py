@@ -42,7 +42,7 @@ class Scene(SceneMethods):
     """Cables, bodies, and what joins, holds and loads them.
 
     ``gravity`` in m/s²; ``cables``, ``bodies``, ``joints``, ``slides``, ``ties``, ``loads``, ``springs``, ``events``
-    are dicts by name; ``pins``, ``clamps`` and ``motions`` are lists; ``messages`` tells what was adjusted;
+    are dicts by name; ``pins``, ``clamps`` and ``motions`` are lists; ``messages`` lists what was adjusted;
     ``run_settings`` and ``equilibrium_settings`` hold the settings that a scene file gives.
     """
 
@@ -194,7 +194,7 @@ class Scene(SceneMethods):
         """The ``n`` lowest natural frequencies and shapes, about the scene as drawn or a state from `equilibrium`.
 
         As drawn, joints and slides bear nothing yet: what swings by its weight does so about its equilibrium alone.
-        Damping and friction are left out; what rounding hides is told, as in `Modes`. Raises SceneError.
+        Damping and friction are left out; what rounding hides is reported, as in `Modes`. Raises SceneError.
         """
         settings = ModeSettings(n=n)
         state = None if about is None else _equilibrium_state(self, about)

@@ -193,7 +193,10 @@ def relative(scene: Scene, found: dict[str, np.ndarray], exact: dict[str, np.nda
 
 
 def bench(scene: Scene, grid: Grid, tell: Callable[[str], None] = lambda text: None) -> Bench:
-    """Run the grid; tell: is told what is being done. What fails is kept as a row that says how."""
+    """Run the grid; tell: a function that is given a line on what is being done.
+
+    What fails is kept as a row that says how.
+    """
     result = Bench(scene, grid, [], {}, None)
     scenes: dict[Mesh, Scene] = {}
     failures: dict[Mesh, str] = {}

@@ -18,9 +18,9 @@ PLACES = ("tip", "middle")
 
 
 def default_outputs(scene: SceneData) -> list[str]:
-    """Where bodies and slides are, and of each cable the end, or its middle where the end is held."""
-    held = {node_of(scene, support) for support in scene.supports}
-    places = [f"{name}.{'middle' if (name, cable.elements) in held else 'tip'}"
+    """Where bodies and slides are, and of each cable the end, or its middle where the end is supported."""
+    supported = {node_of(scene, support) for support in scene.supports}
+    places = [f"{name}.{'middle' if (name, cable.elements) in supported else 'tip'}"
               for name, cable in scene.cables.items()]
     return [f"{name}.position" for name in scene.bodies] + [f"{name}.s" for name in scene.slides] + places
 

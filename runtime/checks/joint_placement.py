@@ -25,7 +25,7 @@ UPRIGHT = 1e-3
 
 
 def placed_joint(scene: SceneData, joint: Joint) -> Joint:
-    """The joint with its ends, axis and length complete, sure to be one that its ends can hold; tells of a gap."""
+    """The joint with its ends, axis and length complete, sure to be possible between its ends; a gap is reported."""
     joint = placed_between(scene, joint)
     if move_as_one(scene, joint.a, joint.b):
         raise SceneError(joint.where, f"joins {called(joint.a)} to itself", "give it two ends")

@@ -1,4 +1,4 @@
-"""The energy-momentum method."""
+"""The energy-momentum method as the engine takes it: its one parameter and what it can run."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class EnergyMomentum(Integrator):
 
     @classmethod
     def of(cls, spectral_radius: float) -> Integrator:
-        """See `Integrator.of`."""
+        """Return the integrator with this spectral radius, see `Integrator.of`."""
         return cls(spectral_radius)
 
     @property

@@ -1,4 +1,4 @@
-"""The generalised-alpha method."""
+"""The generalised-alpha method as the engine takes it: its parameters from the spectral radius."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class GeneralisedAlpha(Integrator):
 
     @classmethod
     def of(cls, spectral_radius: float) -> Integrator:
-        """See `Integrator.of`."""
+        """Return the integrator with this spectral radius, see `Integrator.of`."""
         return cls(spectral_radius)
 
     @property

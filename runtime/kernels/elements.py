@@ -13,7 +13,7 @@ MANIFEST = "manifest.json"
 
 @dataclass(frozen=True)
 class LawTraits:
-    """What an elastic law is, as the manifest tells.
+    """What an elastic law is, as the manifest has it.
 
     stiffness_of       the law of this package whose section stiffness it takes: itself, but for a law of the user's
     kind               "cable" (of the axis alone), "continuum" or "structural" (of the whole section)

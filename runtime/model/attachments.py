@@ -1,4 +1,4 @@
-"""Attachments as the engine takes them: what springs, joints, loads and riders hold on to."""
+"""Attachments as the engine takes them: what springs, joints, loads and riders are attached to."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class AttachmentBuilder:
         self.body_index = {name: k for k, name in enumerate(scene.bodies)}
 
     def element(self, cable: str, s: float) -> tuple[int, float]:
-        """Element that holds s, and x in it."""
+        """Return the element that s is in, and x in it."""
         model = self.cables[self.cable_index[cable]]
         element = min(max(int(s // model.length), 0), model.n_elements - 1)
         return element, s - element * model.length

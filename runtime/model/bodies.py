@@ -42,7 +42,7 @@ def dofs_of(body: BodyModel, dim: int) -> int:
 
 
 def configuration_of(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
-    """Its configuration, undeformed."""
+    """Return its configuration at the start: position in m, attitude, and modal coordinates, which are zero."""
     if isinstance(body, ModalBody):
         (position, orientation), modes = body.frame, np.zeros(body.shape.n)
     else:

@@ -77,7 +77,7 @@ class PointForceModel:
 
 
 
-class Actions:
+class LoadBuilder:
     """Translates the loads and springs of a scene."""
 
     def __init__(self, scene: SceneData, attachments: AttachmentBuilder):
@@ -88,7 +88,7 @@ class Actions:
         self.turning: list[LoadModel] = []
 
     def signal(self, signal) -> int:
-        """Number of a signal."""
+        """Store a signal and return its number."""
         breaks, coefficients = signal.pieces()
         self.signals.append(SignalModel(np.asarray(breaks, dtype=float), np.asarray(coefficients, dtype=float),
                                         signal.amplitude, signal.angular_frequency, signal.phase))
@@ -99,7 +99,7 @@ class Actions:
         return (-1, float(signal.value(0.0))) if isinstance(signal, Constant) else (self.signal(signal), 1.0)
 
     def load(self, load: Force | DistributedForce | Moment) -> None:
-        """Add a load."""
+        """Add the model of a load to `dead` or `turning`."""
         number, factor = self._scale(load.scale)
         value = factor * np.array(load.value)
         if isinstance(load, DistributedForce):

@@ -91,7 +91,7 @@ class BodyModel:
 
     @property
     def modes(self) -> int:
-        """Number of modes."""
+        """Return the number of its modes, 0 of a rigid body."""
         return 0 if self.shape is None else len(self.shape.stiffness)
 
     @property

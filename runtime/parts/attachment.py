@@ -1,4 +1,4 @@
-"""Attachments: what springs, joints and flexible riders hold on to."""
+"""Attachments: what springs, joints and flexible riders are attached to."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Attachment(Part):
         return place if self.on is None else self.on if place is None else [self.on, place]
 
     def off_plane(self) -> Iterator[str]:
-        """See `Part.off_plane`."""
+        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
         if self.at is not None and self.at[2]:
             yield show(self.at, "m")
 

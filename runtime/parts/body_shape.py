@@ -38,7 +38,7 @@ class Shape:
 
     @property
     def n(self) -> int:
-        """Number of modes."""
+        """Return the number of modes."""
         return len(self.modes)
 
     @cached_property

@@ -146,7 +146,7 @@ class Cable(Part):
     def _refuse_what_leaves_the_plane(self) -> None:
         if self.dim == 3:
             return
-        for number, point in enumerate(self._way):
+        for number, point in enumerate(self._drawn_through):
             if point[2] != 0:
                 where = f"point {number + 1}" if self.points else ("start", "end")[number]
                 raise ValueError(f"{self.element} is planar, but {where} leaves the plane z = 0: {show(point, 'm')}",
@@ -167,7 +167,7 @@ class Cable(Part):
 
     @property
     def _has_up(self) -> bool:
-        """Whether up tells a direction across the axis at the start."""
+        """Whether up gives a direction across the axis at the start."""
         tilt = np.linalg.norm(np.cross(self._shape.tangent(0.0), self.up))
         return bool(tilt > 1e-6 * np.linalg.norm(self.up))
 
@@ -232,13 +232,13 @@ class Cable(Part):
         return laws[self.law].stiffness_of if self.law in laws else self.law
 
     @property
-    def _way(self) -> tuple[tuple[float, ...], ...]:
+    def _drawn_through(self) -> tuple[tuple[float, ...], ...]:
         ends = tuple(end for end in (self.start, self.end) if end is not None)
         return ends if self.points is None else self.points
 
     @property
     def _shape(self) -> curves.Line | curves.Spline:
-        return curves.shape_through(self._way)
+        return curves.shape_through(self._drawn_through)
 
     @property
     def drawn_length(self) -> float:
@@ -306,7 +306,7 @@ class Cable(Part):
             i, k = self._shape.tangent(places), np.array([0.0, 0.0, 1.0])
             axes = np.stack([i, np.cross(k, i), np.broadcast_to(k, i.shape)], axis=1)
         else:
-            axes = curves.transported(self._way, self.height_direction, tuple(places.tolist()))
+            axes = curves.transported(self._drawn_through, self.height_direction, tuple(places.tolist()))
         return axes[which[: s.size]].reshape(*s.shape, 3, 3)
 
     @property

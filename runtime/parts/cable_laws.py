@@ -25,11 +25,11 @@ class Described(Protocol):
 
     @property
     def section(self) -> Section:
-        """Return its section."""
+        """Return its section, with its stiffness and its mass."""
 
     @property
     def material(self) -> Material:
-        """Return its material."""
+        """Return its material, with its elastic constants."""
 
     @property
     def is_curved(self) -> bool:

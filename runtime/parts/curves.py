@@ -278,8 +278,8 @@ def _refuse_a_jump(at: Callable, low: float, high: float, far: float) -> None:
 def _refuse_a_kink(at: Callable, low: float, high: float, point: np.ndarray, gap: float, chord: float) -> None:
     """A bend is the less of an angle, the shorter the piece that is looked at; a kink is all of it at one point."""
 
-    def angle(way: float) -> float:
-        ends = [np.array(at(v)) for v in (max(low - way, 0.0), low, high, min(high + way, 1.0))]
+    def angle(step: float) -> float:
+        ends = [np.array(at(v)) for v in (max(low - step, 0.0), low, high, min(high + step, 1.0))]
         before, after = ends[1] - ends[0], ends[3] - ends[2]
         size = np.linalg.norm(before) * np.linalg.norm(after)
         return acos(np.clip(before @ after / size, -1, 1)) if size > 0 else 0.0
@@ -297,15 +297,15 @@ def _refuse_a_kink(at: Callable, low: float, high: float, point: np.ndarray, gap
 @lru_cache(maxsize=4096)
 def shape_through(points: tuple[tuple[float, ...], ...]) -> Line | Spline:
     """The shape through checked points: a line if all of them lie on one, in order."""
-    way = np.array(points)
-    whole = way[-1] - way[0]
+    vertices = np.array(points)
+    whole = vertices[-1] - vertices[0]
     length = np.linalg.norm(whole)
     if length > 0:
-        along = (way - way[0]) @ whole / length
-        off = np.linalg.norm(way - way[0] - along[:, None] * whole / length, axis=1)
+        along = (vertices - vertices[0]) @ whole / length
+        off = np.linalg.norm(vertices - vertices[0] - along[:, None] * whole / length, axis=1)
         if off.max() <= 1e-12 * length and np.diff(along).min() > 0:
-            return Line(way[0], way[-1])
-    return Spline(way)
+            return Line(vertices[0], vertices[-1])
+    return Spline(vertices)
 
 
 @lru_cache(maxsize=128)

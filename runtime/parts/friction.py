@@ -1,4 +1,4 @@
-"""Friction of slides."""
+"""Friction of slides: Coulomb's, viscous and rolling, regularised or with sticking."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from .signal import AnySignal, Integral, Signal
 from .validation import Name, Part, Vector, direction, one_of, positive
 
 POINTS, LINES = ("spherical", "revolute", "universal", "weld"), ("prismatic", "cylindrical")
-"""The kinds that hold two points together, and those that keep a point on a line."""
+"""The kinds that keep two points together, and those that keep a point on a line."""
 
 KINDS = (*POINTS, *LINES, "distance")
 
@@ -31,7 +31,7 @@ class Joint(Part):
     with its section, or its tangent where the elements have no sections; or a point (x, y, z) of the ground, in m.
     Directions are the ground's, at the start.
 
-    | kind | holds | leaves |
+    | kind | constrains | leaves |
     |---|---|---|
     | spherical | the two points together | every turn |
     | revolute | and the axis of both | the turn about ``axis`` |
@@ -45,7 +45,7 @@ class Joint(Part):
     cylindrical ones; ``distance`` (m), of prismatic ones the way of b along the axis from the start on, of distance
     ones the distance itself; or ``velocity``, the rate of that.
 
-    Equations that follow from those of joints before are left out, and the report tells which (a door on two hinges).
+    Equations that follow from those of joints before are left out, and the report names them (a door on two hinges).
 
     up: where an element has no section axes (its tangent is all that a cable knows), a direction fixed in the ground
     that completes its frame, and against which it holds the turn about the tangent.
@@ -131,7 +131,7 @@ class Joint(Part):
         return np.column_stack([x, np.cross(z, x), z])
 
     def off_plane(self) -> Iterator[str]:
-        """See `Part.off_plane`."""
+        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
         yield from super().off_plane()
         if self.pair == "universal":
             yield "a universal joint"

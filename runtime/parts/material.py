@@ -1,4 +1,4 @@
-"""Materials."""
+"""Materials: isotropic elastic constants, density and damping."""
 
 from __future__ import annotations
 

@@ -187,7 +187,7 @@ class ModalBody(Part):
 
     @property
     def mass(self) -> float:
-        """In kg."""
+        """Return its mass in kg."""
         return self.shape.mass
 
     @property
@@ -197,7 +197,7 @@ class ModalBody(Part):
         return X.trace() * np.eye(3) - X
 
     def off_plane(self) -> Iterator[str]:
-        """See `Part.off_plane`."""
+        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
         position, orientation = self.frame
         yield from across("position", position, "m")
         yield from in_plane("orientation", orientation[1:], orientation)

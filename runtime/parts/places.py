@@ -1,4 +1,4 @@
-"""Where the parts of a scene are: nodes that supports and ties hold, points of cables, bodies and the ground."""
+"""Where the parts of a scene are: nodes of supports and ties, points of cables, bodies and the ground."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Node = tuple[str, int]
 
 
 def node_of(scene: SceneData, support: Support) -> Node:
-    """The node that a support of the scene holds."""
+    """Return the node of a support of the scene."""
     return support.cable, scene.cables[support.cable].node(support.s)
 
 
@@ -38,7 +38,7 @@ def joined(scene: SceneData, node: Node, without: Tie | None = None) -> set[Node
 
 
 def support_of(scene: SceneData, node: Node) -> Support | None:
-    """What holds ``node`` or one that is joined to it."""
+    """Return the support of ``node`` or one that is joined to it."""
     nodes = joined(scene, node)
     cables = {cable for cable, _ in nodes}
     return next((s for s in scene.supports if s.cable in cables and node_of(scene, s) in nodes), None)

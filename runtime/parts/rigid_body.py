@@ -1,4 +1,4 @@
-"""Rigid bodies."""
+"""Rigid bodies: mass, inertia, position and attitude at the start."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ class RigidBody(Part):
         return np.array(self.position) + rotate(self.orientation, at)
 
     def off_plane(self) -> Iterator[str]:
-        """See `Part.off_plane`."""
+        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
         yield from across("position", self.position, "m")
         yield from in_plane("orientation", self.orientation[1:], self.orientation)
         yield from across("centre", self.centre, "m")

@@ -27,7 +27,7 @@ class SceneData:
     """What a scene is, as checks, model, solvers and results take it; `funicular.Scene` adds what can be done with it.
 
     ``gravity`` in m/s². Each kind of part has a group, ``group`` of its class: a dict by name where parts have names,
-    else a list. ``messages`` tells what was adjusted; ``run_settings`` and ``equilibrium_settings`` hold the settings
+    else a list. ``messages`` lists what was adjusted; ``run_settings`` and ``equilibrium_settings`` hold the settings
     that a scene file gives.
     """
 
@@ -72,7 +72,7 @@ class SceneData:
 
     @property
     def supports(self) -> list[Support]:
-        """All that holds or moves nodes: pins, clamps and motions."""
+        """Return all supports of nodes: pins, clamps and motions."""
         return [*self.pins, *self.clamps, *self.motions]
 
     def parts(self) -> Iterator[Part]:

@@ -75,7 +75,7 @@ class Section(Part):
 
     @property
     def area(self) -> float:
-        """∫dA in m²."""
+        """Return the area ∫dA in m²."""
         return float(self.moments()[0])
 
     @property
@@ -97,7 +97,7 @@ class Rectangle(Section):
     width: Length
 
     def moments(self) -> np.ndarray:
-        """See `Section.moments`."""
+        """Return the even moments of the section, see `Section.moments`."""
         h, w = self.height, self.width
         area = h * w
         yy, zz = h * h / 12, w * w / 12
@@ -126,7 +126,7 @@ class Circle(Section):
     radius: Length
 
     def moments(self) -> np.ndarray:
-        """See `Section.moments`."""
+        """Return the even moments of the section, see `Section.moments`."""
         return _disc(self.radius)
 
     def _shape_torsion_constant(self) -> float:
@@ -155,7 +155,7 @@ class Tube(Section):
         return self
 
     def moments(self) -> np.ndarray:
-        """See `Section.moments`."""
+        """Return the even moments of the section, see `Section.moments`."""
         return _disc(self.outer_radius) - _disc(self.inner_radius)
 
     def _shape_torsion_constant(self) -> float:
@@ -201,7 +201,7 @@ class GeneralSection(Section):
         return self.rotary_about_z is not None or self.rotary_about_y is not None
 
     def mass_moments(self) -> np.ndarray:
-        """See `Section.mass_moments`."""
+        """Return what the mass is proportional to, see `Section.mass_moments`."""
         if not self.has_rotary:
             return self.moments()
         about_z, about_y = self.rotary_about_z or self.rotary_about_y, self.rotary_about_y or self.rotary_about_z

@@ -104,7 +104,7 @@ class Constant(Signal):
     constant: Value
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
-        """See `Signal.pieces`."""
+        """Return its polynomials between breaks, see `Signal.pieces`."""
         return np.array([0.0, 1.0]), np.eye(1, DEGREE + 1) * self.constant
 
 
@@ -132,7 +132,7 @@ class TableSignal(Signal):
         return self
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
-        """See `Signal.pieces`."""
+        """Return its polynomials between breaks, see `Signal.pieces`."""
         time, values = np.array(self.time), np.array(self.values)
         breaks = np.array([time[0] - 1, *time, time[-1] + 1])
         breaks[-2] = np.nextafter(time[-1], np.inf)  # a run that ends with the table ends on its slope
@@ -164,7 +164,7 @@ class Ramp(Signal):
         return self
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
-        """See `Signal.pieces`."""
+        """Return its polynomials between breaks, see `Signal.pieces`."""
         return _steps([self.start, self.end], [self.before, self.after])
 
 
@@ -200,7 +200,7 @@ class Pulse(Signal):
         return [self.start, self.start + self.rise, self.end - self.rise, self.end]
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
-        """See `Signal.pieces`."""
+        """Return its polynomials between breaks, see `Signal.pieces`."""
         return _steps(self._times, [0.0, *[self.height] * (len(self._times) - 2), 0.0])
 
 
@@ -214,22 +214,22 @@ class Harmonic(Signal):
     offset: Value = 0.0
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
-        """See `Signal.pieces`."""
+        """Return its polynomials between breaks, see `Signal.pieces`."""
         return Constant(constant=self.offset).pieces()
 
     @property
     def amplitude(self) -> float:
-        """See `Signal.amplitude`."""
+        """Return the amplitude of its sine, see `Signal.amplitude`."""
         return self.sine
 
     @property
     def angular_frequency(self) -> float:
-        """See `Signal.angular_frequency`."""
+        """Return the rate of its sine in rad/s, see `Signal.angular_frequency`."""
         return 2 * pi * self.frequency
 
     @property
     def phase(self) -> float:
-        """See `Signal.phase`."""
+        """Return the phase of its sine in rad, see `Signal.phase`."""
         return self.start_phase
 
 
@@ -247,7 +247,7 @@ class Integral(Signal):
         return self
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
-        """See `Signal.pieces`."""
+        """Return its polynomials between breaks, see `Signal.pieces`."""
         breaks, rates = self.rate.pieces()
         powers = np.arange(1, DEGREE + 1)
         coefficients = np.zeros(rates.shape)
@@ -261,12 +261,12 @@ class Integral(Signal):
 
     @property
     def amplitude(self) -> float:
-        """See `Signal.amplitude`."""
+        """Return the amplitude of its sine, see `Signal.amplitude`."""
         return self.rate.amplitude / self.angular_frequency if self.rate.amplitude else 0.0
 
     @property
     def angular_frequency(self) -> float:
-        """See `Signal.angular_frequency`."""
+        """Return the rate of its sine in rad/s, see `Signal.angular_frequency`."""
         return self.rate.angular_frequency
 
     @property

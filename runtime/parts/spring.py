@@ -1,4 +1,4 @@
-"""Springs with dampers."""
+"""Springs with dampers between two attachments."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What holds or joins the nodes of cables: pins, clamps, ties, prescribed motions."""
+"""What supports or joins the nodes of cables: pins, clamps, ties, prescribed motions."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def _called(cable: Any) -> str:
 
 
 class Support(Part):
-    """Base of what holds a cable's node at ``s`` (m)."""
+    """Base of the supports of a cable's node at ``s`` (m)."""
 
     cable: Reference
     s: Annotated[float, finite("m")]
@@ -146,7 +146,7 @@ class Motion(Support):
         return self
 
     def off_plane(self) -> Iterator[str]:
-        """See `Part.off_plane`."""
+        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
         if self.displacement is not None and self.displacement[2] not in (None, Constant(constant=0.0)):
             yield "displacement z"
         if self.rotation is not None:

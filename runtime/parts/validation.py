@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 import reprlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from numbers import Integral, Real
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
@@ -127,10 +127,10 @@ def finite(unit: str = "") -> PlainValidator:
     return PlainValidator(lambda value: number(value, unit))
 
 
-def _bounded(unit: str, holds, rule: str) -> PlainValidator:
+def _bounded(unit: str, allowed: Callable[[float], bool], rule: str) -> PlainValidator:
     def check(value: Any) -> float:
         result = number(value, unit)
-        if not holds(result):
+        if not allowed(result):
             raise ValueError(f"must {rule}, got {show(result, unit)}")
         return result
 

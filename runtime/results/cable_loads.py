@@ -34,7 +34,7 @@ class Instants:
 
 
 @dataclass
-class Action:
+class PointLoad:
     """A force at a place of a cable: element and x (m) in it (T,), generalised force f (T, vectors, dim)."""
 
     element: np.ndarray
@@ -58,7 +58,7 @@ class Spread:
 
 
 def at_element(cable: CableModel, s: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    """Elements that hold arc-lengths s, and x in them; at a node the element that begins there."""
+    """Return the elements that arc-lengths s are in, and x in them; at a node the element that begins there."""
     element = np.clip((np.asarray(s) // cable.length).astype(int), 0, cable.n_elements - 1)
     return element, s - element * cable.length
 
@@ -83,13 +83,13 @@ def rows(kernel, n: int, *given):
     return kernel.rows(n, *given)
 
 
-class CableActions:
+class CableLoads:
     """Collects what acts on cables between nodes. Gravity, inertia and what is given to nodes are not in it."""
 
     def __init__(self, scene: SceneData, model: Model, at: Instants):
         self.scene, self.model, self.at, self.dim = scene, model, at, model.dim
         self.times, self.gravity = len(at.time), at.weight * np.array(scene.gravity)[: self.dim]
-        self.points: dict[int, list[Action]] = {}
+        self.points: dict[int, list[PointLoad]] = {}
         self.spreads: dict[int, list[Spread]] = {}
         names = [cable.name for cable in model.cables]
         self.number = {name: k for k, name in enumerate(names)}
@@ -100,7 +100,7 @@ class CableActions:
 
     def _add(self, cable: int, element, x, f: np.ndarray) -> None:
         element, x = (np.broadcast_to(value, self.times) for value in (element, x))
-        self.points.setdefault(cable, []).append(Action(element, x, f))
+        self.points.setdefault(cable, []).append(PointLoad(element, x, f))
 
     def _loads(self) -> None:
         for load in self.scene.loads.values():
@@ -155,31 +155,31 @@ class CableActions:
 
     def _slides(self) -> None:
         """Riders: their force at s, with the opposite on what rides; and moments of slides that keep axes."""
-        for joint in self.model.slides:
-            force, s = self.at.value(f"{joint.name}.force"), self.at.value(f"{joint.name}.s")
-            cable = self.model.cables[joint.cable]
+        for slide in self.model.slides:
+            force, s = self.at.value(f"{slide.name}.force"), self.at.value(f"{slide.name}.s")
+            cable = self.model.cables[slide.cable]
             element, x = at_element(cable, np.clip(s, 0.0, cable.length * cable.n_elements))
             N = shape_on_axis(cable, x)
-            self._add(joint.cable, element, x, -N[:, :, None] * force[:, None, : self.dim])
-            self._on_end(joint.rider, force, None)
-        for link in self.model.joints:
-            if link.slide is None:
+            self._add(slide.cable, element, x, -N[:, :, None] * force[:, None, : self.dim])
+            self._on_end(slide.rider, force, None)
+        for joint in self.model.joints:
+            if joint.slide is None:
                 continue
-            moment = self.at.value(f"{link.slide}.moment")
-            joint = next(j for j in self.model.slides if j.name == link.slide)
-            cable = self.model.cables[joint.cable]
-            s = np.clip(self.at.value(f"{link.slide}.s"), 0.0, cable.length * cable.n_elements)
+            moment = self.at.value(f"{joint.slide}.moment")
+            slide = next(each for each in self.model.slides if each.name == joint.slide)
+            cable = self.model.cables[slide.cable]
+            s = np.clip(self.at.value(f"{joint.slide}.s"), 0.0, cable.length * cable.n_elements)
             element, x = at_element(cable, s)
-            f = self._couple(cable, link.ends[0], element, x, -moment)
-            self._add(joint.cable, element, x, f)
-            self._on_end(link.ends[1], None, moment)
+            f = self._couple(cable, joint.ends[0], element, x, -moment)
+            self._add(slide.cable, element, x, f)
+            self._on_end(joint.ends[1], None, moment)
 
     def _joints(self) -> None:
-        for link in self.model.joints:
-            if link.slide is not None or all(end.cable < 0 for end in link.ends):
+        for joint in self.model.joints:
+            if joint.slide is not None or all(end.cable < 0 for end in joint.ends):
                 continue
-            force, moment = self.at.value(f"{link.name}.force"), self.at.value(f"{link.name}.moment")
-            one, other = link.ends[::-1] if link.reversed else link.ends
+            force, moment = self.at.value(f"{joint.name}.force"), self.at.value(f"{joint.name}.moment")
+            one, other = joint.ends[::-1] if joint.reversed else joint.ends
             self._on_end(other, force, moment)
             if one.cable >= 0:  # its moment balances the other end's, and the forces where these stand apart
                 gap = self._end_point(other) - self._end_point(one)

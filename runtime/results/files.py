@@ -75,9 +75,9 @@ def file_text(report: dict, rows: int | None = None) -> str:
 
 
 def create_file(path: str | os.PathLike, coords: Mapping[str, Variable], variables: Mapping[str, Variable], scene: str,
-                report: str, room: int = 0, descriptor: int | None = None) -> File:
+                report: str, spare: int = 0, descriptor: int | None = None) -> File:
     """A new file of results, without rows; report: from `file_text`; see `funicular.netcdf.create`. Raises OSError."""
-    return create(path, coords, variables, {"funicular_format": FILE_FORMAT, "scene": scene}, report, room, descriptor)
+    return create(path, coords, variables, {"funicular_format": FILE_FORMAT, "scene": scene}, report, spare, descriptor)
 
 
 def open_file(path: str | os.PathLike) -> File:
@@ -116,7 +116,7 @@ def read_report(file: File) -> dict:
 def check_rows(file: File, rows: int | None, salvage: bool) -> None:
     """Find damaged rows, to leave them out or to raise ResultFileError; warn where there are no checksums.
 
-    rows: number of rows that the report tells, None where the run goes on.
+    rows: number of rows that the report has, None where the run goes on.
     """
     if rows is not None and rows != file.rows:
         raise ValueError(f"its header says that it has {file.rows} times, its report {rows}")

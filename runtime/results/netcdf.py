@@ -166,7 +166,7 @@ class File:
         self._set_rows(rows)
 
     def add_report(self, text: str) -> bool:
-        """Put a new text, of a JSON object, into the attribute `report`; False where there is no room for it.
+        """Put a new text, of a JSON object, into the attribute `report`; False where it does not fit.
 
         The last line that has an end of line counts: the new one is whole before blanks go over the old one.
         """
@@ -217,24 +217,24 @@ class Stored(Mapping[str, Variable]):
         return name in self._names
 
     def __iter__(self) -> Iterator[str]:
-        """Their names."""
+        """Iterate over the names of the variables."""
         return iter(self._names)
 
     def __len__(self) -> int:
-        """Their number."""
+        """Return the number of variables."""
         return len(self._names)
 
 
 def create(path: str | os.PathLike, coords: Mapping[str, Variable], variables: Mapping[str, Variable],
-           attributes: Mapping[str, str | int], report: str, room: int = 0, descriptor: int | None = None) -> File:
+           attributes: Mapping[str, str | int], report: str, spare: int = 0, descriptor: int | None = None) -> File:
     """A new file, without rows yet; of the variables over time only shapes count.
 
-    attributes: but for the report, a JSON object, for which there is room to grow by so many bytes; descriptor: of a
+    attributes: but for the report, a JSON object, which can grow by `spare` bytes; descriptor: of a
     file of that path which is open already, and becomes this one.
     """
     checksum = Variable(("time",), np.zeros(0), "1", "checksum of the row")
     header = header_of({**coords, **variables, ROW_CHECKSUM: checksum},
-                     {**attributes, HEADER_CHECKSUM: NOT_YET, "report": report_line(report) + b" " * room})
+                     {**attributes, HEADER_CHECKSUM: NOT_YET, "report": report_line(report) + b" " * spare})
     places = parsed(header)[2]
     at, size = places[HEADER_CHECKSUM]
     header = header[:at] + header_checksum(header, places).encode() + header[at + size :]

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import block_diag, coo_array, csc_array, kron
+from scipy.sparse import block_diag, coo_array, csc_array, csr_array, kron
 from scipy.sparse.linalg import splu
 
 from ..model.model import CableModel, Model
 from ..parts.scene_data import SceneData
-from .cable_loads import CableActions, Instants, element_coordinates, rows
+from .cable_loads import CableLoads, Instants, element_coordinates, rows
 
 
 @dataclass
@@ -27,16 +27,16 @@ class ElementForces:
     e: np.ndarray
 
 
-def element_forces(scene: SceneData, model: Model, at: Instants, actions: CableActions, cable: int,
+def element_forces(scene: SceneData, model: Model, at: Instants, loads: CableLoads, cable: int,
                    at_rest: bool) -> ElementForces:
     """Those of cable number `cable`; at_rest: without accelerations."""
     tied = [cable] if at_rest else tied_cables(scene, model, cable)
-    forces = {k: internal(model.cables[k], at) - _external(model, k, at, actions) for k in tied}
+    forces = {k: internal(model.cables[k], at) - _external(model, k, at, loads) for k in tied}
     accelerations = np.zeros_like(at.v) if at_rest else _accelerations(model, at, forces)
     of = model.cables[cable]
     a = element_coordinates(of, accelerations)
     given = forces[cable] + np.einsum("kl,teld->tekd", of.m, a)
-    inertia = a + of.mass_damping * element_coordinates(of, at.v) - _uniform(of, actions.gravity)
+    inertia = a + of.mass_damping * element_coordinates(of, at.v) - _uniform(of, loads.gravity)
     return ElementForces(given, inertia, element_coordinates(of, at.q))
 
 
@@ -80,15 +80,15 @@ def _uniform(cable: CableModel, acceleration: np.ndarray) -> np.ndarray:
     return np.array([name == "r" for name in cable.vectors] * 2)[:, None] * acceleration
 
 
-def _external(model: Model, number: int, at: Instants, actions: CableActions) -> np.ndarray:
+def _external(model: Model, number: int, at: Instants, loads: CableLoads) -> np.ndarray:
     """(T, elements, vectors, dim): gravity, and all that acts between nodes."""
     cable = model.cables[number]
     f = np.zeros((len(at.time), cable.n_elements, 2 * cable.shape[1], cable.shape[2]))
-    f += np.einsum("kl,ld->kd", cable.m, _uniform(cable, actions.gravity))
+    f += np.einsum("kl,ld->kd", cable.m, _uniform(cable, loads.gravity))
     instants = np.arange(len(at.time))
-    for action in actions.points.get(number, []):
-        f[instants, action.element] += action.f
-    for spread in actions.spreads.get(number, []):
+    for load in loads.points.get(number, []):
+        f[instants, load.element] += load.f
+    for spread in loads.spreads.get(number, []):
         f[:, spread.element] += spread.f
     return f
 
@@ -99,7 +99,7 @@ def _accelerations(model: Model, at: Instants, forces: dict[int, np.ndarray]) ->
     M a = -forces on what is free, with what supports and joins hold and motions prescribe. Eq 38 gave the same at each
     of the instants: so a run need not keep them.
     """
-    held = np.concatenate([np.arange(model.cables[k].coordinates.start, model.cables[k].coordinates.stop)
+    chosen = np.concatenate([np.arange(model.cables[k].coordinates.start, model.cables[k].coordinates.stop)
                            for k in forces])
     masses, assembled = [], np.zeros((len(at.time), model.n_dof))
     for k, f in forces.items():
@@ -110,19 +110,19 @@ def _accelerations(model: Model, at: Instants, forces: dict[int, np.ndarray]) ->
         assembled[:, cable.coordinates] = nodal.reshape(len(f), -1)
         masses.append(_mass(cable))
     M = block_diag(masses, format="csr")
-    T = _reduction(model, held)
-    prescribed = _prescribed(model, at.time)[:, held]
-    right = -(assembled[:, held] + (M @ prescribed.T).T)
+    T = _reduction(model, chosen)
+    prescribed = _prescribed(model, at.time)[:, chosen]
+    right = -(assembled[:, chosen] + (M @ prescribed.T).T)
     found = np.zeros_like(assembled)
     if T.shape[1]:
         solve = splu(csc_array(T.T @ M @ T)).solve
-        found[:, held] = (T @ solve(np.ascontiguousarray(T.T @ right.T))).T
-    found[:, held] += prescribed
+        found[:, chosen] = (T @ solve(np.ascontiguousarray(T.T @ right.T))).T
+    found[:, chosen] += prescribed
     return found
 
 
-def _mass(cable: CableModel):
-    """(coordinates, coordinates) sparse."""
+def _mass(cable: CableModel) -> csr_array:
+    """Return the mass matrix of a cable, (coordinates, coordinates), sparse."""
     per_node = cable.shape[1]
     n = cable.shape[0] * per_node
     index = np.arange(cable.n_elements)[:, None, None] * per_node

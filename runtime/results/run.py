@@ -63,7 +63,7 @@ class Run:
                  scene_text: SceneText):
         """report: how the run went, status, message and messages among it; scene_text: the scene that was run.
 
-        report["us_per_step"] tells what each slide and joint takes of a step in µs, without solving for its forces.
+        report["us_per_step"] is what each slide and joint takes of a step in µs, without solving for its forces.
         """
         self.variables, self.coords, self.report, self._scene_text = variables, coords, report, scene_text
 
@@ -200,7 +200,7 @@ class Run:
             part.unlink(missing_ok=True)
 
     def energy_balance(self) -> EnergyBalance:
-        """How well the energy books close; see `EnergyBalance`."""
+        """Return how well the energy balance closes; see `EnergyBalance`."""
         energies = {name: self[f"energy.{name}"] for name in ENERGIES if f"energy.{name}" in self}
         changes = np.array([(e - e[:1]) * (-1 if name == "external" else 1) for name, e in energies.items()])
         residual = changes.sum(axis=0)

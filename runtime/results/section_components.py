@@ -90,7 +90,7 @@ def balanced_components(cable: Cable, balance: tuple[np.ndarray, np.ndarray], la
 
     Where a mesh cannot show how a taut cable bends, its tangent beside a kink is off, and so are the points of its
     centreline. The force across that tangent is then no shear, nor is the force's moment about those points bending.
-    There, by the part that `unresolved` tells, the angle between force and tangent is the one that the elastic law has,
+    There, by the part that `unresolved` gives, the angle between force and tangent is the one that the elastic law has,
     and the moment across the tangent is that of `taut_bending`. A force's size and direction, and torque, stay.
     """
     force, moment = balance

@@ -16,7 +16,7 @@ from ..parts.scene_data import SceneData
 from ..parts.section_stiffness import section_stiffness
 from ..parts.validation import show
 from ..solve.rest_state import RestState
-from .cable_loads import CableActions, Instants, rows
+from .cable_loads import CableLoads, Instants, rows
 from .nodal_forces import element_forces
 from .section_balance import Cuts, balanced
 from .section_components import balanced_components, components, labels, taut_bending
@@ -49,11 +49,11 @@ class Results(Protocol):
 
     @property
     def model(self) -> Model:
-        """Its model."""
+        """Return the model of the scene."""
 
     @property
     def time(self) -> np.ndarray:
-        """(time,): in s."""
+        """Return the times (time,) in s."""
 
     def __getitem__(self, name: str) -> np.ndarray:
         """The result of a name, time first."""
@@ -90,11 +90,11 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
     force, moment, axes, strain = constitutive(cable, nodal, cuts)
     if method == "constitutive":
         return {"force": force, "moment": moment} | components(cable, force, moment, axes, strain)
-    actions = CableActions(scene, model, at)
-    forces = element_forces(scene, model, at, actions, number, at_rest)
-    balance_force, balance_moment, change = balanced(cable, of, forces, actions, number, cuts)
+    loads = CableLoads(scene, model, at)
+    forces = element_forces(scene, model, at, loads, number, at_rest)
+    balance_force, balance_moment, change = balanced(cable, of, forces, loads, number, cuts)
     taut = moment if cable.is_curved else taut_bending(  # a bent wire that is drawn straight has a moment
-        cable, balance_force, change, axes, cuts, lambda: kinks(scene, cable, of, forces, actions, number))
+        cable, balance_force, change, axes, cuts, lambda: kinks(scene, cable, of, forces, loads, number))
     return balanced_components(cable, (balance_force, balance_moment), (force, moment), taut, axes, strain)
 
 
@@ -141,7 +141,7 @@ def rest_instants(state: RestState) -> Instants:
 
 
 def jumps(scene: SceneData, name: str) -> np.ndarray:
-    """Arc-lengths of the cable at which something that stays there holds on: inside, in order."""
+    """Arc-lengths of the cable at which something fixed to it is attached: inside, in order."""
     cable = scene.cables[name]
     places: list[float | None] = []
     for load in scene.loads.values():
@@ -188,13 +188,13 @@ def dataset(state: Results | RestState, cable: Cable | str, s=None, *, method: s
     values = compute(state, name, s, method=method, side=side)
     label = GLOBAL | labels(drawn)
     coords: dict = {"xyz": ["x", "y", "z"]}
-    told = {"units": "m", "long_name": "undeformed arc-length"}
+    of_s = {"units": "m", "long_name": "undeformed arc-length"}
     if not isinstance(state, RestState):
         coords["time"] = ("time", state.time, {"units": "s", "long_name": "time"})
     if follows:
-        coords["s"] = ("time", s[:, 0], told) if over_time else ((), s[0, 0], told)
+        coords["s"] = ("time", s[:, 0], of_s) if over_time else ((), s[0, 0], of_s)
     else:
-        coords["s"] = ("s", s[0], told)
+        coords["s"] = ("s", s[0], of_s)
     dims = ("time",) * over_time + ("s",) * (not follows) + ("xyz",)
     index = (slice(None) if over_time else 0, 0 if follows else slice(None))
     return xarray.Dataset(

@@ -44,7 +44,7 @@ ROWS_INTERVAL = 0.5
 """Seconds between two times that rows are written, at most."""
 CHECKPOINT_INTERVAL = 0.5
 """Seconds between two checkpoints, at least, where the buffer lasts so long."""
-REPORT_ROOM = 8192
+REPORT_SPARE = 8192
 """Bytes for what the report will say at the end."""
 GOES_ON = ("unfinished", "interrupted")
 """What the status of a run is that can be resumed."""
@@ -78,7 +78,7 @@ class Stream:
             raise
 
     def __enter__(self) -> Stream:
-        """The stream."""
+        """Return the stream itself."""
         return self
 
     def __exit__(self, *exception) -> None:
@@ -201,7 +201,7 @@ class Stream:
         """The part file, whole but for its rows."""
         descriptor, self._new = self._new if self._new >= 0 else self._claim(self._part), -1
         self._opened = create_file(self._part, coords, variables, dumps(self._scene), file_text(report, rows),
-                                 REPORT_ROOM, descriptor)
+                                 REPORT_SPARE, descriptor)
 
     def _add(self, rows: Rows) -> None:
         variables, coords = labelled(rows)
@@ -211,7 +211,7 @@ class Stream:
     def _report(self, report: dict, rows: int | None = None) -> None:
         """Write a report; rows: number of rows of a file that is whole."""
         def add() -> None:
-            if not self._file.add_report(file_text(report, rows)):  # with more room, then
+            if not self._file.add_report(file_text(report, rows)):  # it does not fit: a file with more space for it
                 old = self._file
                 self._replace(old.described(over_time=False), old.described(over_time=True), report, rows)
                 self._file.copy_rows(old)

@@ -1,4 +1,4 @@
-"""What the engine watches for a scene's events, and what a run tells of them."""
+"""What the engine watches for a scene's events, and what a run reports of them."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ class State:
         return {"s": float(self._s[slides.index(name)])} if name in slides else {}
 
 
-class Watcher:
+class EventWatcher:
     """The events of a run as the engine meets them: what it asks, and what has happened."""
 
     def __init__(self, scene: SceneData, model: Model):

@@ -17,7 +17,7 @@ from scipy.sparse.linalg import splu
 DENSE = 200
 """Unknowns up to which the eigenvalues themselves are computed, by LAPACK."""
 ZERO = 1e-13
-"""Of the scaled stiffness, whose diagonal is one: an eigenvalue this small cannot be told from zero."""
+"""Of the scaled stiffness, whose diagonal is one: an eigenvalue this small cannot be distinguished from zero."""
 FLOOR = 1e-6
 """Of the largest stiffness: an unknown less stiff than this is scaled as if it had so much, so that the rounding of a
 direction that is free is not scaled up to a stiffness."""

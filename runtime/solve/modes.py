@@ -24,7 +24,7 @@ ASYMMETRY, LEAST_ASYMMETRY = 1e-9, 1e-13
 """Of the stiffness of two coordinates, and of the largest: what rounding leaves; more comes from loads that turn."""
 
 DENSE, LOST = 600, 1e-9
-"""Unknowns up to which LAPACK computes all modes, and of the largest eigenvalue: those below are not told from zero."""
+"""Unknowns up to which LAPACK computes all modes, and of the largest eigenvalue: smaller ones count as zero."""
 
 MOST_UNSYMMETRIC = 3000
 """Degrees of freedom up to which modes with an unsymmetric stiffness are computed: all of them at once."""
@@ -56,7 +56,7 @@ class Modes:
 
     @property
     def frequency(self) -> np.ndarray:
-        """(n,) in Hz."""
+        """Return the frequencies (n,) in Hz."""
         return self.angular_frequency / (2 * np.pi)
 
     def __getitem__(self, name: str) -> np.ndarray:
@@ -72,7 +72,7 @@ class Modes:
 def modes(scene: SceneData, n: int, about: RestState | None = None) -> Modes:
     """The n lowest modes about a state, as drawn if none is given; damping and friction are left out.
 
-    What is left out or uncertain is told in ``messages``, and by a FunicularWarning. Raises SceneError.
+    What is left out or uncertain is reported in ``messages``, and by a FunicularWarning. Raises SceneError.
     """
     model = build(scene)
     engine = Engine(model)
@@ -122,19 +122,19 @@ def _rounded_shape(engine, model, K: csc_array) -> csc_array:
 
 def _uncertain(modes: Modes, lowest: float) -> list[str]:
     """What rounding of the stiffness leaves unknown; lowest: the angular frequency of the lowest that is not zero."""
-    told, w, error = [], np.maximum(modes.angular_frequency, modes.growth_rate), modes.uncertainty
+    notes, w, error = [], np.maximum(modes.angular_frequency, modes.growth_rate), modes.uncertainty
     zero = (w == 0) & (error > HIDDEN * lowest)
     if zero.any():
-        told.append(f"rounding of the stiffness hides frequencies below {error[zero].max() / (2 * np.pi):.3g} Hz: "
+        notes.append(f"rounding of the stiffness hides frequencies below {error[zero].max() / (2 * np.pi):.3g} Hz: "
                     f"{np.count_nonzero(zero)} of those given as 0 may be higher; take fewer elements, or look for a "
                     "part that is far stiffer or far lighter than the others")
     vague = (w > 0) & (error > KNOWN * w)
     if vague.any():
         numbers = ", ".join(str(k + 1) for k in np.flatnonzero(vague)[:5]) + ", ..." * bool(np.count_nonzero(vague) > 5)
-        told.append(f"rounding of the stiffness may change the frequencies of modes {numbers} by up to "
+        notes.append(f"rounding of the stiffness may change the frequencies of modes {numbers} by up to "
                     f"{100 * np.max(error[vague] / w[vague]):.2g} %; take fewer elements, or look for a part that is "
                     "far stiffer or far lighter than the others")
-    return told
+    return notes
 
 
 def _refuse_what_is_out_of_range(scene: SceneData, model, K: csc_array, M: csc_array) -> None:

@@ -21,7 +21,7 @@ from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
 from . import reduced_strain, straight_struts
 from .diagnosis import notes
-from .event_watcher import Watcher
+from .event_watcher import EventWatcher
 from .integrator_choice import choose
 from .long_runs import LongRun
 from .pauses import Pauses, pauses
@@ -63,7 +63,7 @@ class Simulation:
 
     model: Model
     engine: Engine
-    watcher: Watcher
+    watcher: EventWatcher
     status: str
     messages: list[str]
     reason: str
@@ -84,7 +84,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     if initial is not None:
         initial.start(model)
     pace = pauses(int(np.ceil(settings.duration / settings.output_step)) + 1, _check_size(model, settings, stream))
-    engine, watcher = Engine(model), Watcher(scene, model)
+    engine, watcher = Engine(model), EventWatcher(scene, model)
     engine.watch(watcher)
     messages = drop_redundant_rows(model, engine)
     if initial is not None:

@@ -35,13 +35,13 @@ DEEPEST = 1e-30
 """Of the largest eigenvalue: below this nothing is looked for. It is the square of what rounding leaves of a shape."""
 
 CLUSTER = 1e-4
-"""Of the shift: smaller eigenvalues are not well told apart by its inverse."""
+"""Of the shift: smaller eigenvalues are not well separated by its inverse."""
 
 LEVEL = 1e6
 """Ratio of eigenvalues that rounding makes of zeros to those that are none, at least."""
 
 MOST_AT_ONE_PLACE = 2000
-"""Eigenvalues too close to each other to be told apart, of which all are computed."""
+"""Eigenvalues too close to each other to be separated, of which all are computed."""
 
 RELATIVE = 1e-14
 """Of the largest eigenvalue computed together with others: the rounding of these."""

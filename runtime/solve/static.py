@@ -68,7 +68,7 @@ def _note(problem: StaticProblem, state: RestState) -> None:
 
 
 class _Search(Generic[S]):
-    """The states of rest found so far, and the ways to the next ones; the last one is `state`."""
+    """The states of rest found so far, and the searches for the next ones; the last one is `state`."""
 
     def __init__(self, problem: StaticProblem, made: type[S]):
         self.problem, self.made = problem, made

@@ -90,7 +90,7 @@ class StaticProblem:
         return without - with_all
 
     def tangent(self) -> csc_array:
-        """dR/dx."""
+        """Return the tangent stiffness dR/dx over the unknowns, (n, n), sparse."""
         return self.engine.matrix(0.0, 0.0, 1.0)
 
     def stiffness(self) -> tuple[csc_array, csc_array, np.ndarray]:
@@ -123,11 +123,11 @@ class StaticProblem:
         return size if np.isfinite(size) else np.inf
 
     def keep(self) -> dict:
-        """The static state."""
+        """Return the static state, as `restore` takes it."""
         return self.engine.placed()
 
     def restore(self, kept: dict) -> None:
-        """Back to a state."""
+        """Go back to a state that `keep` returned."""
         self.engine.place(0.0, **kept)
 
     def move(self, change: np.ndarray) -> None:

@@ -135,15 +135,15 @@ def attachment_path(run: Run, attachment: Attachment) -> np.ndarray:
     return points[:, round(attachment.arc_length / run.scene.cables[attachment.on].length * (points.shape[1] - 1))]
 
 
-def held_points(run: Run) -> dict[str, np.ndarray]:
-    """(time, points, 3) by body: where slides and joints hold it, of those that are held at more than one place."""
-    held: dict[str, list] = {}
+def attached_points(run: Run) -> dict[str, np.ndarray]:
+    """(time, points, 3) by body: where slides and joints hold it, of those that are attached at more than one point."""
+    paths_of: dict[str, list] = {}
     ends = [slide.rider for slide in run.scene.slides.values()]
     ends += [end for joint in run.scene.joints.values() for end in (joint.a, joint.b)]
     for end in ends:
         if end.on in run.scene.bodies:
-            held.setdefault(end.on, []).append(attachment_path(run, end))
-    return {name: np.stack(paths, axis=1) for name, paths in held.items() if len(paths) > 1}
+            paths_of.setdefault(end.on, []).append(attachment_path(run, end))
+    return {name: np.stack(paths, axis=1) for name, paths in paths_of.items() if len(paths) > 1}
 
 
 def _snapshots(run: Run) -> tuple[np.ndarray, ScalarMappable]:
@@ -171,7 +171,7 @@ def draw_shape(run: Run) -> Figure | None:
         shapes = centreline(run[f"{name}.nodal_vectors"][shown], run.coords[f"{name}.node"].values) @ plane.T
         for index, shape in zip(shown, shapes, strict=True):
             axes.plot(*shape.T, color=colour.to_rgba(run.time[index]), zorder=2)
-    for points in held_points(run).values():
+    for points in attached_points(run).values():
         for index in shown:
             axes.plot(*(points[index] @ plane.T).T, color=colour.to_rgba(run.time[index]), linewidth=2.2, zorder=2)
     for number, name in enumerate(scene.slides):
@@ -203,8 +203,8 @@ def draw_shape(run: Run) -> Figure | None:
     for marker, label, supports in (("^", "pin", scene.pins), ("s", "clamp", scene.clamps),
                                     ("D", "moved", scene.motions)):
         if supports:
-            held = np.array([scene.cables[support.cable].point(support.s) for support in supports]) @ plane.T
-            axes.scatter(held[:, 0], held[:, 1], marker=marker, s=60, color="0.1", zorder=5, label=label)
+            at = np.array([scene.cables[support.cable].point(support.s) for support in supports]) @ plane.T
+            axes.scatter(at[:, 0], at[:, 1], marker=marker, s=60, color="0.1", zorder=5, label=label)
     _set_scales(axes, view)
     if axes.get_legend_handles_labels()[0]:
         axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
@@ -213,7 +213,7 @@ def draw_shape(run: Run) -> Figure | None:
 
 
 def _set_scales(axes, view: View) -> None:
-    """Equal scales, or the upright one exaggerated by a round factor that its label tells."""
+    """Equal scales, or the upright one exaggerated by a round factor that its label states."""
     axes.margins(0.04, 0.12)
     width, height = np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())
     most = 0.42 * width / height  # the height of a picture that the page can take, over its width
