@@ -23,7 +23,7 @@ Libraries = Annotated[list[Path] | None, typer.Option(
 
 
 def _bundled(incomplete: str) -> list[str]:
-    """Names of bundled scenes that begin so, for completion; where there is none, the shell completes paths."""
+    """Return names of bundled scenes that begin so, for completion; where there is none, the shell completes paths."""
     from funicular.scene_file import bundled_scenes
 
     return [name for name in bundled_scenes() if name.startswith(incomplete)]
@@ -126,7 +126,7 @@ def run(
 
 
 def _existing(directory: Path) -> Path:
-    """The nearest directory above, itself included, that exists: the rest is made when it is needed."""
+    """Return the nearest directory above, itself included, that exists: the rest is made when it is needed."""
     return next((d for d in (directory, *directory.parents) if os.path.exists(d)), directory)
 
 

@@ -50,7 +50,7 @@ def lock(descriptor: int) -> None:
 
 
 def read_at(descriptor: int, size: int, at: int) -> bytes:
-    """The bytes of a file from `at` on: `size`, or fewer where the file ends. Raises OSError."""
+    """Return the bytes of a file from `at` on: `size`, or fewer where the file ends. Raises OSError."""
     if hasattr(os, "pread"):
         return os.pread(descriptor, size, at)
     with _one_at_a_time:
@@ -77,7 +77,7 @@ def write_at(descriptor: int, data: memoryview, at: int) -> int:
 
 
 def machine_memory() -> int:
-    """Bytes of memory that the machine has."""
+    """Return the bytes of memory that the machine has."""
     if hasattr(os, "sysconf"):
         return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     status = (ctypes.c_uint64 * 8)(64)  # MEMORYSTATUSEX: its size and the load in the first word, then the total

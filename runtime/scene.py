@@ -65,7 +65,7 @@ class Scene(SceneMethods):
     @classmethod
     def from_toml(cls, text: str, origin: str = "scene", directory: str | os.PathLike = "",
                   libraries: Iterable[str | os.PathLike] = ()) -> Scene:
-        """A scene from the text of a scene file; ``origin`` is what error messages call it.
+        """Return a scene from the text of a scene file; ``origin`` is what error messages call it.
 
         directory: where paths in the text start from, by default the working directory; libraries: directories of
         elements that the text may load. Raises SceneError.
@@ -73,7 +73,7 @@ class Scene(SceneMethods):
         return read(text, origin, cls, directory, libraries)
 
     def to_toml(self) -> str:
-        """The scene as the text of a scene file."""
+        """Return the scene as the text of a scene file."""
         return dumps(self)
 
     def check(self) -> None:

@@ -62,3 +62,8 @@ def functions():
 
 def test_functions_are_below_60_lines():
     assert [where for where, node in functions() if node.end_lineno - node.lineno >= 59] == []
+
+
+def test_docstrings_are_sentences():
+    words = {where: len((ast.get_docstring(node) or "").split()) for where, node in functions()}
+    assert [where for where, count in words.items() if where.startswith("runtime") and 0 < count <= 3] == []

@@ -39,7 +39,7 @@ _CHECKS: dict[type[Part], Callable[[SceneData, Any], Part]] = {
 
 
 def check_of(part: Part) -> Callable[[SceneData, Any], Any]:
-    """The function that checks such a part against a scene and returns it complete.
+    """Return the function that checks such a part against a scene and returns it complete.
 
     Kinds without an entry have their attachments completed.
     """

@@ -30,7 +30,7 @@ def check_supports(scene: SceneData, joint: Joint) -> None:
 
 
 def _holds_position(support: Support) -> bool:
-    """Whether it leaves no direction free."""
+    """Return whether it leaves no direction free."""
     return not isinstance(support, Motion) or (support.displacement is not None and None not in support.displacement)
 
 
@@ -73,14 +73,14 @@ def _clash(scene: SceneData, joint: Joint, other: Joint, ends: tuple[Attachment,
 
 
 def move_as_one(scene: SceneData, one: Attachment, other: Attachment) -> bool:
-    """Whether two ends are on one body, both on the ground, or at one place of a cable."""
+    """Return whether two ends are on one body, both on the ground, or at one place of a cable."""
     if one.on not in scene.cables:
         return one.on == other.on
     return one.on == other.on and abs(one.arc_length - other.arc_length) <= EXACT * scene.cables[one.on].length
 
 
 def called(end: Attachment) -> str:
-    """What messages call that which an end is on."""
+    """Return what messages call that which an end is on."""
     if end.on is None:
         return "the ground"
     return f'body "{end.on}"' if end.s is None else f'cable "{end.on}" at s = {show(end.s, "m")}'

@@ -25,7 +25,7 @@ HELD = {"pin": "pinned", "clamp": "clamped", "motion": "moved as prescribed"}
 
 
 def cable_at(scene: SceneData, name: str, place: str, s: float, keyword: str = "s") -> Cable:
-    """The cable ``name``, on which ``s`` must lie."""
+    """Return the cable ``name``, on which ``s`` must lie."""
     if name not in scene.cables:
         raise SceneError(place, f'there is no cable "{name}"', near(name, scene.cables))
     cable = scene.cables[name]
@@ -35,7 +35,7 @@ def cable_at(scene: SceneData, name: str, place: str, s: float, keyword: str = "
 
 
 def node_at(scene: SceneData, name: str, place: str, s: float, keyword: str = "s") -> Node:
-    """The node of the cable ``name`` at ``s``; there must be one."""
+    """Return the node of the cable ``name`` at ``s``; there must be one."""
     cable = cable_at(scene, name, place, s, keyword)
     node = cable.node_at(s)
     if node is not None:
@@ -86,7 +86,7 @@ def placed_tie(scene: SceneData, tie: Tie) -> Tie:
 
 
 def _shears_the_end(a: Cable, s: float, b: Cable, at: float) -> bool:
-    """Whether a rigid tie in space joins the tangent of one cable to the section of the other.
+    """Return whether a rigid tie in space joins the tangent of one cable to the section of the other.
 
     In the plane, ties at an angle share the turn of the section alone (model/unknowns.py), which is not linear in
     space.
@@ -99,7 +99,7 @@ def _shears_the_end(a: Cable, s: float, b: Cable, at: float) -> bool:
 
 
 def placed_load(scene: SceneData, load: Force | DistributedForce | Moment) -> Part:
-    """The load with its place complete, and sure to be one that the element can carry."""
+    """Return the load with its place complete, and sure to be one that the element can carry."""
     if isinstance(load, DistributedForce):
         along = cable_at(scene, load.cable, load.where, load.start or 0.0, "start")
         start, stop = load.start or 0.0, along.length if load.stop is None else load.stop
@@ -140,7 +140,7 @@ def _check_without_section(load: Force | DistributedForce | Moment, cable: Cable
 
 
 def placed_attachment(scene: SceneData, end: Attachment, where: str, prefix: str = "") -> Attachment:
-    """Where on a cable or a body something acts, complete."""
+    """Return where on a cable or a body something acts, complete."""
     if end.on is None:
         return end
     if end.on in scene.cables:
@@ -174,7 +174,7 @@ def placed_between(scene: SceneData, part: P) -> P:
 
 
 def placed_spring(scene: SceneData, spring: Spring) -> Spring:
-    """The spring with its ends and its length complete."""
+    """Return the spring with its ends and its length complete."""
     spring = placed_between(scene, spring)
     points = point_of(scene, spring.a), point_of(scene, spring.b)
     distance = float(np.linalg.norm(points[1] - points[0]))

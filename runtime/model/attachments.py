@@ -84,7 +84,7 @@ class AttachmentBuilder:
         return found
 
     def on_slide(self, slide: Slide, number: int, axes: np.ndarray) -> AttachmentModel:
-        """The cable's frame where a slide is."""
+        """Return the cable's frame where a slide is."""
         section = slide.frame == "section" and draws_section(self.scene.cables[slide.along])
         found = self._on_cable(slide.along, slide.s, self._axes(axes), slide.up, section)
         found.slide = number
@@ -93,7 +93,7 @@ class AttachmentBuilder:
         return found
 
     def _on_cable(self, name: str, s: float, axes: np.ndarray | None, up, section: bool) -> AttachmentModel:
-        """An attachment with the frame of the section, or of the tangent with the director or up."""
+        """Return an attachment with the frame of the section, or of the tangent with the director or up."""
         cable, index = self.scene.cables[name], self.cable_index[name]
         length = self.cables[index].length
         mass = cable.material.density * cable.section.area * length

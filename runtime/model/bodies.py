@@ -15,7 +15,7 @@ BODIES = {2: ("planar_rigid", 4, 3), 3: ("rigid", 7, 6)}
 
 
 def body_models(scene: SceneData, at: int) -> list[BodyModel]:
-    """Bodies in the scene's order, their coordinates from `at` on."""
+    """Return the bodies in the scene's order, their coordinates from `at` on."""
     dim, made, dof = scene.dim, [], at
     kernel, n_configuration, n_velocity = BODIES[dim]
     for body in scene.bodies.values():

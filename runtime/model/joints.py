@@ -39,13 +39,13 @@ class JointModel:
 
     @property
     def rows(self) -> int:
-        """Number of its equations."""
+        """Return the number of its equations."""
         return len(self.scale)
 
 
 def joint_model(attachments: AttachmentBuilder, joint: Joint, signal: Callable[[Signal], int], unknown: int,
                 multiplier: int) -> JointModel:
-    """The model of a joint; signal(s): number of a signal."""
+    """Return the model of a joint; signal(s): number of a signal."""
     scene = attachments.scene
     at = joint_axes(scene, joint)
     needs = joint.pair not in ("spherical", "distance")
@@ -74,7 +74,7 @@ def joint_model(attachments: AttachmentBuilder, joint: Joint, signal: Callable[[
 
 def frame_joint_model(attachments: AttachmentBuilder, slide: Slide, number: int, unknown: int,
                       multiplier: int) -> JointModel:
-    """What keeps a rider's axes to the frame of its cable, beside slide number `number`."""
+    """Return what keeps a rider's axes to the frame of its cable, beside slide number `number`."""
     dim = attachments.scene.dim
     at = slide_axes(attachments.scene, slide)
     free = slide.frame == "tangent" and slide.roll == "free" and dim == 3
@@ -91,7 +91,7 @@ def _model(name: str, kind: str, dim: int, ends: list[AttachmentModel], unknown:
 
 
 def _scales(kernel: str, dim: int, ends: list[AttachmentModel]) -> np.ndarray:
-    """(rows,): kg, and kg m where a row is about turns alone: no displacement of the points changes it."""
+    """Return (rows,): kg, and kg m where a row is about turns alone: no displacement of the points changes it."""
     eye, ones = np.eye(dim), np.ones(dim)
     force = getattr(kernels_of(None), f"{kernel}_force")
     J = force(ones, eye, eye, np.array([0.5, np.cos(0.5), np.sin(0.5)]), np.zeros(force.shapes["f"]))[1]

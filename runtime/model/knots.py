@@ -51,7 +51,7 @@ def driving_signals(model: Model) -> set[int]:
 
 
 def _of_signal(signal: SignalModel, drives: bool, tol: float) -> list[tuple[float, int]]:
-    """Return time and jump of each knot of a signal that counts.
+    """Return the time and jump of each knot of a signal that counts.
 
     A knot counts where the piece before it, continued over the shorter one of the two that meet there, parts from the
     one after it by more than tol of the signal; of a signal that prescribes a motion, also where their rates do. No

@@ -31,7 +31,7 @@ class SignalModel:
     phase: float
 
     def value(self, time: np.ndarray, derivative: int = 0) -> np.ndarray:
-        """The signal, or a derivative of it, at the times ``time``, s."""
+        """Return the signal, or a derivative of it, at the times ``time``, s."""
         return value_at(self, self.breaks, self.coefficients, time, derivative)
 
 
@@ -95,7 +95,7 @@ class LoadBuilder:
         return len(self.signals) - 1
 
     def _scale(self, signal) -> tuple[int, float]:
-        """Number and constant factor of a load's scale."""
+        """Return the number and constant factor of a load's scale."""
         return (-1, float(signal.value(0.0))) if isinstance(signal, Constant) else (self.signal(signal), 1.0)
 
     def load(self, load: Force | DistributedForce | Moment) -> None:

@@ -57,7 +57,7 @@ class CableModel:
         return slice(self.first, self.first + int(np.prod(self.shape)))
 
     def kernel(self, name: str) -> Kernel:
-        """A kernel of its element."""
+        """Return a kernel of its element."""
         return getattr(kernels_of(self.library), f"{self.element}_{name}")
 
 
@@ -96,7 +96,7 @@ class BodyModel:
 
     @property
     def modal_kernel(self) -> str:
-        """Name of the kernels of its modes."""
+        """Return the name of the kernels of its modes."""
         return self.kernel.replace("rigid", "modal")
 
 
@@ -171,17 +171,17 @@ class Model:
 
     @property
     def n_q(self) -> int:
-        """Length of the configuration."""
+        """Return the length of the configuration."""
         return len(self.q)
 
     @property
     def n_dof(self) -> int:
-        """Length of the velocities."""
+        """Return the length of the velocities."""
         return len(self.v)
 
     @property
     def kernels(self) -> list[str]:
-        """Names of the kernel families that the scene touches."""
+        """Return the names of the kernel families that the scene touches."""
         return sorted({c.element for c in self.cables} | {f"{c.element}_{c.law}" for c in self.cables}
                       | {slide.kernel for slide in self.slides} | {body.kernel for body in self.bodies}
                       | {joint.kernel for joint in self.joints}

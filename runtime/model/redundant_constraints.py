@@ -60,7 +60,7 @@ def drop_redundant_rows(model: Model, engine) -> list[str]:
 
 
 def _left_out(model: Model, row: int, others: list[int], owner: list[str]) -> tuple[int, int]:
-    """The joint and the row of it that others imply; raises SceneError where it has to stay."""
+    """Return the joint and the row of it that others imply; raises SceneError where it has to stay."""
     names = _listed([owner[k] for k in (*others, row)])
     if _driven(model) & {row, *others}:
         raise SceneError("scene", f"is over-constrained: {names} drive or hold the same", "leave one of them out")
@@ -87,7 +87,7 @@ def _check_that_they_follow(model: Model, engine, dropped: list[tuple[int, int]]
 
 
 def redundant(model: Model, engine, ratio: float = NEARLY) -> str:
-    """Names of slides and joints that hold nearly the same at the time reached; empty where there are none."""
+    """Return names of slides and joints that hold nearly the same at the time reached; empty where there are none."""
     if not model.joints and len(model.slides) < 2:
         return ""
     S = _compliance(engine)
@@ -112,7 +112,7 @@ def _compliance(engine) -> np.ndarray | None:
 
 
 def _following(S: np.ndarray) -> dict[int, list[int]]:
-    """Rows that are combinations of rows before them, and of which: by Cholesky's factors of S, row by row."""
+    """Return rows that are combinations of rows before them, and of which: by Cholesky's factors of S, row by row."""
     used = np.flatnonzero(np.diag(S) > 0)
     scale = 1 / np.sqrt(np.diag(S)[used])
     S = scale[:, None] * S[np.ix_(used, used)] * scale
@@ -138,7 +138,7 @@ def _following(S: np.ndarray) -> dict[int, list[int]]:
 
 
 def _owners(model: Model) -> list[str]:
-    """What each multiplier is of, as messages call it."""
+    """Return what each multiplier is of, as messages call it."""
     names = [""] * model.n_multipliers
     for slide in model.slides:
         count = slide.max_multipliers
@@ -156,7 +156,7 @@ def _spare(model: Model) -> set[int]:
 
 
 def _driven(model: Model) -> set[int]:
-    """The multipliers of what signals drive: the last of each joint's."""
+    """Return the multipliers of what signals drive: the last of each joint's."""
     return ({slide.multiplier + slide.max_multipliers - 1 for slide in model.slides if slide.drive >= 0}
             | {joint.multiplier + joint.rows - 1 for joint in model.joints if joint.signal >= 0})
 

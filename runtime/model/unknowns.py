@@ -90,7 +90,7 @@ class Node:
 
     @property
     def directors(self) -> list[str]:
-        """The vectors that span the section."""
+        """Return the vectors that span the section."""
         return [name for name in ("r_y", "r_z") if name in self.names]
 
     def vector(self, name: str) -> np.ndarray:
@@ -166,7 +166,7 @@ class Supports:
         return row
 
     def reduce(self, n_dof: int, elements: np.ndarray) -> Reduction:
-        """Number the unknowns; elements (n, 2): first dof and number of dofs of each.
+        """Number the unknowns; return how dofs are made of them. elements (n, 2): first dof and number of dofs of each.
 
         Where joins tie distant nodes, in the order that takes the fewest operations.
         """
@@ -217,7 +217,7 @@ def _in_line(master: Node, slave: Node) -> bool:
 
 
 def _turned(vector: np.ndarray, at: range, drawn: np.ndarray) -> list[dict[int, float]]:
-    """Rows over a vector in the plane of one that turns and stretches with it: a product of complex numbers."""
+    """Return rows over a vector in the plane of one that turns and stretches with it: a product of complex numbers."""
     square = float(vector @ vector)
     a = float(vector @ drawn) / square
     b = float(vector[0] * drawn[1] - vector[1] * drawn[0]) / square
@@ -252,7 +252,7 @@ def _touches(elements: np.ndarray, made_of: np.ndarray, shape: tuple[int, int]) 
 
 
 def _near(touches: csr_array) -> tuple[np.ndarray, int]:
-    """Number of each unknown and size of the band: all in the band, by reverse Cuthill and McKee."""
+    """Return the number of each unknown and size of the band: all in the band, by reverse Cuthill and McKee."""
     order = reverse_cuthill_mckee((touches.T @ touches).tocsr(), symmetric_mode=True)
     return np.argsort(order), len(order)
 
@@ -297,7 +297,7 @@ def _strung(touches: csr_array) -> tuple[np.ndarray, int]:
 
 
 def _counted(touches: csr_array, number: np.ndarray, n_band: int) -> Numbering:
-    """A numbering's band, and the operations of its factorisation and solves (engine/linear/bordered.c)."""
+    """Return a numbering's band, and the operations of its factorisation and solves (engine/linear/bordered.c)."""
     entry = touches.tocoo()
     element, at = entry.row, number[entry.col]
     inside = at < n_band
@@ -319,7 +319,7 @@ def _counted(touches: csr_array, number: np.ndarray, n_band: int) -> Numbering:
 
 
 def supports(scene: SceneData, nodes: dict[str, list[Node]], signal) -> Supports:
-    """The scene's supports and joins; nodes: of each cable; signal(s): number of a signal."""
+    """Return the scene's supports and joins; nodes: of each cable; signal(s): number of a signal."""
     made = Supports()
 
     def at(cable: str, s: float) -> Node:

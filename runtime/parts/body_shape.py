@@ -71,7 +71,7 @@ class Shape:
         return np.block([[rigid, coupling], [coupling.T, np.einsum("klii->kl", X)[1:, 1:]]])
 
     def indefinite(self, dim: int) -> str:
-        """What has no mass of its own; empty where the mass matrix is positive definite."""
+        """Return what has no mass of its own; empty where the mass matrix is positive definite."""
         M = self.mass_matrix(dim)
         names = [*"xyz"[:dim], *(f"the turn about {axis}" for axis in ("z" if dim == 2 else "xyz")),
                  *(f"mode {k + 1}" for k in range(self.n))]

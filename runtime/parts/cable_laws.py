@@ -53,13 +53,13 @@ class Described(Protocol):
 
 
 def possible_laws(kind: ElementKind) -> list[str]:
-    """The laws that a cable of such elements can be given."""
+    """Return the laws that a cable of such elements can be given."""
     laws = [law for law, traits in kind.laws.items() if not traits.straight]
     return laws + [law for law, variant in variants().items() if variant.kernel_law in laws]
 
 
 def chosen(kind: ElementKind, data: dict) -> str | None:
-    """The law of a cable from what it is given; ValueError if the element has no such law."""
+    """Return the law of a cable from what it is given; ValueError if the element has no such law."""
     element = data.get("element", "beam24")
     law, strain, curvature, membrane = (data.get(name) for name in ("law", "strain", "curvature", "membrane"))
     possible = possible_laws(kind)
@@ -137,6 +137,6 @@ def _refuse_unequal_bending(cable: Described) -> None:
 
 
 def others(dim: int, *, cable: bool | None = None) -> str:
-    """Elements to take instead, for a remedy."""
+    """Return the elements to take instead, for a remedy."""
     names = [f'"{name}"' for name, kind in built_in().items() if kind.dim == dim and cable in (None, kind.is_cable)]
     return "element=" + " or ".join(names)

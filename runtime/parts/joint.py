@@ -104,7 +104,7 @@ class Joint(Part):
 
     @property
     def is_driven(self) -> bool:
-        """Whether a signal moves it."""
+        """Return whether a signal moves it."""
         return any(signal is not None for signal in (self.angle, self.distance, self.velocity))
 
     @property
@@ -116,7 +116,7 @@ class Joint(Part):
 
     @property
     def axes(self) -> np.ndarray:
-        """(3, 3): its axes at the start, as columns, along the ground's: z is ``axis``.
+        """Return (3, 3): its axes at the start, as columns, along the ground's: z is ``axis``.
 
         x is ``second_axis`` where there is one; else y is the ground's axis farthest from z, made square to it: of
         equals the last, so that in a plane z = 0 a line's y is the plane's normal. Without axis: the ground's own.
@@ -144,6 +144,6 @@ class Joint(Part):
 
 
 def _across(vector: np.ndarray, axis: np.ndarray) -> np.ndarray:
-    """The unit vector along the part of ``vector`` across the unit vector ``axis``."""
+    """Return the unit vector along the part of ``vector`` across the unit vector ``axis``."""
     across = vector - np.dot(vector, axis) * axis
     return across / np.linalg.norm(across)

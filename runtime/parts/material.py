@@ -52,14 +52,14 @@ class Material(Part):
         return self
 
     def poisson(self) -> float:
-        """The Poisson ratio ν, whichever constant was given."""
+        """Return the Poisson ratio ν, whichever constant was given."""
         if self.shear_modulus is None or self.poisson_ratio is not None:
             return cast(float, self.poisson_ratio)  # one of the two is given
         return self.youngs_modulus / (2 * self.shear_modulus) - 1
 
     @property
     def is_incompressible(self) -> bool:
-        """Whether its Poisson ratio is 0.5, as far as E and G tell."""
+        """Return whether its Poisson ratio is 0.5, as far as E and G tell."""
         return self.poisson() >= INCOMPRESSIBLE - (ROUNDED if self.poisson_ratio is None else 0.0)
 
     def lame(self) -> tuple[float, float]:
@@ -70,7 +70,7 @@ class Material(Part):
         return E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
 
     def elasticity(self) -> np.ndarray:
-        """The orthotropic constants of the stiffness.
+        """Return the orthotropic constants of the stiffness.
 
         Returns (9,): [D11, D22, D33, D12, D13, D23, G12, G13, G23] in Pa.
         """

@@ -95,7 +95,7 @@ class ModalBody(Part):
 
     @property
     def mesh(self) -> Cable:
-        """The mesh that the modes are of, in body axes from its start."""
+        """Return the mesh that the modes are of, in body axes from its start."""
         return Cable(name=self.name, start=(0, 0, 0), end=(self._drawn.length, 0, 0), elements=self.elements,
                      element=self.element, law=self.law, section=self.section, material=self.material)
 
@@ -106,7 +106,7 @@ class ModalBody(Part):
 
     @property
     def offset(self) -> float:
-        """How far along the beam the frame's origin is, in m."""
+        """Return how far along the beam the frame's origin is, in m."""
         return 0.0 if self.boundary == "attached" else self._drawn.length / 2
 
     @cached_property
@@ -132,7 +132,7 @@ class ModalBody(Part):
 
     @property
     def modes_in_words(self) -> str:
-        """Which modes it has, for a run's report."""
+        """Return which modes it has, for a run's report."""
         squares, _ = self.shape.vibrations
         hertz = np.sqrt(np.maximum(squares, 0)) / (2 * np.pi)
         kind = "of a file" if self.data is not None else {
@@ -142,7 +142,7 @@ class ModalBody(Part):
 
     @property
     def frame(self) -> tuple[np.ndarray, np.ndarray]:
-        """Where the frame's origin starts, (3,) in m, and its attitude, (4,) unit quaternion."""
+        """Return where the frame's origin starts, (3,) in m, and its attitude, (4,) unit quaternion."""
         if self.data is not None:
             return np.array(self.position), np.array(self.orientation)
         axes = self._drawn.axes.T
@@ -165,13 +165,13 @@ class ModalBody(Part):
         return point, shape.modes[:, node] + np.cross(shape.rotations[:, node], arm), shape.rotations[:, node]
 
     def point(self, at: Vector) -> np.ndarray:
-        """(3,): where the body's point ``at`` (m, body axes) starts, in m."""
+        """Return (3,): where the body's point ``at`` (m, body axes) starts, in m."""
         position, orientation = self.frame
         return position + rotate(orientation, at)
 
     @property
     def axes(self) -> np.ndarray:
-        """(3, 3): its axes at the start, as columns."""
+        """Return (3, 3): its axes at the start, as columns."""
         return rotate(self.frame[1], np.eye(3)).T
 
     def located(self, at: Vector | None = None, s: float | None = None) -> Vector:
@@ -208,7 +208,7 @@ class ModalBody(Part):
 
 
 def quaternion(A: np.ndarray) -> np.ndarray:
-    """(4,): unit quaternion of a rotation matrix (3, 3), by its largest component."""
+    """Return (4,): unit quaternion of a rotation matrix (3, 3), by its largest component."""
     squares = np.array([A.trace(), *(2 * np.diag(A) - A.trace())]) + 1
     k = int(np.argmax(squares))
     skew = np.array([A[2, 1] - A[1, 2], A[0, 2] - A[2, 0], A[1, 0] - A[0, 1]])

@@ -18,7 +18,7 @@ def node_of(scene: SceneData, support: Support) -> Node:
 
 
 def ends_of(scene: SceneData, tie: Tie) -> tuple[Node, Node]:
-    """The nodes that a tie of the scene joins: that of its cable, and the other one."""
+    """Return the nodes that a tie of the scene joins: that of its cable, and the other one."""
     return ((tie.cable, scene.cables[tie.cable].node(tie.s)), (tie.to, scene.cables[tie.to].node(tie.at)))
 
 
@@ -45,7 +45,7 @@ def support_of(scene: SceneData, node: Node) -> Support | None:
 
 
 def point_of(scene: SceneData, end: Attachment) -> np.ndarray:
-    """(3,): where a complete end starts, in m."""
+    """Return (3,): where a complete end starts, in m."""
     if end.on is None:
         return np.array(end.at)
     if end.on in scene.bodies:

@@ -17,7 +17,7 @@ Quaternion = tuple[float, float, float, float]
 
 
 def _inertia(value: Any) -> tuple[Vector, Vector, Vector]:
-    """A symmetric inertia from 3 principal moments or 3 rows, in kg m²."""
+    """Return a symmetric inertia from 3 principal moments or 3 rows, in kg m²."""
     rows = value.tolist() if isinstance(value, np.ndarray) else value
     if isinstance(rows, list | tuple) and len(rows) == 3 and all(isinstance(r, list | tuple) for r in rows):
         matrix = np.array([vector(row, "kg m²") for row in rows])
@@ -36,7 +36,7 @@ def _inertia(value: Any) -> tuple[Vector, Vector, Vector]:
 
 
 def unit_quaternion(value: Any) -> Quaternion:
-    """A unit quaternion, rounded to one."""
+    """Return a unit quaternion, rounded to one."""
     w, x, y, z = vector(value, size=4)
     quaternion, norm = (w, x, y, z), math.hypot(w, x, y, z)
     if abs(norm - 1) > 1e-3:
@@ -71,16 +71,16 @@ class RigidBody(Part):
 
     @property
     def axes(self) -> np.ndarray:
-        """(3, 3): its axes at the start, as columns."""
+        """Return (3, 3): its axes at the start, as columns."""
         return rotate(self.orientation, np.eye(3)).T
 
     def arm(self, at: Vector) -> tuple[float, float, float]:
-        """The point ``at`` from the centre of mass, in body axes, in m: what the engine knows it by."""
+        """Return the point ``at`` from the centre of mass, in body axes, in m: what the engine knows it by."""
         (x, y, z), (x0, y0, z0) = at, self.centre
         return x - x0, y - y0, z - z0
 
     def point(self, at: Vector) -> np.ndarray:
-        """(3,): where the body's point ``at`` (m, body axes) starts, in m."""
+        """Return (3,): where the body's point ``at`` (m, body axes) starts, in m."""
         return np.array(self.position) + rotate(self.orientation, at)
 
     def off_plane(self) -> Iterator[str]:

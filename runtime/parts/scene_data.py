@@ -86,7 +86,7 @@ class SceneData:
             yield from (value for _, value in part if isinstance(value, Attachment))
 
     def group(self, name: str) -> Iterable[Part]:
-        """The parts of a group, in the order in which they were added."""
+        """Return the parts of a group, in the order in which they were added."""
         parts = getattr(self, name)
         return parts.values() if isinstance(parts, dict) else parts
 
@@ -99,7 +99,7 @@ class SceneData:
             group.append(part)
 
     def part_named(self, name: str, group: str) -> Part | None:
-        """The part whose name that is, None if it is free for a part of a group.
+        """Return the part whose name that is, None if it is free for a part of a group.
 
         Results are addressed by name, so that all but events share one space of names.
         """
@@ -136,5 +136,5 @@ class SceneData:
 
 
 def _groups() -> list[str]:
-    """The groups, each once, in an order in which their parts can be added."""
+    """Return the groups, each once, in an order in which their parts can be added."""
     return list(dict.fromkeys(kind.group for kind in KINDS))

@@ -47,7 +47,7 @@ class Section(Part):
         raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
     def moments(self) -> np.ndarray:
-        """The even moments up to order 4.
+        """Return the even moments up to order 4.
 
         Returns (6,): [∫dA, ∫y²dA, ∫z²dA, ∫y⁴dA, ∫y²z²dA, ∫z⁴dA] in m², m⁴, m⁴, m⁶, m⁶, m⁶.
         """
@@ -197,7 +197,7 @@ class GeneralSection(Section):
 
     @property
     def has_rotary(self) -> bool:
-        """Whether its rotary inertia is given apart from its stiffness."""
+        """Return whether its rotary inertia is given apart from its stiffness."""
         return self.rotary_about_z is not None or self.rotary_about_y is not None
 
     def mass_moments(self) -> np.ndarray:
@@ -223,7 +223,7 @@ SHAPES = {section.shape: section for section in (Rectangle, Circle, Tube, Genera
 
 
 def _section(value: Any) -> Section:
-    """A section from itself or from a table such as {shape="circle", radius=0.01}."""
+    """Return a section from itself or from a table such as {shape="circle", radius=0.01}."""
     if isinstance(value, Section):
         return value
     if not isinstance(value, dict):

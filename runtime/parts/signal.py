@@ -37,7 +37,7 @@ class Signal(Part):
     form: ClassVar[str]
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
-        """The polynomial part.
+        """Return the polynomial part.
 
         Returns breaks (n+1,) in s, increasing, and coefficients (n, 7) of ascending powers of t - breaks[k]. The first
         piece holds before all breaks, too, and the last one after them.
@@ -46,26 +46,26 @@ class Signal(Part):
 
     @property
     def amplitude(self) -> float:
-        """Of the sine; 0 if there is none."""
+        """Return the amplitude of the sine, 0 if there is none."""
         return 0.0
 
     @property
     def angular_frequency(self) -> float:
-        """Of the sine, in rad/s."""
+        """Return the angular frequency of the sine in rad/s."""
         return 0.0
 
     @property
     def phase(self) -> float:
-        """Of the sine at t = 0, in rad."""
+        """Return the phase of the sine at t = 0, in rad."""
         return 0.0
 
     def value(self, time, derivative: int = 0) -> np.ndarray:
-        """The signal, or a derivative of it, at the times ``time`` (any shape, s)."""
+        """Return the signal, or a derivative of it, at the times ``time`` (any shape, s)."""
         return value_at(self, *self.pieces(), time, derivative)
 
 
 def value_at(signal, breaks: np.ndarray, coefficients: np.ndarray, time, derivative: int = 0) -> np.ndarray:
-    """A derivative, at times of any shape, of such a piecewise polynomial with the sine of ``signal``."""
+    """Return a derivative, at times of any shape, of such a piecewise polynomial with the sine of ``signal``."""
     time = np.asarray(time, dtype=float)
     result = np.zeros(time.shape)
     if len(coefficients):
@@ -193,7 +193,7 @@ class Pulse(Signal):
 
     @property
     def _times(self) -> list[float]:
-        """Where it begins to rise, is up, begins to fall, where that is later, and is down."""
+        """Return where it begins to rise, is up, begins to fall, where that is later, and is down."""
         half = (self.end - self.start) / 2
         if self.rise is None or self.rise >= half * (1 - 1e-12):
             return [self.start, self.start + half, self.end]
@@ -279,7 +279,7 @@ FORMS = {signal.form: signal for signal in (TableSignal, Ramp, Harmonic, Pulse)}
 
 
 def signal(value: Any) -> Signal:
-    """A signal from itself, a number, or a table such as {form="ramp", start=0, end=1}; else ValueError."""
+    """Return a signal from itself, a number, or a table such as {form="ramp", start=0, end=1}; else ValueError."""
     if isinstance(value, Signal):
         return value
     if isinstance(value, Real) and not isinstance(value, bool):

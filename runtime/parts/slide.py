@@ -77,7 +77,7 @@ class Slide(Part):
 
     @property
     def rider(self) -> Attachment:
-        """The point that rides."""
+        """Return the point that rides."""
         return Attachment(on=self.body, at=self.at) if self.body_s is None else Attachment(on=self.body, s=self.body_s)
 
     @property

@@ -35,7 +35,7 @@ class Spring(Part):
 
     @property
     def is_damped(self) -> bool:
-        """Whether its force depends on velocities."""
+        """Return whether its force depends on velocities."""
         return self.damping > 0
 
     @model_validator(mode="after")

@@ -14,7 +14,7 @@ from .validation import Name, Part, Reference, Vector, finite, one_of, shown, ve
 
 
 def _called(cable: Any) -> str:
-    """What messages call a cable, given as itself, as its name, or as what is neither."""
+    """Return what messages call a cable, given as itself, as its name, or as what is neither."""
     name = getattr(cable, "name", cable)
     return f'"{name}"' if isinstance(name, str) else shown(name)
 
@@ -27,7 +27,7 @@ class Support(Part):
 
     @classmethod
     def place(cls, data: dict) -> str:
-        """How messages name the support."""
+        """Return how messages name the support."""
         return f"{cls.kind} on {_called(data.get('cable'))}"
 
     @property
@@ -95,7 +95,7 @@ def _component(axis: str, value: Any) -> Signal:
 
 
 def _of(name: str, error: ValueError) -> ValueError:
-    """The same complaint about a part of a quantity; a model's own errors name theirs."""
+    """Return the same complaint about a part of a quantity; a model's own errors name theirs."""
     if hasattr(error, "errors"):
         first = error.errors(include_url=False)[0]
         cause = first.get("ctx", {}).get("error")
@@ -174,7 +174,7 @@ class Tie(Part):
 
     @classmethod
     def place(cls, data: dict) -> str:
-        """How messages name the tie."""
+        """Return how messages name the tie."""
         if data.get("name") is not None:
             return super().place(data)
         return f"tie of {_called(data.get('cable'))} and {_called(data.get('to'))}"

@@ -99,7 +99,7 @@ def vector3(value: Any, unit: str = "") -> Vector:
 
 
 def show(value: float | tuple[float, ...] | np.ndarray, unit: str = "") -> str:
-    """A number or vector for a message, with its unit."""
+    """Return a number or vector for a message, with its unit."""
     if isinstance(value, float):
         return f"{value:.9g} {unit}".strip()
     numbers = [f"{v:.9g}" for v in value]
@@ -266,18 +266,18 @@ class Part(BaseModel, metaclass=_TranslatingType):
 
     @classmethod
     def place(cls, data: dict) -> str:
-        """How messages name the part made of ``data``."""
+        """Return how messages name the part made of ``data``."""
         kind = cls.kind or cls.__name__
         return f'{kind} "{data["name"]}"' if isinstance(data.get("name"), str) else kind
 
     @classmethod
     def keywords(cls) -> dict[str, str]:
-        """What a part is made with: the keywords, and the names of the fields that hold them."""
+        """Return what a part is made with: the keywords, and the names of the fields that hold them."""
         return {field.alias or name: name for name, field in cls.model_fields.items()}
 
     @classmethod
     def is_named(cls) -> bool:
-        """Whether such parts have names, by which a scene and its results know them."""
+        """Return whether such parts have names, by which a scene and its results know them."""
         return "name" in cls.model_fields
 
     @property
@@ -287,7 +287,7 @@ class Part(BaseModel, metaclass=_TranslatingType):
 
     @property
     def where(self) -> str:
-        """How messages name this part."""
+        """Return how messages name this part."""
         return self.place(dict(self))
 
     def off_plane(self) -> Iterator[str]:
@@ -308,7 +308,7 @@ class Part(BaseModel, metaclass=_TranslatingType):
 
 
 def _scene_error(place: str, error: ValidationError) -> SceneError:
-    """The first of pydantic's complaints in our words."""
+    """Return the first of pydantic's complaints in our words."""
     first = error.errors(include_url=False)[0]
     path = ".".join(map(str, first["loc"]))
     match first["type"]:

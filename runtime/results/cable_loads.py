@@ -73,7 +73,7 @@ def element_coordinates(cable: CableModel, values: np.ndarray, element: np.ndarr
 
 
 def shape_on_axis(cable: CableModel, x: np.ndarray) -> np.ndarray:
-    """(..., vectors): shape functions at places x of an element's centreline."""
+    """Return (..., vectors): shape functions at places x of an element's centreline."""
     x = np.asarray(x, dtype=float)
     return rows(cable.kernel("on_axis"), x.size, cable.length, x.ravel())[0].reshape(*x.shape, -1)
 
@@ -122,12 +122,12 @@ class CableLoads:
             self._add(self.number[on], element, x, scale[:, None, None] * f)
 
     def _turning(self, cable: CableModel, kernel: str, element, x, c: np.ndarray) -> np.ndarray:
-        """(T, vectors, dim): of a load that turns with the section."""
+        """Return (T, vectors, dim): of a load that turns with the section."""
         e = element_coordinates(cable, self.at.q, np.broadcast_to(element, self.times))
         return rows(cable.kernel(kernel), self.times, cable.length, x, e, c)[0]
 
     def _force(self, cable: CableModel, element, x, value: np.ndarray, follower: bool) -> np.ndarray:
-        """(T, vectors, dim): of a force along the ground's axes, or the local ones."""
+        """Return (T, vectors, dim): of a force along the ground's axes, or the local ones."""
         if follower:
             return self._turning(cable, "follower_force", element, x, value[: self._follower_components(cable)])
         f = np.outer(shape_on_axis(cable, x), value[: self.dim])
@@ -186,7 +186,7 @@ class CableLoads:
                 self._on_end(one, -force, -moment - np.cross(gap, force))
 
     def _end_point(self, end: AttachmentModel) -> np.ndarray:
-        """(T, 3): where an end is."""
+        """Return (T, 3): where an end is."""
         if end.body < 0:
             return attachment_points(self.model, end, self.at.q)
         body = self.model.bodies[end.body]
@@ -216,7 +216,7 @@ class CableLoads:
         self._add(end.cable, end.element, x, f)
 
     def _couple(self, cable: CableModel, end: AttachmentModel, element, x, moment: np.ndarray) -> np.ndarray:
-        """(T, vectors, dim): of a moment (T, 3) on the frame that an end has of its cable, T' m."""
+        """Return (T, vectors, dim): of a moment (T, 3) on the frame that an end has of its cable, T' m."""
         e = element_coordinates(cable, self.at.q, element)
         S = rows(cable.kernel("slopes"), self.times, cable.length, x)[:, :, 0]  # (T, xyz, vectors)
         e_local = e - np.where(positions(cable)[:, None], e[:, :1], 0.0)
@@ -248,12 +248,12 @@ class CableLoads:
 
 
 def positions(cable: CableModel) -> np.ndarray:
-    """(vectors,): which of an element's nodal vectors are positions."""
+    """Return (vectors,): which of an element's nodal vectors are positions."""
     return np.array([name == "r" for name in cable.vectors] * 2)
 
 
 def across(tangent: np.ndarray) -> np.ndarray:
-    """(T, dim): unit vectors square to others."""
+    """Return (T, dim): unit vectors square to others."""
     least = np.eye(tangent.shape[-1])[np.argmin(np.abs(tangent), axis=-1)]
     part = least - tangent * (np.sum(least * tangent, axis=-1) / np.sum(tangent**2, axis=-1))[:, None]
     return part / np.linalg.norm(part, axis=-1)[:, None]

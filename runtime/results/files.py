@@ -29,7 +29,7 @@ MOST_ROWS_NAMED = 10
 
 
 def check_writable(path: str | os.PathLike) -> Path:
-    """The path without links. Raises ResultFileError if no file can be written there; leaves nothing behind."""
+    """Return the path without links. Raises ResultFileError if no file can be written there; leaves nothing behind."""
     try:
         resolved = Path(path).resolve()  # a link keeps pointing to what it did
         own = threading.get_native_id()  # several threads may look at once
@@ -65,12 +65,12 @@ def check_free(path: Path) -> None:
 
 
 def over_time(coords: Mapping[str, Variable], variables: Mapping[str, Variable]) -> dict[str, np.ndarray]:
-    """The values that make rows of a file."""
+    """Return the values that make rows of a file."""
     return {"time": coords["time"].values} | {name: variable.values for name, variable in variables.items()}
 
 
 def file_text(report: dict, rows: int | None = None) -> str:
-    """A report as it stands in a file, in one line; rows: number of rows of a file that is whole."""
+    """Return a report as it stands in a file, in one line; rows: number of rows of a file that is whole."""
     return json.dumps(report if rows is None else {"rows": rows, **report}, default=methodcaller("tolist"))
 
 
@@ -81,7 +81,7 @@ def create_file(path: str | os.PathLike, coords: Mapping[str, Variable], variabl
 
 
 def open_file(path: str | os.PathLike) -> File:
-    """A file of results, open to be read. Raises ResultFileError."""
+    """Return a file of results, open to be read. Raises ResultFileError."""
     if not os.path.isfile(path):
         raise ResultFileError(f"{shown_path(path)}: there is no such file")
     try:
@@ -107,7 +107,7 @@ class _Report(BaseModel):
 
 
 def read_report(file: File) -> dict:
-    """The report in a file. Raises ValueError, KeyError where it is damaged."""
+    """Return the report in a file. Raises ValueError, KeyError where it is damaged."""
     report = last_report(file.attributes["report"], file.has_checksums)
     _Report.model_validate(report)
     return report

@@ -82,7 +82,7 @@ class File:
 
     @property
     def row_bytes(self) -> int:
-        """Size of a row."""
+        """Return the size of a row."""
         return self._row.itemsize
 
     def read(self, name: str) -> np.ndarray:
@@ -100,14 +100,14 @@ class File:
         return values
 
     def damaged_rows(self, rows: int | None = None) -> np.ndarray:
-        """Numbers of the rows, of all or of so many, whose checksum is not theirs. Raises OSError."""
+        """Return the numbers of the rows, of all or of so many, whose checksum is not theirs. Raises OSError."""
         damaged = [np.zeros(0, int)]
         for start, block in self._blocks(self.rows if rows is None else rows):
             damaged.append(start + np.flatnonzero(block[ROW_CHECKSUM] != self._checksums(block)))
         return np.concatenate(damaged)
 
     def _checksums(self, rows: np.ndarray) -> np.ndarray:
-        """(rows,): of whole rows as they are in the file."""
+        """Return (rows,): of whole rows as they are in the file."""
         words = rows.view("<u8").reshape(len(rows), self.row_bytes // 8)
         return row_checksums(words[:, :-1])
 
@@ -129,12 +129,12 @@ class File:
             yield np.delete(block, gone) if len(gone) else block
 
     def described(self, over_time: bool) -> dict[str, Variable]:
-        """The variables over time without their values, or the other ones."""
+        """Return the variables over time without their values, or the other ones."""
         return {name: self.variable(name, np.empty((0, *entry.shape)) if over_time else self.read(name))
                 for name, entry in self.entries.items() if entry.in_rows == over_time and name != ROW_CHECKSUM}
 
     def variable(self, name: str, values: np.ndarray) -> Variable:
-        """A variable with its labels."""
+        """Return a variable with its labels."""
         entry = self.entries[name]
         units, long_name = (str(entry.attributes.get(label, "")) for label in ("units", "long_name"))
         return Variable(entry.dims[: values.ndim], values, units, long_name)
@@ -161,7 +161,7 @@ class File:
             self.write(self.rows, {name: block[name] for name in self._row.names or () if name != ROW_CHECKSUM})
 
     def truncate(self, rows: int) -> None:
-        """Drop the rows from `rows` on."""
+        """Drop the rows of number `rows` and above."""
         self._check_follows(rows)
         self._set_rows(rows)
 
@@ -205,7 +205,7 @@ class Stored(Mapping[str, Variable]):
         self._read: dict[str, Variable] = {}
 
     def __getitem__(self, name: str) -> Variable:
-        """A variable with its values."""
+        """Return a variable with its values."""
         if name not in self._names:
             raise KeyError(name)
         if name not in self._read:
@@ -213,7 +213,7 @@ class Stored(Mapping[str, Variable]):
         return self._read[name]
 
     def __contains__(self, name: object) -> bool:
-        """Whether there is such a variable."""
+        """Return whether there is such a variable."""
         return name in self._names
 
     def __iter__(self) -> Iterator[str]:
@@ -227,7 +227,7 @@ class Stored(Mapping[str, Variable]):
 
 def create(path: str | os.PathLike, coords: Mapping[str, Variable], variables: Mapping[str, Variable],
            attributes: Mapping[str, str | int], report: str, spare: int = 0, descriptor: int | None = None) -> File:
-    """A new file, without rows yet; of the variables over time only shapes count.
+    """Return a new file, without rows yet; of the variables over time only shapes count.
 
     attributes: but for the report, a JSON object, which can grow by `spare` bytes; descriptor: of a
     file of that path which is open already, and becomes this one.

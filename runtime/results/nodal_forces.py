@@ -29,7 +29,7 @@ class ElementForces:
 
 def element_forces(scene: SceneData, model: Model, at: Instants, loads: CableLoads, cable: int,
                    at_rest: bool) -> ElementForces:
-    """Those of cable number `cable`; at_rest: without accelerations."""
+    """Return those of cable number `cable`; at_rest: without accelerations."""
     tied = [cable] if at_rest else tied_cables(scene, model, cable)
     forces = {k: internal(model.cables[k], at) - _external(model, k, at, loads) for k in tied}
     accelerations = np.zeros_like(at.v) if at_rest else _accelerations(model, at, forces)
@@ -41,7 +41,7 @@ def element_forces(scene: SceneData, model: Model, at: Instants, loads: CableLoa
 
 
 def tied_cables(scene: SceneData, model: Model, cable: int) -> list[int]:
-    """Numbers of the cables that joins tie to one, itself included: their accelerations go together."""
+    """Return the numbers of the cables that joins tie to one, itself included: their accelerations go together."""
     found, new = {model.cables[cable].name}, [model.cables[cable].name]
     while new:
         name = new.pop()
@@ -54,7 +54,7 @@ def tied_cables(scene: SceneData, model: Model, cable: int) -> list[int]:
 
 
 def internal(cable: CableModel, at: Instants) -> np.ndarray:
-    """(T, elements, vectors, dim): elastic forces, those of Kelvin-Voigt and of mass damping."""
+    """Return (T, elements, vectors, dim): elastic forces, those of Kelvin-Voigt and of mass damping."""
     e, v = element_coordinates(cable, at.q), element_coordinates(cable, at.v)
     law = f"{cable.law}_"
     moving = cable.tau > 0 and np.any(v)
@@ -76,12 +76,12 @@ def internal(cable: CableModel, at: Instants) -> np.ndarray:
 
 
 def _uniform(cable: CableModel, acceleration: np.ndarray) -> np.ndarray:
-    """(vectors, dim): nodal accelerations of a uniform field."""
+    """Return (vectors, dim): nodal accelerations of a uniform field."""
     return np.array([name == "r" for name in cable.vectors] * 2)[:, None] * acceleration
 
 
 def _external(model: Model, number: int, at: Instants, loads: CableLoads) -> np.ndarray:
-    """(T, elements, vectors, dim): gravity, and all that acts between nodes."""
+    """Return (T, elements, vectors, dim): gravity, and all that acts between nodes."""
     cable = model.cables[number]
     f = np.zeros((len(at.time), cable.n_elements, 2 * cable.shape[1], cable.shape[2]))
     f += np.einsum("kl,ld->kd", cable.m, _uniform(cable, loads.gravity))
@@ -147,7 +147,7 @@ def _reduction(model: Model, dofs: np.ndarray):
 
 
 def _prescribed(model: Model, time: np.ndarray) -> np.ndarray:
-    """(T, n_dof): accelerations that motions prescribe."""
+    """Return (T, n_dof): accelerations that motions prescribe."""
     found = np.zeros((len(time), model.n_dof))
     for motion in model.motions:
         f, rate, second = (model.signals[motion.signal].value(time, order) for order in range(3))

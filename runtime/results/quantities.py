@@ -68,7 +68,7 @@ ENERGIES = {
 
 
 def labelled(rows) -> tuple[dict[str, Variable], dict[str, Variable]]:
-    """Results of the rows that `funicular.recording` names, with their labels; coordinates."""
+    """Return results of the rows that `funicular.recording` names, with their labels; coordinates."""
     variables = {}
     coords = {
         "time": Variable(_TIME, rows.time, "s", "time"),

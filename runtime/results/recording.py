@@ -52,7 +52,7 @@ class Recording(Rows):
 
 
 def named(model: Model, scene: SceneData, engine) -> Rows:
-    """The engine's rows by name."""
+    """Return the engine's rows by name."""
     rows = engine.rows()
     q, v, a = rows["q"], rows["v"], rows["acceleration"]
     cables = {}

@@ -53,7 +53,7 @@ def resultants(f: np.ndarray, e: np.ndarray, is_r: np.ndarray, about: np.ndarray
 
 def balanced(cable: Cable, model: CableModel, forces: ElementForces, loads: CableLoads, number: int,
              cuts: Cuts) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Force and moment (T, n, 3) on the part before each cut, along the ground's axes, in N and N m.
+    """Return the force and moment (T, n, 3) on the part before each cut, along the ground's axes, in N and N m.
 
     The third is the derivative of the force by s there, in N/m.
     """
@@ -141,13 +141,13 @@ def _of_spread(model: CableModel, spread, x: np.ndarray, e: np.ndarray) -> tuple
 
 
 def _density(spread, x: np.ndarray) -> np.ndarray:
-    """(T, n, 3): force a length at x (T or 1, n)."""
+    """Return (T, n, 3): force a length at x (T or 1, n)."""
     weights, times = _lagrange(spread.x, x), len(spread.density)
     return np.einsum("tnp,tpd->tnd", np.broadcast_to(weights, (times, *weights.shape[1:])), spread.density)
 
 
 def _lagrange(nodes: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """(..., nodes): weights of the values at nodes in the polynomial through them, at x (...)."""
+    """Return (..., nodes): weights of the values at nodes in the polynomial through them, at x (...)."""
     others = [np.delete(nodes, k) for k in range(len(nodes))]
     return np.stack([np.prod((x[..., None] - other) / (node - other), axis=-1)
                      for node, other in zip(nodes, others, strict=True)], axis=-1)

@@ -45,7 +45,7 @@ class Results(Protocol):
 
     @property
     def scene(self) -> SceneData:
-        """The scene that was run."""
+        """Return the scene that was run."""
 
     @property
     def model(self) -> Model:
@@ -56,11 +56,11 @@ class Results(Protocol):
         """Return the times (time,) in s."""
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """The result of a name, time first."""
+        """Return the result of a name, time first."""
 
 
 def constitutive(cable: Cable, nodal_vectors: np.ndarray, cuts: Cuts) -> tuple[np.ndarray, ...]:
-    """The elastic law at cuts: force, moment (T, n, 3), axes of the section (T, n, 3, 3), strains (T, n, 6).
+    """Return the elastic law at cuts: force, moment (T, n, 3), axes of the section (T, n, 3, 3), strains (T, n, 6).
 
     nodal_vectors: (T, nodes, vectors, 3). Force and moment are along the ground's axes.
     """
@@ -78,7 +78,7 @@ def constitutive(cable: Cable, nodal_vectors: np.ndarray, cuts: Cuts) -> tuple[n
 
 def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.ndarray, *, method: str = "balance",
                side: str = "after", at_rest: bool = False) -> dict[str, np.ndarray]:
-    """Forces in sections of the cable ``name`` at instants.
+    """Return the forces in sections of the cable ``name`` at instants.
 
     s: (1 or T, n) arc-lengths in m. Returns force and moment (T, n, 3), along the ground's axes, and the components
     of `section_components.labels` (T, n). at_rest: accelerations are nil.
@@ -135,13 +135,13 @@ def of_equilibrium(state: RestState, name: str, s: np.ndarray, *, method: str = 
 
 
 def rest_instants(state: RestState) -> Instants:
-    """A state of rest as one instant, with as much of the loads as it has."""
+    """Return a state of rest as one instant, with as much of the loads as it has."""
     return Instants(np.zeros(1), state.placed["q"][None], np.zeros((1, state.model.n_dof)),
                     lambda quantity: state[quantity][None], state.load_fraction, state.gravity_fraction)
 
 
 def jumps(scene: SceneData, name: str) -> np.ndarray:
-    """Arc-lengths of the cable at which something fixed to it is attached: inside, in order."""
+    """Return the arc-lengths of the cable at which something fixed to it is attached: inside, in order."""
     cable = scene.cables[name]
     places: list[float | None] = []
     for load in scene.loads.values():
@@ -159,7 +159,7 @@ def jumps(scene: SceneData, name: str) -> np.ndarray:
 
 
 def even(cable: Cable) -> np.ndarray:
-    """Places along all of a cable, its nodes among them."""
+    """Return the places along all of a cable, its nodes among them."""
     return np.linspace(0, cable.length, PLACES * cable.elements + 1)
 
 

@@ -17,7 +17,7 @@ from .section_layer import Kink, fixed_direction
 
 def kinks(scene: SceneData, cable: Cable, model: CableModel, forces: ElementForces, loads: CableLoads,
           number: int) -> list[Kink]:
-    """Those of one cable at the instants of its forces."""
+    """Return those of one cable at the instants of its forces."""
 
     def force_at(s: np.ndarray, after: bool) -> np.ndarray:
         return balanced(cable, model, forces, loads, number, Cuts(model, s, after))[0]

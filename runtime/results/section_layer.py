@@ -32,7 +32,7 @@ class Kink(NamedTuple):
 
 
 def fixed_direction(s: np.ndarray, direction: np.ndarray, force: np.ndarray, side: int) -> Kink:
-    """A section whose direction (T, 3) is fixed, as a kink of which there is one half: that with this force."""
+    """Return a section whose direction (T, 3) is fixed, as a kink of which there is one half: that with this force."""
     along = np.sum(direction * force, axis=-1) / np.sum(direction**2, axis=-1)
     mirrored = 2 * along[:, None] * direction - force
     before, after = (mirrored, force) if side > 0 else (force, mirrored)
@@ -44,14 +44,14 @@ Stiffness = Callable[[np.ndarray], np.ndarray]
 
 
 def line_bending(stiffness: Stiffness, force: np.ndarray, change: np.ndarray) -> np.ndarray:
-    """(T, n, 3): moment from how the force's line turns; change (T, n, 3): derivative of the force by s."""
+    """Return (T, n, 3): moment from how the force's line turns; change (T, n, 3): derivative of the force by s."""
     square = np.sum(force**2, axis=-1)[..., None]
     turn = np.cross(force, change) / np.where(square > 0, square, 1.0)
     return stiffness(turn)[..., None] * turn
 
 
 def beside(kink: Kink, s: np.ndarray, after: np.ndarray, stiffness: Stiffness, force: np.ndarray) -> np.ndarray:
-    """(T, n, 3): moment beside a kink at cuts s (T or 1, n) with these forces.
+    """Return (T, n, 3): moment beside a kink at cuts s (T or 1, n) with these forces.
 
     after (T or 1, n): of a cut at the kink, whether it is on the side of larger s.
     """

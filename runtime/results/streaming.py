@@ -102,12 +102,12 @@ class Stream:
 
     @property
     def elapsed(self) -> float:
-        """Seconds that the run took before it was resumed."""
+        """Return the seconds that the run took before it was resumed."""
         return self._kept.facts.elapsed_s if self._kept else 0.0
 
     @property
     def free(self) -> int:
-        """Bytes that the file can have: those that are free, and those of the one that is there."""
+        """Return the bytes that the file can have: those that are free, and those of the one that is there."""
         return shutil.disk_usage(self._path.parent).free + (self._path.stat().st_size if self._path.exists() else 0)
 
     def start(self, model: Model, engine: Engine, pace: Pauses, events: list[dict]) -> None:
@@ -149,7 +149,7 @@ class Stream:
             self._take()
 
     def _rows(self) -> Rows:
-        """Rows that the engine has, by name."""
+        """Return the rows that the engine has, by name."""
         return named(self._model, self._scene, self._engine)
 
     def _take(self) -> None:
@@ -241,7 +241,7 @@ class Stream:
                                   "make room, and go on with resume where there is a checkpoint") from error
 
     def _claim(self, path: Path) -> int:
-        """A descriptor of a file that is this run's alone."""
+        """Return a descriptor of a file that is this run's alone."""
         try:
             return claimed(path)
         except Taken:
@@ -287,7 +287,7 @@ class Stream:
             raise self._refused(f"its run cannot go on {difference}")
 
     def _to_resume(self) -> Checkpoint:
-        """The checkpoint, if it is one of this scene and these settings; opens the file."""
+        """Return the checkpoint, if it is one of this scene and these settings; opens the file."""
         if self._older < 0:
             raise self._refused("there is no run to resume: there is no such file")
         status = opened(open_file(self._path), self._read_scene, check=False).status
@@ -322,12 +322,12 @@ class Stream:
 
 
 def _part_of(path: Path) -> Path:
-    """What becomes the file when it is whole; the same for all runs, so that a killed one's is written over."""
+    """Return what becomes the file when it is whole; the same for all runs, so that a killed one's is written over."""
     return path.with_name(f".{path.name}.part")
 
 
 def _facts(scene: SceneData, settings: RunSettings) -> dict:
-    """What must be the same for a run to go on."""
+    """Return what must be the same for a run to go on."""
     alone = copy(scene)
     alone.run_settings = {}
     said = {name: value for name, value in settings.model_dump().items() if name != "save"}

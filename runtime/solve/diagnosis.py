@@ -28,7 +28,7 @@ these are reported; the last is for loose tolerances, where energy may be off by
 
 
 def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
-    """The message of a run that found no acceptable step, lost a joint or whose energy grew."""
+    """Return the message of a run that found no acceptable step, lost a joint or whose energy grew."""
     when = f"t = {engine.time:.6g} s of {settings.duration:.6g} s"
     cause, dof, joint = engine.failure
     _, q, v, _ = engine.now()
@@ -80,7 +80,7 @@ def _too_large(engine, settings: RunSettings) -> str:
 
 
 def place(model: Model, dof: int, joint: int | None = None) -> str:
-    """What a dof, or a joint, is of."""
+    """Return what a dof, or a joint, is of."""
     if joint is not None:
         return f'slide "{model.slides[joint].name}" on cable "{model.cables[model.slides[joint].cable].name}"'
     if (found := _node(model, dof)) is not None:
@@ -100,7 +100,7 @@ def damping(model: Model, dof: int, joint: int | None = None) -> str:
 
 
 def condition(model: Model, dof: int, q: np.ndarray, v: np.ndarray) -> tuple[str, bool]:
-    """How the place of a dof fares, and whether its cable is folded up there."""
+    """Return how the place of a dof fares, and whether its cable is folded up there."""
     speed = f"{abs(v[dof]) * model.weight[dof]:.3g} m/s"
     if (found := _node(model, dof)) is None:
         return speed, False
@@ -114,7 +114,7 @@ def condition(model: Model, dof: int, q: np.ndarray, v: np.ndarray) -> tuple[str
 
 
 def _node(model: Model, dof: int) -> tuple[CableModel, int] | None:
-    """Cable and number of the node that a dof is of; None where it is a body's."""
+    """Return the cable and number of the node that a dof is of; None where it is a body's."""
     for cable in model.cables:
         if cable.coordinates.start <= dof < cable.coordinates.stop:
             return cable, (dof - cable.first) // (cable.shape[1] * cable.shape[2])
@@ -122,7 +122,7 @@ def _node(model: Model, dof: int) -> tuple[CableModel, int] | None:
 
 
 def notes(engine, settings: RunSettings) -> list[str]:
-    """What a user should know of a completed run whose results are coarse; empty where they are good."""
+    """Return what a user should know of a completed run whose results are coarse; empty where they are good."""
     counts, notes = engine.statistics, []
     if settings.step is not None and counts["rejected_steps"]:
         notes.append(f"{counts['rejected_steps']} times no step of {settings.step:g} s was possible: it was divided, "

@@ -68,7 +68,7 @@ class State:
         return found[quantity]
 
     def names(self) -> list[str]:
-        """Bodies, cables and slides that the state has quantities of."""
+        """Return the bodies, cables and slides that the state has quantities of."""
         model = self._model
         return [*(body.name for body in model.bodies), *(cable.name for cable in model.cables),
                 *(slide.name for slide in model.slides)]
@@ -98,7 +98,7 @@ class EventWatcher:
         self.stopped_by: str | None = None
 
     def call(self, which: int, time: float, q: np.ndarray, v: np.ndarray, s: np.ndarray) -> float:
-        """The function of an event at a state. Raises SceneError where it fails or gives no number."""
+        """Return the function of an event at a state. Raises SceneError where it fails or gives no number."""
         event = self.watches[which].event
         try:
             value = float((event.function or self._of_quantity(event))(time, State(self.model, q, v, s)))
@@ -110,7 +110,7 @@ class EventWatcher:
         return value
 
     def _of_quantity(self, event: Event) -> Callable[[float, State], float]:
-        """The function that a threshold on a body's origin stands for."""
+        """Return the function that a threshold on a body's origin stands for."""
         name, axis = _quantity(event).rsplit(".", 1)
         return lambda time, state: np.asarray(state[name])[AXES.index(axis)] - event.value
 

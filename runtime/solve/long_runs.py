@@ -75,7 +75,7 @@ class LongRun:
         return self._engine.statistics["steps"]
 
     def _why(self) -> str:
-        """What rules the step, and what makes it larger."""
+        """Return what rules the step, and what makes it larger."""
         engine, settings, counts = self._engine, self._settings, self._engine.statistics
         mean = engine.time / max(counts["steps"], 1)
         if settings.step is not None:

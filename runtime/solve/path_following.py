@@ -45,7 +45,7 @@ class Point:
 
     @property
     def kind(self) -> tuple[int, bool]:
-        """What changes at a critical point: unstable directions, and whether the load rises along the path."""
+        """Return what changes at a critical point: unstable directions, and whether the load rises along the path."""
         return self.stability.unstable, self.rate > 0
 
 
@@ -95,7 +95,7 @@ def follow(problem: StaticProblem, fraction: float, heading: np.ndarray | None) 
 
 
 def _point(problem: StaticProblem, before: np.ndarray | None, advance: float = 0.0) -> Point | None:
-    """The static state as a point of the path, in the sense of the heading before."""
+    """Return the static state as a point of the path, in the sense of the heading before."""
     if before is None:
         before = np.append(np.zeros(len(problem.weight)), 1.0)
     try:
@@ -144,7 +144,7 @@ def _advance(problem: StaticProblem, point: Point, advance: float) -> Point | No
 
 
 def _at_full_load(problem: StaticProblem, point: Point, beyond: Point) -> Point | None:
-    """The state at p = 1 between two points; None where Newton does not find it there."""
+    """Return the state at p = 1 between two points; None where Newton does not find it there."""
     advance = beyond.advance * (1.0 - point.fraction) / (beyond.fraction - point.fraction)
     if _advance(problem, point, advance) is None:
         return None
@@ -155,7 +155,7 @@ def _at_full_load(problem: StaticProblem, point: Point, beyond: Point) -> Point 
 
 
 def _critical(problem: StaticProblem, point: Point, following: Point) -> list[Critical]:
-    """The critical points between a point and one that was found from it, by bisection."""
+    """Return the critical points between a point and one that was found from it, by bisection."""
     found: list[Critical] = []
     intervals = [(point, following)]
     while intervals:

@@ -38,20 +38,20 @@ class Sink(Protocol):
 
     @property
     def elapsed(self) -> float:
-        """Seconds that the run took before it was resumed."""
+        """Return the seconds that the run took before it was resumed."""
 
     @property
     def free(self) -> int:
-        """Bytes that it can take."""
+        """Return the bytes that it can take."""
 
     def start(self, model: Model, engine: Engine, pace: Pauses, events: list[dict]) -> None:
         """Take the first row, or bring the engine to where the run is resumed."""
 
     def pause(self) -> None:
-        """Take rows, at a pause."""
+        """Take the rows that the engine has at a pause, and write a checkpoint if it is time to."""
 
     def between(self) -> None:
-        """Take rows, between pauses."""
+        """Take the rows that the engine has between pauses, if it is time to."""
 
 
 @dataclass
@@ -166,7 +166,7 @@ def _broken_velocities(model: Model, change: np.ndarray) -> list[str]:
 
 
 def _check_size(model: Model, settings: RunSettings, stream: Sink | None) -> int:
-    """Bytes of a row; refuses what no memory holds or, for a stream, what does not fit on its disk."""
+    """Return the bytes of a row; refuses what no memory holds or, for a stream, what does not fit on its disk."""
     per_row = 8 * (model.n_q + 3 * model.n_dof + 12 * len(model.slides) + 7 * len(model.joints)
                    + 3 * len(model.springs) + 6)
     need = per_row * settings.duration / settings.output_step

@@ -175,7 +175,7 @@ class _Search(Generic[S]):
         return min(reached, 1.0)
 
     def at(self, point: Point) -> S:
-        """A point of the path as a state."""
+        """Return a point of the path as a state."""
         fraction, kept = self.problem.fraction, self.problem.keep()
         self.problem.restore(point.kept)
         self.problem.load(point.fraction)

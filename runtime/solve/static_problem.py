@@ -62,7 +62,7 @@ class StaticProblem:
         return float(np.max(np.abs(drawn[points]) / inertia, initial=0.0, where=inertia > 0)) / self.size
 
     def _extent(self) -> float:
-        """The scene's size in m."""
+        """Return the scene's size in m."""
         model = self.model
         lengths = [cable.length * cable.n_elements for cable in model.cables]
         lengths += [float(np.linalg.norm(model.q[b.configuration : b.configuration + model.dim])) for b in model.bodies]
@@ -80,7 +80,7 @@ class StaticProblem:
         return self.engine.static_residual()
 
     def load_vector(self) -> np.ndarray:
-        """-dR/dp at the static state."""
+        """Return -dR/dp (n,) at the static state, p the fraction of the loads."""
         fraction = self.fraction
         self.load(0.0)
         without = self.residual()
@@ -105,12 +105,12 @@ class StaticProblem:
         return float(along @ (K @ along)) + 0.9 * mass * float(change @ (self.mass @ change))
 
     def distance(self, kept: dict) -> float:
-        """How far the farthest coordinate of a position has moved from a state, in m."""
+        """Return how far the farthest coordinate of a position has moved from a state, in m."""
         moved = np.abs(self.engine.placed()["q"] - kept["q"])[self.places]
         return float(np.max(moved, initial=0.0))
 
     def solver(self, inertia: float = 0.0) -> Callable[[np.ndarray], np.ndarray]:
-        """Solver of the tangent, with some mass added. Raises RuntimeError where it is exactly singular."""
+        """Return the solver of the tangent, with some mass added. Raises RuntimeError where it is exactly singular."""
         return solver(self.regular_tangent() if inertia == 0.0 else self.tangent() + inertia * self.mass)
 
     def regular_tangent(self) -> csc_array:
@@ -118,7 +118,7 @@ class StaticProblem:
         return self.tangent() + FREE * self.fastest * self.mass
 
     def length(self, change: np.ndarray) -> float:
-        """Size of a correction in m."""
+        """Return the size of a correction in m."""
         size = float(np.linalg.norm(self.weight * change))
         return size if np.isfinite(size) else np.inf
 
@@ -159,7 +159,7 @@ class StaticProblem:
         return False
 
     def on_cables(self) -> bool:
-        """Whether no slide is past an end of its cable, where the last element would go on for ever."""
+        """Return whether no slide is past an end of its cable, where the last element would go on for ever."""
         ends = np.array([self.model.cables[j.cable].length * self.model.cables[j.cable].n_elements
                          for j in self.model.slides])
         s = self.engine.placed()["s"]

@@ -19,7 +19,7 @@ STRAIGHT = 1e-9
 
 
 def notes(scene: SceneData, model: Model, engine) -> list[str]:
-    """A note for each such strut at the time at which it is compressed most, of those still in memory."""
+    """Return a note for each such strut at the time at which it is compressed most, of those still in memory."""
     rows = engine.rows()
     times, states, arcs = rows["time"], rows["q"], rows["s"]
     if not len(times):  # all are in the file
@@ -75,7 +75,7 @@ def _on_line(r: np.ndarray) -> np.ndarray:
 
 
 def _unstable(model: Model, cable, t: float, q: np.ndarray, s: np.ndarray) -> int:
-    """How many directions of a cable, all else fixed, lower the energy; joints hold it, with forces left out."""
+    """Return how many directions of a cable, all else fixed, lower the energy; joints hold it, with forces left out."""
     engine = Engine(model)
     engine.place(t, q=q, s=s)
     K, C = condensed(engine.matrix(0.0, 0.0, 1.0), model)

@@ -79,7 +79,7 @@ def save_plots(run: Run, directory: str | os.PathLike, prefix: str = "", forces:
 
 
 def view_of(scene: SceneData) -> View:
-    """The vertical plane of the first cable; y is up without gravity."""
+    """Return the vertical plane of the first cable; y is up without gravity."""
     gravity = np.array(scene.gravity)
     up = -gravity / np.linalg.norm(gravity) if gravity.any() else np.array([0.0, 1.0, 0.0])
     candidates = [cable.point(cable.length) - cable.point(0.0) for cable in scene.cables.values()]
@@ -99,7 +99,7 @@ def _axis_name(direction: np.ndarray) -> str:
 
 
 def centreline(nodal_vectors: np.ndarray, node_s: np.ndarray) -> np.ndarray:
-    """Points (..., points, 3) of the centreline, cubic between nodes.
+    """Return the points (..., points, 3) of the centreline, cubic between nodes.
 
     nodal_vectors: (..., nodes, vectors, 3) with r and r_x first; node_s: (nodes,) in m.
     """
@@ -117,12 +117,12 @@ def centreline(nodal_vectors: np.ndarray, node_s: np.ndarray) -> np.ndarray:
 
 
 def rider_path(run: Run, slide: str) -> np.ndarray:
-    """(time, 3): where the rider's point of ``slide`` was, in m."""
+    """Return (time, 3): where the rider's point of ``slide`` was, in m."""
     return attachment_path(run, run.scene.slides[slide].rider)
 
 
 def attachment_path(run: Run, attachment: Attachment) -> np.ndarray:
-    """(time, 3): where an attachment was, in m."""
+    """Return (time, 3): where an attachment was, in m."""
     if attachment.on is None:
         return np.broadcast_to(attachment.point, (len(run.time), 3))
     body = run.scene.bodies.get(attachment.on)
@@ -147,7 +147,7 @@ def attached_points(run: Run) -> dict[str, np.ndarray]:
 
 
 def _snapshots(run: Run) -> tuple[np.ndarray, ScalarMappable]:
-    """Numbers of the few times that are drawn, and the colours of times."""
+    """Return the numbers of the few times that are drawn, and the colours of times."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
@@ -156,7 +156,7 @@ def _snapshots(run: Run) -> tuple[np.ndarray, ScalarMappable]:
 
 
 def draw_shape(run: Run) -> Figure | None:
-    """The cables at a few times, coloured by time, with the riders and their paths; None without cables."""
+    """Return the cables at a few times, coloured by time, with the riders and their paths; None without cables."""
     from matplotlib.figure import Figure
 
     scene = run.scene
@@ -226,7 +226,7 @@ def _set_scales(axes, view: View) -> None:
 
 
 def draw_acceleration(run: Run) -> Figure | None:
-    """The bodies' accelerations upwards over time, the paper's Fig. 5; None without a slide or a body."""
+    """Return the bodies' accelerations upwards over time, the paper's Fig. 5; None without a slide or a body."""
     from matplotlib.figure import Figure
 
     bodies = list(run.scene.bodies)
@@ -291,7 +291,7 @@ def draw_section_forces(run: Run, cable: str) -> Figure:
 
 
 def draw_energy(run: Run) -> Figure:
-    """The changes of the energies since the start, and how well they cancel."""
+    """Return the changes of the energies since the start, and how well they cancel."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(7, 4.8))
