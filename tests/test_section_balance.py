@@ -9,7 +9,7 @@ from funicular.generated import kernels
 from funicular.results import recording
 from funicular.results.nodal_forces import element_forces
 from funicular.results.section_balance import Cuts, balanced
-from funicular.results.section_forces import CableActions, _instants, jumps, rest_instants
+from funicular.results.section_forces import CableLoads, _instants, jumps, rest_instants
 from numpy.testing import assert_allclose
 
 SOFT = {"youngs_modulus": 1e8, "poisson_ratio": 0.3, "density": 2000}
@@ -153,9 +153,9 @@ def test_accelerations_are_the_engines(name, engine_rows):
     """They follow from recorded forces: any that is missing, or on the wrong place or side, shows here."""
     run = SCENES[name]().run(duration=0.2, output_step=0.1, tol=1e-4)
     model, at = run.model, _instants(run, np.arange(len(run.time)))
-    actions = CableActions(run.scene, model, at)
+    loads = CableLoads(run.scene, model, at)
     for k, cable in enumerate(model.cables):
-        found = element_forces(run.scene, model, at, actions, k, at_rest=False)
+        found = element_forces(run.scene, model, at, loads, k, at_rest=False)
         a = found.inertia + np.where((np.array(cable.vectors * 2) == "r")[:, None], run.scene.gravity[: model.dim], 0)
         a = a - cable.mass_damping * _of_elements(cable, at.v)
         expected = _of_elements(cable, engine_rows["acceleration"])
@@ -164,13 +164,13 @@ def test_accelerations_are_the_engines(name, engine_rows):
 
 def gaps_at_nodes(scene, model, at, at_rest):
     """Jumps of force and moment over inner nodes that nothing acts on, relative to the largest."""
-    actions = CableActions(scene, model, at)
+    loads = CableLoads(scene, model, at)
     for k, (name, cable) in enumerate(scene.cables.items()):
         s = np.setdiff1d(np.round(cable.node_s, 9)[1:-1], np.round(jumps(scene, name), 9))[None]
-        elements = element_forces(scene, model, at, actions, k, at_rest)
+        elements = element_forces(scene, model, at, loads, k, at_rest)
         places = (s, False), (s, True), (np.linspace(0, cable.length, 50)[None], True)
         before, after, every = (
-            balanced(cable, model.cables[k], elements, actions, k, Cuts(model.cables[k], where, side))[:2]
+            balanced(cable, model.cables[k], elements, loads, k, Cuts(model.cables[k], where, side))[:2]
             for where, side in places)
         yield from (np.abs(b - a).max(initial=0) / np.abs(e).max()
                     for b, a, e in zip(before, after, every, strict=True))

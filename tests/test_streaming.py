@@ -274,7 +274,7 @@ def test_two_runs_do_not_write_one_file(stopped):
 
 
 def test_a_report_longer_than_its_room(tmp_path, monkeypatch, uninterrupted):
-    monkeypatch.setattr(streaming, "REPORT_ROOM", 0)
+    monkeypatch.setattr(streaming, "REPORT_SPARE", 0)
     run = short().run(**SETTINGS, save=tmp_path / "x.nc")
     assert run.status == "completed"
     assert content(tmp_path / "x.nc") == uninterrupted

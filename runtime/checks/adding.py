@@ -38,8 +38,8 @@ _CHECKS: dict[type[Part], Callable[[SceneData, Any], Part]] = {
     Spring: placed_spring, Event: placed_event}
 
 
-def check_of(part: Part) -> Callable[[SceneData, Any], Part]:
-    """The function that checks such a part against a scene and returns it complete.
+def check_of(part: Part) -> Callable[[SceneData, Any], Any]:
+    """Return the function that checks such a part against a scene and returns it complete.
 
     Kinds without an entry have their attachments completed.
     """

@@ -10,7 +10,7 @@ from .attachments import AttachmentBuilder
 from .bodies import body_gravity, body_models, body_weights, configuration_of, dofs_of, velocity_of
 from .cables import cable_gravity, cable_model, cable_rates, cable_weights
 from .joints import JointModel, frame_joint_model, joint_model
-from .loads import Actions
+from .loads import LoadBuilder
 from .model import CableModel, Model, MotionModel, SlideModel
 from .slides import slide_model
 from .unknowns import Node, supports
@@ -30,22 +30,22 @@ def build(scene: SceneData) -> Model:
     nodes = {model.name: _nodes(model, scene.cables[model.name].where, vectors)
              for model, vectors in zip(cables, nodal, strict=True)}
     attachments = AttachmentBuilder(scene, cables, bodies)
-    actions = Actions(scene, attachments)
+    loads = LoadBuilder(scene, attachments)
     elements = np.array([(node.first, 2 * node.vectors.size) for each in nodes.values() for node in each[:-1]],
                         dtype=int).reshape(-1, 2)
-    reduction = supports(scene, nodes, actions.signal).reduce(n_flexible, elements)
+    reduction = supports(scene, nodes, loads.signal).reduce(n_flexible, elements)
     for load in scene.loads.values():
-        actions.load(load)
-    slides = _slides(scene, attachments, actions)
-    joints = _joints(scene, attachments, actions, slides)
+        loads.load(load)
+    slides = _slides(scene, attachments, loads)
+    joints = _joints(scene, attachments, loads, slides)
     n_extra = (1 + dim) * len(slides) + sum(joint.rows for joint in joints)
-    springs = [actions.point_force(spring, n_extra + dim * k) for k, spring in enumerate(scene.springs.values())]
+    springs = [loads.point_force(spring, n_extra + dim * k) for k, spring in enumerate(scene.springs.values())]
     n_of_bodies = sum(dofs_of(body, dim) for body in bodies)
     numbering = reduction.numbering
     return Model(
-        dim, cables, bodies, slides, joints, springs, actions.signals,
+        dim, cables, bodies, slides, joints, springs, loads.signals,
         [MotionModel(dof, p.signal, p.base, p.linear, p.cosine, p.sine) for dof, p in reduction.prescribed],
-        actions.dead, actions.turning,
+        loads.dead, loads.turning,
         q=_joined(*(vectors.ravel() for vectors in nodal), *(configuration_of(body, dim) for body in described)),
         v=_joined(cable_rates(scene, reduction), *(velocity_of(body, dim) for body in described)),
         weight=_joined(*map(cable_weights, drawn), *(body_weights(body, dim) for body in described)),
@@ -74,15 +74,15 @@ def _nodes(cable: CableModel, where: str, vectors: np.ndarray) -> list[Node]:
     return [Node(where, cable.vectors, cable.first + k * size, each) for k, each in enumerate(vectors)]
 
 
-def _slides(scene: SceneData, attachments: AttachmentBuilder, actions: Actions) -> list[SlideModel]:
+def _slides(scene: SceneData, attachments: AttachmentBuilder, loads: LoadBuilder) -> list[SlideModel]:
     slides: list[SlideModel] = []
     for slide in scene.slides.values():
         multiplier = sum(each.max_multipliers for each in slides)
-        slides.append(slide_model(slide, scene, attachments, actions.signal, len(slides), multiplier))
+        slides.append(slide_model(slide, scene, attachments, loads.signal, len(slides), multiplier))
     return slides
 
 
-def _joints(scene: SceneData, attachments: AttachmentBuilder, actions: Actions,
+def _joints(scene: SceneData, attachments: AttachmentBuilder, loads: LoadBuilder,
             slides: list[SlideModel]) -> list[JointModel]:
     """Return what keeps riders' axes to their cables, then the scene's joints."""
     joints: list[JointModel] = []
@@ -92,6 +92,6 @@ def _joints(scene: SceneData, attachments: AttachmentBuilder, actions: Actions,
             joints.append(frame_joint_model(attachments, slide, number, unknown, multiplier))
             unknown, multiplier = unknown + joints[-1].rows, multiplier + joints[-1].rows
     for joint in scene.joints.values():
-        joints.append(joint_model(attachments, joint, actions.signal, unknown, multiplier))
+        joints.append(joint_model(attachments, joint, loads.signal, unknown, multiplier))
         unknown, multiplier = unknown + joints[-1].rows, multiplier + joints[-1].rows
     return joints

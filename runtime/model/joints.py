@@ -39,13 +39,13 @@ class JointModel:
 
     @property
     def rows(self) -> int:
-        """Number of its equations."""
+        """Return the number of its equations."""
         return len(self.scale)
 
 
 def joint_model(attachments: AttachmentBuilder, joint: Joint, signal: Callable[[Signal], int], unknown: int,
                 multiplier: int) -> JointModel:
-    """The model of a joint; signal(s): number of a signal."""
+    """Return the model of a joint; signal(s): number of a signal."""
     scene = attachments.scene
     at = joint_axes(scene, joint)
     needs = joint.pair not in ("spherical", "distance")
@@ -62,18 +62,19 @@ def joint_model(attachments: AttachmentBuilder, joint: Joint, signal: Callable[[
             turned = True
     base = 0.0
     if joint.pair == "distance":
+        assert joint.length is not None, f"{joint.where} is not complete"
         base = 0.0 if driven else joint.length
     elif driven and DRIVEN[joint.pair] == "distance":
         base = float(joint.axes[:, 2] @ (point_of(scene, joint.b) - point_of(scene, joint.a)))
-    model = _model(joint.name, kind, scene.dim, ends, unknown, multiplier,
-                   signal(joint.prescribed) if driven else -1, base)
+    model = _model(joint.name or "", kind, scene.dim, ends, unknown, multiplier,
+                   -1 if joint.prescribed is None else signal(joint.prescribed), base)
     model.reversed = turned
     return model
 
 
 def frame_joint_model(attachments: AttachmentBuilder, slide: Slide, number: int, unknown: int,
                       multiplier: int) -> JointModel:
-    """What keeps a rider's axes to the frame of its cable, beside slide number `number`."""
+    """Return what keeps a rider's axes to the frame of its cable, beside slide number `number`."""
     dim = attachments.scene.dim
     at = slide_axes(attachments.scene, slide)
     free = slide.frame == "tangent" and slide.roll == "free" and dim == 3
@@ -86,11 +87,11 @@ def frame_joint_model(attachments: AttachmentBuilder, slide: Slide, number: int,
 def _model(name: str, kind: str, dim: int, ends: list[AttachmentModel], unknown: int, multiplier: int, signal: int,
           base: float) -> JointModel:
     kernel = f"joint_{'planar_' * (dim == 2)}{kind}"
-    return JointModel(name, kernel, tuple(ends), unknown, multiplier, signal, base, _scales(kernel, dim, ends))
+    return JointModel(name, kernel, (ends[0], ends[1]), unknown, multiplier, signal, base, _scales(kernel, dim, ends))
 
 
 def _scales(kernel: str, dim: int, ends: list[AttachmentModel]) -> np.ndarray:
-    """(rows,): kg, and kg m where a row is about turns alone: no displacement of the points changes it."""
+    """Return (rows,): kg, and kg m where a row is about turns alone: no displacement of the points changes it."""
     eye, ones = np.eye(dim), np.ones(dim)
     force = getattr(kernels_of(None), f"{kernel}_force")
     J = force(ones, eye, eye, np.array([0.5, np.cos(0.5), np.sin(0.5)]), np.zeros(force.shapes["f"]))[1]

@@ -1,4 +1,4 @@
-"""Springs with dampers."""
+"""Springs with dampers between two attachments."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Spring(Part):
 
     @property
     def is_damped(self) -> bool:
-        """Whether its force depends on velocities."""
+        """Return whether its force depends on velocities."""
         return self.damping > 0
 
     @model_validator(mode="after")

@@ -18,9 +18,13 @@ class Variable(NamedTuple):
 
 _XYZ, _TIME = ("time", "xyz"), ("time",)
 
-_SUPPORT = {"force": (_XYZ, "N", "force on the cable"), "moment": (_XYZ, "N m", "moment on the cable")}
+Labels = tuple[tuple[str, ...], str, str]
+"""Names of the dimensions of a quantity, its unit and what it is."""
 
-QUANTITIES = {
+_SUPPORT: dict[str, Labels] = {"force": (_XYZ, "N", "force on the cable"),
+                               "moment": (_XYZ, "N m", "moment on the cable")}
+
+QUANTITIES: dict[str, dict[str, Labels]] = {
     "bodies": {
         "position": (_XYZ, "m", "position of the body's origin"),
         "orientation": (("time", "wxyz"), "1", "unit quaternion from body axes to the ground's"),
@@ -64,7 +68,7 @@ ENERGIES = {
 
 
 def labelled(rows) -> tuple[dict[str, Variable], dict[str, Variable]]:
-    """Results of the rows that `funicular.recording` names, with their labels; coordinates."""
+    """Return results of the rows that `funicular.recording` names, with their labels; coordinates."""
     variables = {}
     coords = {
         "time": Variable(_TIME, rows.time, "s", "time"),
@@ -93,8 +97,8 @@ def labelled(rows) -> tuple[dict[str, Variable], dict[str, Variable]]:
     for group, quantities in QUANTITIES.items():
         for name, arrays in getattr(rows, group, {}).items():
             for quantity, values in arrays.items():
-                dims, units, long_name = quantities[quantity]
-                variables[f"{name}.{quantity}"] = Variable(dims, values, units, long_name)
+                along, units, long_name = quantities[quantity]
+                variables[f"{name}.{quantity}"] = Variable(along, values, units, long_name)
     for name, values in rows.energy.items():
         variables[f"energy.{name}"] = Variable(_TIME, values, "J", ENERGIES[name])
     return variables, coords
