@@ -171,6 +171,11 @@ cdef class Engine(Statics):
             passed += self.run.knots[k].t <= self.run.now.t
         return passed
 
+    @property
+    def row_bytes(self):
+        """Bytes of a row of output."""
+        return 8 * sum([fu_record_array(&self.model, &self.run.record, k).items for k in range(FU_N_RECORD_ARRAYS)])
+
     cdef _snapshot(self, const fu_state *state):
         """t, q, v, s of a state."""
         return state.t, *(self._view(state, name).copy() for name in ("q", "v", "s"))
@@ -196,7 +201,7 @@ cdef class Engine(Statics):
             shape = (rows, array.items) if array.axes == 2 else rows
             fu_record_attach(&run.record, k, self._named(array.name.decode(), shape))
         output = self.arrays.pop("output")
-        for kind in ("slide", "joint", "spring"):
+        for kind in ("slide", "joint", "point_force"):
             self.arrays[kind] = self._outputs(kind, output)
         cdef int status = fu_start(run)
         if status:

@@ -41,27 +41,30 @@ def fake_recording(scene: Scene, status: str = "completed", message: str = "", d
                 "vector_names": ("r", "r_x", "r_y", "r_z"),
             }
         },
-        bodies={
-            "A": {
-                "position": position,
-                "orientation": np.tile([1.0, 0, 0, 0], (times, 1)),
-                "velocity": velocity,
-                "angular_velocity": zeros,
-                "acceleration": acceleration,
-                "angular_acceleration": zeros,
-            }
+        modal={},
+        parts={
+            "bodies": {
+                "A": {
+                    "position": position,
+                    "orientation": np.tile([1.0, 0, 0, 0], (times, 1)),
+                    "velocity": velocity,
+                    "angular_velocity": zeros,
+                    "acceleration": acceleration,
+                    "angular_acceleration": zeros,
+                }
+            },
+            "slides": {
+                "trolley": {
+                    "s": s,
+                    "s_rate": np.ones(times),
+                    "s_acceleration": np.zeros(times),
+                    "force": acceleration - np.array(scene.gravity),
+                    "multiplier": acceleration[:, 1:],
+                    "residual": np.full(times, 3e-13),
+                }
+            },
+            "pins": {"wire@0": {"force": zeros + 5.0}, "wire@1.5": {"force": zeros + 4.0}},
         },
-        slides={
-            "trolley": {
-                "s": s,
-                "s_rate": np.ones(times),
-                "s_acceleration": np.zeros(times),
-                "force": acceleration - np.array(scene.gravity),
-                "multiplier": acceleration[:, 1:],
-                "residual": np.full(times, 3e-13),
-            }
-        },
-        pins={"wire@0": {"force": zeros + 5.0}, "wire@1.5": {"force": zeros + 4.0}},
         energy={
             "kinetic": 1 - potential - elastic - dissipated + balance_error,
             "elastic": elastic,

@@ -206,16 +206,15 @@ def test_paths_that_cannot_be(path, tmp_path, monkeypatch):
 
 
 def without_rows(recording):
-    for name, value in vars(recording).items():
-        if isinstance(value, np.ndarray):
-            setattr(recording, name, value[:0])
-        elif isinstance(value, dict) and name != "report":
-            for part, arrays in value.items():
-                for quantity, array in arrays.items() if isinstance(arrays, dict) else ():
-                    if np.ndim(array) and len(array) == 101:
-                        arrays[quantity] = array[:0]
-                if isinstance(arrays, np.ndarray):
-                    value[part] = arrays[:0]
+    def cut(values):
+        for name, value in values.items():
+            if isinstance(value, dict):
+                cut(value)
+            elif isinstance(value, np.ndarray) and len(value) == 101:
+                values[name] = value[:0]
+
+    cut({name: value for name, value in vars(recording).items() if name != "report"})
+    recording.time = recording.time[:0]
     recording.status, recording.message = "no_convergence", "no step converged"
     return recording
 

@@ -98,7 +98,7 @@ def test_view(end, gravity, names):
 def test_a_scene_without_a_slide(tmp_path):
     scene = load_scene("paper51")
     recording = fake_recording(scene)
-    recording.slides, recording.bodies = {}, {}
+    recording.parts |= {"slides": {}, "bodies": {}}
     scene.slides.clear()
     scene.bodies.clear()
     written = save_plots(Run.from_recording(recording, scene, SETTINGS, Scene.from_toml), tmp_path)
@@ -110,7 +110,7 @@ def test_a_run_that_stopped_at_once(tmp_path):
     scene = load_scene("paper51")
     recording = fake_recording(scene)
     recording.time = recording.time[:1]
-    for group in (recording.cables, recording.bodies, recording.slides, recording.pins):
+    for group in (recording.cables, *recording.parts.values()):
         for arrays in group.values():
             arrays |= {k: v[:1] for k, v in arrays.items() if k not in ("node_s", "vector_names")}
     recording.energy = {k: v[:1] for k, v in recording.energy.items()}

@@ -56,7 +56,7 @@ def run(recording):
 def test_names_and_shapes(run, recording):
     assert {name: run[name].shape for name in SHAPES} == SHAPES
     assert set(SHAPES) - {"time"} <= set(run.keys())
-    assert_array_equal(run["A.position"], recording.bodies["A"]["position"])
+    assert_array_equal(run["A.position"], recording.parts["bodies"]["A"]["position"])
     assert_array_equal(run.time, recording.time)
     assert "A.position" in run and "B.position" not in run
     assert repr(run) == "<funicular.Run: completed, 101 times to 1 s, 20 results>"
@@ -155,8 +155,8 @@ def test_work_from_outside_is_no_residual():
 
 def test_supports_joins_and_springs_have_results(recording):
     turn = {"force": np.ones((101, 3)), "moment": np.full((101, 3), 2.0)}
-    recording.clamps, recording.motions, recording.ties = {"wire@0.5": turn}, {"wire@1": turn}, {"corner": turn}
-    recording.springs = {"tie": {"tension": np.zeros(101), "length": np.ones(101)}}
+    recording.parts |= {"clamps": {"wire@0.5": turn}, "motions": {"wire@1": turn}, "ties": {"corner": turn},
+                        "springs": {"tie": {"tension": np.zeros(101), "length": np.ones(101)}}}
     recording.energy["external"] = np.zeros(101)
     run = Run.from_recording(recording, load_scene("paper51"), RunSettings(duration=1.0), Scene.from_toml)
     units = {name: run.variables[name].units for name in run.keys() if name not in recording.energy}

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import funicular as fu
 import pytest
-from funicular.parts import KINDS
+from funicular.parts.kinds import KINDS
 from scene_stub import FILE, stub
 
 MATERIAL = fu.Material(youngs_modulus=1e9, poisson_ratio=0, density=1000)

@@ -19,7 +19,7 @@ import numpy as np
 
 from ..errors import FunicularError, FunicularWarning, SceneError, near
 from ..integrators import AUTO, INTEGRATORS
-from ..parts import Cable
+from ..parts.cable import Cable
 from ..parts.settings import RunSettings
 from ..parts.validation import MOST
 from ..results.run import Run

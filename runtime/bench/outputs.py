@@ -63,7 +63,7 @@ def unit(scene: SceneData, name: str) -> str:
     if _place(scene, name) is not None:
         return "m"
     quantity = name.rpartition(".")[2]
-    return next(group[quantity][1] for group in QUANTITIES.values() if quantity in group)
+    return next(group[quantity].units for group in QUANTITIES.values() if quantity in group)
 
 
 def trajectory(scene: SceneData, run: Run, name: str) -> np.ndarray:

@@ -6,12 +6,18 @@ from collections.abc import Callable
 from typing import Any
 
 from ..errors import SceneError
-from ..parts import Cable, Clamp, DistributedForce, Event, Force, Joint, Moment, Motion, Pin, Slide, Spring, Tie
+from ..parts.cable import Cable
+from ..parts.event import Event
+from ..parts.joint import Joint
+from ..parts.load import Load
+from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
+from ..parts.slide import Slide
+from ..parts.support import Support, Tie
 from ..parts.validation import Part
 from .event_placement import placed_event
 from .joint_placement import placed_joint
-from .placement import placed_between, placed_load, placed_spring, placed_support, placed_tie
+from .placement import placed_between, placed_load, placed_point_force, placed_support, placed_tie
 from .planarity import check_plane
 from .slide_placement import placed_slide
 
@@ -33,14 +39,13 @@ def placed_cable(scene: SceneData, cable: Cable) -> Cable:
 
 
 _CHECKS: dict[type[Part], Callable[[SceneData, Any], Part]] = {
-    Cable: placed_cable, Pin: placed_support, Clamp: placed_support, Motion: placed_support, Tie: placed_tie,
-    Joint: placed_joint, Slide: placed_slide, Force: placed_load, DistributedForce: placed_load, Moment: placed_load,
-    Spring: placed_spring, Event: placed_event}
+    Cable: placed_cable, Support: placed_support, Tie: placed_tie, Joint: placed_joint, Slide: placed_slide,
+    Load: placed_load, PointForce: placed_point_force, Event: placed_event}
 
 
 def check_of(part: Part) -> Callable[[SceneData, Any], Any]:
     """Return the function that checks such a part against a scene and returns it complete.
 
-    Kinds without an entry have their attachments completed.
+    It is that of its class, else of the nearest base class. Others have their attachments completed.
     """
-    return _CHECKS.get(type(part), placed_between)
+    return next((_CHECKS[each] for each in type(part).__mro__ if each in _CHECKS), placed_between)

@@ -14,8 +14,8 @@ from ..parts.cable import EXACT, Cable
 from ..parts.load import DistributedForce, Force, Moment
 from ..parts.modal_body import ModalBody
 from ..parts.places import Node, joined, node_of, point_of, support_of
+from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
-from ..parts.spring import Spring
 from ..parts.support import Support, Tie
 from ..parts.validation import Part, show
 
@@ -173,12 +173,12 @@ def placed_between(scene: SceneData, part: P) -> P:
                                    for name, value in attachments.items()}) if attachments else part
 
 
-def placed_spring(scene: SceneData, spring: Spring) -> Spring:
-    """Return the spring with its ends and its length complete."""
-    spring = placed_between(scene, spring)
-    points = point_of(scene, spring.a), point_of(scene, spring.b)
+def placed_point_force(scene: SceneData, force: PointForce) -> PointForce:
+    """Return a force between two points with its ends complete, and with what follows from their distance."""
+    force = placed_between(scene, force)
+    points = point_of(scene, force.a), point_of(scene, force.b)
     distance = float(np.linalg.norm(points[1] - points[0]))
     if not distance > 1e-12 * (1 + np.abs(points).max()):
-        raise SceneError(spring.where, f"both ends are at {show(points[0], 'm')}: its direction is lost",
+        raise SceneError(force.where, f"both ends are at {show(points[0], 'm')}: its direction is lost",
                          "join the points, or hold them apart at the start")
-    return spring.model_copy(update={"length": distance}) if spring.length is None else spring
+    return force.at_distance(distance)

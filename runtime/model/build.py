@@ -9,9 +9,10 @@ from ..parts.scene_data import SceneData
 from .attachments import AttachmentBuilder
 from .bodies import body_gravity, body_models, body_weights, configuration_of, dofs_of, velocity_of
 from .cables import cable_gravity, cable_model, cable_rates, cable_weights
-from .joints import JointModel, frame_joint_model, joint_model
+from .coupling import number
+from .joints import frame_joint_model, joint_model
 from .loads import LoadBuilder
-from .model import CableModel, Model, MotionModel, SlideModel
+from .model import CableModel, Model, MotionModel
 from .slides import slide_model
 from .unknowns import Node, supports
 
@@ -36,14 +37,16 @@ def build(scene: SceneData) -> Model:
     reduction = supports(scene, nodes, loads.signal).reduce(n_flexible, elements)
     for load in scene.loads.values():
         loads.load(load)
-    slides = _slides(scene, attachments, loads)
-    joints = _joints(scene, attachments, loads, slides)
-    n_extra = (1 + dim) * len(slides) + sum(joint.rows for joint in joints)
-    springs = [loads.point_force(spring, n_extra + dim * k) for k, spring in enumerate(scene.springs.values())]
+    slides = [slide_model(slide, scene, attachments, loads.signal) for slide in scene.slides.values()]
+    joints = [frame_joint_model(attachments, slide, k) for k, slide in enumerate(scene.slides.values())
+              if slide.frame != "point"]
+    joints += [joint_model(attachments, joint, loads.signal) for joint in scene.joints.values()]
+    point_forces = [loads.point_force(force) for force in scene.springs.values()]
+    n_extra, n_multipliers = number([*slides, *joints, *point_forces])
     n_of_bodies = sum(dofs_of(body, dim) for body in bodies)
     numbering = reduction.numbering
     return Model(
-        dim, cables, bodies, slides, joints, springs, loads.signals,
+        dim, cables, bodies, slides, joints, point_forces, loads.signals,
         [MotionModel(dof, p.signal, p.base, p.linear, p.cosine, p.sine) for dof, p in reduction.prescribed],
         loads.dead, loads.turning,
         q=_joined(*(vectors.ravel() for vectors in nodal), *(configuration_of(body, dim) for body in described)),
@@ -55,8 +58,8 @@ def build(scene: SceneData) -> Model:
         combinations=reduction.combinations,
         n_band=numbering.n_band,
         n_border_dof=reduction.n_unknowns - numbering.n_band + n_of_bodies,
-        n_extra=n_extra + dim * len(springs),
-        n_multipliers=sum(slide.max_multipliers for slide in slides) + sum(joint.rows for joint in joints),
+        n_extra=n_extra,
+        n_multipliers=n_multipliers,
         width=numbering.width,
         chains=numbering.chains,
         nodes=nodes,
@@ -72,26 +75,3 @@ def _nodes(cable: CableModel, where: str, vectors: np.ndarray) -> list[Node]:
     """Return the nodes of a cable, with its nodal vectors (nodes, vectors, dim) as drawn."""
     size = int(np.prod(cable.shape[1:]))
     return [Node(where, cable.vectors, cable.first + k * size, each) for k, each in enumerate(vectors)]
-
-
-def _slides(scene: SceneData, attachments: AttachmentBuilder, loads: LoadBuilder) -> list[SlideModel]:
-    slides: list[SlideModel] = []
-    for slide in scene.slides.values():
-        multiplier = sum(each.max_multipliers for each in slides)
-        slides.append(slide_model(slide, scene, attachments, loads.signal, len(slides), multiplier))
-    return slides
-
-
-def _joints(scene: SceneData, attachments: AttachmentBuilder, loads: LoadBuilder,
-            slides: list[SlideModel]) -> list[JointModel]:
-    """Return what keeps riders' axes to their cables, then the scene's joints."""
-    joints: list[JointModel] = []
-    unknown, multiplier = (1 + scene.dim) * len(slides), sum(slide.max_multipliers for slide in slides)
-    for number, slide in enumerate(scene.slides.values()):
-        if slide.frame != "point":
-            joints.append(frame_joint_model(attachments, slide, number, unknown, multiplier))
-            unknown, multiplier = unknown + joints[-1].rows, multiplier + joints[-1].rows
-    for joint in scene.joints.values():
-        joints.append(joint_model(attachments, joint, loads.signal, unknown, multiplier))
-        unknown, multiplier = unknown + joints[-1].rows, multiplier + joints[-1].rows
-    return joints

@@ -14,11 +14,12 @@ from ..parts.places import point_of
 from ..parts.signal import Signal
 from ..parts.slide import Slide
 from .attachments import AttachmentBuilder, AttachmentModel
+from .coupling import CouplingModel
 
 
 @dataclass
-class JointModel:
-    """A joint between two ends; unknown, multiplier: places of its rows; signal: that drives it, or -1.
+class JointModel(CouplingModel):
+    """A joint between two ends; signal: that drives it, or -1.
 
     slide: the one beside which it ties a rider's axes to the cable; redundant_rows: those that other joints imply
     (model/redundant_constraints.py);
@@ -28,8 +29,6 @@ class JointModel:
     name: str
     kernel: str
     ends: tuple[AttachmentModel, AttachmentModel]
-    unknown: int
-    multiplier: int
     signal: int
     base: float
     scale: np.ndarray
@@ -43,8 +42,7 @@ class JointModel:
         return len(self.scale)
 
 
-def joint_model(attachments: AttachmentBuilder, joint: Joint, signal: Callable[[Signal], int], unknown: int,
-                multiplier: int) -> JointModel:
+def joint_model(attachments: AttachmentBuilder, joint: Joint, signal: Callable[[Signal], int]) -> JointModel:
     """Return the model of a joint; signal(s): number of a signal."""
     scene = attachments.scene
     at = joint_axes(scene, joint)
@@ -66,28 +64,28 @@ def joint_model(attachments: AttachmentBuilder, joint: Joint, signal: Callable[[
         base = 0.0 if driven else joint.length
     elif driven and DRIVEN[joint.pair] == "distance":
         base = float(joint.axes[:, 2] @ (point_of(scene, joint.b) - point_of(scene, joint.a)))
-    model = _model(joint.name or "", kind, scene.dim, ends, unknown, multiplier,
+    model = _model(joint.name or "", kind, scene.dim, ends,
                    -1 if joint.prescribed is None else signal(joint.prescribed), base)
     model.reversed = turned
     return model
 
 
-def frame_joint_model(attachments: AttachmentBuilder, slide: Slide, number: int, unknown: int,
-                      multiplier: int) -> JointModel:
+def frame_joint_model(attachments: AttachmentBuilder, slide: Slide, number: int) -> JointModel:
     """Return what keeps a rider's axes to the frame of its cable, beside slide number `number`."""
     dim = attachments.scene.dim
     at = slide_axes(attachments.scene, slide)
     free = slide.frame == "tangent" and slide.roll == "free" and dim == 3
     ends = [attachments.on_slide(slide, number, at.a), attachments.model(slide.rider, at.b)]
-    model = _model(slide.name, "aligned" if free else "locked", dim, ends, unknown, multiplier, -1, 0.0)
+    model = _model(slide.name, "aligned" if free else "locked", dim, ends, -1, 0.0)
     model.slide = slide.name
     return model
 
 
-def _model(name: str, kind: str, dim: int, ends: list[AttachmentModel], unknown: int, multiplier: int, signal: int,
-          base: float) -> JointModel:
+def _model(name: str, kind: str, dim: int, ends: list[AttachmentModel], signal: int, base: float) -> JointModel:
     kernel = f"joint_{'planar_' * (dim == 2)}{kind}"
-    return JointModel(name, kernel, (ends[0], ends[1]), unknown, multiplier, signal, base, _scales(kernel, dim, ends))
+    scale = _scales(kernel, dim, ends)
+    return JointModel(name, kernel, (ends[0], ends[1]), signal, base, scale, n_unknowns=len(scale),
+                      n_multipliers=len(scale))
 
 
 def _scales(kernel: str, dim: int, ends: list[AttachmentModel]) -> np.ndarray:

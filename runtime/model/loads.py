@@ -1,4 +1,4 @@
-"""Loads, springs and signals of a scene, as the engine takes them."""
+"""Loads, forces between points and signals of a scene, as the engine takes them."""
 
 from __future__ import annotations
 
@@ -7,11 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..checks.placement import placed_attachment
-from ..parts import DistributedForce, Force, Moment
 from ..parts.attachment import Attachment
+from ..parts.load import DistributedForce, Force, Moment
+from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from ..parts.signal import Constant, value_at
 from .attachments import AttachmentBuilder, AttachmentModel
+from .coupling import CouplingModel
 
 CABLE_FOLLOWER, CABLE_MOMENT, BODY_FORCE, BODY_FOLLOWER, BODY_MOMENT = range(5)
 """Kinds of loads, in the order of engine.h."""
@@ -59,11 +61,11 @@ class LoadModel:
 
 
 @dataclass
-class PointForceModel:
-    """A force between two points; unknown: the place of its force.
+class PointForceModel(CouplingModel):
+    """A force between two points, whose unknowns are its components.
 
-    type: the engine's type of coupling, and the role of its kernels; kernel: their name; parameters: those of its law,
-    in the order that the engine has them; is_damped: whether the force depends on velocities; mass: scale of its
+    type: the engine's type of coupling, and the role of its kernels; kernel: their name, or none; parameters: of its
+    law, in the order that the engine has them; is_damped: whether the force depends on velocities; mass: scale of its
     equations, kg.
     """
 
@@ -72,11 +74,9 @@ class PointForceModel:
     name: str
     ends: list[AttachmentModel]
     dim: int
-    unknown: int
     parameters: tuple[float, ...]
     is_damped: bool
     mass: float
-
 
 
 class LoadBuilder:
@@ -150,9 +150,9 @@ class LoadBuilder:
         self.turning += [LoadModel(kind, number, self.cable_index[cable], element, x, (0.0, 0.0, 0.0),
                                    tuple(weight * c)) for element, x, weight in points]
 
-    def point_force(self, part, unknown: int) -> PointForceModel:
-        """Return the model of a spring or the like, whose force is unknown number `unknown` beyond the dofs."""
+    def point_force(self, part: PointForce) -> PointForceModel:
+        """Return the model of a force between two points."""
         ends = [self.attachments.model(part.a), self.attachments.model(part.b)]
         dim = self.scene.dim
-        return PointForceModel(part.kind, part.kernel(dim), part.name, ends, dim, unknown, part.parameters,
-                               part.is_damped, max(end.mass for end in ends))
+        return PointForceModel(part.kind, part.kernel(dim), part.name, ends, dim, part.parameters, part.is_damped,
+                               max(end.mass for end in ends), n_unknowns=dim)

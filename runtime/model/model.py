@@ -16,6 +16,7 @@ from ..parts.body_shape import Shape
 from ..parts.end_stops import Stop
 from ..parts.friction import Friction
 from .attachments import AttachmentModel
+from .coupling import CouplingModel
 from .joints import JointModel
 from .loads import DeadLoad, LoadModel, PointForceModel, SignalModel
 from .unknowns import Node
@@ -101,11 +102,10 @@ class BodyModel:
 
 
 @dataclass
-class SlideModel:
-    """One slide: kernels, its cable and its rider, its unknowns, what drives it, and where it starts.
+class SlideModel(CouplingModel):
+    """One slide: kernels, its cable and its rider, what drives it, and where it starts; its first unknown is s.
 
-    rider_is_rigid: the kernels take the rider's own configuration; max_multipliers: how many it may have; drive: a
-    signal, or -1;
+    rider_is_rigid: the kernels take the rider's own configuration; drive: a signal, or -1;
     resistance: kernels of friction and buffers, or none; ends: what waits at the start and at the end of the cable.
     """
 
@@ -114,9 +114,6 @@ class SlideModel:
     cable: int
     rider: AttachmentModel
     rider_is_rigid: bool
-    unknown: int
-    multiplier: int
-    max_multipliers: int
     drive: int
     carries_director: bool
     mass: float
@@ -149,7 +146,7 @@ class Model:
     bodies: list[BodyModel]
     slides: list[SlideModel]
     joints: list[JointModel]
-    springs: list[PointForceModel]
+    point_forces: list[PointForceModel]
     signals: list[SignalModel]
     motions: list[MotionModel]
     dead_loads: list[DeadLoad]
@@ -186,5 +183,5 @@ class Model:
                       | {slide.kernel for slide in self.slides} | {body.kernel for body in self.bodies}
                       | {joint.kernel for joint in self.joints}
                       | {slide.resistance for slide in self.slides if slide.resistance}
-                      | {spring.kernel for spring in self.springs}
+                      | {force.kernel for force in self.point_forces if force.kernel}
                       | {body.modal_kernel for body in self.bodies if body.modes})

@@ -141,7 +141,7 @@ def _owners(model: Model) -> list[str]:
     """Return what each multiplier is of, as messages call it."""
     names = [""] * model.n_multipliers
     for slide in model.slides:
-        count = slide.max_multipliers
+        count = slide.n_multipliers
         names[slide.multiplier : slide.multiplier + count] = [f'slide "{slide.name}"'] * count
     for joint in model.joints:
         kind = "joint" if joint.slide is None else "slide"
@@ -152,12 +152,12 @@ def _owners(model: Model) -> list[str]:
 def _spare(model: Model) -> set[int]:
     """Return the multipliers that slides have for when they stick or rest at an end: nothing stands there yet."""
     return {k for slide in model.slides if slide.drive < 0
-            for k in range(slide.multiplier + model.dim - 1, slide.multiplier + slide.max_multipliers)}
+            for k in range(slide.multiplier + model.dim - 1, slide.multiplier + slide.n_multipliers)}
 
 
 def _driven(model: Model) -> set[int]:
     """Return the multipliers of what signals drive: the last of each joint's."""
-    return ({slide.multiplier + slide.max_multipliers - 1 for slide in model.slides if slide.drive >= 0}
+    return ({slide.multiplier + slide.n_multipliers - 1 for slide in model.slides if slide.drive >= 0}
             | {joint.multiplier + joint.rows - 1 for joint in model.joints if joint.signal >= 0})
 
 

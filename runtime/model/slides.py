@@ -22,8 +22,8 @@ RIDERS = {2: "planar_point", 3: "point"}
 
 
 def slide_model(slide: Slide, scene: SceneData, attachments: AttachmentBuilder,
-                signal: Callable[[Signal], int], number: int, multiplier: int) -> SlideModel:
-    """Make the model of slide number ``number``; signal(s): number of a signal."""
+                signal: Callable[[Signal], int]) -> SlideModel:
+    """Make the model of a slide; signal(s): number of a signal."""
     along, dim = scene.cables[slide.along], scene.dim
     axes = along.axes_at(slide.s)
     at = slide.s / along.length * along.elements
@@ -44,9 +44,6 @@ def slide_model(slide: Slide, scene: SceneData, attachments: AttachmentBuilder,
         attachments.cable_index[slide.along],
         rider,
         rider_is_rigid,
-        (1 + dim) * number,
-        multiplier,
-        dim - 1 + may_be_locked,
         -1 if slide.prescribed is None else signal(slide.prescribed),
         dim == 3 and not along.kind_of_element.director,
         rider.mass,
@@ -56,4 +53,6 @@ def slide_model(slide: Slide, scene: SceneData, attachments: AttachmentBuilder,
         RESISTANCES[dim] * resistances,
         friction if resistances else None,
         ends,
+        n_unknowns=1 + dim,
+        n_multipliers=dim - 1 + may_be_locked,
     )

@@ -1,4 +1,4 @@
-"""The state of a model, read: bodies, joints, springs and reactions, in three dimensions whatever the scene's."""
+"""The state of a model, read, in three dimensions whatever the scene's: bodies, joints, point forces, reactions."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from ..parts.scene_data import SceneData
 from ..parts.support import Support, Tie
 from ..rotations import rotate
 from .joints import JointModel
+from .loads import PointForceModel
 from .model import Model
 
 
@@ -107,9 +108,10 @@ def _turning(rates: np.ndarray) -> np.ndarray:
     return rates if rates.shape[1] == 3 else np.concatenate([np.zeros((len(rates), 2)), rates], axis=1)
 
 
-def spring_state(model: Model, spring, force: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray]:
+def point_force_state(model: Model, between: PointForceModel, force: np.ndarray,
+                      q: np.ndarray) -> dict[str, np.ndarray]:
     """Force on the first end, (time, 3) in N; length between the ends, in m; tension, in N, negative in compression."""
-    a, b = (attachment_points(model, each, q) for each in spring.ends)
+    a, b = (attachment_points(model, each, q) for each in between.ends)
     gap, force = b - a, spatial(force)
     length = np.linalg.norm(gap, axis=1)
     along = gap / np.where(length > 0, length, 1.0)[:, None]

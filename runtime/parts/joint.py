@@ -10,6 +10,7 @@ from pydantic import Field, model_validator
 
 from .attachment import AnyAttachment
 from .plane import across, in_plane
+from .quantity import Quantity, of_time, vector_of_time
 from .signal import AnySignal, Integral, Signal
 from .validation import Name, Part, Vector, direction, one_of, positive
 
@@ -54,6 +55,11 @@ class Joint(Part):
     kind: ClassVar[str] = "joint"
     group: ClassVar[str] = "joints"
     positional: ClassVar[tuple[str, ...]] = ("kind", "a", "b")
+    quantities: ClassVar[dict[str, Quantity]] = {
+        "force": vector_of_time("N", "force on what carries the end b, at that end"),
+        "moment": vector_of_time("N m", "moment on what carries the end b, about that end"),
+        "residual": of_time("1", "largest of its equations, in m or of cosines"),
+    }
     pair: Annotated[str, one_of(KINDS)] = Field(alias="kind")
     name: Name | None = None
     a: AnyAttachment

@@ -15,7 +15,8 @@ from ..rotations import rotate
 from .cable import Cable
 from .material import Material
 from .plane import across, in_plane
-from .rigid_body import Quaternion, unit_quaternion
+from .quantity import Quantity
+from .rigid_body import Quaternion, RigidBody, unit_quaternion
 from .section import AnySection
 from .validation import EXACT, Count, Flag, Name, Part, Vector, not_negative, one_of, show, shown, xyz
 
@@ -56,6 +57,7 @@ class ModalBody(Part):
 
     kind: ClassVar[str] = "modal_body"
     group: ClassVar[str] = "bodies"
+    quantities: ClassVar[dict[str, Quantity]] = RigidBody.quantities
     name: Name
     start: Annotated[Vector | None, xyz("m")] = None
     end: Annotated[Vector | None, xyz("m")] = None

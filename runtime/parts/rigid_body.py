@@ -11,6 +11,7 @@ from pydantic import PlainValidator
 
 from ..rotations import rotate
 from .plane import across, in_plane
+from .quantity import Quantity, vector_of_time
 from .validation import EXACT, Name, Part, Vector, positive, show, vector, vector3, xyz
 
 Quaternion = tuple[float, float, float, float]
@@ -60,6 +61,14 @@ class RigidBody(Part):
 
     kind: ClassVar[str] = "rigid_body"
     group: ClassVar[str] = "bodies"
+    quantities: ClassVar[dict[str, Quantity]] = {
+        "position": vector_of_time("m", "position of the body's origin"),
+        "orientation": Quantity(("time", "wxyz"), "1", "unit quaternion from body axes to the ground's"),
+        "velocity": vector_of_time("m/s", "velocity of the body's origin"),
+        "angular_velocity": vector_of_time("rad/s", "angular velocity in body axes"),
+        "acceleration": vector_of_time("m/s2", "acceleration of the body's origin"),
+        "angular_acceleration": vector_of_time("rad/s2", "angular acceleration in body axes"),
+    }
     name: Name
     mass: Annotated[float, positive("kg")]
     inertia: Annotated[tuple[Vector, Vector, Vector], PlainValidator(_inertia)]

@@ -13,9 +13,9 @@ from .joint import Joint
 from .kinds import KINDS
 from .load import DistributedForce, Force, Moment
 from .modal_body import ModalBody
+from .point_force import PointForce
 from .rigid_body import RigidBody
 from .slide import Slide
-from .spring import Spring
 from .support import Clamp, Motion, Pin, Support, Tie
 from .validation import Part, vector
 
@@ -40,7 +40,7 @@ class SceneData:
     joints: dict[str, Joint]
     slides: dict[str, Slide]
     loads: dict[str, Force | DistributedForce | Moment]
-    springs: dict[str, Spring]
+    springs: dict[str, PointForce]
     events: dict[str, Event]
 
     def __init__(self, gravity: Any = (0, -9.81, 0)):

@@ -11,6 +11,7 @@ from .attachment import Attachment
 from .end_stops import CableEnd, Stop
 from .friction import Friction
 from .plane import across
+from .quantity import Quantity, of_time, vector_of_time
 from .signal import AnySignal, Integral, Signal
 from .validation import Name, Part, Reference, Vector, direction, finite, one_of, xyz
 
@@ -35,6 +36,16 @@ class Slide(Part):
     kind: ClassVar[str] = "slide"
     group: ClassVar[str] = "slides"
     positional: ClassVar[tuple[str, ...]] = ("body",)
+    quantities: ClassVar[dict[str, Quantity]] = {
+        "s": of_time("m", "undeformed arc-length of the rider's place"),
+        "s_rate": of_time("m/s", "rate of s"),
+        "s_acceleration": of_time("m/s2", "second rate of s"),
+        "force": vector_of_time("N", "force on the rider"),
+        "multiplier": Quantity(("time", "normal"), "N", "multipliers of the two constraints across the cable"),
+        "traction": of_time("N", "force on the rider along the cable; of a driven slide its drive's power over s_rate"),
+        "moment": vector_of_time("N m", "moment on the rider, of a slide that ties its axes to the cable's frame"),
+        "residual": of_time("m", "distance of the rider's point to the cable"),
+    }
     body: Reference
     body_s: Annotated[float, finite("m")] | None = None
     along: Reference

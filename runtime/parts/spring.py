@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Self
 
 from pydantic import model_validator
 
-from .attachment import AnyAttachment
-from .validation import Name, Part, not_negative
+from .point_force import PointForce
+from .validation import not_negative
 
 
-class Spring(Part):
+class Spring(PointForce):
     """A linear spring with a damper between two points of cables, bodies or the ground.
 
     a, b: its ends: ("wire", s), ("A", (x, y, z) in body axes), "A" for its origin, or a point (x, y, z) of the
@@ -19,11 +19,6 @@ class Spring(Part):
     """
 
     kind: ClassVar[str] = "spring"
-    group: ClassVar[str] = "springs"
-    positional: ClassVar[tuple[str, ...]] = ("a", "b")
-    name: Name | None = None
-    a: AnyAttachment
-    b: AnyAttachment
     stiffness: Annotated[float, not_negative("N/m")]
     damping: Annotated[float, not_negative("N s/m")] = 0.0
     length: Annotated[float, not_negative("m")] | None = None
@@ -34,7 +29,7 @@ class Spring(Part):
         return self.stiffness, self.damping, self.length or 0.0
 
     def kernel(self, dim: int) -> str:
-        """Return the name of the kernels of its law in space or in the plane (derive/couplings/spring.py)."""
+        """Return the name of the kernels of its law (derive/couplings/spring.py)."""
         return ("planar_" if dim == 2 else "") + ("spring" if self.length else "zero_length_spring")
 
     @property
@@ -42,10 +37,12 @@ class Spring(Part):
         """Return whether its force depends on velocities."""
         return self.damping > 0
 
+    def at_distance(self, distance: float) -> Self:
+        """Return the spring with its length, the distance of its points at the start if not given."""
+        return self.model_copy(update={"length": distance}) if self.length is None else self
+
     @model_validator(mode="after")
-    def _acts(self) -> Spring:
-        if self.a.on is None and self.b.on is None:
-            raise ValueError("has both ends on the ground", "let one of them hold a cable or a body")
+    def _has_a_law(self) -> Self:
         if self.stiffness == 0 and self.damping == 0:
             raise ValueError("has neither stiffness nor damping", "give one of them, or both")
         return self

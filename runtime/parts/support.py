@@ -9,6 +9,7 @@ from typing import Annotated, Any, ClassVar
 from pydantic import PlainValidator, model_validator
 
 from .plane import in_plane
+from .quantity import Quantity, vector_of_time
 from .signal import Constant, Signal, signal
 from .validation import Name, Part, Reference, Vector, finite, one_of, shown, vector
 
@@ -19,9 +20,14 @@ def _called(cable: Any) -> str:
     return f'"{name}"' if isinstance(name, str) else shown(name)
 
 
+ON_CABLE = {"force": vector_of_time("N", "force on the cable"), "moment": vector_of_time("N m", "moment on the cable")}
+"""Quantities of what holds a section of a cable."""
+
+
 class Support(Part):
     """Base of the supports of a cable's node at ``s`` (m)."""
 
+    quantities: ClassVar[dict[str, Quantity]] = ON_CABLE
     cable: Reference
     s: Annotated[float, finite("m")]
 
@@ -42,6 +48,7 @@ class Pin(Support):
     kind: ClassVar[str] = "pin"
     group: ClassVar[str] = "pins"
     positional: ClassVar[tuple[str, ...]] = ("cable",)
+    quantities: ClassVar[dict[str, Quantity]] = {"force": ON_CABLE["force"]}
 
 
 class Clamp(Support):
@@ -165,6 +172,7 @@ class Tie(Part):
     kind: ClassVar[str] = "tie"
     group: ClassVar[str] = "ties"
     positional: ClassVar[tuple[str, ...]] = ("cable",)
+    quantities: ClassVar[dict[str, Quantity]] = ON_CABLE
     name: Name | None = None
     cable: Reference
     s: Annotated[float, finite("m")]

@@ -19,6 +19,7 @@ import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainValidator, ValidationError, model_validator
 
 from ..errors import SceneError, near
+from .quantity import Quantity
 
 LIMITS = {"m": (1e-12, 1e9), "s": (1e-12, 1e12), "m²": (1e-24, 1e24), "m⁴": (1e-48, 1e48)}
 """By unit: the least size of a number that must be positive, and the largest of any number; else `OTHER_LIMITS`."""
@@ -263,6 +264,9 @@ class Part(BaseModel, metaclass=_TranslatingType):
 
     positional: ClassVar[tuple[str, ...]] = ("name",)
     """Keywords that the scene's method for such parts takes without their names, too."""
+
+    quantities: ClassVar[dict[str, Quantity]] = {}
+    """What results tell of such parts, beside the nodal vectors of cables and the modes of bodies."""
 
     @classmethod
     def place(cls, data: dict) -> str:

@@ -13,7 +13,7 @@ from ..model.attachments import CARRIED, UP, AttachmentModel
 from ..model.loads import GAUSS
 from ..model.model import CableModel, Model
 from ..model.states import attachment_points, spatial
-from ..parts import DistributedForce, Moment
+from ..parts.load import DistributedForce, Moment
 from ..parts.scene_data import SceneData
 from ..rotations import rotate
 
@@ -96,7 +96,7 @@ class CableLoads:
         self._loads()
         self._slides()
         self._joints()
-        self._springs()
+        self._point_forces()
 
     def _add(self, cable: int, element, x, f: np.ndarray) -> None:
         element, x = (np.broadcast_to(value, self.times) for value in (element, x))
@@ -195,12 +195,12 @@ class CableLoads:
             arm = spatial(end.spot[0] + self.at.value(f"{body.name}.modal_coordinates") @ end.spot[1])
         return self.at.value(f"{body.name}.position") + rotate(self.at.value(f"{body.name}.orientation"), arm)
 
-    def _springs(self) -> None:
-        for spring in self.model.springs:
-            if any(end.cable >= 0 for end in spring.ends):
-                force = self.at.value(f"{spring.name}.force")
-                self._on_end(spring.ends[0], force, None)
-                self._on_end(spring.ends[1], -force, None)
+    def _point_forces(self) -> None:
+        for between in self.model.point_forces:
+            if any(end.cable >= 0 for end in between.ends):
+                force = self.at.value(f"{between.name}.force")
+                self._on_end(between.ends[0], force, None)
+                self._on_end(between.ends[1], -force, None)
 
     def _on_end(self, end: AttachmentModel, force: np.ndarray | None, moment: np.ndarray | None) -> None:
         """A force and a moment (T, 3) on what carries an end, where that is a cable."""

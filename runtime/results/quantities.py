@@ -6,6 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..parts.kinds import KINDS
+from ..parts.quantity import Quantity
+
 
 class Variable(NamedTuple):
     """An array with the names of its dimensions, its unit and what it is."""
@@ -16,48 +19,11 @@ class Variable(NamedTuple):
     long_name: str
 
 
-_XYZ, _TIME = ("time", "xyz"), ("time",)
+QUANTITIES: dict[str, dict[str, Quantity]] = {}
+"""What results tell of the parts of each group, by name."""
+for _kind in KINDS:
+    QUANTITIES.setdefault(_kind.group, {}).update(_kind.quantities)
 
-Labels = tuple[tuple[str, ...], str, str]
-"""Names of the dimensions of a quantity, its unit and what it is."""
-
-_SUPPORT: dict[str, Labels] = {"force": (_XYZ, "N", "force on the cable"),
-                               "moment": (_XYZ, "N m", "moment on the cable")}
-
-QUANTITIES: dict[str, dict[str, Labels]] = {
-    "bodies": {
-        "position": (_XYZ, "m", "position of the body's origin"),
-        "orientation": (("time", "wxyz"), "1", "unit quaternion from body axes to the ground's"),
-        "velocity": (_XYZ, "m/s", "velocity of the body's origin"),
-        "angular_velocity": (_XYZ, "rad/s", "angular velocity in body axes"),
-        "acceleration": (_XYZ, "m/s2", "acceleration of the body's origin"),
-        "angular_acceleration": (_XYZ, "rad/s2", "angular acceleration in body axes"),
-    },
-    "slides": {
-        "s": (_TIME, "m", "undeformed arc-length of the rider's place"),
-        "s_rate": (_TIME, "m/s", "rate of s"),
-        "s_acceleration": (_TIME, "m/s2", "second rate of s"),
-        "force": (_XYZ, "N", "force on the rider"),
-        "multiplier": (("time", "normal"), "N", "multipliers of the two constraints across the cable"),
-        "traction": (_TIME, "N", "force on the rider along the cable; of a driven slide its drive's power over s_rate"),
-        "moment": (_XYZ, "N m", "moment on the rider, of a slide that ties its axes to the cable's frame"),
-        "residual": (_TIME, "m", "distance of the rider's point to the cable"),
-    },
-    "pins": {"force": _SUPPORT["force"]},
-    "clamps": _SUPPORT,
-    "motions": _SUPPORT,
-    "ties": _SUPPORT,
-    "joints": {
-        "force": (_XYZ, "N", "force on what carries the end b, at that end"),
-        "moment": (_XYZ, "N m", "moment on what carries the end b, about that end"),
-        "residual": (_TIME, "1", "largest of its equations, in m or of cosines"),
-    },
-    "springs": {
-        "force": (_XYZ, "N", "force on the first end"),
-        "tension": (_TIME, "N", "force with which the ends are drawn together"),
-        "length": (_TIME, "m", "distance of the ends"),
-    },
-}
 ENERGIES = {
     "kinetic": "kinetic energy",
     "elastic": "elastic energy",
@@ -71,7 +37,7 @@ def labelled(rows) -> tuple[dict[str, Variable], dict[str, Variable]]:
     """Return results of the rows that `funicular.recording` names, with their labels; coordinates."""
     variables = {}
     coords = {
-        "time": Variable(_TIME, rows.time, "s", "time"),
+        "time": Variable(("time",), rows.time, "s", "time"),
         "xyz": Variable(("xyz",), np.array(["x", "y", "z"]), "1", "axis"),
     }
     for name, cable in rows.cables.items():
@@ -85,7 +51,7 @@ def labelled(rows) -> tuple[dict[str, Variable], dict[str, Variable]]:
         variables[f"{name}.nodal_velocity"] = Variable(
             dims, cable["nodal_velocity"], "m/s (r), 1/s (its gradients)", "rates of the nodal vectors"
         )
-    for name, body in getattr(rows, "modal", {}).items():
+    for name, body in rows.modal.items():
         mode, node = f"{name}.mode", f"{name}.node"
         eta, places = body["modal_coordinates"], body["nodes"]
         coords[mode] = Variable((mode,), np.arange(1, eta.shape[1] + 1), "1", "mode")
@@ -94,11 +60,11 @@ def labelled(rows) -> tuple[dict[str, Variable], dict[str, Variable]]:
         variables[f"{name}.modal_velocities"] = Variable(("time", mode), body["modal_velocities"],
                                                          "as the modes are, 1/s", "rates of the modal coordinates")
         variables[f"{name}.nodes"] = Variable(("time", node, "xyz"), places, "m", "places of the deformed body's nodes")
-    for group, quantities in QUANTITIES.items():
-        for name, arrays in getattr(rows, group, {}).items():
+    for group, parts in rows.parts.items():
+        for name, arrays in parts.items():
             for quantity, values in arrays.items():
-                along, units, long_name = quantities[quantity]
-                variables[f"{name}.{quantity}"] = Variable(along, values, units, long_name)
+                dims, units, long_name = QUANTITIES[group][quantity]
+                variables[f"{name}.{quantity}"] = Variable(dims, values, units, long_name)
     for name, values in rows.energy.items():
-        variables[f"energy.{name}"] = Variable(_TIME, values, "J", ENERGIES[name])
+        variables[f"energy.{name}"] = Variable(("time",), values, "J", ENERGIES[name])
     return variables, coords

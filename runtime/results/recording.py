@@ -12,12 +12,13 @@ from ..model.states import (
     body_state,
     joint_state,
     modal_state,
+    point_force_state,
     spatial,
-    spring_state,
     support_reaction,
     tie_force,
 )
 from ..parts.modal_body import ModalBody
+from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
 from ..solve.diagnosis import stopped
@@ -26,19 +27,16 @@ from ..solve.run import Simulation
 
 @dataclass
 class Rows:
-    """Output rows as plain arrays by name, time first. Units SI, vectors with three components."""
+    """Output rows as plain arrays by name, time first. Units SI, vectors with three components.
+
+    parts: what each part tells of itself, as the ``quantities`` of its class say, by group and label; cables: their
+    nodal vectors; modal: the coordinates of modal bodies.
+    """
 
     time: np.ndarray
     cables: dict[str, dict]
-    bodies: dict[str, dict]
     modal: dict[str, dict]
-    slides: dict[str, dict]
-    pins: dict[str, dict]
-    clamps: dict[str, dict]
-    motions: dict[str, dict]
-    ties: dict[str, dict]
-    joints: dict[str, dict]
-    springs: dict[str, dict]
+    parts: dict[str, dict[str, dict[str, np.ndarray]]]
     energy: dict[str, np.ndarray]
 
 
@@ -82,22 +80,20 @@ def named(model: Model, scene: SceneData, engine) -> Rows:
     def reaction(part) -> dict[str, np.ndarray]:
         return support_reaction(model, scene, part, rows["reaction"], q)
 
-    return Rows(
-        time=rows["time"],
-        cables=cables,
-        bodies=bodies,
-        modal=modal,
-        slides=slides,
-        pins={pin.label: {"force": reaction(pin)["force"]} for pin in scene.pins},
-        clamps={clamp.label: reaction(clamp) for clamp in scene.clamps},
-        motions={motion.label: reaction(motion) for motion in scene.motions},
-        ties={name: tie_force(model, scene, tie, rows["reaction"], q) for name, tie in scene.ties.items()},
-        joints={joint.name: joint_state(joint, rows["joint"][:, k])
-                for k, joint in enumerate(model.joints) if joint.slide is None},
-        springs={spring.name: spring_state(model, spring, rows["spring"][:, k], q)
-                 for k, spring in enumerate(model.springs)},
-        energy={name: rows[name] for name in ("kinetic", "elastic", "potential", "dissipated", "external")},
-    )
+    parts = {
+        "bodies": bodies,
+        "slides": slides,
+        "pins": {pin.label: {"force": reaction(pin)["force"]} for pin in scene.pins},
+        "clamps": {clamp.label: reaction(clamp) for clamp in scene.clamps},
+        "motions": {motion.label: reaction(motion) for motion in scene.motions},
+        "ties": {name: tie_force(model, scene, tie, rows["reaction"], q) for name, tie in scene.ties.items()},
+        "joints": {joint.name: joint_state(joint, rows["joint"][:, k])
+                   for k, joint in enumerate(model.joints) if joint.slide is None},
+        PointForce.group: {between.name: point_force_state(model, between, rows["point_force"][:, k], q)
+                           for k, between in enumerate(model.point_forces)},
+    }
+    energy = {name: rows[name] for name in ("kinetic", "elastic", "potential", "dissipated", "external")}
+    return Rows(rows["time"], cables, modal, parts, energy)
 
 
 def recorded(simulation: Simulation, scene: SceneData, settings: RunSettings) -> Recording:

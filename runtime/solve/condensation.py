@@ -1,4 +1,4 @@
-"""The matrices of a state over the coordinates that are left when springs' forces are eliminated."""
+"""The matrices of a state over the coordinates that are left when forces between points are eliminated."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ def fastest(K: csc_array, M: csc_array, unknowns=slice(None)) -> float:
 
 
 def condensed(full: csc_array, model: Model) -> tuple[csc_array, csc_array]:
-    """Stiffness over coordinates and free arc-lengths, springs' forces eliminated; the constraints on them."""
+    """Stiffness over coordinates and free arc-lengths, forces between points eliminated; the constraints on them."""
     n = model.n_band + model.n_border_dof
     dim = model.dim
     arc = np.array([n + slide.unknown for slide in model.slides if slide.drive < 0], dtype=int)
     forces = [n + slide.unknown + 1 + d for slide in model.slides for d in range(dim)]
     forces += [n + joint.unknown + r for joint in model.joints for r in range(joint.rows)
                if r not in joint.redundant_rows]
-    springs = np.array([n + s.unknown + d for s in model.springs for d in range(dim)], dtype=int)
+    between = np.array([n + force.unknown + d for force in model.point_forces for d in range(dim)], dtype=int)
     kept = np.concatenate([np.arange(n), arc])
     full = full.tocsr()
     K = full[kept][:, kept]
-    if len(springs):  # their rows are F - law(q): F = -C q
-        K = K - full[kept][:, springs] @ full[springs][:, kept]
+    if len(between):  # their rows are F - law(q): F = -C q
+        K = K - full[kept][:, between] @ full[between][:, kept]
     return K.tocsc(), full[np.array(forces, dtype=int)][:, kept].tocsc()

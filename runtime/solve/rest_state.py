@@ -13,8 +13,8 @@ from ..model.states import (
     body_state,
     joint_state,
     modal_state,
+    point_force_state,
     spatial,
-    spring_state,
     support_reaction,
     tie_force,
 )
@@ -152,7 +152,7 @@ class RestState:
             found |= {f"{part.label}.{name}": value[0] for name, value in given_.items()}
         for name, tie in scene.ties.items():
             found |= {f"{name}.{part}": value[0] for part, value in tie_force(model, scene, tie, reaction, q).items()}
-        for k, spring in enumerate(model.springs):
-            values = spring_state(model, spring, self.placed["spring"][k][None], q)
-            found |= {f"{spring.name}.{name}": value[0] for name, value in values.items()}
+        for between, force in zip(model.point_forces, self.placed["point_force"], strict=True):
+            values = point_force_state(model, between, force[None], q)
+            found |= {f"{between.name}.{name}": value[0] for name, value in values.items()}
         return found

@@ -83,8 +83,9 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     model = build(scene)
     if initial is not None:
         initial.start(model)
-    pace = pauses(int(np.ceil(settings.duration / settings.output_step)) + 1, _check_size(model, settings, stream))
     engine, watcher = Engine(model), EventWatcher(scene, model)
+    _check_size(engine.row_bytes, settings, stream)
+    pace = pauses(int(np.ceil(settings.duration / settings.output_step)) + 1, engine.row_bytes)
     engine.watch(watcher)
     messages = drop_redundant_rows(model, engine)
     if initial is not None:
@@ -165,13 +166,10 @@ def _broken_velocities(model: Model, change: np.ndarray) -> list[str]:
     return [f"initial velocities broke a joint: changed by up to {largest:.3g} m/s to keep it"]
 
 
-def _check_size(model: Model, settings: RunSettings, stream: Sink | None) -> int:
-    """Return the bytes of a row; refuses what no memory holds or, for a stream, what does not fit on its disk."""
-    per_row = 8 * (model.n_q + 3 * model.n_dof + 12 * len(model.slides) + 7 * len(model.joints)
-                   + 3 * len(model.springs) + 6)
-    need = per_row * settings.duration / settings.output_step
+def _check_size(row_bytes: int, settings: RunSettings, stream: Sink | None) -> None:
+    """Refuse what no memory holds or, for a stream, what does not fit on its disk. Raises SceneError."""
+    need = row_bytes * settings.duration / settings.output_step
     most, where = (MOST_OUTPUT, "") if stream is None else (stream.free, " that are free on the disk")
     if not need < most:
         raise SceneError("run", f"output_step {settings.output_step:.6g} s makes {need:.3g} bytes of results, more "
                          f"than the {most:.3g}{where}", "take a larger output_step")
-    return per_row

@@ -66,8 +66,8 @@ class StaticProblem:
         model = self.model
         lengths = [cable.length * cable.n_elements for cable in model.cables]
         lengths += [float(np.linalg.norm(model.q[b.configuration : b.configuration + model.dim])) for b in model.bodies]
-        gaps = [attachment_points(model, s.ends[1], model.q[None]) - attachment_points(model, s.ends[0], model.q[None])
-                for s in model.springs]
+        gaps = [np.subtract(*(attachment_points(model, end, model.q[None]) for end in force.ends))
+                for force in model.point_forces]
         return max([*lengths, *(float(np.linalg.norm(gap)) for gap in gaps)], default=0.0) or 1.0
 
     def load(self, fraction: float) -> None:

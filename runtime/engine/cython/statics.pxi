@@ -59,9 +59,9 @@ cdef class Statics(Translation):
         fu_system_solve(&self.run.newton, &LAPACK, self.run.rhs)
         return np.array([self.run.rhs[i] for i in range(total)]), bool(self.run.newton.definite)
 
-    def place(self, double t=0.0, q=None, s=None, force=None, multipliers=None, spring=None):
+    def place(self, double t=0.0, q=None, s=None, force=None, multipliers=None, point_force=None):
         """Set the static state: time, configuration (n_q,), arc-lengths, forces of slides (n, 3), multipliers of joints
-        (n, 6), forces of springs (n, 3); None: as built.
+        (n, 6), forces between points (n, 3); None: as built.
 
         Prescribed dofs take their values at t.
         """
@@ -80,7 +80,7 @@ cdef class Statics(Translation):
                 element[i] = min(max(int(arc_length[i] // length), 0), n - 1)
         fu_touch(&self.model, state)
         forces = self._view(state, "forces")
-        given = {"slide": force, "joint": multipliers, "spring": spring}
+        given = {"slide": force, "joint": multipliers, "point_force": point_force}
         for i in range(self.model.n_couplings):
             c = self.couplings[i]
             values = given.get(self._kind(c))
@@ -97,7 +97,7 @@ cdef class Statics(Translation):
         forces = self._view(state, "forces")
         return {"q": self._view(state, "q").copy(), "s": self._view(state, "s").copy(),
                 "force": self._own("slide", forces, 3), "multipliers": self._own("joint", forces, 6),
-                "spring": self._own("spring", forces, 3)}
+                "point_force": self._own("point_force", forces, 3)}
 
     cdef _own(self, str kind, forces, int width):
         """(couplings of a kind, width): entries of `forces`, zeros after those that one has."""
@@ -110,8 +110,8 @@ cdef class Statics(Translation):
         return np.array(found).reshape(-1, width)
 
     cdef str _kind(self, const fu_coupling *coupling):
-        """"load", "slide", "joint", or "spring" for all forces between two points."""
-        return "spring" if coupling.type.law != NULL else coupling.type.name.decode()
+        """"load", "slide", "joint", or "point_force" for all forces between two points."""
+        return "point_force" if coupling.type.law != NULL else coupling.type.name.decode()
 
     cdef int _count(self, str kind):
         """Number of couplings of a kind."""

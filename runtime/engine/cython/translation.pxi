@@ -25,12 +25,12 @@ cdef class Translation(Arrays):
         self.shapes = <fu_shape *>PyMem_Calloc(len(model.bodies) + 1, sizeof(fu_shape))
         self.slides = <fu_slide *>PyMem_Calloc(len(model.slides) + 1, sizeof(fu_slide))
         self.joints = <fu_joint *>PyMem_Calloc(len(model.joints) + 1, sizeof(fu_joint))
-        self.point_forces = <fu_point_force *>PyMem_Calloc(len(model.springs) + 1, sizeof(fu_point_force))
+        self.point_forces = <fu_point_force *>PyMem_Calloc(len(model.point_forces) + 1, sizeof(fu_point_force))
         self.motions = <fu_motion *>PyMem_Calloc(len(model.motions) + 1, sizeof(fu_motion))
         self.dead_loads = <fu_dead_load *>PyMem_Calloc(len(model.dead_loads) + 1, sizeof(fu_dead_load))
         self.loads = <fu_load *>PyMem_Calloc(len(model.loads) + 1, sizeof(fu_load))
         self.signals = <fu_signal *>PyMem_Calloc(len(model.signals) + 1, sizeof(fu_signal))
-        n_couplings = len(model.loads) + len(model.slides) + len(model.joints) + len(model.springs)
+        n_couplings = len(model.loads) + len(model.slides) + len(model.joints) + len(model.point_forces)
         self.couplings = <fu_coupling **>PyMem_Calloc(n_couplings + 1, sizeof(fu_coupling *))
         if not (self.cables and self.bodies and self.shapes and self.slides and self.joints and self.point_forces
                 and self.motions and self.dead_loads and self.loads and self.signals and self.couplings):
@@ -175,7 +175,7 @@ cdef class Translation(Arrays):
             self.couplings[n], n = &self.slides[i].base, n + 1
         for i in range(len(model.joints)):
             self.couplings[n], n = &self.joints[i].base, n + 1
-        for i in range(len(model.springs)):
+        for i in range(len(model.point_forces)):
             self.couplings[n], n = &self.point_forces[i].base, n + 1
         fu_number_couplings(self.couplings, n, &self.model)
 
@@ -187,8 +187,8 @@ cdef class Translation(Arrays):
             if j.kernel.coordinates + 1 > FU_MAX_COORDINATES:
                 raise ValueError(f"{slide.kernel}: more coordinates than the engine's {FU_MAX_COORDINATES}")
             self._coupling(&j.base, "slide", i, slide.unknown, [slide.mass] * model.dim)
-            j.base.n_coordinates, j.base.multiplier, j.base.n_multipliers = 1, slide.multiplier, slide.max_multipliers
-            for k in range(model.dim, slide.max_multipliers):
+            j.base.n_coordinates, j.base.multiplier, j.base.n_multipliers = 1, slide.multiplier, slide.n_multipliers
+            for k in range(model.dim, slide.n_multipliers):
                 j.base.scale[k] = slide.mass
             j.cable, j.rider_is_rigid, j.drive = slide.cable, slide.rider_is_rigid, slide.drive
             j.carries_director = slide.carries_director
@@ -215,10 +215,10 @@ cdef class Translation(Arrays):
             l.signal, l.c0 = joint.signal, joint.base
             for k in range(2):
                 self._end(&l.ends[k], joint.ends[k], tables)
-        for i, force in enumerate(model.springs):
+        for i, force in enumerate(model.point_forces):
             p = &self.point_forces[i]
             self._coupling(&p.base, force.type, i, force.unknown, [force.mass] * force.dim)
-            p.kernels = _found(tables, force.type, force.kernel)
+            p.kernels = _found(tables, force.type, force.kernel) if force.kernel else NULL
             p.base.is_damped, p.dim = force.is_damped, force.dim
             if len(force.parameters) > FU_MAX_PARAMETERS:
                 raise ValueError(f"{force.type}: more parameters than the engine's {FU_MAX_PARAMETERS}")
