@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, TextIO
 
 import typer
 
@@ -23,7 +23,7 @@ Libraries = Annotated[list[Path] | None, typer.Option(
 
 
 def _bundled(incomplete: str) -> list[str]:
-    """Names of bundled scenes that begin so, for completion; where there is none, the shell completes paths."""
+    """Return names of bundled scenes that begin so, for completion; where there is none, the shell completes paths."""
     from funicular.scene_file import bundled_scenes
 
     return [name for name in bundled_scenes() if name.startswith(incomplete)]
@@ -52,13 +52,14 @@ def _options(
 
 
 @contextmanager
-def _told_without_traceback() -> Iterator[None]:
+def _reported_without_traceback() -> Iterator[None]:
     """Errors and warnings of funicular become a line on stderr each; an error ends the command with 1."""
     from .errors import FunicularError, FunicularWarning
 
-    def tell(message, category, *place) -> None:
+    def tell(message: Warning | str, category: type[Warning], filename: str, lineno: int,
+             file: TextIO | None = None, line: str | None = None) -> None:
         if not issubclass(category, FunicularWarning):
-            return show(message, category, *place)
+            return show(message, category, filename, lineno, file, line)
         print(f"note: {message}", file=sys.stderr)
 
     with warnings.catch_warnings():
@@ -105,7 +106,7 @@ def run(
     from .results.files import check_writable
     from .scene_file import load_scene
 
-    with _told_without_traceback():
+    with _reported_without_traceback():
         described = load_scene(scene, library or ())
         path = Path(output or described.run_settings.get("save") or f"{Path(scene).stem}.nc")
         pictures = plot_dir or (path.parent if plot or forces else None)
@@ -125,7 +126,7 @@ def run(
 
 
 def _existing(directory: Path) -> Path:
-    """The nearest directory above, itself included, that exists: the rest is made when it is needed."""
+    """Return the nearest directory above, itself included, that exists: the rest is made when it is needed."""
     return next((d for d in (directory, *directory.parents) if os.path.exists(d)), directory)
 
 
@@ -168,7 +169,7 @@ def bench(
 ) -> None:
     """Measure error against time over integrators, tolerances and meshes.
 
-    The reference is computed, too, and how far it is converged is told. Combinations that fail are told, as well.
+    The reference is computed, too, and its own error is reported. Combinations that fail are reported, too.
     """
     from rich.console import Console
 
@@ -177,7 +178,7 @@ def bench(
     from .results.files import check_writable
     from .scene_file import load_scene
 
-    with _told_without_traceback():
+    with _reported_without_traceback():
         described, name = load_scene(scene, library or ()), f"{Path(scene).stem}-bench"
         numbers = _numbers(tols)
         tried = grid(described, integrators=_listed(integrators), tols=numbers, elements=_listed(elements),
@@ -196,7 +197,7 @@ def _listed(text: str | None) -> list[str] | None:
 
 def _numbers(text: str) -> list[float]:
     try:
-        return list(map(float, _listed(text)))
+        return [float(word) for word in _listed(text) or ()]
     except ValueError as error:
         raise typer.BadParameter(f"--tols: {error}") from None
 
@@ -220,13 +221,13 @@ def derive(
     """Derive the equations and write generated/, or compare it with them; or make a library of your own elements."""
     if (spec is None) != (out is None) or (spec is not None and (names or check)):
         raise typer.BadParameter("--spec FILE and --out DIR go together, and with nothing else")
-    if spec is None:
+    if spec is None or out is None:
         from funicular.derive.pipeline import main
 
         raise typer.Exit(main(names or [], check))
     from funicular.derive.user_elements.command import main as make_library
 
-    with _told_without_traceback():
+    with _reported_without_traceback():
         make_library(spec, out)
 
 

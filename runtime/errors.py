@@ -40,7 +40,7 @@ class SceneError(FunicularError, ValueError):
         self.place, self.cause, self.remedy = place, cause, remedy
 
     def inside(self, outer: str) -> SceneError:
-        """The same error seen from ``outer`` (a file, say)."""
+        """Return the same error seen from ``outer`` (a file, say)."""
         return SceneError(f"{outer}: {self.place}", self.cause, self.remedy)
 
 
@@ -89,7 +89,7 @@ def enough_memory() -> Iterator[None]:
 
 
 def shown_path(path: str | os.PathLike) -> str:
-    """A path for a message: what does not print is escaped, and the middle of a very long one is left out."""
+    """Return a path for a message: what does not print is escaped, and the middle of a very long one is left out."""
     text = os.fspath(path)
     text = text if text.isprintable() else ascii(text)[1:-1]
     return text if len(text) <= 2 * _MOST_SHOWN else f"{text[:_MOST_SHOWN]}...{text[-_MOST_SHOWN:]}"

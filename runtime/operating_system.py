@@ -6,14 +6,21 @@ POSIX systems take their own calls. The others are for Windows, where `fcntl` an
 from __future__ import annotations
 
 import ctypes
+import importlib
 import os
 import threading
+from typing import Any
 
-try:
-    import fcntl
-except ModuleNotFoundError:
-    fcntl = None
-    import msvcrt
+
+def _module(name: str) -> Any:
+    """Return a module of Python's, None where this system lacks it."""
+    try:
+        return importlib.import_module(name)
+    except ModuleNotFoundError:
+        return None
+
+
+fcntl, msvcrt = _module("fcntl"), _module("msvcrt")  # one of the two, for POSIX and for Windows
 
 # Flags of os.open: bytes as they are, none for child processes, and no links, where a system has such a flag.
 BYTES = getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_NOINHERIT", 0)
@@ -43,7 +50,7 @@ def lock(descriptor: int) -> None:
 
 
 def read_at(descriptor: int, size: int, at: int) -> bytes:
-    """The bytes of a file from `at` on: `size`, or fewer where the file ends. Raises OSError."""
+    """Return the bytes of a file from `at` on: `size`, or fewer where the file ends. Raises OSError."""
     if hasattr(os, "pread"):
         return os.pread(descriptor, size, at)
     with _one_at_a_time:
@@ -70,10 +77,11 @@ def write_at(descriptor: int, data: memoryview, at: int) -> int:
 
 
 def machine_memory() -> int:
-    """Bytes of memory that the machine has."""
+    """Return the bytes of memory that the machine has."""
     if hasattr(os, "sysconf"):
         return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     status = (ctypes.c_uint64 * 8)(64)  # MEMORYSTATUSEX: its size and the load in the first word, then the total
-    if not ctypes.windll.kernel32.GlobalMemoryStatusEx(status):
-        raise ctypes.WinError()
+    windows: Any = ctypes  # whose names for Windows type checkers miss elsewhere
+    if not windows.windll.kernel32.GlobalMemoryStatusEx(status):
+        raise windows.WinError()
     return status[1]

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 
-def rotate(quaternion: np.ndarray, vector: np.ndarray) -> np.ndarray:
-    """A vector (..., 3) of body axes in the ground's, by unit quaternions (..., 4)."""
-    quaternion, vector = np.asarray(quaternion), np.asarray(vector)
-    w, axis = quaternion[..., :1], quaternion[..., 1:]
-    turn = 2 * np.cross(axis, vector)
-    return vector + w * turn + np.cross(axis, turn)
+def rotate(quaternion: ArrayLike, vector: ArrayLike) -> np.ndarray:
+    """Return vectors (..., 3) given in body axes in the ground's, by unit quaternions (..., 4)."""
+    components, drawn = np.asarray(quaternion), np.asarray(vector)
+    w, axis = components[..., :1], components[..., 1:]
+    turn = 2 * np.cross(axis, drawn)
+    return drawn + w * turn + np.cross(axis, turn)

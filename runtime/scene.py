@@ -42,7 +42,7 @@ class Scene(SceneMethods):
     """Cables, bodies, and what joins, holds and loads them.
 
     ``gravity`` in m/s²; ``cables``, ``bodies``, ``joints``, ``slides``, ``ties``, ``loads``, ``springs``, ``events``
-    are dicts by name; ``pins``, ``clamps`` and ``motions`` are lists; ``messages`` tells what was adjusted;
+    are dicts by name; ``pins``, ``clamps`` and ``motions`` are lists; ``messages`` lists what was adjusted;
     ``run_settings`` and ``equilibrium_settings`` hold the settings that a scene file gives.
     """
 
@@ -52,7 +52,7 @@ class Scene(SceneMethods):
         Returns the part as it stands in the scene. Raises SceneError.
         """
         if part.is_named():
-            if part.name is None:
+            if part.given_name is None:
                 part = part.model_copy(update={"name": self.free_name(type(part))})
             self.check_name(part)
         if isinstance(part, ModalBody):
@@ -65,7 +65,7 @@ class Scene(SceneMethods):
     @classmethod
     def from_toml(cls, text: str, origin: str = "scene", directory: str | os.PathLike = "",
                   libraries: Iterable[str | os.PathLike] = ()) -> Scene:
-        """A scene from the text of a scene file; ``origin`` is what error messages call it.
+        """Return a scene from the text of a scene file; ``origin`` is what error messages call it.
 
         directory: where paths in the text start from, by default the working directory; libraries: directories of
         elements that the text may load. Raises SceneError.
@@ -73,7 +73,7 @@ class Scene(SceneMethods):
         return read(text, origin, cls, directory, libraries)
 
     def to_toml(self) -> str:
-        """The scene as the text of a scene file."""
+        """Return the scene as the text of a scene file."""
         return dumps(self)
 
     def check(self) -> None:
@@ -129,6 +129,19 @@ class Scene(SceneMethods):
             raise SceneError("run", f"resume must be true or false, got {shown(resume)}")
         if resume and settings.save is None:
             raise ResultFileError("run: there is nothing to resume without a file of results; name it with save")
+        run = self._simulated(settings, state, resume, progress)
+        match run.status:
+            case "end_of_cable":
+                raise EndOfCableError(run.report["message"], run)
+            case "no_convergence":
+                raise ConvergenceError(run.report["message"], run)
+            case "interrupted":
+                warnings.warn(run.report["message"], FunicularWarning, stacklevel=2)
+        return run
+
+    def _simulated(self, settings: RunSettings, state: Equilibrium | None, resume: bool,
+                   progress: bool | Callable[[float], None] | None) -> Run:
+        """Return the run with these settings, however it ended, from a state or as the settings say."""
         from .results.streaming import Stream  # brings SciPy and the engine
 
         saving = nullcontext() if settings.save is None else Stream(settings.save, self, settings, resume,
@@ -142,16 +155,8 @@ class Scene(SceneMethods):
             with progress_bar(settings.duration, progress) as on_progress:
                 simulation = simulate(self, settings, on_progress, initial=state, stream=stream)
             recording = recorded(simulation, self, settings)
-            run = (stream.finish(recording) if stream
-                   else Run.from_recording(recording, self, settings, self.from_toml))
-        match recording.status:
-            case "end_of_cable":
-                raise EndOfCableError(recording.message, run)
-            case "no_convergence":
-                raise ConvergenceError(recording.message, run)
-            case "interrupted":
-                warnings.warn(recording.message, FunicularWarning, stacklevel=2)
-        return run
+            return (stream.finish(recording) if stream
+                    else Run.from_recording(recording, self, settings, self.from_toml))
 
     def equilibrium(
         self,
@@ -189,7 +194,7 @@ class Scene(SceneMethods):
         """The ``n`` lowest natural frequencies and shapes, about the scene as drawn or a state from `equilibrium`.
 
         As drawn, joints and slides bear nothing yet: what swings by its weight does so about its equilibrium alone.
-        Damping and friction are left out; what rounding hides is told, as in `Modes`. Raises SceneError.
+        Damping and friction are left out; what rounding hides is reported, as in `Modes`. Raises SceneError.
         """
         settings = ModeSettings(n=n)
         state = None if about is None else _equilibrium_state(self, about)

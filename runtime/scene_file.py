@@ -16,7 +16,7 @@ loads = Scene.from_toml
 
 
 def bundled_scenes() -> dict[str, Path]:
-    """The scenes that come with the package, by name."""
+    """Return the scenes that come with the package, by name."""
     return {path.stem: path for path in sorted(SCENES.glob("*.toml"))}
 
 

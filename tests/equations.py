@@ -37,7 +37,7 @@ def table() -> str:
     rows = ["| equations | subject | file |", "|---|---|---|"]
     files: dict[str, dict[str, list[int]]] = {}
     for number, file in tags():
-        subject = SUBJECTS[file if file in SUBJECTS else file.rpartition("/")[0]]
+        subject = next(subject for place, subject in SUBJECTS.items() if file.startswith(place))
         files.setdefault(subject, {}).setdefault(file, []).append(number)
     for subject, numbers in files.items():
         every = ", ".join(ranges(sorted(n for of_file in numbers.values() for n in of_file)))

@@ -19,9 +19,11 @@ PACKAGES = {"runtime": "funicular", "derive": "funicular/derive", "generated": "
 
 
 def installed_tree(directory: Path) -> None:
-    """Copy the Python files of the package to where they stand once it is installed."""
+    """Copy the Python files of the package, and the stubs of their types, to where they stand once it is installed."""
     for folder, package in PACKAGES.items():
-        for file in (TOP / folder).rglob("*.py"):
+        for file in (TOP / folder).rglob("*.py*"):
+            if file.suffix not in (".py", ".pyi"):
+                continue
             copy = directory / package / file.relative_to(TOP / folder)
             copy.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(file, copy)

@@ -8,6 +8,7 @@ from funicular import Circle, Material, Scene
 from funicular.engine import Engine
 from funicular.integrators import EnergyMomentum
 from funicular.model.build import build
+from shared_scenes import cable_scene
 from test_energy_integrator import CABLES, PLANAR, balance, changes, crossing, free, momenta
 
 RADII = (0.0, 0.5, 0.8, 1.0)
@@ -64,7 +65,7 @@ def test_the_energy_of_an_oscillator_never_grows(spectral_radius, omega):
 
 
 @pytest.mark.parametrize("kind", [*CABLES, *PLANAR])
-def test_momenta_are_kept_and_the_books_close(kind):
+def test_momenta_are_kept_and_the_energy_balances(kind):
     scene = free(planar=kind in PLANAR, **(CABLES | PLANAR)[kind])
     run = scene.run(duration=0.5, step=5e-4, output_step=0.05, integrator="energy", spectral_radius=0.5)
     errors = balance(run), *map(changes, momenta(scene, run))
@@ -127,11 +128,9 @@ def test_order_in_time_is_two(kind):
 
 def pendulum(element: str, stretch: float) -> Scene:
     """A steel wire falls from level; let go 0.1 % too long it rings, at h omega of 12 and more in steps of 1 ms."""
-    scene = Scene()
-    scene.cable("wire", start=(0, 0, 0), end=(1, 0, 0), elements=8, element=element, rest_length=1 / (1 + stretch),
-                section=Circle(radius=1e-3), material=Material(youngs_modulus=2e11, poisson_ratio=0, density=7850))
-    scene.pin("wire", s=0.0)
-    return scene
+    return cable_scene(pins=(0.0,), elements=8, element=element, rest_length=1 / (1 + stretch),
+                       section=Circle(radius=1e-3),
+                       material=Material(youngs_modulus=2e11, poisson_ratio=0, density=7850))
 
 
 @pytest.mark.parametrize("element", ["cable12", "cable8p", "beam24"])
@@ -166,7 +165,7 @@ def test_a_spectral_radius_of_one_is_the_integrator_as_it_was():
     assert runs[0]["energy.dissipated"].max() == 0.0
 
 
-def test_crossing_nodes_keeps_the_books():
+def test_crossing_nodes_keeps_the_energy_balance():
     run = crossing(**CABLES["green"]).run(duration=1.0, tol=1e-4, output_step=0.05, integrator="energy",
                                           spectral_radius=0.5)
     assert run.report["element_crossings"] > 0

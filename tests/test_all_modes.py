@@ -5,6 +5,7 @@ import warnings
 import numpy as np
 import pytest
 from funicular import Circle, Friction, FunicularWarning, GeneralSection, Material, Rectangle, Scene, SceneError
+from shared_scenes import cable_scene
 
 STEEL = Material(youngs_modulus=2e11, poisson_ratio=0.3, density=7850)
 SQUARE = Rectangle(height=0.02, width=0.02)
@@ -14,12 +15,8 @@ FEW = [pytest.param(n, marks=() if n in (16, 128, 200) else pytest.mark.slow) fo
 
 def beam(elements, element="cable12", rest_length=1.0, section=SQUARE, material=STEEL, **end) -> Scene:
     """1 m between two pins."""
-    scene = Scene(gravity=(0, 0, 0))
-    cable = scene.cable("beam", start=(0, 0, 0), end=(1, 0, 0), elements=elements, element=element, section=section,
-                        material=material, rest_length=rest_length, strain="engineering", **end)
-    scene.pin(cable, s=0.0)
-    scene.pin(cable, s=cable.length)
-    return scene
+    return cable_scene("beam", pins="ends", gravity=(0, 0, 0), elements=elements, element=element, section=section,
+                       material=material, rest_length=rest_length, strain="engineering", **end)
 
 
 def bending(n: int, each: int, compression: float = 0.0) -> np.ndarray:
@@ -44,7 +41,7 @@ def test_and_of_a_planar_beam_once(elements):
 
 @pytest.mark.slow
 def test_two_thousand_elements():
-    """Rounding of the stiffness limits them: 7e-5 measured in the first frequency, within what is told."""
+    """Rounding of the stiffness limits them: 7e-5 measured in the first frequency, within what is reported."""
     with pytest.warns(FunicularWarning, match="rounding of the stiffness may change the frequencies of modes 1, 2 by"):
         found = beam(2000).modes(8)
     expected = np.sqrt(bending(4, 2))
@@ -126,18 +123,18 @@ def test_a_heavy_body_on_a_light_string(elements, mass):
 
 def test_a_thin_cable_is_resolved():
     """A micrometre thick and 1 m long, of 200 elements: 1e17 lies between its lowest and its highest square. The
-    lengths of elements are rounded, which strains them: that changes the squares by 2.5e-5, and is told.
+    lengths of elements are rounded, which strains them: that changes the squares by 2.5e-5, and is reported.
     """
     found, expected = beam(200, section=Rectangle(height=1e-6, width=1e-6)).modes(4), np.sqrt(2.5e-9 * bending(2, 2))
     np.testing.assert_allclose(found.angular_frequency, expected, rtol=2e-5)
     assert np.all(np.abs(found.angular_frequency - expected) < found.uncertainty)
 
 
-def test_a_thinner_one_is_told_to_be_uncertain():
+def test_a_thinner_one_is_reported_as_uncertain():
     """At 10 nm the strain that rounding makes of the elements' lengths rules."""
-    with pytest.warns(FunicularWarning, match="^rounding of the stiffness") as told:
+    with pytest.warns(FunicularWarning, match="^rounding of the stiffness") as warned:
         found = beam(200, section=Rectangle(height=1e-8, width=1e-8)).modes(4)
-    assert [str(w.message) for w in told] == found.messages
+    assert [str(w.message) for w in warned] == found.messages
     w, grows = found.angular_frequency, found.growth_rate
     assert np.all(np.abs(np.where(grows > 0, -grows, w) - np.sqrt(2.5e-13 * bending(2, 2))) < 2 * found.uncertainty)
 
@@ -165,7 +162,7 @@ def test_a_body_of_1e20_kg():
     assert found[6] == pytest.approx(np.sqrt(2e11 * SQUARE.area / 1e20), rel=1e-4)
 
 
-def test_friction_is_left_out_and_told():
+def test_friction_is_left_out_and_reported():
     scene = beam(8, section=Circle(radius=0.01))
     for name, s in (("a", 0.3), ("b", 0.6)):
         scene.rigid_body(name, mass=1.0, inertia=(1e-3, 1e-3, 1e-3), position=(s, 0, 0))

@@ -1,11 +1,11 @@
 """Bad input: each refusal names the place, the cause and, where it helps, the remedy."""
 
 import math
-import re
 
 import funicular
 import numpy as np
 import pytest
+from expectations import refused
 from funicular import Circle, Material, Rectangle, ResultFileError, Scene, SceneError, Tube
 
 NAN, INF = math.nan, math.inf
@@ -19,11 +19,6 @@ CABLE = {
     "material": Material(**STEEL),
 }
 BODY = {"mass": 1.0, "inertia": (1e-3, 1e-3, 1e-3), "position": (0.25, 0, 0)}
-
-
-def refused(message: str, error=SceneError):
-    """The whole message, so that no part of it can get lost."""
-    return pytest.raises(error, match="^" + re.escape(message) + "$")
 
 
 def scene():

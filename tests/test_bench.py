@@ -1,4 +1,4 @@
-"""`funicular bench`: its errors are errors, its reference is converged, what fails is told and the rest goes on."""
+"""`funicular bench`: its errors are errors, its reference is converged, what fails is reported and the rest goes on."""
 
 import csv
 import re
@@ -8,6 +8,7 @@ import pytest
 from funicular import Material, Rectangle, Scene, SceneError
 from funicular.bench.bench import Mesh, bench, grid
 from funicular.cli import app
+from shared_scenes import cable_scene
 from typer.testing import CliRunner
 
 TOLS = (1e-3, 1e-4)
@@ -16,17 +17,14 @@ DURATION = 0.2
 
 def swing() -> Scene:
     """A planar pendulum with a pin between two of its elements, so that meshes of an odd number are refused."""
-    scene = Scene()
-    rope = scene.cable("rope", start=(0, 0, 0), end=(1, 0, 0), elements=2, element="cable8p",
-                       section=Rectangle(height=0.02, width=0.02),
-                       material=Material(youngs_modulus=2e6, poisson_ratio=0.0, density=7200))
-    scene.pin(rope, s=0.5)
+    scene = cable_scene("rope", pins=(0.5,), elements=2, element="cable8p", section=Rectangle(height=0.02, width=0.02),
+                        material=Material(youngs_modulus=2e6, poisson_ratio=0.0, density=7200))
     scene.run_settings = {"duration": DURATION, "step": 0.01}
     return scene
 
 
 @pytest.fixture(scope="module")
-def told(tmp_path_factory):
+def benchmark(tmp_path_factory):
     """Standard output of the command, rows of its CSV file, and its directory."""
     directory = tmp_path_factory.mktemp("bench")
     (directory / "swing.toml").write_text(swing().to_toml())
@@ -38,8 +36,8 @@ def told(tmp_path_factory):
         return result.stdout, list(csv.DictReader(file)), directory / "out"
 
 
-def test_every_combination_has_a_row(told):
-    _, rows, directory = told
+def test_every_combination_has_a_row(benchmark):
+    _, rows, directory = benchmark
     assert [(row["integrator"], row["mesh"], float(row["tol"])) for row in rows] == [
         ("genalpha", mesh, tol) for mesh in ("x1", "x2", "3") for tol in TOLS]
     assert (directory / "swing-bench.png").read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
@@ -47,11 +45,11 @@ def test_every_combination_has_a_row(told):
         assert float(row["cpu_s"]) > 0 and float(row["set_up_s"]) > 0 and int(row["steps"]) > 10
 
 
-def test_errors_are_distances_from_the_converged_motion(told):
+def test_errors_are_distances_from_the_converged_motion(benchmark):
     """Against one that steps of equal size give."""
     given = {"output_step": DURATION / 50, "integrator": "genalpha"}
     exact = swing().run(DURATION, step=2e-5, **given)["rope.nodal_vectors"][:, -1, 0]
-    for row in told[1][:2]:
+    for row in benchmark[1][:2]:
         run = swing()
         run.run_settings = {}
         found = run.run(DURATION, tol=float(row["tol"]), **given)["rope.nodal_vectors"][:, -1, 0]
@@ -60,8 +58,8 @@ def test_errors_are_distances_from_the_converged_motion(told):
         assert float(row["time_error"]) >= error / np.linalg.norm(exact - exact[0], axis=1).max() * 0.95
 
 
-def test_the_reference_is_converged_and_says_so(told):
-    stdout, rows, _ = told
+def test_the_reference_is_converged_and_says_so(benchmark):
+    stdout, rows, _ = benchmark
     for first, second in (rows[0:2], rows[2:4]):
         assert 0 < float(first["reference_agreement"]) < 0.1 * float(second["time_error"])
         assert 2 < float(first["time_error"]) / float(second["time_error"]) < 50
@@ -72,14 +70,14 @@ def test_the_reference_is_converged_and_says_so(told):
     assert "reference of all meshes: x4; with it agree x1 to" in stdout
 
 
-def test_a_combination_that_fails_is_told(told):
-    stdout, rows, _ = told
+def test_a_combination_that_fails_is_reported(benchmark):
+    stdout, rows, _ = benchmark
     why = 'pin on "rope": s must be a node of the cable, got 0.5 m; nodes are at 0, 0.333333333, 0.666666667, 1 m'
     assert [row["status"] for row in rows] == ["completed"] * 4 + [why] * 2
     assert f"failed: genalpha on 3, tol 0.001, 0.0001: {why}" in stdout
 
 
-def test_a_run_that_stops_early_is_told():
+def test_a_run_that_stops_early_is_reported():
     """A rider that leaves its cable: the reference has no motion to the end, either."""
     scene = swing()
     scene.rigid_body("A", mass=1.0, inertia=(1e-3, 1e-3, 1e-3), position=(0.9, 0, 0), velocity=(5, 0, 0))

@@ -5,10 +5,10 @@ Tolerances without another reason are what the wire's own motion leaves (see wir
 
 import numpy as np
 import pytest
+from expectations import energy_error, largest, slide_events, to_the_end
 from funicular import Buffer, EndOfCableError, Friction, HardStop, Material, Rectangle, Scene, TableSignal
-from scenery import largest, to_the_end
 from scipy.optimize import brentq
-from wires import LENGTH, MASS, G, block, told, unbalanced
+from shared_scenes import LENGTH, MASS, G, block
 
 every_integrator = pytest.mark.parametrize("integrator", ["genalpha", "radau", "explicit"])
 both_ends = pytest.mark.parametrize(("end", "way"), [("at_end", 1), ("at_start", -1)])
@@ -54,7 +54,7 @@ def test_momentum_passes_to_a_cable_that_can_move(integrator, restitution):
                 material=Material(youngs_modulus=1e6, poisson_ratio=0.0, density=4000))
     block(0.95, 1.0, weight=0, scene=scene, at_end=HardStop(restitution=restitution))
     run = scene.run(0.1, integrator=integrator, tol=1e-8, output_step=1e-3)
-    assert told(run)[0] == "struck the end"
+    assert slide_events(run)[0] == "struck the end"
     lengths = np.array([0.25, 0.5, 0.25])  # of cubic Hermite elements: a node's r has half of both, slopes l^2/12
     slopes = np.array([0.5**2 / 12, 0, -(0.5**2) / 12])
     v = run["wire.nodal_velocity"]
@@ -62,7 +62,7 @@ def test_momentum_passes_to_a_cable_that_can_move(integrator, restitution):
     whole = momentum + MASS * run["A.velocity"]
     np.testing.assert_allclose(whole, np.broadcast_to([2.0, 0, 0], whole.shape), atol=1e-9)
     # genalpha does not keep the energy of vibrations that the step barely resolves
-    assert unbalanced(run) < (1e-3 if integrator == "genalpha" else 1e-6)
+    assert energy_error(run) < (1e-3 if integrator == "genalpha" else 1e-6)
 
 
 @every_integrator
@@ -72,14 +72,14 @@ def test_a_block_bounces_until_it_rests(integrator):
     down = G * np.sin(0.5)
     first = np.sqrt(2 / down)
     events = run.report["events"]
-    assert told(run) == ["struck the end"] * 8 + ["came to rest at the end"]
+    assert slide_events(run) == ["struck the end"] * 8 + ["came to rest at the end"]
     times = [event["time"] for event in events]
     flights = first * 2 * 0.5 ** np.arange(1, 9)
     np.testing.assert_allclose(times, first + np.concatenate([[0], np.cumsum(flights)]), atol=1e-9)
     np.testing.assert_allclose(run["trolley.s"][-30:], LENGTH, atol=1e-11)
     # a ninth flight would have come back 3e-6 of the wire, a tenth less than what counts
     assert run["trolley.traction"][-1] == pytest.approx(-MASS * down, abs=5e-8)  # the wire has been bent
-    assert unbalanced(run) < 1e-9
+    assert energy_error(run) < 1e-9
 
 
 @every_integrator
@@ -88,7 +88,7 @@ def test_a_stop_pushes_and_never_pulls(integrator):
     scene = block(3.5, 1.0, weight=0, at_end=HardStop(restitution=0))
     scene.force("A", value=(1, 0, 0), scale=TableSignal(time=(0, 2), value=(20, -20), interpolation="linear"))
     run = scene.run(1.5, integrator=integrator, tol=1e-6)
-    assert told(run) == ["struck the end", "left the end"]
+    assert slide_events(run) == ["struck the end", "left the end"]
     assert run.report["events"][1]["time"] == pytest.approx(1.0, abs=1e-10)
     assert run["trolley.s"][-1] == pytest.approx(LENGTH - 20 * 0.5**3 / 6 / MASS, abs=1e-6)
     resting = (run.time > 0.3) & (run.time < 0.99)
@@ -101,7 +101,7 @@ def test_friction_helps_a_stop_to_hold():
                   friction=Friction(coefficient=0.1, static_coefficient=0.5, model="stick"))
     scene.force("A", value=(1, 0, 0), scale=TableSignal(time=(0, 2), value=(20, -20), interpolation="linear"))
     run = scene.run(1.8, integrator="radau")
-    assert told(run) == ["struck the end", "left the end"]
+    assert slide_events(run) == ["struck the end", "left the end"]
     assert run.report["events"][1]["time"] == pytest.approx(1.5, abs=1e-9)
 
 
@@ -138,7 +138,7 @@ def test_a_buffer_takes_a_rider_and_gives_it_back(integrator, end, way, damping)
     assert back == pytest.approx(way * rate(contact), abs=1e-4 if integrator == "genalpha" else 1e-8)
     np.testing.assert_allclose(run["energy.elastic"][inside], 0.5 * k * deep[inside] ** 2, atol=1e-10)
     # the damper's power is booked by each method's own quadrature: measured 1.2e-5, 3e-8, 1e-12
-    assert unbalanced(run) < {"genalpha": 3e-5, "radau": 1e-7, "explicit": 1e-10}[integrator]
+    assert energy_error(run) < {"genalpha": 3e-5, "radau": 1e-7, "explicit": 1e-10}[integrator]
     # what the damper and the spring that is let go of have taken
     assert run["energy.dissipated"][-1] == pytest.approx(0.5 * MASS * (1 - rate(contact) ** 2), abs=1e-4)
 
@@ -150,7 +150,7 @@ def test_a_buffer_holds_a_block_on_a_slope(integrator):
     run = scene.run(4.0, integrator=integrator, tol=1e-6)
     rests = 3.5 + MASS * G * np.sin(0.5) / 400
     assert run["trolley.s"][-1] == pytest.approx(rests, abs=1e-6)
-    assert told(run)[0] == "entered the buffer"
+    assert slide_events(run)[0] == "entered the buffer"
 
 
 def test_equilibrium_leans_on_a_buffer():
@@ -173,7 +173,7 @@ def test_equilibrium_leans_on_a_buffer():
 
 def test_a_rider_that_goes_through_a_buffer_runs_off():
     run, message = to_the_end(block(3.0, 5.0, weight=0, at_end=Buffer(length=0.5, stiffness=10.0)), 1.0)
-    assert told(run) == ["entered the buffer"]
+    assert slide_events(run) == ["entered the buffer"]
     assert 'slide "trolley": ran off the end of cable "wire"' in message
 
 
@@ -201,7 +201,7 @@ def test_a_rider_flies_on(integrator, end, way, dim):
     np.testing.assert_allclose(run["trolley.s"][flies], near(end, 0), atol=1e-11)
     for name in ("force", "s_rate", "traction", "residual"):
         assert largest(run[f"trolley.{name}"][flies]) == 0
-    assert unbalanced(run) < 1e-12
+    assert energy_error(run) < 1e-12
 
 
 @every_integrator
@@ -229,4 +229,4 @@ def test_a_rider_that_starts_against_a_stop_stays(at):
     way = 1 if at else -1
     run = block(at, slope=way * 0.5, at_end=HardStop(restitution=0.5), at_start=HardStop(restitution=0.5)).run(0.5)
     np.testing.assert_allclose(run["trolley.s"], at, atol=1e-11)
-    assert told(run) == ["came to rest at the end"]
+    assert slide_events(run) == ["came to rest at the end"]

@@ -7,32 +7,11 @@ from importlib.metadata import version
 from types import ModuleType
 
 import pytest
-from fake_recording import fake_recording
 from funicular import ConvergenceError, EndOfCableError, FunicularWarning, load_run, load_scene
 from funicular.cli import app
-from funicular.results import recording
 from typer.testing import CliRunner
 
 END = 'slide "trolley": reached the end of cable "wire" at t = 0.4 s'
-
-
-@pytest.fixture
-def engine(monkeypatch, tmp_path):
-    """A stand-in for funicular.solve.run, whose recordings are hand-made; runs take place in an empty directory."""
-    module = ModuleType("funicular.solve.run")
-    module.outcome = {}
-    module.calls = []
-
-    def simulate(scene, settings, on_progress, **_):
-        module.calls.append(settings)
-        on_progress(settings.duration / 2)
-        return fake_recording(scene, **module.outcome)
-
-    module.simulate = simulate
-    monkeypatch.setitem(sys.modules, "funicular.solve.run", module)
-    monkeypatch.setattr(recording, "recorded", lambda recorded, *_: recorded)
-    monkeypatch.chdir(tmp_path)
-    return module
 
 
 def funicular(*args: str):
@@ -44,10 +23,10 @@ def test_run(engine, tmp_path):
     assert (result.exit_code, result.stderr) == (0, "")
     assert [p.name for p in tmp_path.iterdir()] == ["paper51.nc"]
     assert load_run("paper51.nc").status == "completed"
-    told = dict(re.findall(r"^ +(\S+(?: \S+)*) {2,}(.*\S)", result.stdout, re.MULTILINE))
-    assert told["results"] == "paper51.nc"
-    assert told["status"].startswith("completed at t = 1 s")
-    assert {"steps", "wall time", "energy balance", "joint residual"} <= set(told)
+    summary = dict(re.findall(r"^ +(\S+(?: \S+)*) {2,}(.*\S)", result.stdout, re.MULTILINE))
+    assert summary["results"] == "paper51.nc"
+    assert summary["status"].startswith("completed at t = 1 s")
+    assert {"steps", "wall time", "energy balance", "joint residual"} <= set(summary)
     assert (engine.calls[0].duration, engine.calls[0].tol, engine.calls[0].output_step) == (1.0, 1e-5, 0.002)
 
 
@@ -173,9 +152,9 @@ def test_errors_hand_over_the_run(engine):
 
 def test_an_interrupted_run_is_returned(engine):
     engine.outcome = {"status": "interrupted", "message": "interrupted at t = 0.4 s", "duration": 0.4}
-    with pytest.warns(FunicularWarning, match=r"interrupted at t = 0.4 s") as told:
+    with pytest.warns(FunicularWarning, match=r"interrupted at t = 0.4 s") as warned:
         run = load_scene("paper51").run()
-    assert told[0].filename == __file__
+    assert warned[0].filename == __file__
     assert (run.report["status"], run.time[-1]) == ("interrupted", 0.4)
 
 

@@ -80,9 +80,9 @@ def test_ctrl_c_keeps_what_was_computed(tmp_path):
         time.sleep(0.1)
     time.sleep(1)  # the whole run takes minutes
     process.send_signal(signal.SIGINT)
-    _, told = process.communicate(timeout=30)
+    _, message = process.communicate(timeout=30)
     assert process.returncode == 130
-    assert told.startswith("note: ") and "Traceback" not in told
+    assert message.startswith("note: ") and "Traceback" not in message
     run = load_run(tmp_path / "x.nc")
     assert run.status == "interrupted"
     assert 0 < len(run.time) < 501

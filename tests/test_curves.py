@@ -1,10 +1,10 @@
 """Cables that are not drawn straight: arc-length, tangents, axes of the section, rest and initial state."""
 
-import re
 
 import numpy as np
 import pytest
-from funicular import Circle, Material, Rectangle, Scene, SceneError
+from expectations import refused
+from funicular import Circle, Material, Rectangle, Scene
 from funicular.parts.curves import points, sample, shape_through, transported
 from numpy.testing import assert_allclose
 
@@ -26,8 +26,8 @@ def drawn(**changes):
     return Scene().cable("wire", **given)
 
 
-def refused(complaint):
-    return pytest.raises(SceneError, match="^" + re.escape(f'cable "wire": {complaint}') + "$")
+def wire_refused(complaint):
+    return refused(f'cable "wire": {complaint}')
 
 
 def test_arc_length_tangent_and_curvature_of_an_arc():
@@ -259,5 +259,5 @@ def test_a_ring_may_close():
      'draw it with z = 0, or take element="beam24" or "cable12" or "cable18"'),
 ])
 def test_what_cannot_be_drawn(changes, complaint):
-    with refused(complaint):
+    with wire_refused(complaint):
         drawn(**changes)

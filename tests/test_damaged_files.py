@@ -16,7 +16,7 @@ from funicular.results import netcdf_header
 from funicular.results.checkpoints import Checkpoint
 from funicular.results.checksums import row_checksums
 from funicular.results.netcdf import File
-from test_streaming import SETTINGS, content, resumed, short, signed, stopped  # noqa: F401
+from interrupted_runs import SETTINGS, content, resumed, short, signed
 
 
 @pytest.fixture(scope="module")
@@ -194,7 +194,7 @@ def test_forged_reports_are_refused(whole, tmp_path):
             load_run(path)
 
 
-def test_forged_facts_of_a_checkpoint_are_refused(stopped):  # noqa: F811
+def test_forged_facts_of_a_checkpoint_are_refused(stopped):
     state = stopped.with_name("x.nc.state")
     good = Checkpoint.read(state)
     facts = good.facts.model_dump()
@@ -220,7 +220,7 @@ from pathlib import Path
 import numpy as np
 sys.path.insert(0, {tests!r})
 warnings.simplefilter("ignore")
-from test_streaming import SETTINGS, short, resumed
+from interrupted_runs import SETTINGS, short, resumed
 from funicular import FunicularError
 from funicular.results.checkpoints import Checkpoint
 path, kept = Path("x.nc"), Path("kept")
@@ -256,12 +256,12 @@ def forged_states(folder: Path, times: int, seed: int) -> int:
     return int(done.stdout)
 
 
-def test_forged_states_are_refused_or_run(stopped):  # noqa: F811
+def test_forged_states_are_refused_or_run(stopped):
     """Indices out of range, numbers that are none: in a process of its own, which a crash would end."""
     assert forged_states(stopped.parent, 60, seed=6) > 5
 
 
 @pytest.mark.slow
-def test_many_forged_states(stopped):  # noqa: F811
+def test_many_forged_states(stopped):
     assert forged_states(stopped.parent, 500, seed=7) > 60
 

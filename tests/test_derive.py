@@ -128,7 +128,7 @@ def test_what_a_build_and_an_import_leave_is_no_drift(copy, remembered):
     assert drift.extra(families()) == []
 
 
-@pytest.mark.parametrize(("damage", "told", "mended"), [
+@pytest.mark.parametrize(("damage", "texts", "mended"), [
     (_edited, ("differs: generated/rigid.c", "-        arm_X", "+        arm_x"), True),
     (_missing, ("missing: generated/registry.c",), True),
     (_extra, ("extra: generated/old_element.c", "delete"), False),
@@ -137,14 +137,14 @@ def test_what_a_build_and_an_import_leave_is_no_drift(copy, remembered):
     (_line_ends, ("differs: generated/kernels.h", "line ends"), True),
     (_no_manifest, ("differs: generated/manifest.json",), True),
 ], ids=lambda v: v.__name__.strip("_") if callable(v) else "")
-def test_check_names_what_is_wrong_and_the_command_that_mends_it(copy, remembered, capsys, damage, told, mended):
+def test_check_names_what_is_wrong_and_the_command_that_mends_it(copy, remembered, capsys, damage, texts, mended):
     assert pipeline.main([], check=True) == 0
     damage(copy)
     before = contents(copy)
     capsys.readouterr()
     assert pipeline.main([], check=True) == 1
     out, err = capsys.readouterr()
-    assert all(text in out for text in told), out
+    assert all(text in out for text in texts), out
     assert ("`funicular derive` mends it" in err) == mended
     assert contents(copy) == before, "a check writes nothing"
     assert pipeline.main([]) == 0
@@ -186,7 +186,7 @@ def test_an_unknown_name_gets_the_near_ones(capsys):
     assert 'no spec "beam42"; did you mean beam24' in capsys.readouterr().err
 
 
-def test_a_folder_that_cannot_be_written_is_told(copy, monkeypatch, capsys):
+def test_a_folder_that_cannot_be_written_is_reported(copy, monkeypatch, capsys):
     (copy / "rigid.c").write_text("damaged")
 
     def refuse(*args, **kwargs):

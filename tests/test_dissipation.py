@@ -4,6 +4,7 @@ import warnings
 
 import numpy as np
 import pytest
+from expectations import energy_error, slide_events
 from funicular import (
     Buffer,
     EndOfCableError,
@@ -17,16 +18,15 @@ from funicular import (
 )
 from funicular.parts.settings import RunSettings
 from funicular.solve.diagnosis import unexplained
-from scenery import add_cable
+from shared_scenes import add_cable, cable_scene
 
 
 def wired(youngs_modulus=4e8, elements=3, height=0.05, slope=0.0, damping_time=0.0) -> Scene:
-    scene = Scene()
     along = np.array([np.cos(slope), -np.sin(slope), 0.0])
-    add_cable(scene, end=tuple(1.5 * along), elements=elements, section=Rectangle(height=height, width=height),
-              material=Material(youngs_modulus=youngs_modulus, poisson_ratio=0.0, density=4200,
-                                damping_time=damping_time))
-    return scene
+    return cable_scene(pins=(0, 1.5), end=tuple(1.5 * along), elements=elements,
+                       section=Rectangle(height=height, width=height),
+                       material=Material(youngs_modulus=youngs_modulus, poisson_ratio=0.0, density=4200,
+                                         damping_time=damping_time))
 
 
 def ride(scene: Scene, name: str, s: float, speed: float, mass=1.0, **slide) -> Scene:
@@ -70,8 +70,8 @@ def test_a_slide_that_a_buffer_lets_go_loses_no_energy_twice(integrator):
     scene = ride(wired(8e7, height=0.02, slope=0.5), "A", 0.8, 2.0,
                  at_end=Buffer(length=0.3, stiffness=300.0, damping=60.0))
     run = run_of(scene, duration=0.5, output_step=0.002, tol=1e-5, integrator=integrator)
-    told = [event["what"] for event in run.report["events"]]
-    assert told.count("left the buffer") and told.count("entered the buffer")
+    events = slide_events(run)
+    assert events.count("left the buffer") and events.count("entered the buffer")
     check(run, 1e-4)
 
 
@@ -102,11 +102,11 @@ def test_whatever_slides_do_dissipation_never_falls(seeds):
     for seed in seeds:
         tol = 10 ** np.random.default_rng(seed).uniform(-6, -3)
         run = run_of(random_scene(seed), duration=0.4, output_step=0.002, tol=tol, integrator="genalpha")
-        print(seed, tol, np.abs(run.energy_balance().relative).max(), np.diff(run["energy.dissipated"]).min())
+        print(seed, tol, energy_error(run), np.diff(run["energy.dissipated"]).min())
         check(run, max(30 * tol, 1e-3))
 
 
-# ---- what the balance cannot explain is told
+# ---- what the balance cannot explain is reported
 
 
 class Stub:
@@ -122,7 +122,7 @@ class Stub:
     (0.011, 0.0, 1e-4, "off by up to 0.011 J, 0.011 of the 1 J exchanged: energy came that nothing did work for"),
     (0.0, 0.02, 1e-6, "off by up to 0.02 J, 0.02 of the 1 J exchanged: energy went that neither"),
     (0.009, 0.009, 1e-6, None), (0.04, 0.0, 1e-3, None), (0.06, 0.0, 1e-3, "take a smaller tol")])
-def test_a_hundredth_of_what_is_exchanged_is_told(grown, lost, tol, says):
+def test_a_hundredth_of_what_is_exchanged_is_reported(grown, lost, tol, says):
     notes = unexplained(Stub(grown, lost, 1.0, 1.0, 1e-9), RunSettings(duration=1.0, tol=tol))
     assert (says is None) == (notes == []) and (says is None or says in notes[0])
 
@@ -130,7 +130,7 @@ def test_a_hundredth_of_what_is_exchanged_is_told(grown, lost, tol, says):
 @pytest.mark.parametrize(("off", "exchanged", "in_motion", "rounding", "noted"), [
     (1e-3, 1e-6, 100.0, 0.0, False), (2e-2, 1e-6, 100.0, 0.0, True),  # a hundredth of a hundredth of what moves
     (2e-2, 1.0, 1.0, 1e-2, False), (2.1e-2, 1.0, 1.0, 1e-2, True)])
-def test_neither_rounding_nor_little_beside_a_steady_motion_is_told(off, exchanged, in_motion, rounding, noted):
+def test_neither_rounding_nor_little_beside_a_steady_motion_is_reported(off, exchanged, in_motion, rounding, noted):
     """Where bodies turn freely hardly anything is exchanged; far from the origin rounding is beyond a hundredth."""
     settings = RunSettings(duration=1.0, tol=1e-4)
     for grown, lost in ((off, 0.0), (0.0, off)):

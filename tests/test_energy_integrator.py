@@ -4,11 +4,12 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from difficult_scenes import loaded
 from funicular import Harmonic, Material, Rectangle, Scene, SceneError
 from funicular.engine import Engine
 from funicular.integrators import EnergyMomentum
 from funicular.model.build import build
-from test_newton_matrix import loaded
+from shared_scenes import cable_scene
 
 CABLES = {"beam24": {"element": "beam24"}, "green": {"element": "cable12", "strain": "green"},
           "engineering": {"element": "cable12", "strain": "engineering"},
@@ -18,9 +19,9 @@ CABLES = {"beam24": {"element": "beam24"}, "green": {"element": "cable12", "stra
 PLANAR = {"beam12p": {"element": "beam12p"}, "cable8p": {"element": "cable8p"}}
 
 
-def wire(scene: Scene, youngs_modulus=1e7, elements=4, **kind):
+def wire(youngs_modulus=1e7, elements=4, gravity=(0, -9.81, 0), pins=(), **kind) -> Scene:
     damping = {k: kind.pop(k) for k in ("damping_time", "mass_damping") if k in kind}
-    return scene.cable("wire", start=(0, 0, 0), end=(1.5, 0, 0), elements=elements,
+    return cable_scene(length=1.5, pins=pins, gravity=gravity, elements=elements,
                        section=Rectangle(height=0.02, width=0.02),
                        material=Material(youngs_modulus=youngs_modulus, poisson_ratio=0.0, density=4200, **damping),
                        **kind)
@@ -35,18 +36,14 @@ def trolley(scene: Scene, s: float, velocity, spin):
 
 def free(planar=False, **kind) -> Scene:
     """A cable and its rider fly free, the rider moves along it and turns."""
-    scene = Scene(gravity=(0, 0, 0))
-    wire(scene, **kind)
+    scene = wire(gravity=(0, 0, 0), **kind)
     trolley(scene, 0.6, (0.1, 0.3, 0 if planar else 0.2), (0, 0, 3) if planar else (1, 2, 3))
     return scene
 
 
 def crossing(**kind) -> Scene:
     """A rider runs over two nodes of a sagging cable."""
-    scene = Scene()
-    wire(scene, **kind)
-    scene.pin("wire", s=0.0)
-    scene.pin("wire", s=1.5)
+    scene = wire(pins=(0.0, 1.5), **kind)
     trolley(scene, 0.4, (0.6, 0, 0), (1, 2, 3))
     return scene
 
@@ -125,8 +122,7 @@ def test_crossing_nodes_costs_no_energy_over_1e5_steps():
 
 
 def test_what_comes_in_and_goes_out_balances():
-    scene = Scene()
-    wire(scene, damping_time=1e-3, mass_damping=0.2)
+    scene = wire(damping_time=1e-3, mass_damping=0.2)
     scene.motion("wire", s=0.0, displacement=(Harmonic(amplitude=0.05, frequency=2.0), 0, 0))
     trolley(scene, 0.4, (0.1, 0, 0.3), (1, 2, 3))
     scene.rigid_body("B", mass=0.3, inertia=(1e-3, 2e-3, 3e-3), position=(0.8, 0.4, 0), angular_velocity=(1, 2, 3))
@@ -179,7 +175,6 @@ def test_newton_contracts_faster_with_smaller_steps():
 
 
 def test_a_law_without_a_discrete_gradient_is_named():
-    scene = Scene()
-    wire(scene, element="beam24", law="structural")
+    scene = wire(element="beam24", law="structural")
     with pytest.raises(SceneError, match='cable "wire": integrator "energy" has no discrete gradient of the law "str'):
         scene.run(duration=0.1, integrator="energy")

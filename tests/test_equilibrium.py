@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from funicular import Circle, GeneralSection, Material, Scene
 from funicular.errors import EquilibriumError, FunicularWarning, SceneError, UnknownResultError
-from scenery import add_cable, add_rider
 from scipy.optimize import brentq
+from shared_scenes import add_cable, add_rider, cable_scene
 
 RISE, STIFFNESS = 0.2, 1e6
 
@@ -153,11 +153,8 @@ def test_section_forces_at_rest():
 
 
 def spring_mid_span(element: str, **given) -> Scene:
-    scene = Scene()
-    scene.cable("w", start=(0, 0, 0), end=(1, 0, 0), elements=4, element=element, section=Circle(radius=0.01),
-                material=Material(youngs_modulus=1e8, poisson_ratio=0.3, density=1000), **given)
-    scene.clamp("w", s=0)
-    scene.clamp("w", s=1)
+    scene = cable_scene("w", clamps=(0, 1), elements=4, element=element, section=Circle(radius=0.01),
+                        material=Material(youngs_modulus=1e8, poisson_ratio=0.3, density=1000), **given)
     scene.spring(("w", 0.5), (0.5, -1, 0), stiffness=100, length=0.9, name="tie")
     return scene
 
@@ -172,7 +169,7 @@ def test_springs_pull_by_their_law(element, given, method):
 
 @pytest.mark.parametrize("at", [(0, 0, 0), (0.1, 0, 0)])
 def test_a_body_hangs_on_its_spring(at):
-    """Below the anchor by the stretched length, turned until the attachment is above its centre."""
+    """Below the attachment by the stretched length, turned until the attached point is above its centre."""
     scene = Scene()
     scene.rigid_body("B", mass=1, inertia=(1e-3, 1e-3, 1e-3), position=(0, -1, 0))
     scene.spring(("B", at), (0, 0, 0), stiffness=100, length=1.0, name="tie")

@@ -1,12 +1,12 @@
 """`Scene.equilibrium`, `Scene.modes` and starts from an equilibrium, around the solvers, for which others stand in."""
 
-import re
 import sys
 from types import ModuleType, SimpleNamespace
 
 import pytest
+from expectations import refused
 from fake_recording import fake_recording
-from funicular import EquilibriumError, Scene, SceneError, load_scene
+from funicular import EquilibriumError, Scene, load_scene
 from funicular.results import recording
 from funicular.results.equilibrium import Equilibrium
 
@@ -44,10 +44,6 @@ def solvers(monkeypatch):
         monkeypatch.setitem(sys.modules, module.__name__, module)
     monkeypatch.setattr(recording, "recorded", lambda recorded, *_: recorded)
     return calls
-
-
-def refused(complaint):
-    return pytest.raises(SceneError, match="^" + re.escape(complaint) + "$")
 
 
 def test_settings_and_defaults_reach_the_solver(solvers):

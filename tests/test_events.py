@@ -4,6 +4,7 @@ import funicular as fu
 import numpy as np
 import pytest
 from funicular.scene_file import loads
+from shared_scenes import add_rider, cable_scene
 
 G = 9.81
 INTEGRATORS = ("genalpha", "explicit")
@@ -19,14 +20,9 @@ def falling() -> fu.Scene:
 
 def riding() -> fu.Scene:
     """A body that slides over nodes of a soft cable."""
-    scene = fu.Scene()
-    scene.cable("wire", start=(0, 0, 0), end=(10, 0, 0), elements=6, element="cable12",
-                section=fu.Rectangle(height=0.05, width=0.05), material=fu.Material(youngs_modulus=2e6, density=1000,
-                                                                                   poisson_ratio=0.0))
-    scene.pin("wire", s=0.0)
-    scene.pin("wire", s=10.0)
-    scene.rigid_body("A", mass=5.0, inertia=(0.1, 0.2, 0.3), position=(2, 0, 0), velocity=(4, 0, 0))
-    scene.slide("A", along="wire", s=2.0, name="trolley")
+    scene = cable_scene(length=10, pins="ends", elements=6, element="cable12",
+                        material=fu.Material(youngs_modulus=2e6, density=1000, poisson_ratio=0.0))
+    add_rider(scene, 2.0, 4, mass=5.0, inertia=(0.1, 0.2, 0.3), position=(2, 0, 0))
     return scene
 
 

@@ -12,6 +12,7 @@ from funicular import Friction, FunicularWarning, Harmonic, Material, Ramp, Rect
 from funicular.rotations import rotate
 from funicular.scene_file import loads
 from scipy.integrate import simpson
+from shared_scenes import cable_scene
 
 SECTION = Rectangle(height=0.02, width=0.02)
 SOFT = Material(youngs_modulus=2e7, poisson_ratio=0.0, density=2000, damping_time=2e-3)
@@ -26,11 +27,7 @@ AXIS = {"axis": (0, 0, 1)}
 
 
 def hung(element="cable12", pinned=(0.0, 3.0)) -> Scene:
-    scene = Scene()
-    scene.cable("rope", start=(0, 0, 0), end=(3, 0, 0), elements=6, element=element, section=SECTION, material=SOFT)
-    for s in pinned:
-        scene.pin("rope", s=s)
-    return scene
+    return cable_scene("rope", length=3, pins=pinned, elements=6, element=element, section=SECTION, material=SOFT)
 
 
 def driven_slide(frame="point", roll="free", element="cable12", friction=None, **drive) -> Scene:

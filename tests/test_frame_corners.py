@@ -1,4 +1,4 @@
-"""Rigid joins of beams at an angle: they share the turn of the section, whatever the length of the elements."""
+"""Rigid ties of beams at an angle: they share the turn of the section, whatever the length of the elements."""
 
 import warnings
 
@@ -11,7 +11,7 @@ SECTION = Rectangle(height=0.1, width=0.15)
 COLUMN, ARM, FORCE = 1.0, 0.8, 10.0
 
 
-def bracket(element: str, angle: float, elements: int, joined: bool, weld: bool = False) -> Scene:
+def bracket(element: str, angle: float, elements: int, tied: bool, weld: bool = False) -> Scene:
     """A column, clamped at its foot, and on its top an arm at ``angle`` (rad) from the level, with a force down."""
     scene = Scene(gravity=(0, 0, 0))
     along = np.array([np.cos(angle), np.sin(angle), 0])
@@ -21,7 +21,7 @@ def bracket(element: str, angle: float, elements: int, joined: bool, weld: bool 
     scene.clamp("column", s=0)
     names = ["column", "arm"]
     ends = {"column": COLUMN, "arm": 0.0}
-    if not joined:  # the arm's place from the other side
+    if not tied:  # the arm's place from the other side
         names.reverse()
     if weld:
         scene.joint("weld", *((name, ends[name]) for name in names), name="corner")
@@ -40,20 +40,20 @@ def sinking(angle: float) -> float:
     return FORCE * (arm + (c * ARM) ** 2 * COLUMN / EI + COLUMN / EA)
 
 
-@pytest.mark.parametrize("joined", [True, False])
+@pytest.mark.parametrize("tied", [True, False])
 @pytest.mark.parametrize("angle", [0.0, np.pi / 4, -np.pi / 3])
 @pytest.mark.parametrize("element", ["beam12p"])
-def test_a_bracket_sinks_as_timoshenko_says_however_short_its_elements(element, angle, joined):
+def test_a_bracket_sinks_as_timoshenko_says_however_short_its_elements(element, angle, tied):
     """While the gradient of the deformation was shared, 2 elements a part sank 1.7 % too much, 32 30 %."""
     for elements in (2, 32):
-        state = bracket(element, angle, elements, joined).equilibrium()
+        state = bracket(element, angle, elements, tied).equilibrium()
         assert -state["arm.position"][-1, 1] + COLUMN + ARM * np.sin(angle) == pytest.approx(sinking(angle), rel=2e-5)
         assert abs(state["corner.moment"][2]) == pytest.approx(FORCE * ARM * np.cos(angle), rel=1e-4)
 
 
 @pytest.mark.parametrize("angle", [0.0, np.pi / 4])
-def test_in_space_a_join_at_an_angle_says_that_it_is_soft_and_a_weld_is_right(angle):
-    with pytest.warns(FunicularWarning, match='^join "corner": .* too soft, the more so the shorter .* are; .*weld'):
+def test_in_space_a_tie_at_an_angle_says_that_it_is_soft_and_a_weld_is_right(angle):
+    with pytest.warns(FunicularWarning, match='^tie "corner": .* too soft, the more so the shorter .* are; .*weld'):
         soft = bracket("beam24", angle, 32, True)
     assert any("too soft" in message for message in soft.messages)
     assert -sunk(soft, angle) > 1.05 * sinking(angle)
@@ -81,7 +81,7 @@ def test_beams_in_line_share_all_slopes_without_a_word():
         in_line("beam24")
 
 
-def test_a_cable_joined_to_a_beam_in_space_says_that_it_is_soft():
+def test_a_cable_tied_to_a_beam_in_space_says_that_it_is_soft():
     """Measured: a cantilever of 2 m, half of it cable12, sinks 2 % too much with 2 elements a part, 26 % with 32."""
     with pytest.warns(FunicularWarning, match="too soft"):
         in_line("cable12")

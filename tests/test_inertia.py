@@ -77,7 +77,7 @@ def test_refused():
 def mechanism():
     """A rope with a tied rider, a trolley, a door on two hinges (redundant), a spring, and a compressed strut."""
     from funicular import Scene
-    from scenery import SQUARE, TABLE_1
+    from shared_scenes import SQUARE, TABLE_1
 
     scene = Scene()
     rope = {"section": SQUARE, "material": TABLE_1, "element": "cable12"}

@@ -1,10 +1,10 @@
 """Joints as a scene knows them: what is completed, the frames of their ends, and what is refused."""
 
-import re
 import warnings
 
 import numpy as np
 import pytest
+from expectations import refused
 from funicular import Circle, FunicularWarning, Harmonic, Material, Ramp, Scene, SceneError, TableSignal, load_run
 from funicular.checks.frames import cable_frame, end_frame, joint_axes
 from funicular.checks.joint_placement import check_drive
@@ -38,10 +38,6 @@ def planar():
     return made
 
 
-def refused(complaint):
-    return pytest.raises(SceneError, match="^" + re.escape(complaint) + "$")
-
-
 def test_ends_and_names_are_completed(scene):
     joint = scene.joint("spherical", "A", (0, 2, 0))
     assert (joint.pair, joint.name, joint.a, joint.b) == (
@@ -61,9 +57,9 @@ def test_axes_are_equal_at_the_start(scene, directions, end):
     at = {"A": (0, 2, 0), "beam": scene.cables["beam"].point(end[1]) if end[0] == "beam" else None}[end[0]]
     joint = scene.joint(a=end, b=tuple(at), **directions)
     axes = joint_axes(scene, joint)
-    for own, anchor in zip(axes, (joint.a, joint.b), strict=True):
+    for own, attachment in zip(axes, (joint.a, joint.b), strict=True):
         assert_allclose(own.T @ own, np.eye(3), atol=1e-15)
-        assert_allclose(end_frame(scene, anchor) @ own, joint.axes, atol=1e-15)
+        assert_allclose(end_frame(scene, attachment) @ own, joint.axes, atol=1e-15)
     assert_allclose(np.linalg.det(joint.axes), 1)
     if "axis" in directions:
         assert_allclose(joint.axes[:, 2], np.array(joint.axis) / np.linalg.norm(joint.axis), atol=1e-15)
@@ -120,7 +116,7 @@ def test_a_driven_distance_counts_from_where_it_starts(scene):
         check_drive(scene, turn)
 
 
-def test_a_small_gap_is_closed_and_told_of():
+def test_a_small_gap_is_closed_and_reported():
     scene = Scene()
     scene.rigid_body("A", position=(1, 0, 0), **BODY)
     with pytest.warns(FunicularWarning, match="its ends are 0.0005 m apart"):

@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
+from difficult_scenes import SCENES as DIFFICULT
 from funicular import Circle, Material, Scene
 from funicular.engine import Engine
 from funicular.integrators import GeneralisedAlpha
 from funicular.model import unknowns as reduction
 from funicular.model.build import build
 from linear_cost import SCENES, ladder, scene
-from test_newton_matrix import SCENES as DIFFICULT
+from shared_scenes import cable_scene
 
 
 def started(scene: Scene) -> Engine:
@@ -21,16 +22,12 @@ def started(scene: Scene) -> Engine:
 
 def rope(youngs_modulus=1e7, damping_time=0.0) -> Scene:
     """Two slides on one element and one on the last: columns of the border that begin in different places."""
-    scene = Scene()
-    wire = scene.cable("wire", start=(0, 0, 0), end=(2, 0, 0), elements=7, element="cable12",
-                       section=Circle(radius=0.01), strain="green",
-                       material=Material(youngs_modulus=youngs_modulus, poisson_ratio=0.3, density=1000,
-                                         damping_time=damping_time))
-    scene.pin(wire, s=0.0)
-    scene.pin(wire, s=2.0)
+    scene = cable_scene(length=2, pins=(0.0, 2.0), elements=7, element="cable12", section=Circle(radius=0.01),
+                        strain="green", material=Material(youngs_modulus=youngs_modulus, poisson_ratio=0.3,
+                                                          density=1000, damping_time=damping_time))
     for k, s in enumerate((0.6, 0.8, 1.9)):
         scene.rigid_body(f"A{k}", mass=0.1, inertia=(1e-4, 1e-4, 1e-4), position=(s, 0, 0), velocity=(1, 0, 0))
-        scene.slide(f"A{k}", along=wire, s=s)
+        scene.slide(f"A{k}", along="wire", s=s)
     return scene
 
 
@@ -64,9 +61,9 @@ def test_band_is_factored_as_it_allows(made, size, definite):
 @pytest.mark.parametrize(("name", "shared"), [("three cables", 3), ("ring", 3), ("ladder", 9)])
 def test_joins_leave_the_band_as_narrow_as_one_cable(name, shared):
     """Only positions where more than two elements meet are in the border, and of a ring one."""
-    joined, alone = build(scene(name, 120)), build(scene("pendulum", 40))
-    assert joined.width == alone.width == 11
-    assert joined.n_border_dof - 6 * len(joined.bodies) == shared
+    tied, alone = build(scene(name, 120)), build(scene("pendulum", 40))
+    assert tied.width == alone.width == 11
+    assert tied.n_border_dof - 6 * len(tied.bodies) == shared
 
 
 def test_many_joins_widen_the_band_where_that_is_cheaper():

@@ -9,6 +9,7 @@ from funicular.engine import Engine
 from funicular.model.build import build
 from funicular.model.redundant_constraints import drop_redundant_rows
 from numpy.testing import assert_allclose
+from shared_scenes import cable_scene, structural
 
 SOFT = Material(youngs_modulus=1e7, poisson_ratio=0.3, density=1000)
 THIN = Rectangle(height=0.02, width=0.02)
@@ -32,10 +33,8 @@ def left_over(scene: Scene, state) -> float:
 
 def beam(kind: str, element: str, p: float) -> Scene:
     """A cantilever under p times a load of this kind and gravity."""
-    scene = Scene(gravity=(0, -9.81 * p, 0))
-    law = {"law": "structural"} if element.startswith("beam") else {}
-    scene.cable("rope", start=(0, 0, 0), end=(1, 0, 0), elements=4, element=element, section=THIN, material=SOFT, **law)
-    scene.clamp("rope", s=0)
+    scene = cable_scene("rope", clamps=(0,), gravity=(0, -9.81 * p, 0), elements=4, element=element, section=THIN,
+                        material=SOFT, **structural(element))
     follower = kind.endswith("follower")
     along = (1, 0, 0) if follower and element in ("cable12", "cable18") else (0, 1, 0)  # these know their tangent alone
     if kind.startswith("force"):
@@ -168,12 +167,9 @@ def test_critical_loads_do_not_depend_on_the_nominal_one_or_the_density_of_the_p
 
 
 def strut(load: float, element="cable8p") -> Scene:
-    scene = Scene(gravity=(0, 0, 0))
-    law = {"law": "structural"} if element.startswith("beam") else {}
-    scene.cable("strut", start=(0, 0, 0), end=(LENGTH, 0, 0), elements=8, element=element,
-                section=Circle(radius=RADIUS), material=Material(youngs_modulus=MODULUS, poisson_ratio=0, density=1000),
-                **law)
-    scene.clamp("strut", s=0)
+    scene = cable_scene("strut", length=LENGTH, clamps=(0,), gravity=(0, 0, 0), elements=8, element=element,
+                        section=Circle(radius=RADIUS),
+                        material=Material(youngs_modulus=MODULUS, poisson_ratio=0, density=1000), **structural(element))
     scene.force("strut", s=LENGTH, value=(-load, 0, 0))
     return scene
 

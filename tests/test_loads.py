@@ -1,19 +1,16 @@
-"""Loads, springs, damping and prescribed motions in runs, against closed forms; the energy books with all of them."""
+"""Loads, springs, damping and prescribed motions in runs, against closed forms; the energy balance with all of them."""
 
 import numpy as np
 import pytest
+from expectations import energy_error, largest
 from funicular import Harmonic, Material, Ramp, Rectangle, Scene
 from funicular import TableSignal as TimeTable
-from scenery import SQUARE, TABLE_1, add_cable, add_rider, largest
 from scipy.special import fresnel
+from shared_scenes import SQUARE, TABLE_1, add_cable, add_rider
 
 
 def ball(scene: Scene, position=(0, 0, 0), mass=2.0, **given):
     return scene.rigid_body("ball", mass=mass, inertia=(0.01, 0.02, 0.03), position=position, **given)
-
-
-def unexplained(run) -> float:
-    return np.abs(run.energy_balance().relative).max()
 
 
 def test_spring_and_damper_on_a_body():
@@ -31,7 +28,7 @@ def test_spring_and_damper_on_a_body():
     np.testing.assert_allclose(run["tie.force"][:, 0], run["tie.tension"], atol=1e-9)
     np.testing.assert_allclose(-run["tie.force"], m * run["ball.acceleration"], atol=1e-8 * k)
     assert run["energy.dissipated"][-1] > 0.5 * (0.5 * k * 0.2**2)
-    assert unexplained(run) < 1e-5
+    assert energy_error(run) < 1e-5
 
 
 def test_a_planar_spring_off_the_centre_of_mass():
@@ -62,7 +59,7 @@ def test_mass_damping_slows_what_is_free():
     late = run.time > 0.1
     np.testing.assert_allclose(v[late] / v[late][0], np.exp(-1.5 * (run.time[late] - run.time[late][0]))[:, None]
                                * np.ones(v.shape[1]), rtol=1e-5)
-    assert unexplained(run) < 1e-5
+    assert energy_error(run) < 1e-5
 
 
 def test_gravity_as_a_distributed_force():
@@ -89,7 +86,7 @@ def test_a_force_on_a_body_with_a_time_table():
     w = 2 * np.pi
     expected = 2.5 * (run.time / w - np.sin(w * run.time) / w**2)
     np.testing.assert_allclose(run["ball.position"][:, 0], expected, atol=1e-6)
-    assert unexplained(run) < 1e-6
+    assert energy_error(run) < 1e-6
 
 
 def test_a_moment_spins_a_body_and_a_follower_force_turns_with_it():
@@ -103,21 +100,21 @@ def test_a_moment_spins_a_body_and_a_follower_force_turns_with_it():
     np.testing.assert_allclose(run["ball.angular_velocity"][:, 2], 2 * t, atol=1e-6)
     S, C = fresnel(t * np.sqrt(2 / np.pi))  # of cos(t²), sin(t²)
     np.testing.assert_allclose(run["ball.velocity"][:, :2], np.sqrt(2 * np.pi) * np.stack([C, S], axis=1), atol=1e-5)
-    assert unexplained(run) < 1e-5
+    assert energy_error(run) < 1e-5
 
 
 def test_a_follower_force_at_the_end_of_a_cable_has_no_potential():
-    """Its work round a loop is not zero, the books close nevertheless."""
+    """Its work round a loop is not zero, the energy balances nevertheless."""
     scene = Scene()
     add_cable(scene, pins=(0,), elements=4)
     scene.force("wire", s=1.5, value=(0, 60, 0), follower=True)
     run = scene.run(0.5, tol=1e-5)
     assert np.ptp(run["energy.external"]) > 10
-    assert unexplained(run) < 1e-4
+    assert energy_error(run) < 1e-4
 
 
 @pytest.mark.parametrize("element", ["cable12", "beam24", "cable8p", "beam12p"])
-def test_the_books_close_with_everything_on(element):
+def test_the_energy_balances_with_everything_on(element):
     scene = Scene()
     planar = element in ("cable8p", "beam12p")
     scene.cable("wire", start=(0, 0, 0), end=(1.5, 0, 0), elements=3, element=element, section=SQUARE,
@@ -132,13 +129,13 @@ def test_the_books_close_with_everything_on(element):
     scene.moment("wire", s=0.75, value=(0, 0, 2.0))
     scene.spring(("wire", 1.25), (1.25, 0.5, 0), stiffness=300, damping=3)
     run = scene.run(0.5, tol=1e-5)
-    assert unexplained(run) < 2e-4
+    assert energy_error(run) < 2e-4
     assert run["trolley.residual"].max() < 1e-9
     assert abs(run["energy.external"][-1]) > 0.1
 
 
 def test_a_node_moves_as_prescribed():
-    """Where the signal says, and the work on it is what the books say."""
+    """Where the signal says, and the work on it is what the energy balance says."""
     scene = Scene()
     add_cable(scene, pins=(1.5,), elements=4)
     wave = Harmonic(amplitude=0.05, frequency=3.0)
@@ -148,7 +145,7 @@ def test_a_node_moves_as_prescribed():
     np.testing.assert_allclose(at[:, 0, 1], wave.value(run.time), atol=1e-12)
     angle = Ramp(start=0, end=0.2, after=0.3).value(run.time)
     np.testing.assert_allclose(at[:, 2], np.stack([-np.sin(angle), np.cos(angle), 0 * angle], axis=1), atol=1e-12)
-    assert unexplained(run) < 1e-3
+    assert energy_error(run) < 1e-3
 
 
 def test_a_prescribed_motion_is_that_of_the_frame():
@@ -182,7 +179,7 @@ def corner(rotation) -> dict[str, np.ndarray]:
     scene.clamp("leg", s=0.0)
     scene.tie("leg", s=1.0, to="arm", at=0.0, rotation=rotation, name="corner")
     run = scene.run(0.3, tol=1e-4)
-    assert unexplained(run) < 1e-3
+    assert energy_error(run) < 1e-3
     found = {name: run[f"{name}.nodal_vectors"][:, node] for name, node in (("leg", -1), ("arm", 0))}
     assert largest(found["leg"][:, 0] - found["arm"][:, 0]) < 1e-12
     return found

@@ -6,15 +6,13 @@ import numpy as np
 import pytest
 from funicular import Circle, FunicularWarning, Material, Scene, TableSignal
 from funicular.solve import long_runs
+from shared_scenes import cable_scene
 
 
 def stiff(pinned=True) -> Scene:
     """A steel wire that vibrates along itself at up to 4e5 rad/s, let go of a force."""
-    scene = Scene()
-    scene.cable("wire", start=(0, 0, 0), end=(1, 0, 0), elements=8, element="cable8p", section=Circle(radius=1e-3),
-                material=Material(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7850))
-    if pinned:
-        scene.pin("wire", s=0.0)
+    scene = cable_scene(pins=(0.0,) if pinned else (), elements=8, element="cable8p", section=Circle(radius=1e-3),
+                        material=Material(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7850))
     scene.force("wire", s=1.0, value=(10, 0, 0))
     return scene
 

@@ -3,16 +3,14 @@
 import numpy as np
 import pytest
 from funicular import Circle, GeneralSection, Material, Rectangle, Scene, SceneError, Tube
+from shared_scenes import cable_scene
 
 RUBBER = Material(youngs_modulus=1e6, poisson_ratio=0.5, density=1100)
 
 
 def cable(**changes) -> Scene:
-    scene = Scene()
-    given = {"start": (0, 0, 0), "end": (1, 0, 0), "elements": 4, "element": "beam24", "law": "structural",
-             "section": Circle(radius=0.01), "material": RUBBER} | changes
-    scene.clamp(scene.cable("wire", **given), s=0.0)
-    return scene
+    return cable_scene(clamps=(0.0,), **{"elements": 4, "element": "beam24", "law": "structural",
+                                         "section": Circle(radius=0.01), "material": RUBBER} | changes)
 
 
 @pytest.mark.parametrize(("element", "law"), [

@@ -207,6 +207,6 @@ def test_a_small_gap_is_closed(integrator):
         scene.joint("weld", ("A", (0.5, 0, 0)), ("B", (-0.5, 0.0005, 0)), name="weld")
     run = scene.run(0.1, integrator=integrator)
     assert run["weld.residual"].max() < 1e-11
-    told, = (told for told in run.report["messages"] if told.startswith("gaps"))
-    assert told.startswith("gaps of joints were closed at the start: things moved by up to 0.000")
-    assert 1e-4 < float(told.split()[-2]) < 5e-4
+    note, = (note for note in run.report["messages"] if note.startswith("gaps"))
+    assert note.startswith("gaps of joints were closed at the start: things moved by up to 0.000")
+    assert 1e-4 < float(note.split()[-2]) < 5e-4

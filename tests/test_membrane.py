@@ -9,6 +9,7 @@ from funicular.generated import kernels
 from funicular.kernels.elements import built_in
 from funicular.parts.section_stiffness import STABILISATION, section_stiffness
 from funicular.scene_file import loads
+from shared_scenes import cable_scene
 from test_elements import ELEMENTS
 
 ELASTIC = Material(youngs_modulus=1e8, poisson_ratio=0.3, density=1000)
@@ -18,11 +19,8 @@ LAWS = [(element, f"{strain}_{curvature}") for element in ("cable8p", "cable12")
 
 
 def cable(membrane=None, element="cable12", **given) -> Scene:
-    scene = Scene()
-    shape = {"start": (0, 0, 0), "end": (1, 0, 0)} if "points" not in given and "curve" not in given else {}
-    scene.cable("rope", element=element, elements=4, section=Circle(radius=0.01), material=ELASTIC, membrane=membrane,
-                **shape, **given)
-    return scene
+    return cable_scene("rope", element=element, elements=4, section=Circle(radius=0.01), material=ELASTIC,
+                       membrane=membrane, **given)
 
 
 def at_rest(element: str, l: float = 1.0) -> np.ndarray:

@@ -3,20 +3,16 @@
 import numpy as np
 import pytest
 from funicular import FunicularWarning, GeneralSection, Material, Rectangle, Scene, SceneError
-from scenery import SQUARE, TABLE_1, add_cable
+from shared_scenes import SQUARE, TABLE_1, add_cable, cable_scene
 
 THIN = GeneralSection(area=1e-4, second_moment_about_z=1e-14, second_moment_about_y=1e-14)
 WIRE = Material(youngs_modulus=1e9, poisson_ratio=0, density=1e4)
 
 
-def string(elements, strain=1e-3, element="cable12", planar=False) -> Scene:
+def string(elements, strain=1e-3, element="cable12") -> Scene:
     """1 m between its ends, 1 kg/m, no weight, no bending to speak of."""
-    scene = Scene(gravity=(0, 0, 0))
-    wire = scene.cable("wire", start=(0, 0, 0), end=(1, 0, 0), elements=elements, element=element,
-                       strain="engineering", rest_length=1 / (1 + strain), section=THIN, material=WIRE)
-    for s in (0.0, wire.length):
-        scene.pin(wire, s=s)
-    return scene
+    return cable_scene(pins="ends", gravity=(0, 0, 0), elements=elements, element=element, strain="engineering",
+                       rest_length=1 / (1 + strain), section=THIN, material=WIRE)
 
 
 @pytest.mark.parametrize(("element", "of_each"), [("cable12", 2), ("cable8p", 1)])

@@ -5,10 +5,11 @@ Bounds without another reason are about twice what was measured, which a comment
 
 import numpy as np
 import pytest
+from expectations import largest
 from funicular import Material, Scene
 from funicular.rotations import rotate
-from scenery import TABLE_1, add_cable, largest
 from scipy.integrate import solve_ivp
+from shared_scenes import TABLE_1, add_cable
 
 J = np.array([1e-3, 2e-3, 3e-3])
 SPIN = np.array([0.05, 5.0, 0.02])
@@ -77,7 +78,7 @@ def test_a_free_cable_falls_without_strain():
 
 
 @pytest.mark.parametrize("step", [2e-3, 1e-3])
-def test_a_damped_cable_comes_to_rest_and_the_books_close(step):
+def test_a_damped_cable_comes_to_rest_and_the_energy_balances(step):
     """Kelvin-Voigt damping takes the energy that the fall set free; at rest the pins carry the weight."""
     scene = Scene()
     material = Material(youngs_modulus=0.4e9, poisson_ratio=0.0, density=4200, damping_time=0.02)

@@ -10,20 +10,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from funicular import (
-    ConvergenceError,
-    FunicularError,
-    ResultFileError,
-    Scene,
-    SceneError,
-    load_run,
-    load_scene,
-)
-from funicular.results import (
-    streaming,
-)
-from test_cli import engine, funicular  # noqa: F401
-from test_streaming import SETTINGS, content, short, stopped  # noqa: F401
+from funicular import ConvergenceError, FunicularError, ResultFileError, Scene, SceneError, load_run, load_scene
+from funicular.results import streaming
+from interrupted_runs import SETTINGS, content, short
+from test_cli import funicular
 
 TAKEN = "another run is writing it; wait for its end, or give another name$"
 
@@ -107,7 +97,7 @@ def test_many_runs_started_at_once(tmp_path):
 PROCESS = """
 import sys
 sys.path.insert(0, {tests!r})
-from test_streaming import SETTINGS, short
+from interrupted_runs import SETTINGS, short
 from funicular import FunicularError
 try:
     print(short({speed}).run(**SETTINGS, save="x.nc")["A.velocity"][0, 0])
@@ -121,8 +111,8 @@ def test_processes_started_at_once(tmp_path):
     started = {speed: subprocess.Popen(
         [sys.executable, "-c", PROCESS.format(tests=str(Path(__file__).parent), speed=speed)], cwd=tmp_path, text=True,
         stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) for speed in (1.0, 2.0, 3.0)}
-    told = {speed: process.communicate()[0].strip() for speed, process in started.items()}
-    assert all(text in ("refused", str(speed)) for speed, text in told.items()), told
+    output = {speed: process.communicate()[0].strip() for speed, process in started.items()}
+    assert all(text in ("refused", str(speed)) for speed, text in output.items()), output
     assert [p.name for p in tmp_path.iterdir()] == ["x.nc"]
 
 
@@ -178,7 +168,7 @@ def test_a_file_system_without_locks(tmp_path, monkeypatch):
         short().run(**SETTINGS, save=tmp_path / "x.nc")
 
 
-def test_what_fails_leaves_nothing_behind(tmp_path, stopped):  # noqa: F811
+def test_what_fails_leaves_nothing_behind(tmp_path, stopped):
     folder = tmp_path / "new"
     folder.mkdir()
     scene = short()
@@ -229,7 +219,7 @@ def without_rows(recording):
     return recording
 
 
-def test_a_run_that_stops_before_its_first_row(engine, tmp_path):  # noqa: F811
+def test_a_run_that_stops_before_its_first_row(engine, tmp_path):
     """No file, no checkpoint, an older file as it was; the run says that it has nothing."""
     whole = engine.simulate
     engine.simulate = lambda *given, **named: without_rows(whole(*given, **named))
@@ -241,6 +231,6 @@ def test_a_run_that_stops_before_its_first_row(engine, tmp_path):  # noqa: F811
         assert repr(run) == "<funicular.Run: no_convergence, no times, 20 results>"
         assert run.summary().startswith("status: no_convergence before the first output time: there are no results")
         assert run["A.position"].shape == (0, 3) and run.energy_balance().exchanged == 0 and np.size(run.time) == 0
-    told = funicular("run", "paper51", "--plot")
-    assert (told.exit_code, told.stderr) == (1, "error: no step converged\n") and "paper51.nc" not in told.stdout
+    result = funicular("run", "paper51", "--plot")
+    assert (result.exit_code, result.stderr) == (1, "error: no step converged\n") and "paper51.nc" not in result.stdout
     assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("old.nc", "old")]

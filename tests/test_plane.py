@@ -1,19 +1,15 @@
 """Planar scenes: everything stays in the plane z = 0, and what does not is named."""
 
-import re
 
 import pytest
-from funicular import Circle, Material, Ramp, Scene, SceneError
+from expectations import refused
+from funicular import Circle, Material, Ramp, Scene
 
 SOFT = Material(youngs_modulus=1e6, density=1000, poisson_ratio=0.3)
 WIRE = {"start": (0, 0, 0), "end": (2, 0, 0), "elements": 2, "section": Circle(radius=0.1), "material": SOFT}
 BODY = {"mass": 1.0, "inertia": (1, 1, 1), "position": (1, 0, 0)}
 REMEDY = '; let it stay in the plane, or take spatial elements: "beam24", "cable12", "cable18"'
 PLANE = 'leaves the plane z = 0 of the cable8p cable "wire"' + REMEDY
-
-
-def refused(complaint):
-    return pytest.raises(SceneError, match="^" + re.escape(complaint) + "$")
 
 
 def planar(gravity=(0, -9.81, 0)):

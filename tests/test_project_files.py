@@ -1,5 +1,6 @@
 """The files for those who build, cite and change the package say the same as the package, and name what exists."""
 
+import ast
 import re
 import tomllib
 from pathlib import Path
@@ -48,3 +49,21 @@ def test_python_versions_are_those_of_the_metadata(project):
     named = re.findall(r":: (3\.\d+)$", "\n".join(project["classifiers"]), re.MULTILINE)
     run = re.search(r"python: \[(.*)\]", text(".github/workflows/ci.yml"))[1].replace('"', "").split(", ")
     assert (named[0], run) == (oldest, [named[0], named[-1]])
+
+
+def functions():
+    """Every function of the package, with where it stands."""
+    for folder in ("runtime", "derive"):
+        for file in sorted((ROOT / folder).rglob("*.py")):
+            for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+                if isinstance(node, ast.FunctionDef):
+                    yield f"{file.relative_to(ROOT)}:{node.lineno} {node.name}", node
+
+
+def test_functions_are_below_60_lines():
+    assert [where for where, node in functions() if node.end_lineno - node.lineno >= 59] == []
+
+
+def test_docstrings_are_sentences():
+    words = {where: len((ast.get_docstring(node) or "").split()) for where, node in functions()}
+    assert [where for where, count in words.items() if where.startswith("runtime") and 0 < count <= 3] == []

@@ -20,7 +20,7 @@ from typer.testing import CliRunner
 
 README, DERIVE, RUNTIME, BENCHMARKS, _ = pages = [page(path) for path in PAGES]
 OUTSIDE = "python3 -m venv", "funicular derive", "funicular verify", "funicular derive --check"
-"""Commands that .ci/run starts; `funicular derive --spec` is in tests/test_own_element.py."""
+"""Commands that .ci/run starts; `funicular derive --spec` is in tests/test_user_elements.py."""
 SHORT = {"bench": ["--duration", "0.02", "--repetitions", "1"]}
 """What a command gets here so that it is quick."""
 QUICK = ("first_scene", "order", "paper52", "planar", "crossing", "taut_rope", "choice", "linear_cost")
@@ -163,7 +163,7 @@ def test_exactly_two_commands():
 
 @pytest.mark.parametrize("words", commands("funicular"))
 def test_commands_run(words, tmp_path, monkeypatch):
-    if words[0] in ("derive", "verify"):  # of .ci/run and of tests/test_own_element.py: minutes
+    if words[0] in ("derive", "verify"):  # of .ci/run and of tests/test_user_elements.py: minutes
         words = [*words, "--help"]
     monkeypatch.chdir(tmp_path)
     (block,) = RUNTIME.of("Scene files", "toml")

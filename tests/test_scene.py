@@ -79,15 +79,15 @@ def test_the_rider_s_point_turns_with_the_body(scene):
     assert scene.messages == []
 
 
-def test_a_rider_slightly_off_is_moved_and_told(scene):
+def test_a_rider_slightly_off_is_moved_and_reported(scene):
     body(scene, position=(1, 2.0015, 4))
     with pytest.warns(
         FunicularWarning, match=r'slide "trolley": body "A" was moved by 0.0015 m onto cable "wire"'
-    ) as told:
+    ) as warned:
         scene.slide("A", along="wire", s=1, name="trolley")
     assert_allclose(scene.bodies["A"].position, (1, 2, 4), rtol=1e-15)
-    assert scene.messages == [str(told[0].message)]
-    assert told[0].filename == __file__
+    assert scene.messages == [str(warned[0].message)]
+    assert warned[0].filename == __file__
     scene.check()
 
 

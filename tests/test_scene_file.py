@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+from expectations import refused
 from funicular import (
     Circle,
     GeneralSection,
@@ -20,20 +21,7 @@ from funicular import (
     load_scene,
 )
 from funicular.scene_file import loads
-
-CABLE = """
-[[cable]]
-name = "wire"
-start = [0, 0, 0]
-end = [1.5, 0, 0]
-elements = 3
-section = { shape = "rectangle", height = 0.05, width = 0.05 }
-material = { youngs_modulus = 0.4e9, shear_modulus = 0.2e9, density = 4200 }
-"""
-
-
-def refused(message: str):
-    return pytest.raises(SceneError, match="^" + re.escape(message) + "$")
+from shared_scenes import CABLE
 
 
 @pytest.mark.parametrize("name", list(bundled_scenes()))

@@ -9,6 +9,7 @@ from catenary import end_forces
 from funicular import Circle, FunicularWarning, GeneralSection, Material, Scene
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_bvp
+from shared_scenes import cable_scene
 
 AREA, E, DENSITY, G = np.pi * 1e-4, 1e11, 7850.0, 9.81
 WEIGHT, AXIAL, BENDING = DENSITY * AREA * G, E * AREA, E * np.pi / 4 * 1e-8
@@ -17,13 +18,10 @@ CASES = [((10, 0), 10.5), ((10, 0), 10.05), ((10, 4), 11.5), ((20, 5), 21.0)]
 
 
 def rope(end, length, elements=20, element="cable12", section=SLENDER, points=None, **how) -> Scene:
-    scene = Scene()
-    drawn = {"start": (0, 0, 0), "end": (*end, 0)} if points is None else {"points": points, "rest": "straight"}
-    scene.cable("rope", elements=elements, element=element, rest_length=length, section=section,
-                material=Material(youngs_modulus=E, poisson_ratio=0.3, density=DENSITY), **drawn, **how)
-    scene.pin("rope", s=0)
-    scene.pin("rope", s=length)
-    return scene
+    drawn = {"end": (*end, 0)} if points is None else {"points": points, "rest": "straight"}
+    return cable_scene("rope", pins=(0, length), elements=elements, element=element, rest_length=length,
+                       section=section, material=Material(youngs_modulus=E, poisson_ratio=0.3, density=DENSITY),
+                       **drawn, **how)
 
 
 def hangs(scene, end, length, **settings):

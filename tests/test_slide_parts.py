@@ -1,21 +1,10 @@
 """Frames, drives, friction and ends of slides as a scene knows them, and what is refused of them."""
 
-import re
 
 import numpy as np
 import pytest
-from funicular import (
-    Buffer,
-    Circle,
-    Friction,
-    FunicularWarning,
-    HardStop,
-    Harmonic,
-    Material,
-    Ramp,
-    Scene,
-    SceneError,
-)
+from expectations import refused
+from funicular import Buffer, Circle, Friction, FunicularWarning, HardStop, Harmonic, Material, Ramp, Scene
 from funicular.checks.frames import cable_frame, end_frame, slide_axes
 from funicular.parts.attachment import Attachment
 from funicular.scene_file import loads
@@ -35,10 +24,6 @@ def scene():
     made.cable("link", start=(1, 0, 0), end=(1, 0, -1), elements=2, **THIN)
     made.rigid_body("A", position=(0.5, 0, 0), orientation=(0.6, 0.8, 0, 0), **BODY)
     return made
-
-
-def refused(complaint):
-    return pytest.raises(SceneError, match="^" + re.escape(complaint) + "$")
 
 
 def test_what_a_slide_is_by_itself(scene):
@@ -213,8 +198,8 @@ def test_a_flexible_rider_with_a_small_gap(scene):
     scene.clamp("rope", s=0)
     run = scene.run(1e-3)
     assert run["tail_on_rope.residual"].max() < 1e-9
-    assert any(told.startswith("gaps of joints were closed at the start: things moved by up to 0.00")
-               for told in run.report["messages"])
+    assert any(note.startswith("gaps of joints were closed at the start: things moved by up to 0.00")
+               for note in run.report["messages"])
 
 
 def test_round_trip(scene):

@@ -82,7 +82,7 @@ def test_a_definition_that_moves_as_another_is_differentiated_as_that_one():
     assert dict(p.stages[0].definitions)[strain] == square / (1 + length), "its value stays as it was written"
 
 
-def test_inputs_that_nothing_depends_on_are_told():
+def test_inputs_that_nothing_depends_on_are_reported():
     p, values, _ = chain()
     p.input("idle", 2, "1", "no output needs it")
     p.input("idler", (), "1", "nor this")

@@ -5,6 +5,7 @@ import warnings
 import numpy as np
 import pytest
 from funicular import Circle, FunicularWarning, Material, Pulse, Ramp, Scene
+from shared_scenes import cable_scene, structural
 
 RADIUS, MODULUS = 1e-3, 1e8
 EULER = np.pi**2 * MODULUS * np.pi / 4 * RADIUS**4
@@ -12,11 +13,9 @@ EULER = np.pi**2 * MODULUS * np.pi / 4 * RADIUS**4
 
 def strut(load, element="cable12", *, across=0.0) -> Scene:
     """1 m between a pin and a pin that may move along; a load on that end."""
-    scene = Scene(gravity=(0, 0, 0))
-    law = {"law": "structural"} if element.startswith("beam") else {}
-    scene.cable("strut", start=(0, 0, 0), end=(1, 0, 0), elements=6, element=element, section=Circle(radius=RADIUS),
-                material=Material(youngs_modulus=MODULUS, poisson_ratio=0, density=1000, damping_time=1e-3), **law)
-    scene.pin("strut", s=0)
+    scene = cable_scene("strut", pins=(0,), gravity=(0, 0, 0), elements=6, element=element,
+                        section=Circle(radius=RADIUS), **structural(element),
+                        material=Material(youngs_modulus=MODULUS, poisson_ratio=0, density=1000, damping_time=1e-3))
     scene.rigid_body("head", mass=0.01, inertia=(1e-5, 1e-5, 1e-5), position=(1, 0, 0))
     scene.joint("spherical", ("strut", 1.0), "head")
     scene.joint("prismatic", (1, 0, 0), "head", axis=(1, 0, 0))

@@ -1,15 +1,6 @@
 """Runs that write while they go on: killed at any instant, they leave a whole file, and go on to the same numbers."""
 
 import fcntl
-import hashlib
-import os
-import random
-import re
-import signal
-import subprocess
-import sys
-import time
-from pathlib import Path
 
 import pytest
 import xarray
@@ -26,94 +17,23 @@ from funicular import (
     load_run,
 )
 from funicular.integrators import INTEGRATORS
-from funicular.results import (
-    streaming,
-)
+from funicular.results import streaming
 from funicular.results.netcdf import File
+from interrupted_runs import (
+    ANEW,
+    SETTINGS,
+    SOFT,
+    WRITES,
+    Killed,
+    content,
+    failing,
+    file_refused,
+    resumed,
+    short,
+    signed,
+)
 from numpy.testing import assert_array_equal
-
-
-def short(speed: float = 1.0) -> Scene:
-    """A cable of four elements with a rider."""
-    scene = Scene()
-    wire = scene.cable("wire", start=(0, 0, 0), end=(1.5, 0, 0), elements=4, element="cable12",
-                       section=Circle(radius=0.01),
-                       material=Material(youngs_modulus=4e6, poisson_ratio=0, density=4200))
-    scene.pin(wire, s=0.0)
-    scene.pin(wire, s=1.5)
-    body = scene.rigid_body("A", mass=1.0, inertia=(1e-3, 1e-3, 1e-3), position=(0.2, 0, 0), velocity=(speed, 0, 0))
-    scene.slide(body, along=wire, s=0.2, name="trolley")
-    return scene
-
-
-def content(path) -> dict[str, bytes]:
-    run = load_run(path)
-    return {name: run[name].tobytes() for name in ["time", *run.keys()]}
-
-
-class Killed(BaseException):
-    """Stands for kill -9: nothing that the run would still do comes after it."""
-
-
-def failing(monkeypatch, writes: int, error: BaseException):
-    """Raise in place of all writes after so many, half-way through; a number in the header is written or is not."""
-    left = [writes]
-    pwrite, replace = os.pwrite, os.replace
-
-    def fails() -> bool:
-        left[0] -= 1
-        return left[0] < 0
-
-    def put(descriptor, data, at):
-        if fails():
-            pwrite(descriptor, data[: len(data) // 2 if len(data) > 4 else 0], at)
-            raise error
-        return pwrite(descriptor, data, at)
-
-    def move(old, new):
-        if fails():
-            raise error
-        replace(old, new)
-
-    monkeypatch.setattr(os, "pwrite", put)
-    monkeypatch.setattr(os, "replace", move)
-    monkeypatch.setattr(Path, "replace", move)
-    return left
-
-
-SETTINGS = {"duration": 0.2, "output_step": 0.01, "tol": 1e-3}
-WRITES = 65
-"""Of such a run: rows, their number and the checkpoint 20 times; the file's start and its end."""
-
-
-@pytest.fixture(scope="module")
-def uninterrupted(tmp_path_factory):
-    path = tmp_path_factory.mktemp("whole") / "x.nc"
-    short().run(**SETTINGS, save=path)
-    return content(path)
-
-
-@pytest.fixture
-def stopped(tmp_path, monkeypatch):
-    """The file of a run that was killed half-way."""
-    path = tmp_path / "x.nc"
-    with monkeypatch.context() as patch:
-        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
-        failing(patch, WRITES // 2, Killed())
-        with pytest.raises(Killed):
-            short().run(**SETTINGS, save=path)
-    return path
-
-
-def resumed(path, **changes):
-    return short().run(**SETTINGS | changes, save=path, resume=True)
-
-
-def refused(path, message: str):
-    return pytest.raises(ResultFileError, match=rf"^{re.escape(str(path))}: {message}")
-
-
-ANEW = "; start the run anew, without resume$"
+from shared_scenes import cable_scene
 
 
 def test_the_file_holds_what_a_run_in_memory_has(uninterrupted):
@@ -212,7 +132,7 @@ def test_rows_are_written_between_checkpoints(tmp_path, monkeypatch):
 
 
 def test_an_equilibrium_to_start_from(tmp_path, monkeypatch):
-    scene = pendulum()
+    scene = cable_scene(pins=(0.0,), **SOFT)
     scene.pin("wire", s=1.0)
     settings, path = {"duration": 0.1, "tol": 1e-3}, tmp_path / "x.nc"
     scene.run(**settings, initial="equilibrium", save=tmp_path / "whole.nc")
@@ -221,7 +141,7 @@ def test_an_equilibrium_to_start_from(tmp_path, monkeypatch):
         failing(patch, 100, Killed())
         with pytest.raises(Killed):
             scene.run(**settings, initial="equilibrium", save=path)
-    with refused(path, "its run cannot go on from another state" + ANEW):
+    with file_refused(path, "its run cannot go on from another state" + ANEW):
         scene.run(**settings, initial=scene.equilibrium(load_steps=3, tolerance=1e-5), save=path, resume=True)
     scene.run(**settings, initial=scene.equilibrium(), save=path, resume=True)
     assert content(path) == content(tmp_path / "whole.nc")
@@ -276,7 +196,7 @@ def test_a_run_that_ends_early_leaves_its_rows_and_no_checkpoint(tmp_path):
     assert_array_equal(stopped.value.run["trolley.s"], run["trolley.s"])
     assert run["trolley.s"][-1] == pytest.approx(1.5, abs=1e-9)
     assert [p.name for p in tmp_path.iterdir()] == ["x.nc"]
-    with refused(path, r"its run has come to its end \(end_of_cable\): there is nothing to resume" + ANEW):
+    with file_refused(path, r"its run has come to its end \(end_of_cable\): there is nothing to resume" + ANEW):
         short(5.0).run(duration=0.5, output_step=0.01, tol=1e-3, save=path, resume=True)
 
 
@@ -299,8 +219,8 @@ def test_full_disk(tmp_path, monkeypatch, uninterrupted):
     path = tmp_path / "x.nc"
     with monkeypatch.context() as patch:
         failing(patch, 30, OSError(28, "No space left on device"))
-        with refused(path, "the results could not be written: No space left on device; its first 10 times are whole; "
-                           "make room, and go on with resume"):
+        with file_refused(path, "the results could not be written: No space left on device; its first 10 times "
+                                "are whole; make room, and go on with resume"):
             short().run(**SETTINGS, save=path)
     assert len(load_run(path).time) == 10
     assert {p.name for p in tmp_path.iterdir()} == {"x.nc", "x.nc.state"}
@@ -308,45 +228,40 @@ def test_full_disk(tmp_path, monkeypatch, uninterrupted):
     assert content(path) == uninterrupted
 
 
-def signed(checkpoint: bytes) -> bytes:
-    """A checkpoint that was changed, with the digest that is then right."""
-    content = checkpoint.partition(b"\n")[2]
-    return hashlib.sha256(content).hexdigest().encode() + b"\n" + content
-
-
 def test_what_cannot_be_resumed(stopped, tmp_path):
     state, whole = tmp_path / "x.nc.state", (tmp_path / "x.nc.state").read_bytes()
-    with refused(tmp_path / "y.nc", "there is no run to resume: there is no such file" + ANEW):
+    with file_refused(tmp_path / "y.nc", "there is no run to resume: there is no such file" + ANEW):
         resumed(tmp_path / "y.nc")
     with pytest.raises(ResultFileError, match=r"^run: there is nothing to resume without a file of results; name it"):
         short().run(**SETTINGS, resume=True)
-    with refused(stopped, "its run was started with tol = 0.001, and cannot go on with 0.01; resume it with the sett"):
+    with file_refused(stopped, "its run was started with tol = 0.001, and cannot go on with 0.01; "
+                               "resume it with the sett"):
         resumed(stopped, tol=1e-2)
-    with refused(stopped, "its run was started with duration = 0.2, and cannot go on with 0.3;"):
+    with file_refused(stopped, "its run was started with duration = 0.2, and cannot go on with 0.3;"):
         resumed(stopped, duration=0.3)
     other = short()
     other.pin("wire", s=0.75)
-    with refused(stopped, "its run cannot go on with another scene" + ANEW):
+    with file_refused(stopped, "its run cannot go on with another scene" + ANEW):
         other.run(**SETTINGS, save=stopped, resume=True)
     for damaged in (whole[:-1], whole[:20], b"", whole.replace(b"{", b"[", 1), whole[:-1] + bytes([whole[-1] ^ 1])):
         state.write_bytes(damaged)
-        with refused(stopped, r"its checkpoint x\.nc\.state is damaged" + ANEW):
+        with file_refused(stopped, r"its checkpoint x\.nc\.state is damaged" + ANEW):
             resumed(stopped)
     state.write_bytes(signed(whole.replace(b'"programs": "', b'"programs": "0')))
-    with refused(stopped, "its run cannot go on with another version of funicular, NumPy or SciPy" + ANEW):
+    with file_refused(stopped, "its run cannot go on with another version of funicular, NumPy or SciPy" + ANEW):
         resumed(stopped)
     state.write_bytes(whole)
     File(stopped, writable=True).truncate(3)
-    with refused(stopped, "it has 3 times, but its checkpoint is of the one after 10"):
+    with file_refused(stopped, "it has 3 times, but its checkpoint is of the one after 10"):
         resumed(stopped)
     state.unlink()
-    with refused(stopped, r"its checkpoint x\.nc\.state is missing" + ANEW):
+    with file_refused(stopped, r"its checkpoint x\.nc\.state is missing" + ANEW):
         resumed(stopped)
 
 
 def test_auto_goes_on_with_the_same_integrator(stopped):
     """A spectral radius that is given decides for genalpha, also where it is the default."""
-    with refused(stopped, 'its run cannot go on with integrator "genalpha"' + ANEW):
+    with file_refused(stopped, 'its run cannot go on with integrator "genalpha"' + ANEW):
         resumed(stopped, spectral_radius=0.9)
 
 
@@ -354,12 +269,12 @@ def test_two_runs_do_not_write_one_file(stopped):
     writing = File(stopped, writable=True)
     fcntl.flock(writing.descriptor, fcntl.LOCK_EX)
     for resume in (False, True):
-        with refused(stopped, "another run is writing it; wait for its end, or give another name$"):
+        with file_refused(stopped, "another run is writing it; wait for its end, or give another name$"):
             short().run(**SETTINGS, save=stopped, resume=resume)
 
 
 def test_a_report_longer_than_its_room(tmp_path, monkeypatch, uninterrupted):
-    monkeypatch.setattr(streaming, "REPORT_ROOM", 0)
+    monkeypatch.setattr(streaming, "REPORT_SPARE", 0)
     run = short().run(**SETTINGS, save=tmp_path / "x.nc")
     assert run.status == "completed"
     assert content(tmp_path / "x.nc") == uninterrupted
@@ -373,120 +288,3 @@ def test_a_run_read_from_its_file_can_be_saved_again(tmp_path, uninterrupted):
     run.save(tmp_path / "x.nc")
     assert content(tmp_path / "x.nc") == uninterrupted
     assert load_run(tmp_path / "x.nc").report == run.report
-
-
-CHILD = """
-import sys
-from funicular.results import streaming
-from funicular.cli import app
-streaming.CHECKPOINT_INTERVAL = streaming.ROWS_INTERVAL = 0.0
-app(sys.argv[1:])
-"""
-
-
-def start(folder: Path, name: str, *options: str) -> subprocess.Popen:
-    arguments = ["run", "scene.toml", "-o", name, *options]
-    return subprocess.Popen([sys.executable, "-c", CHILD, *arguments], cwd=folder, stdout=subprocess.DEVNULL)
-
-
-def times(path: Path) -> int:
-    with xarray.open_dataset(path) as dataset:
-        return dataset.sizes["time"]
-
-
-def await_file(running: subprocess.Popen, path: Path, least: int = 1) -> float:
-    """Wait for the file to have so many times; when that was, in s."""
-    while running.poll() is None and not (path.exists() and times_so_far(path) >= least):
-        time.sleep(0.002)
-    return time.monotonic()
-
-
-def times_so_far(path: Path) -> int:
-    """While the file grows: scipy maps it before it reads how many rows it has, and one more may come in between."""
-    try:
-        return times(path)
-    except ValueError:
-        return 0
-
-
-@pytest.fixture
-def whole(tmp_path) -> tuple[dict[str, bytes], float]:
-    """What a run of about half a second writes, and how long it writes, in s; its scene.toml is in the folder."""
-    scene = short()
-    scene.run_settings = {"duration": 0.3, "output_step": 5e-4, "step": 1e-5}
-    (tmp_path / "scene.toml").write_text(scene.to_toml())
-    running = start(tmp_path, "whole.nc")
-    begin = await_file(running, tmp_path / "whole.nc")
-    assert running.wait() == 0
-    return content(tmp_path / "whole.nc"), time.monotonic() - begin
-
-
-def check_killed(path: Path, expected: dict[str, bytes]) -> None:
-    for name, values in content(path).items():
-        assert expected[name].startswith(values), name
-
-
-def check_resumed(path: Path, expected: dict[str, bytes]) -> None:
-    if load_run(path).status == "unfinished":  # and not killed on the way out
-        assert start(path.parent, path.name, "--resume").wait() == 0
-    assert content(path) == expected
-
-
-def test_kill(whole, tmp_path):
-    path, least = tmp_path / "x.nc", 1
-    for options in ([], ["--resume"]):
-        running = start(tmp_path, path.name, *options)
-        await_file(running, path, least + 150)
-        running.kill()
-        assert running.wait() == -signal.SIGKILL
-        check_killed(path, whole[0])
-        least = times(path)
-    assert 300 < least <= 601  # or on the way out
-    check_resumed(path, whole[0])
-
-
-@pytest.mark.slow
-def test_kill_at_20_random_instants(whole, tmp_path):
-    expected, seconds = whole
-    random_ones, reached = random.Random(4), []
-    while len(reached) < 20:
-        path = tmp_path / f"{len(reached)}.nc"
-        running = start(tmp_path, path.name)
-        await_file(running, path)
-        time.sleep(random_ones.random() * seconds)
-        running.kill()
-        if running.wait() == -signal.SIGKILL:
-            check_killed(path, expected)
-            reached.append((times(path), path))
-    for _, path in sorted(reached)[-4:]:
-        check_resumed(path, expected)
-
-
-MEMORY = """
-import resource, sys
-sys.path.insert(0, {tests!r})
-from test_streaming import pendulum
-pendulum().run(duration={rows} * 1e-3, step=1e-3, output_step=1e-3, save="x.nc")
-print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
-"""
-
-
-def pendulum() -> Scene:
-    scene = Scene()
-    scene.cable("wire", start=(0, 0, 0), end=(1, 0, 0), elements=4, element="cable12", section=Circle(radius=0.01),
-                material=Material(youngs_modulus=4e6, poisson_ratio=0, density=4200))
-    scene.pin("wire", s=0.0)
-    return scene
-
-
-def peak(rows: int, folder: Path) -> float:
-    code = MEMORY.format(tests=str(Path(__file__).parent), rows=rows)
-    done = subprocess.run([sys.executable, "-c", code], cwd=folder, capture_output=True, text=True, check=True)
-    return int(done.stdout) / 1024
-
-
-@pytest.mark.slow
-def test_memory_does_not_grow_with_duration(tmp_path):
-    few, many = peak(20_000, tmp_path), peak(100_000, tmp_path)
-    assert (tmp_path / "x.nc").stat().st_size > 40e6
-    assert many - few < 4.0  # MB

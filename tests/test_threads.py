@@ -7,16 +7,13 @@ import threading
 import funicular as fu
 import pytest
 from funicular.solve import threads
+from shared_scenes import cable_scene
 from threadpoolctl import ThreadpoolController, threadpool_limits
 
 
 def scene(body: float = 0.5) -> fu.Scene:
-    made = fu.Scene()
-    rope = made.cable("rope", start=(0, 0, 0), end=(1, 0, 0), elements=4, element="cable12",
-                      section=fu.Circle(radius=0.01),
-                      material=fu.Material(youngs_modulus=1e7, poisson_ratio=0.3, density=1000))
-    made.pin(rope, s=0)
-    made.pin(rope, s=1)
+    made = cable_scene("rope", pins=(0, 1), elements=4, element="cable12", section=fu.Circle(radius=0.01),
+                       material=fu.Material(youngs_modulus=1e7, poisson_ratio=0.3, density=1000))
     made.rigid_body("A", mass=1, inertia=(1, 1, 1), position=(body, 0, 0))
     made.slide("A", along="rope", s=body)
     return made

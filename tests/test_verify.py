@@ -145,7 +145,7 @@ def test_an_output_left_unwritten_is_found(generated, capsys):
     assert "rigid_point: bias is not" in capsys.readouterr().out
 
 
-def test_what_does_not_compile_is_told_with_the_compilers_words(generated, capsys):
+def test_what_does_not_compile_is_reported_with_the_compilers_words(generated, capsys):
     broken(generated, "rigid.c", "        dt_p_x =", "        dt_p_x +=")
     assert verify.main(["rigid"], generated) == 1
     err = capsys.readouterr().err
@@ -153,7 +153,7 @@ def test_what_does_not_compile_is_told_with_the_compilers_words(generated, capsy
     assert "funicular derive --check" in err
 
 
-def test_no_compiler_is_told(monkeypatch, capsys):
+def test_no_compiler_is_reported(monkeypatch, capsys):
     monkeypatch.setattr("shutil.which", lambda name: None)
     with pytest.raises(CompilerError):
         compiler()

@@ -64,7 +64,7 @@ class Mesh:
         return f"{'x' * self.factor}{self.count:g}"
 
     def elements(self, cable: Cable) -> int:
-        """Of this mesh in ``cable``."""
+        """Return the number of elements of this mesh in ``cable``."""
         count = self.count * cable.elements if self.factor else self.count
         if count % 1:
             raise SceneError(cable.where, f"{self} of its {cable.elements} elements is {count:g}",
@@ -72,11 +72,11 @@ class Mesh:
         return int(count)
 
     def twice(self) -> Mesh:
-        """The mesh with every element halved."""
+        """Return the mesh with every element halved."""
         return replace(self, count=2 * self.count)
 
     def scene(self, scene: Scene) -> Scene:
-        """The scene on this mesh. Raises SceneError, also where a support then stands on no node."""
+        """Return the scene on this mesh. Raises SceneError, also where a support then stands on no node."""
         made = Scene(scene.gravity)
         for part in scene.parts():
             if isinstance(part, Cable):
@@ -104,7 +104,7 @@ class Grid:
 
 def grid(scene: Scene, *, integrators=None, elements=("x1", "x2"), tols=TOLS, outputs=None, duration=None,
          output_step=None, repetitions: int = 5) -> Grid:
-    """A checked grid; without integrators all but "auto", which takes one of them. Raises SceneError."""
+    """Return a checked grid; without integrators all but "auto", which takes one of them. Raises SceneError."""
     for name, values in (("integrators", integrators), ("elements", elements), ("tols", tols), ("outputs", outputs)):
         if values is not None and not len(values):
             raise SceneError("bench", f"{name}: the list is empty", "name one, or leave it out")
@@ -159,12 +159,12 @@ class Row:
 
     @property
     def cpu_s(self) -> float:
-        """Median CPU seconds of the integration."""
+        """Return the median CPU seconds of the integration."""
         return median(self.cpu) if self.cpu else np.nan
 
     @property
     def set_up_s(self) -> float:
-        """Median seconds of making the model."""
+        """Return the median seconds of making the model."""
         return median(self.set_up) if self.set_up else np.nan
 
 
@@ -179,12 +179,12 @@ class Bench:
     finest: Reference | None
 
     def is_resolved(self, row: Row) -> bool:
-        """Whether the reference is ten times as exact as the row's time error needs."""
+        """Return whether the reference is ten times as exact as the row's time error needs."""
         return row.failed is None and self.references[row.mesh].agreement <= 0.1 * row.time_error
 
 
 def relative(scene: Scene, found: dict[str, np.ndarray], exact: dict[str, np.ndarray]) -> float:
-    """The largest of the outputs' errors, over the largest motion that an output of the same unit makes."""
+    """Return the largest of the outputs' errors, over the largest motion that an output of the same unit makes."""
     largest: dict[str, float] = {}
     for name, motion in exact.items():
         largest[unit(scene, name)] = max(largest.get(unit(scene, name), 0.0), largest_change(motion))
@@ -193,21 +193,24 @@ def relative(scene: Scene, found: dict[str, np.ndarray], exact: dict[str, np.nda
 
 
 def bench(scene: Scene, grid: Grid, tell: Callable[[str], None] = lambda text: None) -> Bench:
-    """Run the grid; tell: is told what is being done. What fails is kept as a row that says how."""
+    """Run the grid; tell: a function that is given a line on what is being done.
+
+    What fails is kept as a row that says how.
+    """
     result = Bench(scene, grid, [], {}, None)
-    scenes: dict[Mesh, Scene | str] = {}
+    scenes: dict[Mesh, Scene] = {}
+    failures: dict[Mesh, str] = {}
     for mesh in grid.meshes:
         tell(f"reference, {mesh} elements")
         try:
             scenes[mesh] = mesh.scene(scene)
             result.references[mesh] = _reference(scenes[mesh], mesh, grid)
         except FunicularError as error:
-            scenes[mesh] = str(error)
+            failures[mesh] = str(error)
     _compare_meshes(result, tell)
     for integrator in grid.integrators:
         for mesh in grid.meshes:
-            failed = scenes[mesh] if isinstance(scenes[mesh], str) else None
-            result.rows += [Row(integrator, mesh, tol, failed=failed) for tol in grid.tols]
+            result.rows += [Row(integrator, mesh, tol, failed=failures.get(mesh)) for tol in grid.tols]
     for turn in range(grid.repetitions):
         for row in result.rows:
             if row.failed is None and (turn == 0 or row.cpu[0] < LONG):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from ..checks.placement import node_of
@@ -16,9 +18,9 @@ PLACES = ("tip", "middle")
 
 
 def default_outputs(scene: SceneData) -> list[str]:
-    """Where bodies and slides are, and of each cable the end, or its middle where the end is held."""
-    held = {node_of(scene, support) for support in scene.supports}
-    places = [f"{name}.{'middle' if (name, cable.elements) in held else 'tip'}"
+    """Return where bodies and slides are, and of each cable the end, or its middle where the end is supported."""
+    supported = {node_of(scene, support) for support in scene.supports}
+    places = [f"{name}.{'middle' if (name, cable.elements) in supported else 'tip'}"
               for name, cable in scene.cables.items()]
     return [f"{name}.position" for name in scene.bodies] + [f"{name}.s" for name in scene.slides] + places
 
@@ -32,15 +34,15 @@ def check_output(scene: SceneData, name: str) -> None:
 
 
 def known_outputs(scene: SceneData) -> list[str]:
-    """Names of outputs, but for places of cables given by their arc-length."""
-    parts = {"bodies": scene.bodies, "slides": scene.slides, "springs": scene.springs}
+    """Return the names of outputs, but for places of cables given by their arc-length."""
+    parts: dict[str, Iterable[str]] = {"bodies": scene.bodies, "slides": scene.slides, "springs": scene.springs}
     results = [f"{name}.{quantity}" for group, named in parts.items() for name in named
                for quantity in QUANTITIES[group] if quantity not in ("orientation", "multiplier")]
     return results + [f"{name}.{place}" for name in scene.cables for place in PLACES] + list(ENERGIES)
 
 
 def _place(scene: SceneData, name: str) -> tuple[str, float] | None:
-    """Cable and arc-length of a place such as wire.tip or wire@0.5; None where it is none."""
+    """Return the cable and arc-length of a place such as wire.tip or wire@0.5; None where it is none."""
     cable, _, place = name.rpartition(".") if name.endswith(PLACES) else name.rpartition("@")
     if cable not in scene.cables:
         return None
@@ -55,7 +57,7 @@ def _place(scene: SceneData, name: str) -> tuple[str, float] | None:
 
 
 def unit(scene: SceneData, name: str) -> str:
-    """The unit of an output."""
+    """Return the unit of an output."""
     if name in ENERGIES:
         return "J"
     if _place(scene, name) is not None:
@@ -65,10 +67,12 @@ def unit(scene: SceneData, name: str) -> str:
 
 
 def trajectory(scene: SceneData, run: Run, name: str) -> np.ndarray:
-    """(time, components): an output of a run of ``scene``."""
+    """Return (time, components): an output of a run of ``scene``."""
     if name in run:
         return run[name].reshape(len(run.time), -1)
-    cable, s = _place(scene, name)
+    if (place := _place(scene, name)) is None:
+        raise KeyError(name)
+    cable, s = place
     described = scene.cables[cable]
     length = described.length / described.elements
     element = min(int(s / length * (1 + 1e-12)), described.elements - 1)
@@ -78,10 +82,10 @@ def trajectory(scene: SceneData, run: Run, name: str) -> np.ndarray:
 
 
 def distance(found: np.ndarray, exact: np.ndarray) -> float:
-    """Largest distance of two trajectories (time, components), over the output times."""
+    """Return the largest distance of two trajectories (time, components), over the output times."""
     return float(np.linalg.norm(found - exact, axis=1).max())
 
 
 def largest_change(exact: np.ndarray) -> float:
-    """What errors are relative to: the largest distance of a trajectory (time, components) from its start."""
+    """Return what errors are relative to: the largest distance of a trajectory (time, components) from its start."""
     return distance(exact, exact[:1])

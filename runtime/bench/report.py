@@ -24,7 +24,7 @@ LINES, MARKERS = ("-", "--", ":", "-."), "osD^v"
 
 
 def statements(result: Bench) -> list[str]:
-    """How far the references are converged, a line each."""
+    """Return how far the references are converged, a line each."""
     lines = []
     for mesh, reference in result.references.items():
         rows = [row for row in result.rows if row.mesh == mesh and row.failed is None]
@@ -40,7 +40,7 @@ def statements(result: Bench) -> list[str]:
 
 
 def print_table(result: Bench, console: Console) -> None:
-    """Rows and statements, on a terminal."""
+    """Print the rows and the statements on a terminal."""
     table = Table(box=box.SIMPLE, padding=0, pad_edge=False)
     table.add_column("integrator", no_wrap=True)
     table.add_column("mesh", no_wrap=True)
@@ -61,7 +61,7 @@ def print_table(result: Bench, console: Console) -> None:
 
 
 def failures(result: Bench) -> list[str]:
-    """How combinations failed, a line each; those that failed in one way together."""
+    """Return how combinations failed, a line each; those that failed in one way together."""
     failed: dict[tuple, list[str]] = {}
     for row in result.rows:
         if row.failed is not None:

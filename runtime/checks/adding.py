@@ -43,8 +43,8 @@ _CHECKS: dict[type[Part], Callable[[SceneData, Any], Part]] = {
     Load: placed_load, PointForce: placed_point_force, Event: placed_event}
 
 
-def check_of(part: Part) -> Callable[[SceneData, Any], Part]:
-    """The function that checks such a part against a scene and returns it complete.
+def check_of(part: Part) -> Callable[[SceneData, Any], Any]:
+    """Return the function that checks such a part against a scene and returns it complete.
 
     It is that of its class, else of the nearest base class. Others have their attachments completed.
     """

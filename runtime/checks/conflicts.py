@@ -30,12 +30,12 @@ def check_supports(scene: SceneData, joint: Joint) -> None:
 
 
 def _holds_position(support: Support) -> bool:
-    """Whether it leaves no direction free."""
+    """Return whether it leaves no direction free."""
     return not isinstance(support, Motion) or (support.displacement is not None and None not in support.displacement)
 
 
 def _node(scene: SceneData, end: Attachment) -> Node | None:
-    if end.on not in scene.cables or (node := scene.cables[end.on].node_at(end.s)) is None:
+    if end.on not in scene.cables or (node := scene.cables[end.on].node_at(end.arc_length)) is None:
         return None
     return end.on, node
 
@@ -73,12 +73,14 @@ def _clash(scene: SceneData, joint: Joint, other: Joint, ends: tuple[Attachment,
 
 
 def move_as_one(scene: SceneData, one: Attachment, other: Attachment) -> bool:
-    """Whether two ends are on one body, both on the ground, or at one place of a cable."""
-    return one.on == other.on and (one.s is None or abs(one.s - other.s) <= EXACT * scene.cables[one.on].length)
+    """Return whether two ends are on one body, both on the ground, or at one place of a cable."""
+    if one.on not in scene.cables:
+        return one.on == other.on
+    return one.on == other.on and abs(one.arc_length - other.arc_length) <= EXACT * scene.cables[one.on].length
 
 
 def called(end: Attachment) -> str:
-    """What messages call that which an end is on."""
+    """Return what messages call that which an end is on."""
     if end.on is None:
         return "the ground"
     return f'body "{end.on}"' if end.s is None else f'cable "{end.on}" at s = {show(end.s, "m")}'

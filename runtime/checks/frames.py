@@ -25,12 +25,12 @@ class JointAxes(NamedTuple):
 
 
 def has_section(cable: Cable) -> bool:
-    """Whether its elements know the turn about the tangent, which in the plane there is not."""
+    """Return whether its elements know the turn about the tangent, which in the plane there is not."""
     return cable.dim == 2 or bool(cable.kind_of_element.director)
 
 
 def cable_frame(cable: Cable, s: float, up=None) -> np.ndarray:
-    """(3, 3): tangent, height and width at ``s`` as the elements draw them, as columns.
+    """Return (3, 3): tangent, height and width at ``s`` as the elements draw them, as columns.
 
     The tangent frame of eq 16 to 18: k square to the tangent and to r_y or, where ``up`` is given, to that (up must be
     off the tangent); the cable's own axes where there is neither.
@@ -42,7 +42,7 @@ def cable_frame(cable: Cable, s: float, up=None) -> np.ndarray:
 
 
 def draws_section(cable: Cable) -> bool:
-    """Whether its elements have sections of their own, which shear turns away from the tangent."""
+    """Return whether its elements have sections of their own, which shear turns away from the tangent."""
     return {2: {"r_y"}, 3: {"r_y", "r_z"}}[cable.dim] <= set(cable.kind_of_element.nodal_vectors)
 
 
@@ -61,17 +61,17 @@ def _unit(vector: np.ndarray) -> np.ndarray:
 
 
 def end_frame(scene: SceneData, end: Attachment, up=None) -> np.ndarray:
-    """(3, 3): the frame of a complete end; ``up`` completes that of a cable without section axes."""
+    """Return (3, 3): the frame of a complete end; ``up`` completes that of a cable without section axes."""
     if end.on is None:
         return np.eye(3)
     if end.on in scene.bodies:
         return scene.bodies[end.on].axes
     cable = scene.cables[end.on]
-    return section_frame(cable, end.s) if draws_section(cable) else cable_frame(cable, end.s, up)
+    return section_frame(cable, end.arc_length) if draws_section(cable) else cable_frame(cable, end.arc_length, up)
 
 
 def joint_axes(scene: SceneData, joint: Joint) -> JointAxes:
-    """The axes of a joint of the scene in the frames of its ends."""
+    """Return the axes of a joint of the scene in the frames of its ends."""
     return JointAxes(*(end_frame(scene, end, joint.up).T @ joint.axes for end in (joint.a, joint.b)))
 
 

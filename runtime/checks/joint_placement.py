@@ -25,7 +25,7 @@ UPRIGHT = 1e-3
 
 
 def placed_joint(scene: SceneData, joint: Joint) -> Joint:
-    """The joint with its ends, axis and length complete, sure to be one that its ends can hold; tells of a gap."""
+    """The joint with its ends, axis and length complete, sure to be possible between its ends; a gap is reported."""
     joint = placed_between(scene, joint)
     if move_as_one(scene, joint.a, joint.b):
         raise SceneError(joint.where, f"joins {called(joint.a)} to itself", "give it two ends")
@@ -53,7 +53,7 @@ def check_joint(scene: SceneData, joint: Joint) -> None:
 
 def check_drive(scene: SceneData, joint: Joint) -> None:
     """A run that starts as drawn must not begin with a jump."""
-    if not joint.is_driven:
+    if joint.prescribed is None:
         return
     name, start = DRIVEN[joint.pair], 0.0
     size = 1.0 if name == "angle" else scene_size(scene, joint)
@@ -67,7 +67,7 @@ def check_drive(scene: SceneData, joint: Joint) -> None:
 
 
 def _completed(scene: SceneData, joint: Joint) -> dict:
-    """What is left out and follows from the scene."""
+    """Return what is left out and follows from the scene."""
     if joint.pair == "revolute" and joint.axis is None:
         if scene.dim == 3:
             raise SceneError(joint.where, "axis is missing: a revolute joint needs it")
@@ -83,14 +83,14 @@ def _completed(scene: SceneData, joint: Joint) -> dict:
 
 
 def scene_size(scene: SceneData, joint: Joint) -> float:
-    """The largest extent in m of what is in the scene."""
+    """Return the largest extent in m of what is in the scene."""
     points = [point_of(scene, joint.a), point_of(scene, joint.b)]
     points += [body.point((0.0, 0.0, 0.0)) for body in scene.bodies.values()]
     return max(float(np.linalg.norm(np.ptp(points, axis=0))), *(cable.length for cable in scene.cables.values()), 0.0)
 
 
 def _gap(scene: SceneData, joint: Joint) -> tuple[float, str]:
-    """How far in m the ends are from where the joint holds them, and a sentence on it."""
+    """Return how far in m the ends are from where the joint holds them, and a sentence on it."""
     a, b = point_of(scene, joint.a), point_of(scene, joint.b)
     apart, at = b - a, f"a at {show(a)} and b at {show(b, 'm')}"
     if joint.pair in POINTS:
@@ -123,7 +123,7 @@ def _check_frames(scene: SceneData, joint: Joint) -> None:
 
 
 def _tangent_is_enough(joint: Joint, end: str, tangent: np.ndarray) -> bool:
-    """Whether all that the joint holds at this end of a cable is along its tangent."""
+    """Return whether all that the joint holds at this end of a cable is along its tangent."""
     if joint.is_driven or joint.pair in ("weld", "prismatic"):
         return False
     axis = joint.axes[:, 0 if joint.pair == "universal" and end == "b" else 2]
@@ -137,7 +137,7 @@ def _needs(joint: Joint) -> str:
 
 
 def elements_with_sections() -> str:
-    """Elements to take instead, for a remedy."""
+    """Return the elements to take instead, for a remedy."""
     return "element=" + " or ".join(f'"{n}"' for n, kind in built_in().items() if kind.director and kind.dim == 3)
 
 

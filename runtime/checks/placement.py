@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -18,11 +19,13 @@ from ..parts.scene_data import SceneData
 from ..parts.support import Support, Tie
 from ..parts.validation import Part, show
 
+P = TypeVar("P", bound=Part)
+
 HELD = {"pin": "pinned", "clamp": "clamped", "motion": "moved as prescribed"}
 
 
 def cable_at(scene: SceneData, name: str, place: str, s: float, keyword: str = "s") -> Cable:
-    """The cable ``name``, on which ``s`` must lie."""
+    """Return the cable ``name``, on which ``s`` must lie."""
     if name not in scene.cables:
         raise SceneError(place, f'there is no cable "{name}"', near(name, scene.cables))
     cable = scene.cables[name]
@@ -32,7 +35,7 @@ def cable_at(scene: SceneData, name: str, place: str, s: float, keyword: str = "
 
 
 def node_at(scene: SceneData, name: str, place: str, s: float, keyword: str = "s") -> Node:
-    """The node of the cable ``name`` at ``s``; there must be one."""
+    """Return the node of the cable ``name`` at ``s``; there must be one."""
     cable = cable_at(scene, name, place, s, keyword)
     node = cable.node_at(s)
     if node is not None:
@@ -69,10 +72,10 @@ def placed_tie(scene: SceneData, tie: Tie) -> Tie:
     if gap > EXACT * max(a.length, b.length):
         raise SceneError(tie.where, f"the nodes are {gap:.6g} m apart, at {show(a.point(tie.s))} and "
                          f"{show(b.point(tie.at), 'm')}", "draw both cables through the same point")
-    supports = support_of(scene, one), support_of(scene, other)
-    if all(supports):
-        raise SceneError(tie.where, f"both nodes are held already, by the {supports[0].where} and the "
-                         f"{supports[1].where}", "leave one of them out")
+    first, second = support_of(scene, one), support_of(scene, other)
+    if first is not None and second is not None:
+        raise SceneError(tie.where, f"both nodes are held already, by the {first.where} and the {second.where}",
+                         "leave one of them out")
     if tie.rotation == "rigid" and _shears_the_end(a, tie.s, b, tie.at):
         message = (f"{tie.where}: the tie shares the slopes of both cables, so that a moment on one shears the last "
                    "element of the other: the corner is too soft, the more so the shorter the elements are; "
@@ -83,7 +86,7 @@ def placed_tie(scene: SceneData, tie: Tie) -> Tie:
 
 
 def _shears_the_end(a: Cable, s: float, b: Cable, at: float) -> bool:
-    """Whether a rigid tie in space joins the tangent of one cable to the section of the other.
+    """Return whether a rigid tie in space joins the tangent of one cable to the section of the other.
 
     In the plane, ties at an angle share the turn of the section alone (model/unknowns.py), which is not linear in
     space.
@@ -96,28 +99,30 @@ def _shears_the_end(a: Cable, s: float, b: Cable, at: float) -> bool:
 
 
 def placed_load(scene: SceneData, load: Force | DistributedForce | Moment) -> Part:
-    """The load with its place complete, and sure to be one that the element can carry."""
+    """Return the load with its place complete, and sure to be one that the element can carry."""
     if isinstance(load, DistributedForce):
-        cable = cable_at(scene, load.cable, load.where, load.start or 0.0, "start")
-        start, stop = load.start or 0.0, cable.length if load.stop is None else load.stop
+        along = cable_at(scene, load.cable, load.where, load.start or 0.0, "start")
+        start, stop = load.start or 0.0, along.length if load.stop is None else load.stop
         cable_at(scene, load.cable, load.where, stop, "stop")
-        start, stop = max(start, 0.0), min(stop, cable.length)
+        start, stop = max(start, 0.0), min(stop, along.length)
         if not start < stop:
             raise SceneError(load.where, f"stop must be beyond start {show(start, 'm')}, got {show(stop, 'm')}")
         load = load.model_copy(update={"start": start, "stop": stop})
     else:
         at = getattr(load, "at", None)
         end = placed_attachment(scene, Attachment(on=load.on, s=load.s, at=at), load.where)
-        update = {} if isinstance(scene.bodies.get(load.on), ModalBody) else {"s": end.s}  # a moment's s says all
+        update: dict[str, Any] = {}
+        if not isinstance(scene.bodies.get(load.on), ModalBody):  # of which a moment's s says all
+            update = {"s": end.s}
         update |= {"at": end.at, "s": end.s} if isinstance(load, Force) else {}
         load = load.model_copy(update=update)
-        cable = scene.cables.get(load.on)
+    cable = scene.cables.get(load.cable if isinstance(load, DistributedForce) else load.on)
     if cable is not None and cable.dim == 3 and not cable.kind_of_element.director:
         _check_without_section(load, cable)
     return load
 
 
-def _check_without_section(load: Part, cable: Cable) -> None:
+def _check_without_section(load: Force | DistributedForce | Moment, cable: Cable) -> None:
     """Without axes of the section there is nothing to turn about the tangent, and no direction across it."""
     with_axes = "element=" + " or ".join(f'"{n}"' for n, kind in built_in().items() if kind.director and kind.dim == 3)
     if isinstance(load, Moment):
@@ -135,7 +140,7 @@ def _check_without_section(load: Part, cable: Cable) -> None:
 
 
 def placed_attachment(scene: SceneData, end: Attachment, where: str, prefix: str = "") -> Attachment:
-    """Where on a cable or a body something acts, complete."""
+    """Return where on a cable or a body something acts, complete."""
     if end.on is None:
         return end
     if end.on in scene.cables:
@@ -161,7 +166,7 @@ def placed_attachment(scene: SceneData, end: Attachment, where: str, prefix: str
     raise SceneError(where, f'{prefix}there is no cable or body "{end.on}"', near(end.on, known))
 
 
-def placed_between(scene: SceneData, part: Part) -> Part:
+def placed_between(scene: SceneData, part: P) -> P:
     """Return a part with its attachments complete."""
     attachments = {name: value for name, value in part if isinstance(value, Attachment)}
     return part.model_copy(update={name: placed_attachment(scene, value, part.where, f"{name}: ")

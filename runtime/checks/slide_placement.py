@@ -23,7 +23,7 @@ MOVABLE = 1e-3
 
 
 def placed_slide(scene: SceneData, slide: Slide) -> Slide:
-    """The slide with its places and its up complete, its rider on the cable."""
+    """Return the slide with its places and its up complete, its rider on the cable."""
     if slide.body in scene.cables and slide.body_s is None:
         raise SceneError(slide.where, f'cable "{slide.body}" rides and needs the arc-length of its point',
                          f'give body=("{slide.body}", s)')
@@ -69,7 +69,7 @@ def _check_rider(scene: SceneData, slide: Slide) -> None:
 
 
 def _framed(scene: SceneData, slide: Slide, cable: Cable) -> Slide:
-    """The slide with up complete, sure that cable and rider have the vectors that its frame needs."""
+    """Return the slide with up complete, sure that cable and rider have the vectors that its frame needs."""
     if slide.frame == "point":
         return slide
     if slide.frame == "section" and not cable.kind_of_element.director:
@@ -104,7 +104,7 @@ def _check_drive(slide: Slide, cable: Cable) -> None:
 
 
 def _gap(scene: SceneData, slide: Slide) -> tuple[float, str]:
-    """The distance in m from the rider's point to its place on the cable, and a sentence on it."""
+    """Return the distance in m from the rider's point to its place on the cable, and a sentence on it."""
     point = point_of(scene, slide.rider)
     gap = float(np.linalg.norm(point - scene.cables[slide.along].point(slide.s)))
     rider = f'the point of {"body" if slide.body_s is None else "cable"} "{slide.body}" at {show(point, "m")}'

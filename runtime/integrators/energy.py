@@ -1,4 +1,4 @@
-"""The energy-momentum method."""
+"""The energy-momentum method as the engine takes it: its one parameter and what it can run."""
 
 from __future__ import annotations
 
@@ -22,6 +22,11 @@ class EnergyMomentum(Integrator):
     default_spectral_radius = 1.0
     takes_modal_bodies = takes_friction_and_stops = False
     needs_discrete_gradient = True
+
+    @classmethod
+    def of(cls, spectral_radius: float) -> Integrator:
+        """Return the integrator with this spectral radius, see `Integrator.of`."""
+        return cls(spectral_radius)
 
     @property
     def parameters(self) -> np.ndarray:

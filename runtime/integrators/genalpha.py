@@ -1,4 +1,4 @@
-"""The generalised-alpha method."""
+"""The generalised-alpha method as the engine takes it: its parameters from the spectral radius."""
 
 from __future__ import annotations
 
@@ -17,6 +17,11 @@ class GeneralisedAlpha(Integrator):
     name, order, error_overestimate = "genalpha", 2, 2.0
     default_spectral_radius = 0.9
     loses_energy_by_spectral_radius = True
+
+    @classmethod
+    def of(cls, spectral_radius: float) -> Integrator:
+        """Return the integrator with this spectral radius, see `Integrator.of`."""
+        return cls(spectral_radius)
 
     @property
     def parameters(self) -> np.ndarray:

@@ -39,7 +39,7 @@ class StabilityLimit:
 
 
 class Integrator(ABC):
-    """A way through time; the engine's part of the same name is in engine/integrators/.
+    """A method of integration in time; the engine's part of the same name is in engine/integrators/.
 
     order: of the error in positions that steps are chosen by; error_overestimate: how much larger the estimate of the
     local error is than that error; retry_factor: what steps stay below for a while after one that failed, as a part of
@@ -67,7 +67,7 @@ class Integrator(ABC):
     @classmethod
     def of(cls, spectral_radius: float) -> Integrator:
         """Return the integrator with this spectral radius at infinite frequency, if it has one."""
-        return cls() if cls.default_spectral_radius is None else cls(spectral_radius)
+        return cls()
 
     @classmethod
     def cost(cls, demands: Demands) -> tuple[float, str] | None:

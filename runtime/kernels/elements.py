@@ -13,7 +13,7 @@ MANIFEST = "manifest.json"
 
 @dataclass(frozen=True)
 class LawTraits:
-    """What an elastic law is, as the manifest tells.
+    """What an elastic law is, as the manifest has it.
 
     stiffness_of       the law of this package whose section stiffness it takes: itself, but for a law of the user's
     kind               "cable" (of the axis alone), "continuum" or "structural" (of the whole section)
@@ -47,11 +47,11 @@ class ElementKind:
 
     @property
     def is_cable(self) -> bool:
-        """Whether its laws know the section by its axial and bending stiffness alone."""
+        """Return whether its laws know the section by its axial and bending stiffness alone."""
         return all(law.kind == "cable" for law in self.laws.values())
 
     def law_for_curved_shape(self, law: str) -> str | None:
-        """The law that stands for a law where the stress-free shape is curved; None if the element has none."""
+        """Return the law that stands for a law where the stress-free shape is curved; None if the element has none."""
         if law in self.laws and self.laws[law].takes_shape:
             return law
         return next((name for name, traits in self.laws.items() if traits.straight == law), None)
@@ -59,12 +59,12 @@ class ElementKind:
 
 @cache
 def manifest() -> dict:
-    """The manifest of this package's kernels."""
+    """Return the manifest of this package's kernels."""
     return json.loads((resources.files("funicular.generated") / MANIFEST).read_text(encoding="utf-8"))
 
 
 def of_manifest(content: dict) -> dict[str, ElementKind]:
-    """The elements of a manifest by name."""
+    """Return the elements of a manifest by name."""
     return {name: ElementKind(tuple(e["nodal_vectors"]), e["dim"], e["director"],
                               {law: LawTraits(**traits) for law, traits in e["laws"].items()})
             for name, e in content["elements"].items()}
@@ -72,13 +72,13 @@ def of_manifest(content: dict) -> dict[str, ElementKind]:
 
 @cache
 def built_in() -> dict[str, ElementKind]:
-    """The elements of this package by name."""
+    """Return the elements of this package by name."""
     return of_manifest(manifest())
 
 
 @cache
 def built_in_laws() -> dict[str, LawTraits]:
-    """The laws of this package by name."""
+    """Return the laws of this package by name."""
     return {law: traits for kind in built_in().values() for law, traits in kind.laws.items()}
 
 

@@ -41,7 +41,7 @@ class LibraryError(FunicularError, ValueError):
 
 
 def resolved(directory: str | os.PathLike) -> str:
-    """A directory's absolute path without links. Raises ValueError for what no path can be."""
+    """Return a directory's absolute path without links. Raises ValueError for what no path can be."""
     try:
         return os.path.realpath(os.fspath(directory))
     except (TypeError, ValueError):  # not a path; a NUL, or half of a surrogate pair
@@ -66,7 +66,7 @@ def manifest_digest(content: dict) -> str:
 
 
 def read_manifest(directory: Path) -> tuple[bytes, dict]:
-    """The manifest of the library in a directory, as it stands there and as data. Raises LibraryError."""
+    """Return the manifest of the library in a directory, as it stands there and as data. Raises LibraryError."""
     try:
         text = (directory / MANIFEST).read_bytes()
     except OSError as error:
@@ -145,7 +145,7 @@ class Library:
 
 
 def load(directory: str | os.PathLike) -> Library:
-    """The library in a directory; once loaded it stays. Raises LibraryError."""
+    """Return the library in a directory; once loaded it stays. Raises LibraryError."""
     path = Path(resolved(directory))
     text, content = read_manifest(path)
     if _loaded.get(str(path), (b"",))[0] != text:
@@ -154,7 +154,7 @@ def load(directory: str | os.PathLike) -> Library:
 
 
 def of_library(library: str | None) -> dict[str, ElementKind]:
-    """The elements of a library by name, of this package for None. Raises LibraryError."""
+    """Return the elements of a library by name, of this package for None. Raises LibraryError."""
     return elements.built_in() if library is None else load(library).elements
 
 

@@ -1,4 +1,4 @@
-"""Attachments as the engine takes them: what springs, joints, loads and riders hold on to."""
+"""Attachments as the engine takes them: what springs, joints, loads and riders are attached to."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class AttachmentBuilder:
         self.body_index = {name: k for k, name in enumerate(scene.bodies)}
 
     def element(self, cable: str, s: float) -> tuple[int, float]:
-        """Element that holds s, and x in it."""
+        """Return the element that s is in, and x in it."""
         model = self.cables[self.cable_index[cable]]
         element = min(max(int(s // model.length), 0), model.n_elements - 1)
         return element, s - element * model.length
@@ -63,18 +63,19 @@ class AttachmentBuilder:
         none = np.zeros(0)
         axes = self._axes(axes)
         if attachment.on is None:
-            return AttachmentModel(-1, -1, 0, -1, attachment.at, none, none, 0.0, 0.0, axes=axes)
+            return AttachmentModel(-1, -1, 0, -1, attachment.point, none, none, 0.0, 0.0, axes=axes)
         if attachment.on in self.body_index:
             body = self.bodies[self.body_index[attachment.on]]
             length = float(np.sqrt(np.max(np.linalg.eigvalsh(body.inertia)) / body.mass))
             part = self.scene.bodies[attachment.on]
             if isinstance(part, ModalBody):
                 return AttachmentModel(-1, self.body_index[attachment.on], 0, -1, (0.0,) * 3, none, none, body.mass,
-                                       length, axes=axes, spot=self._spot(part.spot(attachment.at)))
-            return AttachmentModel(-1, self.body_index[attachment.on], 0, -1, part.arm(attachment.at), none, none,
+                                       length, axes=axes, spot=self._spot(part.spot(attachment.point)))
+            return AttachmentModel(-1, self.body_index[attachment.on], 0, -1, part.arm(attachment.point), none, none,
                                    body.mass, length, axes=axes)
-        found = self._on_cable(attachment.on, attachment.s, axes, up, draws_section(self.scene.cables[attachment.on]))
-        found.element, x = self.element(attachment.on, attachment.s)
+        found = self._on_cable(attachment.on, attachment.arc_length, axes, up,
+                               draws_section(self.scene.cables[attachment.on]))
+        found.element, x = self.element(attachment.on, attachment.arc_length)
         model = self.cables[found.cable]
         found.N = model.kernel("on_axis")(model.length, x)[0]
         if axes is not None:
@@ -83,7 +84,7 @@ class AttachmentBuilder:
         return found
 
     def on_slide(self, slide: Slide, number: int, axes: np.ndarray) -> AttachmentModel:
-        """The cable's frame where a slide is."""
+        """Return the cable's frame where a slide is."""
         section = slide.frame == "section" and draws_section(self.scene.cables[slide.along])
         found = self._on_cable(slide.along, slide.s, self._axes(axes), slide.up, section)
         found.slide = number
@@ -92,7 +93,7 @@ class AttachmentBuilder:
         return found
 
     def _on_cable(self, name: str, s: float, axes: np.ndarray | None, up, section: bool) -> AttachmentModel:
-        """An attachment with the frame of the section, or of the tangent with the director or up."""
+        """Return an attachment with the frame of the section, or of the tangent with the director or up."""
         cable, index = self.scene.cables[name], self.cable_index[name]
         length = self.cables[index].length
         mass = cable.material.density * cable.section.area * length

@@ -15,12 +15,15 @@ BODIES = {2: ("planar_rigid", 4, 3), 3: ("rigid", 7, 6)}
 
 
 def body_models(scene: SceneData, at: int) -> list[BodyModel]:
-    """Bodies in the scene's order, their coordinates from `at` on."""
+    """Return the bodies in the scene's order, their coordinates from `at` on."""
     dim, made, dof = scene.dim, [], at
     kernel, n_configuration, n_velocity = BODIES[dim]
     for body in scene.bodies.values():
-        shape = _shape(body, np.array(scene.gravity)[:dim]) if isinstance(body, ModalBody) else None
-        centre = np.zeros(3) if shape else np.array(body.centre)
+        shape, centre = None, np.zeros(3)
+        if isinstance(body, ModalBody):
+            shape = _shape(body, np.array(scene.gravity)[:dim])
+        else:
+            centre = np.array(body.centre)
         made.append(BodyModel(body.name, kernel, body.mass, np.array(body.inertia), centre, at, dof, shape))
         at += n_configuration + made[-1].modes
         dof += n_velocity + made[-1].modes
@@ -39,14 +42,14 @@ def dofs_of(body: BodyModel, dim: int) -> int:
 
 
 def configuration_of(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
-    """Its configuration, undeformed."""
+    """Return its configuration at the start: position in m, attitude, and modal coordinates, which are zero."""
     if isinstance(body, ModalBody):
         (position, orientation), modes = body.frame, np.zeros(body.shape.n)
     else:
-        position, orientation, modes = body.point(body.centre), body.orientation, np.zeros(0)
+        position, orientation, modes = body.point(body.centre), np.array(body.orientation), np.zeros(0)
     if dim == 2:
         w, _, _, z = orientation
-        orientation = w * w - z * z, 2 * w * z
+        orientation = np.array([w * w - z * z, 2 * w * z])
     return np.array([*position[:dim], *orientation, *modes])
 
 

@@ -11,7 +11,7 @@ from .bodies import body_gravity, body_models, body_weights, configuration_of, d
 from .cables import cable_gravity, cable_model, cable_rates, cable_weights
 from .coupling import number
 from .joints import frame_joint_model, joint_model
-from .loads import Actions
+from .loads import LoadBuilder
 from .model import CableModel, Model, MotionModel
 from .slides import slide_model
 from .unknowns import Node, supports
@@ -31,24 +31,24 @@ def build(scene: SceneData) -> Model:
     nodes = {model.name: _nodes(model, scene.cables[model.name].where, vectors)
              for model, vectors in zip(cables, nodal, strict=True)}
     attachments = AttachmentBuilder(scene, cables, bodies)
-    actions = Actions(scene, attachments)
+    loads = LoadBuilder(scene, attachments)
     elements = np.array([(node.first, 2 * node.vectors.size) for each in nodes.values() for node in each[:-1]],
                         dtype=int).reshape(-1, 2)
-    reduction = supports(scene, nodes, actions.signal).reduce(n_flexible, elements)
+    reduction = supports(scene, nodes, loads.signal).reduce(n_flexible, elements)
     for load in scene.loads.values():
-        actions.load(load)
-    slides = [slide_model(slide, scene, attachments, actions.signal) for slide in scene.slides.values()]
+        loads.load(load)
+    slides = [slide_model(slide, scene, attachments, loads.signal) for slide in scene.slides.values()]
     joints = [frame_joint_model(attachments, slide, k) for k, slide in enumerate(scene.slides.values())
               if slide.frame != "point"]
-    joints += [joint_model(attachments, joint, actions.signal) for joint in scene.joints.values()]
-    point_forces = [actions.point_force(force) for force in scene.springs.values()]
+    joints += [joint_model(attachments, joint, loads.signal) for joint in scene.joints.values()]
+    point_forces = [loads.point_force(force) for force in scene.springs.values()]
     n_extra, n_multipliers = number([*slides, *joints, *point_forces])
     n_of_bodies = sum(dofs_of(body, dim) for body in bodies)
     numbering = reduction.numbering
     return Model(
-        dim, cables, bodies, slides, joints, point_forces, actions.signals,
+        dim, cables, bodies, slides, joints, point_forces, loads.signals,
         [MotionModel(dof, p.signal, p.base, p.linear, p.cosine, p.sine) for dof, p in reduction.prescribed],
-        actions.dead, actions.turning,
+        loads.dead, loads.turning,
         q=_joined(*(vectors.ravel() for vectors in nodal), *(configuration_of(body, dim) for body in described)),
         v=_joined(cable_rates(scene, reduction), *(velocity_of(body, dim) for body in described)),
         weight=_joined(*map(cable_weights, drawn), *(body_weights(body, dim) for body in described)),

@@ -25,7 +25,7 @@ def cable_model(cable: Cable, first: int) -> CableModel:
 
 
 def cable_gravity(model: CableModel, cable: Cable, gravity: np.ndarray) -> np.ndarray:
-    """(coordinates,): generalised weight of a cable; two elements meet at an inner node."""
+    """Return (coordinates,): generalised weight of a cable; two elements meet at an inner node."""
     first, second = model.kernel("gravity")(model.length, cable.material.density, cable.section.mass_moments(),
                                             gravity).reshape(2, *model.shape[1:])
     weight = np.zeros(model.shape)
@@ -35,7 +35,7 @@ def cable_gravity(model: CableModel, cable: Cable, gravity: np.ndarray) -> np.nd
 
 
 def cable_rates(scene: SceneData, reduction: Reduction) -> np.ndarray:
-    """Rates of the cables' nodal vectors at the start, but for what supports hold."""
+    """Return the rates of the cables' nodal vectors at the start, but for what supports hold."""
     asked = np.concatenate([*(cable.nodal_rates[..., : scene.dim].ravel() for cable in scene.cables.values()), []])
     unknowns, free, tied = np.zeros(reduction.combinations.shape[1]), reduction.place >= 0, reduction.place < -1
     unknowns[reduction.place[free]] = asked[free]
@@ -46,7 +46,7 @@ def cable_rates(scene: SceneData, reduction: Reduction) -> np.ndarray:
 
 
 def cable_weights(cable: Cable) -> np.ndarray:
-    """How far a unit of each nodal vector moves a point: 1 for positions, and lengths for the slopes."""
+    """Return how far a unit of each nodal vector moves a point: 1 for positions, and lengths for the slopes."""
     area, iyy, izz = cable.section.moments()[:3]
     unit = gauge(cable.kind_of_element.nodal_vectors, cable.length / cable.elements, np.sqrt(iyy / area),
                  np.sqrt(izz / area))

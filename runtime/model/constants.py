@@ -45,8 +45,9 @@ def element_constants(library: str | None, element: str, law: str, length: float
     return getattr(kernels, f"{element}_{law}_stiffness")(length, *([] if e0 is None else [e0]), S)
 
 
-def integral_over_volume(stiffness_at, length: float, e0: np.ndarray, S: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The kernel `stiffness_at` summed over an element: the form over its Gram products, and those of e0."""
+def integral_over_volume(stiffness_at, length: float, e0: np.ndarray | None,
+                         S: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the kernel `stiffness_at` summed over an element: the form over its Gram products, and those of e0."""
     places, weights = np.polynomial.legendre.leggauss(POINTS)
     shares = []
     for x, weight in zip(length / 2 * (1 + places), length / 2 * weights, strict=True):

@@ -38,12 +38,12 @@ class JointModel(CouplingModel):
 
     @property
     def rows(self) -> int:
-        """Number of its equations."""
+        """Return the number of its equations."""
         return len(self.scale)
 
 
 def joint_model(attachments: AttachmentBuilder, joint: Joint, signal: Callable[[Signal], int]) -> JointModel:
-    """The model of a joint; signal(s): number of a signal."""
+    """Return the model of a joint; signal(s): number of a signal."""
     scene = attachments.scene
     at = joint_axes(scene, joint)
     needs = joint.pair not in ("spherical", "distance")
@@ -60,16 +60,18 @@ def joint_model(attachments: AttachmentBuilder, joint: Joint, signal: Callable[[
             turned = True
     base = 0.0
     if joint.pair == "distance":
+        assert joint.length is not None, f"{joint.where} is not complete"
         base = 0.0 if driven else joint.length
     elif driven and DRIVEN[joint.pair] == "distance":
         base = float(joint.axes[:, 2] @ (point_of(scene, joint.b) - point_of(scene, joint.a)))
-    model = _model(joint.name, kind, scene.dim, ends, signal(joint.prescribed) if driven else -1, base)
+    model = _model(joint.name or "", kind, scene.dim, ends,
+                   -1 if joint.prescribed is None else signal(joint.prescribed), base)
     model.reversed = turned
     return model
 
 
 def frame_joint_model(attachments: AttachmentBuilder, slide: Slide, number: int) -> JointModel:
-    """What keeps a rider's axes to the frame of its cable, beside slide number `number`."""
+    """Return what keeps a rider's axes to the frame of its cable, beside slide number `number`."""
     dim = attachments.scene.dim
     at = slide_axes(attachments.scene, slide)
     free = slide.frame == "tangent" and slide.roll == "free" and dim == 3
@@ -82,11 +84,12 @@ def frame_joint_model(attachments: AttachmentBuilder, slide: Slide, number: int)
 def _model(name: str, kind: str, dim: int, ends: list[AttachmentModel], signal: int, base: float) -> JointModel:
     kernel = f"joint_{'planar_' * (dim == 2)}{kind}"
     scale = _scales(kernel, dim, ends)
-    return JointModel(name, kernel, tuple(ends), signal, base, scale, n_unknowns=len(scale), n_multipliers=len(scale))
+    return JointModel(name, kernel, (ends[0], ends[1]), signal, base, scale, n_unknowns=len(scale),
+                      n_multipliers=len(scale))
 
 
 def _scales(kernel: str, dim: int, ends: list[AttachmentModel]) -> np.ndarray:
-    """(rows,): kg, and kg m where a row is about turns alone: no displacement of the points changes it."""
+    """Return (rows,): kg, and kg m where a row is about turns alone: no displacement of the points changes it."""
     eye, ones = np.eye(dim), np.ones(dim)
     force = getattr(kernels_of(None), f"{kernel}_force")
     J = force(ones, eye, eye, np.array([0.5, np.cos(0.5), np.sin(0.5)]), np.zeros(force.shapes["f"]))[1]

@@ -33,7 +33,8 @@ def knots(model: Model, duration: float, tol: float) -> tuple[np.ndarray, np.nda
     found = [each for number, signal in enumerate(model.signals)
              for each in _of_signal(signal, number in driving, tol)
              if ONE_INSTANT * duration < each[0] < (1 - ONE_INSTANT) * duration]
-    times, jumps = [], []
+    times: list[float] = []
+    jumps: list[float] = []
     for time, jump in sorted(found):
         if times and time - times[-1] <= ONE_INSTANT * duration:
             times[-1], jumps[-1] = time, max(jump, jumps[-1])
@@ -50,7 +51,7 @@ def driving_signals(model: Model) -> set[int]:
 
 
 def _of_signal(signal: SignalModel, drives: bool, tol: float) -> list[tuple[float, int]]:
-    """Return time and jump of each knot of a signal that counts.
+    """Return the time and jump of each knot of a signal that counts.
 
     A knot counts where the piece before it, continued over the shorter one of the two that meet there, parts from the
     one after it by more than tol of the signal; of a signal that prescribes a motion, also where their rates do. No

@@ -33,7 +33,7 @@ class SignalModel:
     phase: float
 
     def value(self, time: np.ndarray, derivative: int = 0) -> np.ndarray:
-        """The signal, or a derivative of it, at the times ``time``, s."""
+        """Return the signal, or a derivative of it, at the times ``time``, s."""
         return value_at(self, self.breaks, self.coefficients, time, derivative)
 
 
@@ -55,7 +55,7 @@ class LoadModel:
     on: int
     element: int
     x: float
-    u: tuple[float, float, float]
+    u: tuple[float, ...]
     c: tuple[float, float, float]
     spot: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
 
@@ -79,7 +79,7 @@ class PointForceModel(CouplingModel):
     mass: float
 
 
-class Actions:
+class LoadBuilder:
     """Translates the loads and springs of a scene."""
 
     def __init__(self, scene: SceneData, attachments: AttachmentBuilder):
@@ -90,23 +90,24 @@ class Actions:
         self.turning: list[LoadModel] = []
 
     def signal(self, signal) -> int:
-        """Number of a signal."""
+        """Store a signal and return its number."""
         breaks, coefficients = signal.pieces()
         self.signals.append(SignalModel(np.asarray(breaks, dtype=float), np.asarray(coefficients, dtype=float),
                                         signal.amplitude, signal.angular_frequency, signal.phase))
         return len(self.signals) - 1
 
     def _scale(self, signal) -> tuple[int, float]:
-        """Number and constant factor of a load's scale."""
-        return (-1, signal.value(0.0)) if isinstance(signal, Constant) else (self.signal(signal), 1.0)
+        """Return the number and constant factor of a load's scale."""
+        return (-1, float(signal.value(0.0))) if isinstance(signal, Constant) else (self.signal(signal), 1.0)
 
     def load(self, load: Force | DistributedForce | Moment) -> None:
-        """Add a load."""
+        """Add the model of a load to `dead` or `turning`."""
         number, factor = self._scale(load.scale)
         value = factor * np.array(load.value)
         if isinstance(load, DistributedForce):
             self._distributed(load, number, value)
         elif load.on in self.cable_index:
+            assert load.s is not None, f"{load.where} is not complete"
             points = [(*self.attachments.element(load.on, load.s), 1.0)]
             if isinstance(load, Moment):
                 self._turning(CABLE_MOMENT, number, load.on, points, value)
@@ -116,7 +117,7 @@ class Actions:
             kind = BODY_MOMENT if isinstance(load, Moment) else BODY_FOLLOWER if load.follower else BODY_FORCE
             attachment = Attachment(on=load.on, s=load.s, at=getattr(load, "at", None))
             on = self.attachments.model(placed_attachment(self.scene, attachment, load.where))
-            self.turning.append(LoadModel(kind, number, on.body, 0, 0.0, on.u, tuple(value), on.spot))
+            self.turning.append(LoadModel(kind, number, on.body, 0, 0.0, on.u, (value[0], value[1], value[2]), on.spot))
 
     def _distributed(self, load: DistributedForce, number: int, value: np.ndarray) -> None:
         model = self.cables[self.cable_index[load.cable]]

@@ -5,8 +5,8 @@ Coordinates, unknowns and their order are those of engine/include/engine.h.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any, Protocol
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -20,6 +20,18 @@ from .coupling import CouplingModel
 from .joints import JointModel
 from .loads import DeadLoad, LoadModel, PointForceModel, SignalModel
 from .unknowns import Node
+
+
+class Kernel(Protocol):
+    """A generated function, with the shapes of its arguments by name."""
+
+    shapes: dict[str, tuple[int, ...]]
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Return what it computes of one set of arguments."""
+
+    def rows(self, n: int, *arguments: Any) -> Any:
+        """Return what it computes of n sets of arguments: of each, n along the first axis, or one for all."""
 
 
 @dataclass
@@ -45,8 +57,8 @@ class CableModel:
         """Its part of q, v and the dofs."""
         return slice(self.first, self.first + int(np.prod(self.shape)))
 
-    def kernel(self, name: str) -> Callable:
-        """A kernel of its element."""
+    def kernel(self, name: str) -> Kernel:
+        """Return a kernel of its element."""
         return getattr(kernels_of(self.library), f"{self.element}_{name}")
 
 
@@ -80,12 +92,12 @@ class BodyModel:
 
     @property
     def modes(self) -> int:
-        """Number of modes."""
+        """Return the number of its modes, 0 of a rigid body."""
         return 0 if self.shape is None else len(self.shape.stiffness)
 
     @property
     def modal_kernel(self) -> str:
-        """Name of the kernels of its modes."""
+        """Return the name of the kernels of its modes."""
         return self.kernel.replace("rigid", "modal")
 
 
@@ -156,17 +168,17 @@ class Model:
 
     @property
     def n_q(self) -> int:
-        """Length of the configuration."""
+        """Return the length of the configuration."""
         return len(self.q)
 
     @property
     def n_dof(self) -> int:
-        """Length of the velocities."""
+        """Return the length of the velocities."""
         return len(self.v)
 
     @property
     def kernels(self) -> list[str]:
-        """Names of the kernel families that the scene touches."""
+        """Return the names of the kernel families that the scene touches."""
         return sorted({c.element for c in self.cables} | {f"{c.element}_{c.law}" for c in self.cables}
                       | {slide.kernel for slide in self.slides} | {body.kernel for body in self.bodies}
                       | {joint.kernel for joint in self.joints}

@@ -1,4 +1,4 @@
-"""Joints that hold more than there is to hold: equations that follow from others, found by the compliance H M^-1 H'."""
+"""Redundant constraints: equations of joints that follow from others, found by the compliance H M^-1 H'."""
 
 from __future__ import annotations
 
@@ -14,23 +14,24 @@ SAME, NEARLY = 1e-12, 1e-8
 SHARE = 1e-6
 """Of another equation in one that follows: less is none."""
 
-WAY, RETURN = 1e-3, 1e-8
+PROBE, RETURN = 1e-3, 1e-8
 """How far a mechanism is moved, as a part of its size, to see whether an equation follows there, too; and how well."""
 
 
 def drop_redundant_rows(model: Model, engine) -> list[str]:
-    """Leave out equations of joints that follow from those of others, and tell of it; for an engine not yet started.
+    """Leave out equations of joints that follow from those of others; for an engine not yet started.
 
-    What follows is seen where the scene is drawn and, since a mechanism may pass a position where it is free to go two
-    ways, a small way from there. The joint that was added last does without; its force and moment are then those of
-    a scene without these equations. Raises SceneError where slides, or what drives joints, hold the same, and for a
-    start in a singular position.
+    Redundancy is sought where the scene is drawn and at a small displacement from there, since a mechanism may pass a
+    position in which it is free to move in two directions. The joint that was added last loses the equations; its force
+    and moment are then those of a scene without them. Returns messages about them.
+
+    Raises SceneError where slides, or what drives joints, constrain the same, and for a start in a singular position.
     """
     riders = [(slide.rider.body, slide.rider.cable) for slide in model.slides]
     if not model.joints and len(set(riders)) == len(riders):
         return []  # slides of different bodies never do: each acts on its own body, whose mass is not zero
     if not engine.prepare():
-        return []  # start tells why
+        return []  # start says why
     S, owner = _compliance(engine), _owners(model)
     if S is None:
         return []  # here, too
@@ -59,7 +60,7 @@ def drop_redundant_rows(model: Model, engine) -> list[str]:
 
 
 def _left_out(model: Model, row: int, others: list[int], owner: list[str]) -> tuple[int, int]:
-    """The joint and the row of it that others imply; raises SceneError where it has to stay."""
+    """Return the joint and the row of it that others imply; raises SceneError where it has to stay."""
     names = _listed([owner[k] for k in (*others, row)])
     if _driven(model) & {row, *others}:
         raise SceneError("scene", f"is over-constrained: {names} drive or hold the same", "leave one of them out")
@@ -71,11 +72,11 @@ def _left_out(model: Model, row: int, others: list[int], owner: list[str]) -> tu
 
 
 def _check_that_they_follow(model: Model, engine, dropped: list[tuple[int, int]], names: str) -> None:
-    """Raise SceneError unless dropped rows are kept where the others are, at the start and a small way from there."""
+    """Raise SceneError unless dropped rows are met where the others are, at the start and beside it."""
     size = engine.extent
     unit = np.where(model.weight == 1, size, np.minimum(size / model.weight, 1.0))
-    way = WAY * unit * np.random.default_rng(0).uniform(-1, 1, model.n_dof)
-    at_start, beside = (engine.wander(along) for along in (np.zeros(model.n_dof), way))
+    probe = PROBE * unit * np.random.default_rng(0).uniform(-1, 1, model.n_dof)
+    at_start, beside = (engine.wander(along) for along in (np.zeros(model.n_dof), probe))
     gap, error = (np.inf if left is None else max(abs(left[at]) for at in dropped) for left in (at_start, beside))
     if gap > RETURN * min(size, 1.0):
         raise SceneError("scene", f"is over-constrained: {names} hold the same, but do not fit together: {gap:.3g} (m "
@@ -86,7 +87,7 @@ def _check_that_they_follow(model: Model, engine, dropped: list[tuple[int, int]]
 
 
 def redundant(model: Model, engine, ratio: float = NEARLY) -> str:
-    """Names of slides and joints that hold nearly the same at the time reached; empty where there are none."""
+    """Return names of slides and joints that hold nearly the same at the time reached; empty where there are none."""
     if not model.joints and len(model.slides) < 2:
         return ""
     S = _compliance(engine)
@@ -111,7 +112,7 @@ def _compliance(engine) -> np.ndarray | None:
 
 
 def _following(S: np.ndarray) -> dict[int, list[int]]:
-    """Rows that are combinations of rows before them, and of which: by Cholesky's factors of S, row by row."""
+    """Return rows that are combinations of rows before them, and of which: by Cholesky's factors of S, row by row."""
     used = np.flatnonzero(np.diag(S) > 0)
     scale = 1 / np.sqrt(np.diag(S)[used])
     S = scale[:, None] * S[np.ix_(used, used)] * scale
@@ -120,7 +121,9 @@ def _following(S: np.ndarray) -> dict[int, list[int]]:
             return {}
     except np.linalg.LinAlgError:
         pass
-    L, kept, found = np.zeros_like(S), [], {}
+    L = np.zeros_like(S)
+    kept: list[int] = []
+    found: dict[int, list[int]] = {}
     for row in range(len(S)):
         n = len(kept)
         factor = solve_triangular(L[:n, :n], S[kept, row], lower=True) if n else np.zeros(0)
@@ -135,7 +138,7 @@ def _following(S: np.ndarray) -> dict[int, list[int]]:
 
 
 def _owners(model: Model) -> list[str]:
-    """What each multiplier is of, as messages call it."""
+    """Return what each multiplier is of, as messages call it."""
     names = [""] * model.n_multipliers
     for slide in model.slides:
         count = slide.n_multipliers
@@ -148,12 +151,12 @@ def _owners(model: Model) -> list[str]:
 
 def _spare(model: Model) -> set[int]:
     """Return the multipliers that slides have for when they stick or rest at an end: nothing stands there yet."""
-    return {k for joint in model.slides if joint.drive < 0
-            for k in range(joint.multiplier + model.dim - 1, joint.multiplier + joint.n_multipliers)}
+    return {k for slide in model.slides if slide.drive < 0
+            for k in range(slide.multiplier + model.dim - 1, slide.multiplier + slide.n_multipliers)}
 
 
 def _driven(model: Model) -> set[int]:
-    """The multipliers of what signals drive: the last of each joint's."""
+    """Return the multipliers of what signals drive: the last of each joint's."""
     return ({slide.multiplier + slide.n_multipliers - 1 for slide in model.slides if slide.drive >= 0}
             | {joint.multiplier + joint.rows - 1 for joint in model.joints if joint.signal >= 0})
 

@@ -19,7 +19,7 @@ def spatial(vectors: np.ndarray) -> np.ndarray:
 
 
 def force_and_moment(nodes, reaction: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray]:
-    """Force and moment that supports or joins give to nodes at one place.
+    """Return the force and moment that supports or joins give to nodes at one place.
 
     reaction, q: (time, dofs) generalised forces and configuration. Returns force, moment (time, 3) in N, N m: the
     moment is what the forces on the slopes turn the section by, sum of r_k x f_k.
@@ -35,13 +35,13 @@ def force_and_moment(nodes, reaction: np.ndarray, q: np.ndarray) -> dict[str, np
 
 def support_reaction(model: Model, scene: SceneData, part: Support, reaction: np.ndarray,
                      q: np.ndarray) -> dict[str, np.ndarray]:
-    """Force and moment of a pin, clamp or motion on its node and those joined to it."""
+    """Return the force and moment of a pin, clamp or motion on its node and those joined to it."""
     nodes = joined(scene, node_of(scene, part))
     return force_and_moment([model.nodes[cable][k] for cable, k in nodes], reaction, q)
 
 
 def tie_force(model: Model, scene: SceneData, tie: Tie, reaction: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray]:
-    """Force and moment of a tie on the node of its `cable`: what the nodes on that side of it are given.
+    """Return the force and moment of a tie on the node of its `cable`: what the nodes on that side of it are given.
 
     A support on that side gives a part that is not the tie's: then it is minus what the other side is given.
     """
@@ -119,7 +119,7 @@ def point_force_state(model: Model, between: PointForceModel, force: np.ndarray,
 
 
 def attachment_points(model: Model, attachment, q: np.ndarray) -> np.ndarray:
-    """(time, 3): where an attachment is."""
+    """Return (time, 3): where an attachment is."""
     if attachment.cable >= 0:
         cable = model.cables[attachment.cable]
         start = cable.first + attachment.element * cable.shape[1] * model.dim

@@ -1,6 +1,6 @@
 """From supports and joins to unknowns: every dof of the cables is linear in unknowns and in what motions prescribe.
 
-Pins and clamps hold dofs; a cable clamped at a node keeps the direction of its slope and one unknown, its length;
+Pins and clamps fix dofs; a cable clamped at a node keeps the direction of its slope and one unknown, its length;
 joined nodes share the position. Of rigidly joined ones in line, or in space, slopes of one are constant combinations of
 those of the other: they share the gradient of the deformation (Shabana, Computational Continuum Mechanics, ch. 6:
 structural discontinuities). At an angle in the plane they share the turn of the section alone: the gradient would make
@@ -37,7 +37,7 @@ class Prescribed:
     sine: float = 0.0
 
     def times(self, factor: float) -> Prescribed:
-        """The same, scaled."""
+        """Return this part of a dof multiplied by a factor."""
         return Prescribed(self.signal, *(factor * x for x in (self.base, self.linear, self.cosine, self.sine)))
 
 
@@ -65,7 +65,7 @@ class Numbering:
 
 @dataclass
 class Reduction:
-    """place[dof]: its unknown, -1 held, -2 - k the k-th row of `combinations`; the prescribed parts by dof."""
+    """place[dof]: its unknown, -1 fixed, -2 - k the k-th row of `combinations`; the prescribed parts by dof."""
 
     place: np.ndarray
     combinations: csr_array
@@ -85,20 +85,20 @@ class Node:
 
     @property
     def dim(self) -> int:
-        """Of the element."""
+        """Return the dimension of the element, 2 or 3."""
         return self.vectors.shape[1]
 
     @property
     def directors(self) -> list[str]:
-        """The vectors that span the section."""
+        """Return the vectors that span the section."""
         return [name for name in ("r_y", "r_z") if name in self.names]
 
     def vector(self, name: str) -> np.ndarray:
-        """As drawn."""
+        """Return a nodal vector (dim,) as it is drawn."""
         return self.vectors[self.names.index(name)]
 
     def dofs(self, name: str) -> range:
-        """Of a nodal vector."""
+        """Return the numbers of the dofs of a nodal vector."""
         at = self.first + self.names.index(name) * self.dim
         return range(at, at + self.dim)
 
@@ -109,8 +109,8 @@ class Supports:
     def __init__(self) -> None:
         self.rows: dict[int, Row] = {}
 
-    def hold(self, node: Node, names: Iterable[str]) -> None:
-        """Fix nodal vectors as drawn."""
+    def fix(self, node: Node, names: Iterable[str]) -> None:
+        """Fix the nodal vectors of these names as they are drawn."""
         for name in names:
             for dof in node.dofs(name):
                 self.rows[dof] = Row()
@@ -118,9 +118,9 @@ class Supports:
     def clamp(self, node: Node, everything: bool) -> None:
         """Fix position and section: the directors, or the direction of the slope where there are none."""
         if everything:
-            self.hold(node, node.names)
+            self.fix(node, node.names)
             return
-        self.hold(node, ["r", *node.directors])
+        self.fix(node, ["r", *node.directors])
         if not node.directors:
             along = node.vector("r_x") / np.linalg.norm(node.vector("r_x"))
             unknown = int(np.argmax(np.abs(along)))
@@ -166,7 +166,7 @@ class Supports:
         return row
 
     def reduce(self, n_dof: int, elements: np.ndarray) -> Reduction:
-        """Number the unknowns; elements (n, 2): first dof and number of dofs of each.
+        """Number the unknowns; return how dofs are made of them. elements (n, 2): first dof and number of dofs of each.
 
         Where joins tie distant nodes, in the order that takes the fewest operations.
         """
@@ -217,7 +217,7 @@ def _in_line(master: Node, slave: Node) -> bool:
 
 
 def _turned(vector: np.ndarray, at: range, drawn: np.ndarray) -> list[dict[int, float]]:
-    """Rows over a vector in the plane of one that turns and stretches with it: a product of complex numbers."""
+    """Return rows over a vector in the plane of one that turns and stretches with it: a product of complex numbers."""
     square = float(vector @ vector)
     a = float(vector @ drawn) / square
     b = float(vector[0] * drawn[1] - vector[1] * drawn[0]) / square
@@ -252,7 +252,7 @@ def _touches(elements: np.ndarray, made_of: np.ndarray, shape: tuple[int, int]) 
 
 
 def _near(touches: csr_array) -> tuple[np.ndarray, int]:
-    """Number of each unknown and size of the band: all in the band, by reverse Cuthill and McKee."""
+    """Return the number of each unknown and size of the band: all in the band, by reverse Cuthill and McKee."""
     order = reverse_cuthill_mckee((touches.T @ touches).tocsr(), symmetric_mode=True)
     return np.argsort(order), len(order)
 
@@ -265,7 +265,8 @@ def _strung(touches: csr_array) -> tuple[np.ndarray, int]:
     """
     n_elements, n = touches.shape
     shared = triu(touches @ touches.T, 1).tocoo()
-    beside, chain = [[] for _ in range(n_elements)], list(range(n_elements))
+    beside: list[list[int]] = [[] for _ in range(n_elements)]
+    chain = list(range(n_elements))
 
     def root(e: int) -> int:
         while chain[e] != e:
@@ -278,7 +279,8 @@ def _strung(touches: csr_array) -> tuple[np.ndarray, int]:
             beside[a].append(b)
             beside[b].append(a)
             chain[root(a)] = root(b)
-    string, at = [], np.full(n_elements, -1)
+    string: list[int] = []
+    at = np.full(n_elements, -1)
     for end in (e for e in range(n_elements) if len(beside[e]) < 2):
         following = [end] if at[end] < 0 else []
         while following:
@@ -295,7 +297,7 @@ def _strung(touches: csr_array) -> tuple[np.ndarray, int]:
 
 
 def _counted(touches: csr_array, number: np.ndarray, n_band: int) -> Numbering:
-    """A numbering's band, and the operations of its factorisation and solves (engine/linear/bordered.c)."""
+    """Return a numbering's band, and the operations of its factorisation and solves (engine/linear/bordered.c)."""
     entry = touches.tocoo()
     element, at = entry.row, number[entry.col]
     inside = at < n_band
@@ -317,16 +319,16 @@ def _counted(touches: csr_array, number: np.ndarray, n_band: int) -> Numbering:
 
 
 def supports(scene: SceneData, nodes: dict[str, list[Node]], signal) -> Supports:
-    """The scene's supports and joins; nodes: of each cable; signal(s): number of a signal."""
+    """Return the scene's supports and joins; nodes: of each cable; signal(s): number of a signal."""
     made = Supports()
 
     def at(cable: str, s: float) -> Node:
-        return nodes[cable][scene.cables[cable].node_at(s)]
+        return nodes[cable][scene.cables[cable].node(s)]
 
     rooted = []
     for pin in scene.pins:
         rooted.append(at(pin.cable, pin.s))
-        made.hold(rooted[-1], ["r"])
+        made.fix(rooted[-1], ["r"])
     for clamp in scene.clamps:
         rooted.append(at(clamp.cable, clamp.s))
         made.clamp(rooted[-1], clamp.hold == "all")
@@ -336,17 +338,17 @@ def supports(scene: SceneData, nodes: dict[str, list[Node]], signal) -> Supports
             made.displace(rooted[-1], [None if s is None else signal(s) for s in motion.displacement])
         if motion.rotation is not None:
             made.rotate(rooted[-1], np.array(motion.rotation.axis), signal(motion.rotation.angle))
-    links = [(at(tie.cable, tie.s), at(tie.to, tie.at), tie.rotation == "rigid") for tie in scene.ties.values()]
+    ties = [(at(tie.cable, tie.s), at(tie.to, tie.at), tie.rotation == "rigid") for tie in scene.ties.values()]
     done = {node.first for node in rooted}
     # a node with directors can give the slopes of one without, not the other way round
-    starts = sorted((node for link in links for node in link[:2] if node.first not in done),
+    starts = sorted((node for tie in ties for node in tie[:2] if node.first not in done),
                     key=lambda node: -len(node.directors))
     for root in [*rooted, *starts]:
         waiting = [] if root.first in done and all(root is not r for r in rooted) else [root]
         done.add(root.first)
         while waiting:
             node = waiting.pop()
-            for a, b, rigid in links:
+            for a, b, rigid in ties:
                 for master, slave in ((a, b), (b, a)):
                     if master.first == node.first and slave.first not in done:
                         made.join(master, slave, rigid)

@@ -1,13 +1,14 @@
-"""Attachments: what springs, joints and flexible riders hold on to."""
+"""Attachments: what springs, joints and flexible riders are attached to."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import Annotated, Any
 
+import numpy as np
 from pydantic import PlainValidator
 
-from .validation import Part, Vector, finite, number, show, shown, vector, xyz
+from .validation import Part, Vector, finite, number, show, shown, vector3, xyz
 
 
 class Attachment(Part):
@@ -20,13 +21,25 @@ class Attachment(Part):
     s: Annotated[float, finite("m")] | None = None
     at: Annotated[Vector, xyz("m")] | None = None
 
+    @property
+    def arc_length(self) -> float:
+        """Return s in m, of a complete attachment to a cable."""
+        assert self.s is not None, f"{self!r} is not complete"
+        return self.s
+
+    @property
+    def point(self) -> Vector:
+        """Return the point in m, of a complete attachment to a body or to the ground."""
+        assert self.at is not None, f"{self!r} is not complete"
+        return self.at
+
     def data(self) -> Any:
         """As a scene file has it: [x, y, z], "A", ["A", [x, y, z]] or ["wire", s]."""
         place = self.s if self.s is not None else self.at
         return place if self.on is None else self.on if place is None else [self.on, place]
 
     def off_plane(self) -> Iterator[str]:
-        """See `Part.off_plane`."""
+        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
         if self.at is not None and self.at[2]:
             yield show(self.at, "m")
 
@@ -42,12 +55,12 @@ def _attachment(value: Any) -> Attachment:
     if not isinstance(value, list | tuple) or len(value) not in (2, 3):
         raise ValueError(f"must be an end, got {shown(value)}", remedy)
     if len(value) == 3:
-        return Attachment(at=vector(value, "m"))
+        return Attachment(at=vector3(value, "m"))
     on, place = getattr(value[0], "name", value[0]), value[1]
     if not isinstance(on, str):
         raise ValueError(f"must be an end, got {shown(value)}", remedy)
-    if isinstance(place, list | tuple) or (hasattr(place, "tolist") and getattr(place, "ndim", 0)):
-        return Attachment(on=on, at=vector(place, "m"))
+    if isinstance(place, list | tuple) or (isinstance(place, np.ndarray) and place.ndim):
+        return Attachment(on=on, at=vector3(place, "m"))
     return Attachment(on=on, s=number(place, "m"))
 
 

@@ -38,7 +38,7 @@ class Shape:
 
     @property
     def n(self) -> int:
-        """Number of modes."""
+        """Return the number of modes."""
         return len(self.modes)
 
     @cached_property
@@ -71,7 +71,7 @@ class Shape:
         return np.block([[rigid, coupling], [coupling.T, np.einsum("klii->kl", X)[1:, 1:]]])
 
     def indefinite(self, dim: int) -> str:
-        """What has no mass of its own; empty where the mass matrix is positive definite."""
+        """Return what has no mass of its own; empty where the mass matrix is positive definite."""
         M = self.mass_matrix(dim)
         names = [*"xyz"[:dim], *(f"the turn about {axis}" for axis in ("z" if dim == 2 else "xyz")),
                  *(f"mode {k + 1}" for k in range(self.n))]
@@ -163,4 +163,5 @@ def of_file(path: str, orthogonal: bool) -> Shape:
     for name in ARRAYS:
         if name not in arrays:
             raise ValueError(f'"{path}" has no array {name}', near(name, arrays) if arrays else "")
-    return of_points(*(arrays[name] for name in ARRAYS), arrays.get("rotations"), orthogonal)
+    nodes, modes, masses, stiffness = (arrays[name] for name in ARRAYS)
+    return of_points(nodes, modes, masses, stiffness, arrays.get("rotations"), orthogonal)

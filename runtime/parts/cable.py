@@ -23,7 +23,7 @@ FOLLOWS = 0.5
 
 
 def _library(value: Any) -> str | None:
-    """The directory of a library, as an absolute path without links; what is there is loaded."""
+    """Return the directory of a library, as an absolute path without links; what is there is loaded."""
     if value is None:
         return None
     if not isinstance(value, str | os.PathLike):
@@ -34,7 +34,7 @@ def _library(value: Any) -> str | None:
 
 
 def _element(value: Any, info: ValidationInfo) -> str:
-    """An element's name in the library, or in this package."""
+    """Return an element's name in the library, or in this package."""
     library = info.data.get("library")
     known = of_library(library)
     if not isinstance(value, str):
@@ -89,7 +89,7 @@ class Cable(Part):
     elements: Count
     library: Annotated[str | None, PlainValidator(_library)] = None
     element: Annotated[str, PlainValidator(_element)] = "beam24"
-    law: str = None
+    law: str = None  # type: ignore[assignment]  # `_with_a_law` chooses one where none is given
     strain: Annotated[str | None, one_of(("green", "engineering"), optional=True)] = None
     curvature: Annotated[str | None, one_of(("exact", "linear"), optional=True)] = None
     membrane: Annotated[str | None, one_of(cable_laws.MEMBRANES, optional=True)] = None
@@ -104,7 +104,7 @@ class Cable(Part):
     @model_validator(mode="before")
     @classmethod
     def _settled(cls, data: Any) -> Any:
-        """A curve as points, and the law by its name."""
+        """Return a curve as points, and the law by its name."""
         if not isinstance(data, dict):
             return data
         optional = ("start", "end", "points", "curve", "law", "library", "strain", "curvature", "membrane",
@@ -135,7 +135,7 @@ class Cable(Part):
         if self.points is None and not all(ends):
             missing = "end is" if ends[0] else "start is" if ends[1] else "start and end, or points, are"
             raise ValueError(f"{missing} missing")
-        if self.points is None and self.start == self.end:
+        if self.start is not None and self.end is not None and self.start == self.end:
             raise ValueError(
                 f"start and end must be different points, got {show(self.start)} and {show(self.end, 'm')}")
         self._refuse_what_leaves_the_plane()
@@ -146,7 +146,7 @@ class Cable(Part):
     def _refuse_what_leaves_the_plane(self) -> None:
         if self.dim == 3:
             return
-        for number, point in enumerate(self._way):
+        for number, point in enumerate(self._drawn_through):
             if point[2] != 0:
                 where = f"point {number + 1}" if self.points else ("start", "end")[number]
                 raise ValueError(f"{self.element} is planar, but {where} leaves the plane z = 0: {show(point, 'm')}",
@@ -167,13 +167,13 @@ class Cable(Part):
 
     @property
     def _has_up(self) -> bool:
-        """Whether up tells a direction across the axis at the start."""
+        """Return whether up gives a direction across the axis at the start."""
         tilt = np.linalg.norm(np.cross(self._shape.tangent(0.0), self.up))
         return bool(tilt > 1e-6 * np.linalg.norm(self.up))
 
     @property
     def _is_round(self) -> bool:
-        """Whether all directions across its axis are alike: a round section, or elements that have none."""
+        """Return whether all directions across its axis are alike: a round section, or elements that have none."""
         return isinstance(self.section, Circle | Tube) or not self.kind_of_element.director
 
     @property
@@ -182,7 +182,7 @@ class Cable(Part):
         if self._has_up:
             return self.up
         least = int(np.argmin(np.abs(self._shape.tangent(0.0))))
-        return tuple(float(k == least) for k in range(3))
+        return float(least == 0), float(least == 1), float(least == 2)
 
     def _refuse_coarse_elements(self) -> None:
         """An element whose slope loses the direction of the curve could not even be drawn."""
@@ -207,65 +207,66 @@ class Cable(Part):
 
     @property
     def kind_of_element(self) -> ElementKind:
-        """What its element is."""
+        """Return what its element is."""
         return of_library(self.library)[self.element]
 
     @property
     def dim(self) -> int:
-        """3, or 2 for planar elements."""
+        """Return 3, or 2 for planar elements."""
         return self.kind_of_element.dim
 
     @property
     def kernel_law(self) -> str:
-        """Name of the law among the element's kernels."""
+        """Return the name of the law among the element's kernels."""
         return cable_laws.name_of_kernels(self.kind_of_element, self.law, self.is_curved)
 
     @property
     def traits(self) -> LawTraits:
-        """What the law of its kernels is."""
+        """Return what the law of its kernels is."""
         return self.kind_of_element.laws[self.kernel_law]
 
     @property
     def stiffness_law(self) -> str:
-        """Name of the law whose stiffness of the section it takes, see `section_stiffness`."""
+        """Return the name of the law whose stiffness of the section it takes, see `section_stiffness`."""
         laws = self.kind_of_element.laws
         return laws[self.law].stiffness_of if self.law in laws else self.law
 
     @property
-    def _way(self) -> tuple[tuple[float, ...], ...]:
-        return self.points if self.points is not None else (self.start, self.end)
+    def _drawn_through(self) -> tuple[tuple[float, ...], ...]:
+        ends = tuple(end for end in (self.start, self.end) if end is not None)
+        return ends if self.points is None else self.points
 
     @property
     def _shape(self) -> curves.Line | curves.Spline:
-        return curves.shape_through(self._way)
+        return curves.shape_through(self._drawn_through)
 
     @property
     def drawn_length(self) -> float:
-        """Length in m of the cable as it is drawn."""
+        """Return the length in m of the cable as it is drawn."""
         return self._shape.length
 
     @property
     def length(self) -> float:
-        """Undeformed length in m."""
+        """Return the undeformed length in m."""
         return self.drawn_length if self.rest_length is None else self.rest_length
 
     @property
     def stretch(self) -> float:
-        """Length as drawn over undeformed length."""
+        """Return the length as drawn over undeformed length."""
         return 1.0 if self.rest_length is None else self.drawn_length / self.rest_length
 
     @property
     def is_curved(self) -> bool:
-        """Whether the undeformed shape is."""
+        """Return whether the undeformed shape is."""
         return self.rest == "drawn" and not self._shape.straight
 
     @property
     def node_s(self) -> np.ndarray:
-        """(nodes,): arc-length of the nodes in m."""
+        """Return (nodes,): arc-length of the nodes in m."""
         return self.length * np.arange(self.elements + 1) / self.elements
 
     def point(self, s: float) -> np.ndarray:
-        """(3,): the point of the centreline at arc-length ``s``, in m, as the elements draw it.
+        """Return (3,): the point of the centreline at arc-length ``s``, in m, as the elements draw it.
 
         Between nodes that is not quite the curve that they are drawn along; a rider has to start on the elements.
         """
@@ -274,7 +275,7 @@ class Cable(Part):
         return self._as_drawn.point(s)
 
     def slope(self, s: float) -> np.ndarray:
-        """(3,): r_x at arc-length ``s``, as the elements draw it."""
+        """Return (3,): r_x at arc-length ``s``, as the elements draw it."""
         if self._shape.straight:
             return self.stretch * self._shape.tangent(0.0)
         return self._as_drawn.slope(s)
@@ -298,31 +299,31 @@ class Cable(Part):
                            self.nodal_vectors[..., : self.dim])
 
     def axes_at(self, s) -> np.ndarray:
-        """(..., 3, 3): unit vectors along axis, height and width, as rows, at arc-lengths ``s`` as drawn."""
+        """Return (..., 3, 3): unit vectors along axis, height and width, as rows, at arc-lengths ``s`` as drawn."""
         s = np.asarray(s, dtype=float)
         places, which = np.unique(np.append(s.ravel() * self.stretch, [0.0, self.drawn_length]), return_inverse=True)
         if self.dim == 2:
             i, k = self._shape.tangent(places), np.array([0.0, 0.0, 1.0])
             axes = np.stack([i, np.cross(k, i), np.broadcast_to(k, i.shape)], axis=1)
         else:
-            axes = curves.transported(self._way, self.height_direction, tuple(places.tolist()))
+            axes = curves.transported(self._drawn_through, self.height_direction, tuple(places.tolist()))
         return axes[which[: s.size]].reshape(*s.shape, 3, 3)
 
     @property
     def axes(self) -> np.ndarray:
-        """(3, 3): the axes at the start, see `axes_at`."""
+        """Return (3, 3): the axes at the start, see `axes_at`."""
         return self.axes_at(0.0)
 
     @property
     def nodal_vectors(self) -> np.ndarray:
-        """(nodes, vectors, 3): as drawn; r in m, its gradients by the undeformed cable, r_xx in 1/m."""
+        """Return (nodes, vectors, 3): as drawn; r in m, its gradients by the undeformed cable, r_xx in 1/m."""
         drawn, stretch = self.node_s * self.stretch, self.stretch
         return self._vectors(self._shape.point(drawn), self.axes_at(self.node_s), stretch,
                              stretch**2 * self._shape.curvature(drawn))
 
     @property
     def nodal_rates(self) -> np.ndarray:
-        """(nodes, vectors, 3): rates of `nodal_vectors` at the start, of a rigid motion."""
+        """Return (nodes, vectors, 3): rates of `nodal_vectors` at the start, of a rigid motion."""
         vectors, place = self.nodal_vectors, self.kind_of_element.nodal_vectors.index("r")
         vectors[:, place] -= vectors[0, place]
         rates = np.cross(self.angular_velocity, vectors)
@@ -353,11 +354,17 @@ class Cable(Part):
         return np.stack([known[name] for name in self.kind_of_element.nodal_vectors], axis=1)
 
     def nearest_s(self, point: np.ndarray) -> float:
-        """Arc-length of the point of the drawn cable nearest to ``point``, in m."""
+        """Return the arc-length of the point of the drawn cable nearest to ``point``, in m."""
         return self._shape.nearest(point) / self.stretch
 
+    def node(self, s: float) -> int:
+        """Return the number of the node at arc-length ``s`` in m; a check has found that there is one."""
+        node = self.node_at(s)
+        assert node is not None, f"{self.where} has no node at {s}"
+        return node
+
     def node_at(self, s: float) -> int | None:
-        """The node at arc-length ``s``, None if there is none."""
+        """Return the node at arc-length ``s``, None if there is none."""
         node = round(s / self.length * self.elements)
         on_node = 0 <= node <= self.elements and abs(self.node_s[node] - s) <= EXACT * self.length
         return node if on_node else None

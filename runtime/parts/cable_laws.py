@@ -17,25 +17,49 @@ MEMBRANES = ("full", "assumed", "reduced")
 class Described(Protocol):
     """What the checks of a law look at, which a cable has."""
 
-    element: str
     law: str
-    section: Section
-    material: Material
-    is_curved: bool
-    traits: LawTraits
-    stiffness_law: str
-    kind_of_element: ElementKind
-    dim: int
+
+    @property
+    def element(self) -> str:
+        """Return the name of its element."""
+
+    @property
+    def section(self) -> Section:
+        """Return its section, with its stiffness and its mass."""
+
+    @property
+    def material(self) -> Material:
+        """Return its material, with its elastic constants."""
+
+    @property
+    def is_curved(self) -> bool:
+        """Return whether its stress-free shape is curved."""
+
+    @property
+    def traits(self) -> LawTraits:
+        """Return what the law of its kernels is."""
+
+    @property
+    def stiffness_law(self) -> str:
+        """Return the name of the law whose stiffness of the section it takes."""
+
+    @property
+    def kind_of_element(self) -> ElementKind:
+        """Return what its element is."""
+
+    @property
+    def dim(self) -> int:
+        """Return 3, or 2 for planar elements."""
 
 
 def possible_laws(kind: ElementKind) -> list[str]:
-    """The laws that a cable of such elements can be given."""
+    """Return the laws that a cable of such elements can be given."""
     laws = [law for law, traits in kind.laws.items() if not traits.straight]
     return laws + [law for law, variant in variants().items() if variant.kernel_law in laws]
 
 
-def chosen(kind: ElementKind, data: dict) -> str:
-    """The law of a cable from what it is given; ValueError if the element has no such law."""
+def chosen(kind: ElementKind, data: dict) -> str | None:
+    """Return the law of a cable from what it is given; ValueError if the element has no such law."""
     element = data.get("element", "beam24")
     law, strain, curvature, membrane = (data.get(name) for name in ("law", "strain", "curvature", "membrane"))
     possible = possible_laws(kind)
@@ -113,6 +137,6 @@ def _refuse_unequal_bending(cable: Described) -> None:
 
 
 def others(dim: int, *, cable: bool | None = None) -> str:
-    """Elements to take instead, for a remedy."""
+    """Return the elements to take instead, for a remedy."""
     names = [f'"{name}"' for name, kind in built_in().items() if kind.dim == dim and cable in (None, kind.is_cable)]
     return "element=" + " or ".join(names)

@@ -56,20 +56,20 @@ class Line:
         self.length = float(np.linalg.norm(self.end - self.start))
 
     def point(self, s) -> np.ndarray:
-        """Points at arc-lengths s."""
+        """Return the points at arc-lengths s."""
         ratio = np.asarray(s)[..., None] / self.length  # weighting both ends makes both of them exact
         return (1 - ratio) * self.start + ratio * self.end
 
     def tangent(self, s) -> np.ndarray:
-        """Unit tangents at arc-lengths s."""
+        """Return the unit tangents at arc-lengths s."""
         return np.broadcast_to((self.end - self.start) / self.length, (*np.shape(s), 3))
 
     def curvature(self, s) -> np.ndarray:
-        """Curvature vectors at arc-lengths s: zero."""
+        """Return the curvature vectors at arc-lengths s: zero."""
         return np.zeros((*np.shape(s), 3))
 
     def nearest(self, point: Iterable[float]) -> float:
-        """Arc-length of the nearest point."""
+        """Return the arc-length of the nearest point."""
         return float(np.clip(np.dot(np.asarray(point) - self.start, self.tangent(0.0)), 0, self.length))
 
 
@@ -113,7 +113,7 @@ class Spline:
         return inside, onward / np.maximum(speed, 1e-300)
 
     def _swings(self) -> bool:
-        """Whether the curve turns away from a chord by more than the chords turn at its ends."""
+        """Return whether the curve turns away from a chord by more than the chords turn at its ends."""
         off = np.arccos(np.clip(self._off_the_chords()[1].min(axis=1), -1, 1))
         chord = np.diff(self.points, axis=0) / np.diff(self.t)[:, None]
         turns = np.arccos(np.clip(np.sum(chord[1:] * chord[:-1], axis=1), -1, 1))
@@ -133,7 +133,7 @@ class Spline:
             "give more points there, or look at their order")
 
     def _arc(self, start: np.ndarray, end: np.ndarray) -> np.ndarray:
-        """Lengths (n,) from parameters (n,) to parameters in the same intervals."""
+        """Return the lengths (n,) from parameters (n,) to parameters in the same intervals."""
         half = 0.5 * (end - start)
         at = 0.5 * (start + end)[:, None] + half[:, None] * GAUSS
         return half * (np.linalg.norm(self._r_t(at), axis=-1) @ WEIGHTS)
@@ -153,23 +153,23 @@ class Spline:
         return t.reshape(s.shape)
 
     def point(self, s) -> np.ndarray:
-        """Points at arc-lengths s."""
+        """Return the points at arc-lengths s."""
         return self._r(self._parameter(s))
 
     def tangent(self, s) -> np.ndarray:
-        """Unit tangents at arc-lengths s."""
+        """Return the unit tangents at arc-lengths s."""
         slope = self._r_t(self._parameter(s))
         return slope / np.linalg.norm(slope, axis=-1, keepdims=True)
 
     def curvature(self, s) -> np.ndarray:
-        """Curvature vectors at arc-lengths s, across the tangent."""
+        """Return the curvature vectors at arc-lengths s, across the tangent."""
         t = self._parameter(s)
         slope, second = self._r_t(t), self._r_tt(t)
         square = np.sum(slope * slope, axis=-1, keepdims=True)
         return (second - slope * np.sum(slope * second, axis=-1, keepdims=True) / square) / square
 
     def nearest(self, point: Iterable[float]) -> float:
-        """Arc-length of the nearest point, to a ten-thousandth of the length."""
+        """Return the arc-length of the nearest point, to a ten-thousandth of the length."""
         s = np.linspace(0, self.length, 10001)
         return float(s[np.argmin(np.linalg.norm(self.point(s) - np.asarray(point), axis=-1))])
 
@@ -224,7 +224,7 @@ def sample(curve: Callable[[float], Iterable[float]], least: int) -> np.ndarray:
 
 
 def _closer(at: Callable[[float], tuple[float, ...]], u: np.ndarray) -> np.ndarray:
-    """Points of a function, closer to each other where their spline over the chords is not yet near to it."""
+    """Return points of a function, closer to each other where their spline over the chords is not yet near to it."""
     from scipy.interpolate import CubicSpline  # as above
 
     known = np.array([at(v) for v in u])
@@ -242,7 +242,7 @@ def _closer(at: Callable[[float], tuple[float, ...]], u: np.ndarray) -> np.ndarr
         far = (gap > CLOSE * extent) | turns[1:] | turns[:-1]
         if not far.any():
             return known
-        for k in np.flatnonzero(far & (chords < SHARP * extent)):
+        for k in np.flatnonzero(far & (chords < SHARP * extent)).tolist():
             _refuse_a_jump(at, u[max(k - 1, 0)], u[min(k + 2, len(u) - 1)], SHARP * extent)
             _refuse_a_kink(at, u[k], u[k + 1], new[k], gap[k], chords[k] / extent)
         if len(u) > 4 * MOST_SAMPLES:
@@ -255,7 +255,7 @@ def _closer(at: Callable[[float], tuple[float, ...]], u: np.ndarray) -> np.ndarr
 
 
 def _distances(spline, low: np.ndarray, high: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """(n,): of each point to the spline, whose nearest place is sought between two parameters."""
+    """Return (n,): of each point to the spline, whose nearest place is sought between two parameters."""
     t = 0.5 * (low + high)
     for _ in range(6):
         slope = spline(t, 1)
@@ -278,8 +278,8 @@ def _refuse_a_jump(at: Callable, low: float, high: float, far: float) -> None:
 def _refuse_a_kink(at: Callable, low: float, high: float, point: np.ndarray, gap: float, chord: float) -> None:
     """A bend is the less of an angle, the shorter the piece that is looked at; a kink is all of it at one point."""
 
-    def angle(way: float) -> float:
-        ends = [np.array(at(v)) for v in (max(low - way, 0.0), low, high, min(high + way, 1.0))]
+    def angle(step: float) -> float:
+        ends = [np.array(at(v)) for v in (max(low - step, 0.0), low, high, min(high + step, 1.0))]
         before, after = ends[1] - ends[0], ends[3] - ends[2]
         size = np.linalg.norm(before) * np.linalg.norm(after)
         return acos(np.clip(before @ after / size, -1, 1)) if size > 0 else 0.0
@@ -296,21 +296,21 @@ def _refuse_a_kink(at: Callable, low: float, high: float, point: np.ndarray, gap
 
 @lru_cache(maxsize=4096)
 def shape_through(points: tuple[tuple[float, ...], ...]) -> Line | Spline:
-    """The shape through checked points: a line if all of them lie on one, in order."""
-    way = np.array(points)
-    whole = way[-1] - way[0]
+    """Return the shape through checked points: a line if all of them lie on one, in order."""
+    vertices = np.array(points)
+    whole = vertices[-1] - vertices[0]
     length = np.linalg.norm(whole)
     if length > 0:
-        along = (way - way[0]) @ whole / length
-        off = np.linalg.norm(way - way[0] - along[:, None] * whole / length, axis=1)
+        along = (vertices - vertices[0]) @ whole / length
+        off = np.linalg.norm(vertices - vertices[0] - along[:, None] * whole / length, axis=1)
         if off.max() <= 1e-12 * length and np.diff(along).min() > 0:
-            return Line(way[0], way[-1])
-    return Spline(way)
+            return Line(vertices[0], vertices[-1])
+    return Spline(vertices)
 
 
 @lru_cache(maxsize=128)
 def transported(points: tuple[tuple[float, ...], ...], up: tuple[float, ...], places: tuple[float, ...]) -> np.ndarray:
-    """The axes of the section along a shape, turned about its tangent nowhere.
+    """Return the axes of the section along a shape, turned about its tangent nowhere.
 
     places: increasing arc-lengths in m, the first of them 0. Returns (places, 3, 3): rows are the unit tangent, and
     the height and width axes, which start from the part of ``up`` across the tangent. By double reflection (Wang,

@@ -1,4 +1,4 @@
-"""Friction of slides."""
+"""Friction of slides: Coulomb's, viscous and rolling, regularised or with sticking."""
 
 from __future__ import annotations
 
@@ -36,20 +36,20 @@ class Friction(Part):
 
     @property
     def sticks(self) -> bool:
-        """Whether it holds at rest."""
+        """Return whether it holds at rest."""
         return self.model == "stick"
 
     @property
     def sliding(self) -> float:
-        """What the normal force is multiplied by: sliding and rolling."""
+        """Return what the normal force is multiplied by: sliding and rolling."""
         return self.coefficient + self.rolling
 
     @property
     def static_friction(self) -> float:
-        """The same at rest; nothing where it does not stick."""
+        """Return the same at rest; nothing where it does not stick."""
         return self.static + self.rolling if self.sticks else 0.0
 
     @property
     def static(self) -> float:
-        """The coefficient of sticking."""
+        """Return the coefficient of sticking."""
         return self.coefficient if self.static_coefficient is None else self.static_coefficient

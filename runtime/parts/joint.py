@@ -15,7 +15,7 @@ from .signal import AnySignal, Integral, Signal
 from .validation import Name, Part, Vector, direction, one_of, positive
 
 POINTS, LINES = ("spherical", "revolute", "universal", "weld"), ("prismatic", "cylindrical")
-"""The kinds that hold two points together, and those that keep a point on a line."""
+"""The kinds that keep two points together, and those that keep a point on a line."""
 
 KINDS = (*POINTS, *LINES, "distance")
 
@@ -32,7 +32,7 @@ class Joint(Part):
     with its section, or its tangent where the elements have no sections; or a point (x, y, z) of the ground, in m.
     Directions are the ground's, at the start.
 
-    | kind | holds | leaves |
+    | kind | constrains | leaves |
     |---|---|---|
     | spherical | the two points together | every turn |
     | revolute | and the axis of both | the turn about ``axis`` |
@@ -46,7 +46,7 @@ class Joint(Part):
     cylindrical ones; ``distance`` (m), of prismatic ones the way of b along the axis from the start on, of distance
     ones the distance itself; or ``velocity``, the rate of that.
 
-    Equations that follow from those of joints before are left out, and the report tells which (a door on two hinges).
+    Equations that follow from those of joints before are left out, and the report names them (a door on two hinges).
 
     up: where an element has no section axes (its tangent is all that a cable knows), a direction fixed in the ground
     that completes its frame, and against which it holds the turn about the tangent.
@@ -88,7 +88,7 @@ class Joint(Part):
 
     @model_validator(mode="after")
     def _has_axes_square_to_each_other(self) -> Joint:
-        if self.pair == "universal":
+        if self.pair == "universal" and self.axis is not None and self.second_axis is not None:
             cosine = np.dot(self.axis, self.second_axis) / np.linalg.norm(self.axis) / np.linalg.norm(self.second_axis)
             if abs(cosine) > 1e-6:
                 raise ValueError("axis and second_axis must be perpendicular, got "
@@ -110,7 +110,7 @@ class Joint(Part):
 
     @property
     def is_driven(self) -> bool:
-        """Whether a signal moves it."""
+        """Return whether a signal moves it."""
         return any(signal is not None for signal in (self.angle, self.distance, self.velocity))
 
     @property
@@ -122,7 +122,7 @@ class Joint(Part):
 
     @property
     def axes(self) -> np.ndarray:
-        """(3, 3): its axes at the start, as columns, along the ground's: z is ``axis``.
+        """Return (3, 3): its axes at the start, as columns, along the ground's: z is ``axis``.
 
         x is ``second_axis`` where there is one; else y is the ground's axis farthest from z, made square to it: of
         equals the last, so that in a plane z = 0 a line's y is the plane's normal. Without axis: the ground's own.
@@ -137,7 +137,7 @@ class Joint(Part):
         return np.column_stack([x, np.cross(z, x), z])
 
     def off_plane(self) -> Iterator[str]:
-        """See `Part.off_plane`."""
+        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
         yield from super().off_plane()
         if self.pair == "universal":
             yield "a universal joint"
@@ -150,6 +150,6 @@ class Joint(Part):
 
 
 def _across(vector: np.ndarray, axis: np.ndarray) -> np.ndarray:
-    """The unit vector along the part of ``vector`` across the unit vector ``axis``."""
+    """Return the unit vector along the part of ``vector`` across the unit vector ``axis``."""
     across = vector - np.dot(vector, axis) * axis
     return across / np.linalg.norm(across)

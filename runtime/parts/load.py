@@ -41,7 +41,7 @@ class Force(Load):
     follower: Flag = False
 
     def off_plane(self) -> Iterator[str]:
-        """See `Part.off_plane`."""
+        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
         yield from across("value", self.value, "N")
         yield from across("at", self.at, "m")
 
@@ -68,7 +68,7 @@ class DistributedForce(Load):
         return self
 
     def off_plane(self) -> Iterator[str]:
-        """See `Part.off_plane`."""
+        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
         return across("value", self.value, "N/m")
 
 
@@ -86,5 +86,5 @@ class Moment(Load):
     value: Annotated[Vector, xyz("N m")]
 
     def off_plane(self) -> Iterator[str]:
-        """See `Part.off_plane`."""
+        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
         return in_plane("value", self.value, self.value, "N m")

@@ -1,9 +1,9 @@
-"""Materials."""
+"""Materials: isotropic elastic constants, density and damping."""
 
 from __future__ import annotations
 
 from math import inf, isclose
-from typing import Annotated
+from typing import Annotated, cast
 
 import numpy as np
 from pydantic import model_validator
@@ -38,7 +38,7 @@ class Material(Part):
         E, nu, G = self.youngs_modulus, self.poisson_ratio, self.shear_modulus
         if nu is None and G is None:
             raise ValueError("poisson_ratio or shear_modulus is missing", "give one of the two")
-        if nu is None and G < E / 3 * (1 - ROUNDED):
+        if nu is None and G is not None and G < E / 3 * (1 - ROUNDED):
             raise ValueError(
                 f"shear_modulus must be at least youngs_modulus / 3 = {E / 3:.9g} Pa, got {G:.9g} Pa",
                 f"the Poisson ratio would be {E / (2 * G) - 1:.9g}, which must be above -1 and at most 0.5",
@@ -52,14 +52,14 @@ class Material(Part):
         return self
 
     def poisson(self) -> float:
-        """The Poisson ratio ν, whichever constant was given."""
-        if self.poisson_ratio is not None:
-            return self.poisson_ratio
+        """Return the Poisson ratio ν, whichever constant was given."""
+        if self.shear_modulus is None or self.poisson_ratio is not None:
+            return cast(float, self.poisson_ratio)  # one of the two is given
         return self.youngs_modulus / (2 * self.shear_modulus) - 1
 
     @property
     def is_incompressible(self) -> bool:
-        """Whether its Poisson ratio is 0.5, as far as E and G tell."""
+        """Return whether its Poisson ratio is 0.5, as far as E and G tell."""
         return self.poisson() >= INCOMPRESSIBLE - (ROUNDED if self.poisson_ratio is None else 0.0)
 
     def lame(self) -> tuple[float, float]:
@@ -70,7 +70,7 @@ class Material(Part):
         return E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
 
     def elasticity(self) -> np.ndarray:
-        """The orthotropic constants of the stiffness.
+        """Return the orthotropic constants of the stiffness.
 
         Returns (9,): [D11, D22, D33, D12, D13, D23, G12, G13, G23] in Pa.
         """

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 import numpy as np
 from pydantic import PlainValidator, PrivateAttr, model_validator
@@ -97,7 +97,7 @@ class ModalBody(Part):
 
     @property
     def mesh(self) -> Cable:
-        """The mesh that the modes are of, in body axes from its start."""
+        """Return the mesh that the modes are of, in body axes from its start."""
         return Cable(name=self.name, start=(0, 0, 0), end=(self._drawn.length, 0, 0), elements=self.elements,
                      element=self.element, law=self.law, section=self.section, material=self.material)
 
@@ -108,7 +108,7 @@ class ModalBody(Part):
 
     @property
     def offset(self) -> float:
-        """How far along the beam the frame's origin is, in m."""
+        """Return how far along the beam the frame's origin is, in m."""
         return 0.0 if self.boundary == "attached" else self._drawn.length / 2
 
     @cached_property
@@ -126,7 +126,7 @@ class ModalBody(Part):
                              "add it to a scene, and take what `Scene.add` returns")
         return self._of_mesh(self)
 
-    def with_modes_by(self, of_mesh: Callable[[ModalBody], Shape]) -> ModalBody:
+    def with_modes_by(self, of_mesh: Callable[[ModalBody], Shape]) -> Self:
         """Return a copy that has the modes of its mesh made by ``of_mesh``, once, when they are first asked for."""
         copy = self.model_copy()
         copy._of_mesh = of_mesh
@@ -134,7 +134,7 @@ class ModalBody(Part):
 
     @property
     def modes_in_words(self) -> str:
-        """Which modes it has, for a run's report."""
+        """Return which modes it has, for a run's report."""
         squares, _ = self.shape.vibrations
         hertz = np.sqrt(np.maximum(squares, 0)) / (2 * np.pi)
         kind = "of a file" if self.data is not None else {
@@ -144,7 +144,7 @@ class ModalBody(Part):
 
     @property
     def frame(self) -> tuple[np.ndarray, np.ndarray]:
-        """Where the frame's origin starts, (3,) in m, and its attitude, (4,) unit quaternion."""
+        """Return where the frame's origin starts, (3,) in m, and its attitude, (4,) unit quaternion."""
         if self.data is not None:
             return np.array(self.position), np.array(self.orientation)
         axes = self._drawn.axes.T
@@ -156,24 +156,24 @@ class ModalBody(Part):
         It is a node, or goes with a node's section, where sections turn: of a beam any point across its axis there.
         Raises ValueError(cause, remedy).
         """
-        shape, at = self.shape, np.array(at, dtype=float)
-        distance = np.linalg.norm(shape.nodes - at, axis=1)
+        shape, point = self.shape, np.array(at, dtype=float)
+        distance = np.linalg.norm(shape.nodes - point, axis=1)
         node, size = int(np.argmin(distance)), max(float(np.ptp(shape.nodes, axis=0).max()), 1.0)
-        arm = at - shape.nodes[node]
+        arm = point - shape.nodes[node]
         along = abs(arm[0]) if self.data is None else 0.0 if shape.rotations.any() else distance[node]
         if along > EXACT * size:
-            raise ValueError(f"{show(at, 'm')} is no node of the body",
+            raise ValueError(f"{show(point, 'm')} is no node of the body",
                              f"the nearest is at {show(shape.nodes[node], 'm')}")
-        return at, shape.modes[:, node] + np.cross(shape.rotations[:, node], arm), shape.rotations[:, node]
+        return point, shape.modes[:, node] + np.cross(shape.rotations[:, node], arm), shape.rotations[:, node]
 
     def point(self, at: Vector) -> np.ndarray:
-        """(3,): where the body's point ``at`` (m, body axes) starts, in m."""
+        """Return (3,): where the body's point ``at`` (m, body axes) starts, in m."""
         position, orientation = self.frame
         return position + rotate(orientation, at)
 
     @property
     def axes(self) -> np.ndarray:
-        """(3, 3): its axes at the start, as columns."""
+        """Return (3, 3): its axes at the start, as columns."""
         return rotate(self.frame[1], np.eye(3)).T
 
     def located(self, at: Vector | None = None, s: float | None = None) -> Vector:
@@ -189,7 +189,7 @@ class ModalBody(Part):
 
     @property
     def mass(self) -> float:
-        """In kg."""
+        """Return its mass in kg."""
         return self.shape.mass
 
     @property
@@ -199,7 +199,7 @@ class ModalBody(Part):
         return X.trace() * np.eye(3) - X
 
     def off_plane(self) -> Iterator[str]:
-        """See `Part.off_plane`."""
+        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
         position, orientation = self.frame
         yield from across("position", position, "m")
         yield from in_plane("orientation", orientation[1:], orientation)
@@ -210,7 +210,7 @@ class ModalBody(Part):
 
 
 def quaternion(A: np.ndarray) -> np.ndarray:
-    """(4,): unit quaternion of a rotation matrix (3, 3), by its largest component."""
+    """Return (4,): unit quaternion of a rotation matrix (3, 3), by its largest component."""
     squares = np.array([A.trace(), *(2 * np.diag(A) - A.trace())]) + 1
     k = int(np.argmax(squares))
     skew = np.array([A[2, 1] - A[1, 2], A[0, 2] - A[2, 0], A[1, 0] - A[0, 1]])

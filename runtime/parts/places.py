@@ -1,4 +1,4 @@
-"""Where the parts of a scene are: nodes that supports and ties hold, points of cables, bodies and the ground."""
+"""Where the parts of a scene are: nodes of supports and ties, points of cables, bodies and the ground."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ Node = tuple[str, int]
 
 
 def node_of(scene: SceneData, support: Support) -> Node:
-    """The node that a support of the scene holds."""
-    return support.cable, scene.cables[support.cable].node_at(support.s)
+    """Return the node of a support of the scene."""
+    return support.cable, scene.cables[support.cable].node(support.s)
 
 
 def ends_of(scene: SceneData, tie: Tie) -> tuple[Node, Node]:
-    """The nodes that a tie of the scene joins: that of its cable, and the other one."""
-    return ((tie.cable, scene.cables[tie.cable].node_at(tie.s)), (tie.to, scene.cables[tie.to].node_at(tie.at)))
+    """Return the nodes that a tie of the scene joins: that of its cable, and the other one."""
+    return ((tie.cable, scene.cables[tie.cable].node(tie.s)), (tie.to, scene.cables[tie.to].node(tie.at)))
 
 
 def joined(scene: SceneData, node: Node, without: Tie | None = None) -> set[Node]:
@@ -38,14 +38,16 @@ def joined(scene: SceneData, node: Node, without: Tie | None = None) -> set[Node
 
 
 def support_of(scene: SceneData, node: Node) -> Support | None:
-    """What holds ``node`` or one that is joined to it."""
+    """Return the support of ``node`` or one that is joined to it."""
     nodes = joined(scene, node)
     cables = {cable for cable, _ in nodes}
     return next((s for s in scene.supports if s.cable in cables and node_of(scene, s) in nodes), None)
 
 
 def point_of(scene: SceneData, end: Attachment) -> np.ndarray:
-    """(3,): where a complete end starts, in m."""
+    """Return (3,): where a complete end starts, in m."""
     if end.on is None:
         return np.array(end.at)
-    return scene.bodies[end.on].point(end.at) if end.on in scene.bodies else scene.cables[end.on].point(end.s)
+    if end.on in scene.bodies:
+        return scene.bodies[end.on].point(end.point)
+    return scene.cables[end.on].point(end.arc_length)

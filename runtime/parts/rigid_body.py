@@ -1,4 +1,4 @@
-"""Rigid bodies."""
+"""Rigid bodies: mass, inertia, position and attitude at the start."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from pydantic import PlainValidator
 from ..rotations import rotate
 from .plane import across, in_plane
 from .quantity import Quantity, vector_of_time
-from .validation import EXACT, Name, Part, Vector, positive, show, vector, xyz
+from .validation import EXACT, Name, Part, Vector, positive, show, vector, vector3, xyz
 
 Quaternion = tuple[float, float, float, float]
 
 
 def _inertia(value: Any) -> tuple[Vector, Vector, Vector]:
-    """A symmetric inertia from 3 principal moments or 3 rows, in kg m²."""
+    """Return a symmetric inertia from 3 principal moments or 3 rows, in kg m²."""
     rows = value.tolist() if isinstance(value, np.ndarray) else value
     if isinstance(rows, list | tuple) and len(rows) == 3 and all(isinstance(r, list | tuple) for r in rows):
         matrix = np.array([vector(row, "kg m²") for row in rows])
@@ -32,13 +32,14 @@ def _inertia(value: Any) -> tuple[Vector, Vector, Vector]:
         raise ValueError(f"must be positive, got the principal moments {shown}")
     if large > (small + middle) * (1 + EXACT):
         raise ValueError(f"is not that of a body: no principal moment exceeds the sum of the others, got {shown}")
-    return tuple(map(tuple, matrix.tolist()))
+    first, second, third = (vector3(row) for row in matrix)
+    return first, second, third
 
 
 def unit_quaternion(value: Any) -> Quaternion:
-    """A unit quaternion, rounded to one."""
-    quaternion = vector(value, size=4)
-    norm = math.hypot(*quaternion)
+    """Return a unit quaternion, rounded to one."""
+    w, x, y, z = vector(value, size=4)
+    quaternion, norm = (w, x, y, z), math.hypot(w, x, y, z)
     if abs(norm - 1) > 1e-3:
         raise ValueError(
             f"must be a unit quaternion (w, x, y, z), got {show(quaternion)}, of length {norm:.6g}",
@@ -46,7 +47,7 @@ def unit_quaternion(value: Any) -> Quaternion:
         )
     if abs(norm - 1) < 1e-15:  # already rounded to a unit: dividing again would only move the last digit
         return quaternion
-    return tuple(component / norm for component in quaternion)
+    return w / norm, x / norm, y / norm, z / norm
 
 
 class RigidBody(Part):
@@ -79,19 +80,20 @@ class RigidBody(Part):
 
     @property
     def axes(self) -> np.ndarray:
-        """(3, 3): its axes at the start, as columns."""
+        """Return (3, 3): its axes at the start, as columns."""
         return rotate(self.orientation, np.eye(3)).T
 
     def arm(self, at: Vector) -> tuple[float, float, float]:
-        """The point ``at`` from the centre of mass, in body axes, in m: what the engine knows it by."""
-        return tuple(a - c for a, c in zip(at, self.centre, strict=True))
+        """Return the point ``at`` from the centre of mass, in body axes, in m: what the engine knows it by."""
+        (x, y, z), (x0, y0, z0) = at, self.centre
+        return x - x0, y - y0, z - z0
 
     def point(self, at: Vector) -> np.ndarray:
-        """(3,): where the body's point ``at`` (m, body axes) starts, in m."""
+        """Return (3,): where the body's point ``at`` (m, body axes) starts, in m."""
         return np.array(self.position) + rotate(self.orientation, at)
 
     def off_plane(self) -> Iterator[str]:
-        """See `Part.off_plane`."""
+        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
         yield from across("position", self.position, "m")
         yield from in_plane("orientation", self.orientation[1:], self.orientation)
         yield from across("centre", self.centre, "m")

@@ -27,7 +27,7 @@ class SceneData:
     """What a scene is, as checks, model, solvers and results take it; `funicular.Scene` adds what can be done with it.
 
     ``gravity`` in m/s². Each kind of part has a group, ``group`` of its class: a dict by name where parts have names,
-    else a list. ``messages`` tells what was adjusted; ``run_settings`` and ``equilibrium_settings`` hold the settings
+    else a list. ``messages`` lists what was adjusted; ``run_settings`` and ``equilibrium_settings`` hold the settings
     that a scene file gives.
     """
 
@@ -72,7 +72,7 @@ class SceneData:
 
     @property
     def supports(self) -> list[Support]:
-        """All that holds or moves nodes: pins, clamps and motions."""
+        """Return all supports of nodes: pins, clamps and motions."""
         return [*self.pins, *self.clamps, *self.motions]
 
     def parts(self) -> Iterator[Part]:
@@ -86,7 +86,7 @@ class SceneData:
             yield from (value for _, value in part if isinstance(value, Attachment))
 
     def group(self, name: str) -> Iterable[Part]:
-        """The parts of a group, in the order in which they were added."""
+        """Return the parts of a group, in the order in which they were added."""
         parts = getattr(self, name)
         return parts.values() if isinstance(parts, dict) else parts
 
@@ -94,12 +94,12 @@ class SceneData:
         """Store a part in its group, as it is."""
         group = getattr(self, part.group)
         if isinstance(group, dict):
-            group[part.name] = part
+            group[part.given_name] = part
         else:
             group.append(part)
 
     def part_named(self, name: str, group: str) -> Part | None:
-        """The part whose name that is, None if it is free for a part of a group.
+        """Return the part whose name that is, None if it is free for a part of a group.
 
         Results are addressed by name, so that all but events share one space of names.
         """
@@ -109,11 +109,13 @@ class SceneData:
 
     def check_name(self, part: Part) -> None:
         """Raise SceneError where the name of a part is taken."""
-        if (other := self.part_named(part.name, part.group)) is not None:
+        name = part.given_name
+        assert name is not None, f"{part.where} has no name yet"
+        if (other := self.part_named(name, part.group)) is not None:
             article = "an" if part.kind == "event" else "a"
             raise SceneError(part.where, f"there is already {article} {other.kind} of that name",
                              "give each part its own name")
-        if part.name in RESERVED:
+        if name in RESERVED:
             raise SceneError(part.where, "that name is taken by the results", "give another one")
 
     def free_name(self, part: type[Part]) -> str:
@@ -134,5 +136,5 @@ class SceneData:
 
 
 def _groups() -> list[str]:
-    """The groups, each once, in an order in which their parts can be added."""
+    """Return the groups, each once, in an order in which their parts can be added."""
     return list(dict.fromkeys(kind.group for kind in KINDS))

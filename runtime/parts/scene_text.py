@@ -16,6 +16,7 @@ from ..errors import SceneError, near
 from ..kernels.libraries import check_allowed, resolved
 from .attachment import Attachment
 from .end_stops import Stop
+from .event import Event
 from .kinds import PARTS
 from .scene_data import SceneData
 from .section import Section
@@ -44,7 +45,7 @@ S = TypeVar("S", bound=Addable)
 
 def read(text: str, origin: str, new: Callable[..., S], directory: str | os.PathLike = "",
          libraries: Iterable[str | os.PathLike] = ()) -> S:
-    """A scene from the text of a scene file; ``origin`` is what error messages call it.
+    """Return a scene from the text of a scene file; ``origin`` is what error messages call it.
 
     new: makes an empty scene, of the keyword gravity; directory: where paths in the text start from, by default the
     working directory; libraries: directories of elements that the text may load. Raises SceneError.
@@ -95,7 +96,7 @@ def _check_libraries(tables: dict, directory: str | os.PathLike, allowed: list[s
 
 
 def _placed(table: dict, directory: str | os.PathLike) -> dict:
-    """A table with its library or data seen from the working directory, and not from the scene file's."""
+    """Return a table with its library or data seen from the working directory, and not from the scene file's."""
     return table | {name: os.path.join(directory, table[name]) for name in ("library", "data")
                     if isinstance(table.get(name), str)}
 
@@ -110,7 +111,7 @@ def _part(part: type[Part], table: dict, index: int) -> Part:
 
 
 def _settings(name: str, table: Any) -> dict:
-    """What a table of settings sets, checked."""
+    """Return what a table of settings sets, checked."""
     if not isinstance(table, dict):
         raise SceneError(f"[{name}]", "must be a table")
     settings = SETTINGS[name](**table).model_dump(exclude_unset=True)
@@ -122,11 +123,11 @@ def _settings(name: str, table: Any) -> dict:
 
 
 def dumps(scene: SceneData) -> str:
-    """The text of a scene file, such that `loads` makes the same scene of it."""
+    """Return the text of a scene file, such that `loads` makes the same scene of it."""
     lines, parts = [f"gravity = {as_toml(scene.gravity)}"], list(scene.parts())
     for kind in PARTS:
         for part in parts:
-            if part.kind == kind == "event" and part.function is not None:
+            if part.kind == kind and isinstance(part, Event) and part.function is not None:
                 lines += ["", f"# {part.where} watches a function, which only Python can hold"]
             elif part.kind == kind:
                 lines += ["", f"[[{kind}]]", *_lines(_data(part))]
@@ -137,7 +138,7 @@ def dumps(scene: SceneData) -> str:
 
 
 def _data(value: Any) -> Any:
-    """A value as plain data: of a part all that is set, defaults too, which a later version may change."""
+    """Return a value as plain data: of a part all that is set, defaults too, which a later version may change."""
     match value:
         case Constant():
             return value.constant
@@ -164,7 +165,7 @@ def _lines(table: dict) -> list[str]:
 
 
 def as_toml(value: Any) -> str:
-    """A value as the text of a scene file."""
+    """Return a value as the text of a scene file."""
     match value:
         case str():
             return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -24,7 +24,7 @@ def _factors(value: Any) -> tuple[float, float]:
     factors = vector(value, size=2)
     if not min(factors) > 0:
         raise ValueError(f"must be positive, got {show(factors)}", "give (ky, kz), 1 for no correction")
-    return factors
+    return factors[0], factors[1]
 
 
 TorsionConstant = Annotated[float, positive("m⁴")]
@@ -44,10 +44,10 @@ class Section(Part):
     def __getattr__(self, name: str) -> Any:
         """Refuse an attribute that there is not; of an older version's, say what it is called now."""
         check_renamed(f"{type(self).__name__!r} object", name, dir(type(self)))
-        return super().__getattr__(name)
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
     def moments(self) -> np.ndarray:
-        """The even moments up to order 4.
+        """Return the even moments up to order 4.
 
         Returns (6,): [∫dA, ∫y²dA, ∫z²dA, ∫y⁴dA, ∫y²z²dA, ∫z⁴dA] in m², m⁴, m⁴, m⁶, m⁶, m⁶.
         """
@@ -75,7 +75,7 @@ class Section(Part):
 
     @property
     def area(self) -> float:
-        """∫dA in m²."""
+        """Return the area ∫dA in m²."""
         return float(self.moments()[0])
 
     @property
@@ -97,7 +97,7 @@ class Rectangle(Section):
     width: Length
 
     def moments(self) -> np.ndarray:
-        """See `Section.moments`."""
+        """Return the even moments of the section, see `Section.moments`."""
         h, w = self.height, self.width
         area = h * w
         yy, zz = h * h / 12, w * w / 12
@@ -126,7 +126,7 @@ class Circle(Section):
     radius: Length
 
     def moments(self) -> np.ndarray:
-        """See `Section.moments`."""
+        """Return the even moments of the section, see `Section.moments`."""
         return _disc(self.radius)
 
     def _shape_torsion_constant(self) -> float:
@@ -155,7 +155,7 @@ class Tube(Section):
         return self
 
     def moments(self) -> np.ndarray:
-        """See `Section.moments`."""
+        """Return the even moments of the section, see `Section.moments`."""
         return _disc(self.outer_radius) - _disc(self.inner_radius)
 
     def _shape_torsion_constant(self) -> float:
@@ -197,11 +197,11 @@ class GeneralSection(Section):
 
     @property
     def has_rotary(self) -> bool:
-        """Whether its rotary inertia is given apart from its stiffness."""
+        """Return whether its rotary inertia is given apart from its stiffness."""
         return self.rotary_about_z is not None or self.rotary_about_y is not None
 
     def mass_moments(self) -> np.ndarray:
-        """See `Section.mass_moments`."""
+        """Return what the mass is proportional to, see `Section.mass_moments`."""
         if not self.has_rotary:
             return self.moments()
         about_z, about_y = self.rotary_about_z or self.rotary_about_y, self.rotary_about_y or self.rotary_about_z
@@ -223,7 +223,7 @@ SHAPES = {section.shape: section for section in (Rectangle, Circle, Tube, Genera
 
 
 def _section(value: Any) -> Section:
-    """A section from itself or from a table such as {shape="circle", radius=0.01}."""
+    """Return a section from itself or from a table such as {shape="circle", radius=0.01}."""
     if isinstance(value, Section):
         return value
     if not isinstance(value, dict):

@@ -45,14 +45,14 @@ class Variant:
 
 @cache
 def variants() -> dict[str, Variant]:
-    """The variants by name: "poisson_split", and for each assumed strain of a cable the reduced one."""
+    """Return the variants by name: "poisson_split", and for each assumed strain of a cable the reduced one."""
     reduced = {law_of_measures(traits.strain, traits.curvature, "reduced"): Variant(law, _reduced, "reduced")
                for law, traits in built_in_laws().items() if traits.membrane == "assumed"}
     return {"poisson_split": Variant("continuum", _poisson_split)} | reduced
 
 
 def law_of_measures(strain: str, curvature: str, membrane: str) -> str:
-    """The name of a cable's law by its measures."""
+    """Return the name of a cable's law by its measures."""
     return "_".join([strain, curvature, *([membrane] if membrane != "full" else [])])
 
 
@@ -61,12 +61,12 @@ STABILISATION = 0.01
 
 
 def kernel_law(law: str) -> str:
-    """The law whose kernels a law runs on."""
+    """Return the law whose kernels a law runs on."""
     return variants()[law].kernel_law if law in variants() else law
 
 
 def is_reduced(law: str) -> bool:
-    """Whether a cable's law has a reduced axial strain."""
+    """Return whether a cable's law has a reduced axial strain."""
     return law in variants() and variants()[law].membrane == "reduced"
 
 
@@ -81,7 +81,7 @@ def _assumed(section: Section, material: Material, dim: int) -> np.ndarray:
 
 
 def _reduced(section: Section, material: Material, dim: int) -> np.ndarray:
-    """The same with what keeps the lengths of the slopes stable."""
+    """Return the same with what keeps the lengths of the slopes stable."""
     EA, EI = _cable(section, material, dim)
     return np.array([EA, EI, STABILISATION * EA])
 
@@ -92,7 +92,7 @@ def _continuum(section: Section, material: Material, dim: int) -> np.ndarray:
 
 
 def _poisson_split(section: Section, material: Material, dim: int) -> np.ndarray:
-    """The Poisson effect on the axis alone: an element whose section cannot warp locks under that of bending.
+    """Return the Poisson effect on the axis alone: an element whose section cannot warp locks under that of bending.
 
     The section's mean shear takes its shear factors, its twist its torsion constant. Gerstmayr, Matikainen & Mikkola,
     Multibody Syst. Dyn. 20 (2008) 359-384.

@@ -19,7 +19,9 @@ Duration = Annotated[float, positive("s")]
 def default_spectral_radius(integrator: str) -> float:
     """Return the spectral radius where none is given: the integrator's own, else that of the one for fixed steps."""
     own = INTEGRATORS[integrator].default_spectral_radius if integrator in INTEGRATORS else None
-    return stable_at(fixed_step=True).default_spectral_radius if own is None else own
+    own = stable_at(fixed_step=True).default_spectral_radius if own is None else own
+    assert own is not None, "the integrator for fixed steps has one"
+    return own
 
 
 def _text_of_path(value: Any) -> Any:

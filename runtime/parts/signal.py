@@ -37,7 +37,7 @@ class Signal(Part):
     form: ClassVar[str]
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
-        """The polynomial part.
+        """Return the polynomial part.
 
         Returns breaks (n+1,) in s, increasing, and coefficients (n, 7) of ascending powers of t - breaks[k]. The first
         piece holds before all breaks, too, and the last one after them.
@@ -46,26 +46,26 @@ class Signal(Part):
 
     @property
     def amplitude(self) -> float:
-        """Of the sine; 0 if there is none."""
+        """Return the amplitude of the sine, 0 if there is none."""
         return 0.0
 
     @property
     def angular_frequency(self) -> float:
-        """Of the sine, in rad/s."""
+        """Return the angular frequency of the sine in rad/s."""
         return 0.0
 
     @property
     def phase(self) -> float:
-        """Of the sine at t = 0, in rad."""
+        """Return the phase of the sine at t = 0, in rad."""
         return 0.0
 
     def value(self, time, derivative: int = 0) -> np.ndarray:
-        """The signal, or a derivative of it, at the times ``time`` (any shape, s)."""
+        """Return the signal, or a derivative of it, at the times ``time`` (any shape, s)."""
         return value_at(self, *self.pieces(), time, derivative)
 
 
 def value_at(signal, breaks: np.ndarray, coefficients: np.ndarray, time, derivative: int = 0) -> np.ndarray:
-    """A derivative, at times of any shape, of such a piecewise polynomial with the sine of ``signal``."""
+    """Return a derivative, at times of any shape, of such a piecewise polynomial with the sine of ``signal``."""
     time = np.asarray(time, dtype=float)
     result = np.zeros(time.shape)
     if len(coefficients):
@@ -104,7 +104,7 @@ class Constant(Signal):
     constant: Value
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
-        """See `Signal.pieces`."""
+        """Return its polynomials between breaks, see `Signal.pieces`."""
         return np.array([0.0, 1.0]), np.eye(1, DEGREE + 1) * self.constant
 
 
@@ -132,7 +132,7 @@ class TableSignal(Signal):
         return self
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
-        """See `Signal.pieces`."""
+        """Return its polynomials between breaks, see `Signal.pieces`."""
         time, values = np.array(self.time), np.array(self.values)
         breaks = np.array([time[0] - 1, *time, time[-1] + 1])
         breaks[-2] = np.nextafter(time[-1], np.inf)  # a run that ends with the table ends on its slope
@@ -164,7 +164,7 @@ class Ramp(Signal):
         return self
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
-        """See `Signal.pieces`."""
+        """Return its polynomials between breaks, see `Signal.pieces`."""
         return _steps([self.start, self.end], [self.before, self.after])
 
 
@@ -193,14 +193,14 @@ class Pulse(Signal):
 
     @property
     def _times(self) -> list[float]:
-        """Where it begins to rise, is up, begins to fall, where that is later, and is down."""
+        """Return where it begins to rise, is up, begins to fall, where that is later, and is down."""
         half = (self.end - self.start) / 2
         if self.rise is None or self.rise >= half * (1 - 1e-12):
             return [self.start, self.start + half, self.end]
         return [self.start, self.start + self.rise, self.end - self.rise, self.end]
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
-        """See `Signal.pieces`."""
+        """Return its polynomials between breaks, see `Signal.pieces`."""
         return _steps(self._times, [0.0, *[self.height] * (len(self._times) - 2), 0.0])
 
 
@@ -214,22 +214,22 @@ class Harmonic(Signal):
     offset: Value = 0.0
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
-        """See `Signal.pieces`."""
+        """Return its polynomials between breaks, see `Signal.pieces`."""
         return Constant(constant=self.offset).pieces()
 
     @property
     def amplitude(self) -> float:
-        """See `Signal.amplitude`."""
+        """Return the amplitude of its sine, see `Signal.amplitude`."""
         return self.sine
 
     @property
     def angular_frequency(self) -> float:
-        """See `Signal.angular_frequency`."""
+        """Return the rate of its sine in rad/s, see `Signal.angular_frequency`."""
         return 2 * pi * self.frequency
 
     @property
     def phase(self) -> float:
-        """See `Signal.phase`."""
+        """Return the phase of its sine in rad, see `Signal.phase`."""
         return self.start_phase
 
 
@@ -247,7 +247,7 @@ class Integral(Signal):
         return self
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
-        """See `Signal.pieces`."""
+        """Return its polynomials between breaks, see `Signal.pieces`."""
         breaks, rates = self.rate.pieces()
         powers = np.arange(1, DEGREE + 1)
         coefficients = np.zeros(rates.shape)
@@ -261,12 +261,12 @@ class Integral(Signal):
 
     @property
     def amplitude(self) -> float:
-        """See `Signal.amplitude`."""
+        """Return the amplitude of its sine, see `Signal.amplitude`."""
         return self.rate.amplitude / self.angular_frequency if self.rate.amplitude else 0.0
 
     @property
     def angular_frequency(self) -> float:
-        """See `Signal.angular_frequency`."""
+        """Return the rate of its sine in rad/s, see `Signal.angular_frequency`."""
         return self.rate.angular_frequency
 
     @property
@@ -279,7 +279,7 @@ FORMS = {signal.form: signal for signal in (TableSignal, Ramp, Harmonic, Pulse)}
 
 
 def signal(value: Any) -> Signal:
-    """A signal from itself, a number, or a table such as {form="ramp", start=0, end=1}; else ValueError."""
+    """Return a signal from itself, a number, or a table such as {form="ramp", start=0, end=1}; else ValueError."""
     if isinstance(value, Signal):
         return value
     if isinstance(value, Real) and not isinstance(value, bool):

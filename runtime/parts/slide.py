@@ -1,4 +1,4 @@
-"""Slides: sliding joints."""
+"""Slides: joints between a cable and a point that rides along its centreline."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ class Slide(Part):
 
     @property
     def rider(self) -> Attachment:
-        """The point that rides."""
+        """Return the point that rides."""
         return Attachment(on=self.body, at=self.at) if self.body_s is None else Attachment(on=self.body, s=self.body_s)
 
     @property
@@ -97,5 +97,5 @@ class Slide(Part):
         return self.drive if self.velocity is None else Integral(rate=self.velocity, start=self.s)
 
     def off_plane(self) -> Iterator[str]:
-        """See `Part.off_plane`."""
+        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
         return across("at", self.at, "m")

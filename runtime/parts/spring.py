@@ -1,4 +1,4 @@
-"""Springs with dampers."""
+"""Springs with dampers between two attachments."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Spring(PointForce):
 
     @property
     def is_damped(self) -> bool:
-        """Whether its force depends on velocities."""
+        """Return whether its force depends on velocities."""
         return self.damping > 0
 
     def at_distance(self, distance: float) -> Self:

@@ -1,4 +1,4 @@
-"""What holds or joins the nodes of cables: pins, clamps, ties, prescribed motions."""
+"""What supports or joins the nodes of cables: pins, clamps, ties, prescribed motions."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .validation import Name, Part, Reference, Vector, finite, one_of, shown, ve
 
 
 def _called(cable: Any) -> str:
-    """What messages call a cable, given as itself, as its name, or as what is neither."""
+    """Return what messages call a cable, given as itself, as its name, or as what is neither."""
     name = getattr(cable, "name", cable)
     return f'"{name}"' if isinstance(name, str) else shown(name)
 
@@ -25,7 +25,7 @@ ON_CABLE = {"force": vector_of_time("N", "force on the cable"), "moment": vector
 
 
 class Support(Part):
-    """Base of what holds a cable's node at ``s`` (m)."""
+    """Base of the supports of a cable's node at ``s`` (m)."""
 
     quantities: ClassVar[dict[str, Quantity]] = ON_CABLE
     cable: Reference
@@ -33,7 +33,7 @@ class Support(Part):
 
     @classmethod
     def place(cls, data: dict) -> str:
-        """How messages name the support."""
+        """Return how messages name the support."""
         return f"{cls.kind} on {_called(data.get('cable'))}"
 
     @property
@@ -87,11 +87,11 @@ def _displacement(value: Any) -> Displacement | None:
     if not isinstance(value, list | tuple) or len(value) != 3:
         raise ValueError(f"must be 3 signals or numbers, got {shown(value)}",
                          'give 0 for a direction without motion, "free" for one that is not prescribed')
-    made = tuple(None if each is None or each == FREE else _component(axis, each)
+    x, y, z = (None if each is None or each == FREE else _component(axis, each)
                  for axis, each in zip("xyz", value, strict=True))
-    if not any(made):
+    if x is y is z is None:
         raise ValueError("leaves all directions free", "leave it out, or give a signal or number for one of them")
-    return made
+    return x, y, z
 
 
 def _component(axis: str, value: Any) -> Signal:
@@ -102,7 +102,7 @@ def _component(axis: str, value: Any) -> Signal:
 
 
 def _of(name: str, error: ValueError) -> ValueError:
-    """The same complaint about a part of a quantity; a model's own errors name theirs."""
+    """Return the same complaint about a part of a quantity; a model's own errors name theirs."""
     if hasattr(error, "errors"):
         first = error.errors(include_url=False)[0]
         cause = first.get("ctx", {}).get("error")
@@ -153,7 +153,7 @@ class Motion(Support):
         return self
 
     def off_plane(self) -> Iterator[str]:
-        """See `Part.off_plane`."""
+        """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
         if self.displacement is not None and self.displacement[2] not in (None, Constant(constant=0.0)):
             yield "displacement z"
         if self.rotation is not None:
@@ -182,7 +182,7 @@ class Tie(Part):
 
     @classmethod
     def place(cls, data: dict) -> str:
-        """How messages name the tie."""
+        """Return how messages name the tie."""
         if data.get("name") is not None:
             return super().place(data)
         return f"tie of {_called(data.get('cable'))} and {_called(data.get('to'))}"

@@ -11,9 +11,9 @@ from __future__ import annotations
 
 import math
 import reprlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from numbers import Integral, Real
-from typing import Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainValidator, ValidationError, model_validator
@@ -93,8 +93,14 @@ def vector(value: Any, unit: str = "", size: int = 3) -> tuple[float, ...]:
     return numbers
 
 
+def vector3(value: Any, unit: str = "") -> Vector:
+    """Return ``value`` as three finite floats within `LIMITS`; ValueError if it is anything else."""
+    x, y, z = vector(value, unit)
+    return x, y, z
+
+
 def show(value: float | tuple[float, ...] | np.ndarray, unit: str = "") -> str:
-    """A number or vector for a message, with its unit."""
+    """Return a number or vector for a message, with its unit."""
     if isinstance(value, float):
         return f"{value:.9g} {unit}".strip()
     numbers = [f"{v:.9g}" for v in value]
@@ -122,10 +128,10 @@ def finite(unit: str = "") -> PlainValidator:
     return PlainValidator(lambda value: number(value, unit))
 
 
-def _bounded(unit: str, holds, rule: str) -> PlainValidator:
+def _bounded(unit: str, allowed: Callable[[float], bool], rule: str) -> PlainValidator:
     def check(value: Any) -> float:
         result = number(value, unit)
-        if not holds(result):
+        if not allowed(result):
             raise ValueError(f"must {rule}, got {show(result, unit)}")
         return result
 
@@ -196,9 +202,10 @@ def list_of(unit: str = "", *, least: int) -> PlainValidator:
 def _count(value: Any) -> int:
     if isinstance(value, bool) or not isinstance(value, Integral) or value < 1:
         raise ValueError(f"must be a whole number, 1 or more, got {shown(value)}")
-    if value > MOST:
-        raise ValueError(f"must not exceed {MOST}, got {shown(int(value))}")
-    return int(value)
+    count = int(value)
+    if count > MOST:
+        raise ValueError(f"must not exceed {MOST}, got {shown(count)}")
+    return count
 
 
 def _flag(value: Any) -> bool:
@@ -224,18 +231,24 @@ Reference = Annotated[str, BeforeValidator(lambda value: getattr(value, "name", 
 Vector = tuple[float, float, float]
 
 
-class _TranslatingType(type(BaseModel)):
+if TYPE_CHECKING:
+    from pydantic._internal._model_construction import ModelMetaclass
+else:
+    ModelMetaclass = type(BaseModel)  # pydantic exports its metaclass in no other way
+
+
+class _TranslatingType(ModelMetaclass):
     """Makes a constructor call raise `SceneError`.
 
     In the metaclass and not in ``__init__``, so that a model inside another one still reports to pydantic,
     which knows the path to it.
     """
 
-    def __call__(cls, /, **data):
+    def __call__(cls, /, **data):  # noqa: N805  it is a metaclass
         try:
             return super().__call__(**data)
         except ValidationError as error:
-            raise _scene_error(cls.place(data), error) from None
+            raise _scene_error(cls.place(data), error) from None  # type: ignore[attr-defined]  # of its one user, Part
 
 
 class Part(BaseModel, metaclass=_TranslatingType):
@@ -257,23 +270,28 @@ class Part(BaseModel, metaclass=_TranslatingType):
 
     @classmethod
     def place(cls, data: dict) -> str:
-        """How messages name the part made of ``data``."""
+        """Return how messages name the part made of ``data``."""
         kind = cls.kind or cls.__name__
         return f'{kind} "{data["name"]}"' if isinstance(data.get("name"), str) else kind
 
     @classmethod
     def keywords(cls) -> dict[str, str]:
-        """What a part is made with: the keywords, and the names of the fields that hold them."""
+        """Return what a part is made with: the keywords, and the names of the fields that hold them."""
         return {field.alias or name: name for name, field in cls.model_fields.items()}
 
     @classmethod
     def is_named(cls) -> bool:
-        """Whether such parts have names, by which a scene and its results know them."""
+        """Return whether such parts have names, by which a scene and its results know them."""
         return "name" in cls.model_fields
 
     @property
+    def given_name(self) -> str | None:
+        """Return its name, None where it has none, or none yet."""
+        return getattr(self, "name", None)
+
+    @property
     def where(self) -> str:
-        """How messages name this part."""
+        """Return how messages name this part."""
         return self.place(dict(self))
 
     def off_plane(self) -> Iterator[str]:
@@ -294,7 +312,7 @@ class Part(BaseModel, metaclass=_TranslatingType):
 
 
 def _scene_error(place: str, error: ValidationError) -> SceneError:
-    """The first of pydantic's complaints in our words."""
+    """Return the first of pydantic's complaints in our words."""
     first = error.errors(include_url=False)[0]
     path = ".".join(map(str, first["loc"]))
     match first["type"]:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..kernels.libraries import kernels_of
 from ..model.attachments import CARRIED, UP, AttachmentModel
@@ -26,13 +28,13 @@ class Instants:
     time: np.ndarray
     q: np.ndarray
     v: np.ndarray
-    value: object
+    value: Callable[[str], np.ndarray]
     load: float = 1.0
     weight: float = 1.0
 
 
 @dataclass
-class Action:
+class PointLoad:
     """A force at a place of a cable: element and x (m) in it (T,), generalised force f (T, vectors, dim)."""
 
     element: np.ndarray
@@ -55,8 +57,8 @@ class Spread:
     f: np.ndarray
 
 
-def at_element(cable: CableModel, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Elements that hold arc-lengths s, and x in them; at a node the element that begins there."""
+def at_element(cable: CableModel, s: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+    """Return the elements that arc-lengths s are in, and x in them; at a node the element that begins there."""
     element = np.clip((np.asarray(s) // cable.length).astype(int), 0, cable.n_elements - 1)
     return element, s - element * cable.length
 
@@ -71,7 +73,7 @@ def element_coordinates(cable: CableModel, values: np.ndarray, element: np.ndarr
 
 
 def shape_on_axis(cable: CableModel, x: np.ndarray) -> np.ndarray:
-    """(..., vectors): shape functions at places x of an element's centreline."""
+    """Return (..., vectors): shape functions at places x of an element's centreline."""
     x = np.asarray(x, dtype=float)
     return rows(cable.kernel("on_axis"), x.size, cable.length, x.ravel())[0].reshape(*x.shape, -1)
 
@@ -81,13 +83,13 @@ def rows(kernel, n: int, *given):
     return kernel.rows(n, *given)
 
 
-class CableActions:
+class CableLoads:
     """Collects what acts on cables between nodes. Gravity, inertia and what is given to nodes are not in it."""
 
     def __init__(self, scene: SceneData, model: Model, at: Instants):
         self.scene, self.model, self.at, self.dim = scene, model, at, model.dim
         self.times, self.gravity = len(at.time), at.weight * np.array(scene.gravity)[: self.dim]
-        self.points: dict[int, list[Action]] = {}
+        self.points: dict[int, list[PointLoad]] = {}
         self.spreads: dict[int, list[Spread]] = {}
         names = [cable.name for cable in model.cables]
         self.number = {name: k for k, name in enumerate(names)}
@@ -98,7 +100,7 @@ class CableActions:
 
     def _add(self, cable: int, element, x, f: np.ndarray) -> None:
         element, x = (np.broadcast_to(value, self.times) for value in (element, x))
-        self.points.setdefault(cable, []).append(Action(element, x, f))
+        self.points.setdefault(cable, []).append(PointLoad(element, x, f))
 
     def _loads(self) -> None:
         for load in self.scene.loads.values():
@@ -110,6 +112,7 @@ class CableActions:
                 self._distributed(load, self.number[on], scale)
                 continue
             cable = self.model.cables[self.number[on]]
+            assert load.s is not None, f"{load.where} is not complete"
             element, x = at_element(cable, load.s)
             if isinstance(load, Moment):
                 component = np.array(load.value)[slice(2, 3) if self.dim == 2 else slice(0, 3)]
@@ -119,12 +122,12 @@ class CableActions:
             self._add(self.number[on], element, x, scale[:, None, None] * f)
 
     def _turning(self, cable: CableModel, kernel: str, element, x, c: np.ndarray) -> np.ndarray:
-        """(T, vectors, dim): of a load that turns with the section."""
+        """Return (T, vectors, dim): of a load that turns with the section."""
         e = element_coordinates(cable, self.at.q, np.broadcast_to(element, self.times))
         return rows(cable.kernel(kernel), self.times, cable.length, x, e, c)[0]
 
     def _force(self, cable: CableModel, element, x, value: np.ndarray, follower: bool) -> np.ndarray:
-        """(T, vectors, dim): of a force along the ground's axes, or the local ones."""
+        """Return (T, vectors, dim): of a force along the ground's axes, or the local ones."""
         if follower:
             return self._turning(cable, "follower_force", element, x, value[: self._follower_components(cable)])
         f = np.outer(shape_on_axis(cable, x), value[: self.dim])
@@ -136,6 +139,7 @@ class CableActions:
 
     def _distributed(self, load: DistributedForce, number: int, scale: np.ndarray) -> None:
         cable, value = self.model.cables[number], np.array(load.value)
+        assert load.start is not None and load.stop is not None, f"{load.where} is not complete"
         is_r = positions(cable)
         for element in range(cable.n_elements):
             start = max(load.start - element * cable.length, 0.0)
@@ -151,38 +155,38 @@ class CableActions:
 
     def _slides(self) -> None:
         """Riders: their force at s, with the opposite on what rides; and moments of slides that keep axes."""
-        for joint in self.model.slides:
-            force, s = self.at.value(f"{joint.name}.force"), self.at.value(f"{joint.name}.s")
-            cable = self.model.cables[joint.cable]
+        for slide in self.model.slides:
+            force, s = self.at.value(f"{slide.name}.force"), self.at.value(f"{slide.name}.s")
+            cable = self.model.cables[slide.cable]
             element, x = at_element(cable, np.clip(s, 0.0, cable.length * cable.n_elements))
             N = shape_on_axis(cable, x)
-            self._add(joint.cable, element, x, -N[:, :, None] * force[:, None, : self.dim])
-            self._on_end(joint.rider, force, None)
-        for link in self.model.joints:
-            if link.slide is None:
+            self._add(slide.cable, element, x, -N[:, :, None] * force[:, None, : self.dim])
+            self._on_end(slide.rider, force, None)
+        for joint in self.model.joints:
+            if joint.slide is None:
                 continue
-            moment = self.at.value(f"{link.slide}.moment")
-            joint = next(j for j in self.model.slides if j.name == link.slide)
-            cable = self.model.cables[joint.cable]
-            s = np.clip(self.at.value(f"{link.slide}.s"), 0.0, cable.length * cable.n_elements)
+            moment = self.at.value(f"{joint.slide}.moment")
+            slide = next(each for each in self.model.slides if each.name == joint.slide)
+            cable = self.model.cables[slide.cable]
+            s = np.clip(self.at.value(f"{joint.slide}.s"), 0.0, cable.length * cable.n_elements)
             element, x = at_element(cable, s)
-            f = self._couple(cable, link.ends[0], element, x, -moment)
-            self._add(joint.cable, element, x, f)
-            self._on_end(link.ends[1], None, moment)
+            f = self._couple(cable, joint.ends[0], element, x, -moment)
+            self._add(slide.cable, element, x, f)
+            self._on_end(joint.ends[1], None, moment)
 
     def _joints(self) -> None:
-        for link in self.model.joints:
-            if link.slide is not None or all(end.cable < 0 for end in link.ends):
+        for joint in self.model.joints:
+            if joint.slide is not None or all(end.cable < 0 for end in joint.ends):
                 continue
-            force, moment = self.at.value(f"{link.name}.force"), self.at.value(f"{link.name}.moment")
-            one, other = link.ends[::-1] if link.reversed else link.ends
+            force, moment = self.at.value(f"{joint.name}.force"), self.at.value(f"{joint.name}.moment")
+            one, other = joint.ends[::-1] if joint.reversed else joint.ends
             self._on_end(other, force, moment)
             if one.cable >= 0:  # its moment balances the other end's, and the forces where these stand apart
                 gap = self._end_point(other) - self._end_point(one)
                 self._on_end(one, -force, -moment - np.cross(gap, force))
 
     def _end_point(self, end: AttachmentModel) -> np.ndarray:
-        """(T, 3): where an end is."""
+        """Return (T, 3): where an end is."""
         if end.body < 0:
             return attachment_points(self.model, end, self.at.q)
         body = self.model.bodies[end.body]
@@ -212,7 +216,7 @@ class CableActions:
         self._add(end.cable, end.element, x, f)
 
     def _couple(self, cable: CableModel, end: AttachmentModel, element, x, moment: np.ndarray) -> np.ndarray:
-        """(T, vectors, dim): of a moment (T, 3) on the frame that an end has of its cable, T' m."""
+        """Return (T, vectors, dim): of a moment (T, 3) on the frame that an end has of its cable, T' m."""
         e = element_coordinates(cable, self.at.q, element)
         S = rows(cable.kernel("slopes"), self.times, cable.length, x)[:, :, 0]  # (T, xyz, vectors)
         e_local = e - np.where(positions(cable)[:, None], e[:, :1], 0.0)
@@ -244,12 +248,12 @@ class CableActions:
 
 
 def positions(cable: CableModel) -> np.ndarray:
-    """(vectors,): which of an element's nodal vectors are positions."""
+    """Return (vectors,): which of an element's nodal vectors are positions."""
     return np.array([name == "r" for name in cable.vectors] * 2)
 
 
 def across(tangent: np.ndarray) -> np.ndarray:
-    """(T, dim): unit vectors square to others."""
+    """Return (T, dim): unit vectors square to others."""
     least = np.eye(tangent.shape[-1])[np.argmin(np.abs(tangent), axis=-1)]
     part = least - tangent * (np.sum(least * tangent, axis=-1) / np.sum(tangent**2, axis=-1))[:, None]
     return part / np.linalg.norm(part, axis=-1)[:, None]

@@ -49,7 +49,7 @@ class Checkpoint(NamedTuple):
     state: bytes
 
     def write(self, path: Path) -> None:
-        """Replace the file. Raises OSError."""
+        """Write the checkpoint in the place of an older file. Raises OSError."""
         content = json.dumps(self.facts.model_dump()).encode() + b"\n" + self.state
         part = path.with_name(f".{path.name}.part")
         try:
@@ -75,7 +75,7 @@ class Checkpoint(NamedTuple):
 
 
 def checkpoint_of(path: Path) -> Path:
-    """The checkpoint beside the file of a run."""
+    """Return the checkpoint beside the file of a run."""
     return path.with_name(f"{path.name}.state")
 
 

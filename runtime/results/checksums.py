@@ -31,7 +31,7 @@ def row_checksums(words: np.ndarray) -> np.ndarray:
 
 @cache
 def _weights(n: int) -> np.ndarray:
-    """(n,): odd numbers from the generator splitmix64 (G. Steele and others, OOPSLA 2014)."""
+    """Return (n,): odd numbers from the generator splitmix64 (G. Steele and others, OOPSLA 2014)."""
     with np.errstate(over="ignore"):
         z = np.arange(1, n + 1, dtype=np.uint64) * np.uint64(_EMPTY)
         z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)

@@ -19,7 +19,7 @@ class Equilibrium(RestState):
 
     def section_forces(self, cable: Cable | str, s=None, *, method: str = "balance",
                        side: str = "after") -> xarray.Dataset:
-        """Forces and moments in sections of ``cable`` as `Run.section_forces` has them, over s alone.
+        """Return the forces and moments in sections of ``cable`` as `Run.section_forces` has them, over s alone.
 
         Where no s is given, both sides of riders are among the places.
         """

@@ -29,7 +29,7 @@ MOST_ROWS_NAMED = 10
 
 
 def check_writable(path: str | os.PathLike) -> Path:
-    """The path without links. Raises ResultFileError if no file can be written there; leaves nothing behind."""
+    """Return the path without links. Raises ResultFileError if no file can be written there; leaves nothing behind."""
     try:
         resolved = Path(path).resolve()  # a link keeps pointing to what it did
         own = threading.get_native_id()  # several threads may look at once
@@ -47,7 +47,7 @@ def check_writable(path: str | os.PathLike) -> Path:
     except ValueError as error:  # a NUL, half of a surrogate pair
         cause, remedy = f"this is no path: {error}", "give another one"
     except OSError as error:
-        cause, remedy = error.strerror, "give a path in a directory that exists and is yours to write to"
+        cause, remedy = error.strerror or str(error), "give a path in a directory that exists and is yours to write to"
         if error.errno == errno.ENAMETOOLONG:
             remedy = "give a shorter name, below 240 bytes"
     raise ResultFileError(f"{shown_path(path)}: the results cannot be written here: {cause}; {remedy}") from None
@@ -65,23 +65,23 @@ def check_free(path: Path) -> None:
 
 
 def over_time(coords: Mapping[str, Variable], variables: Mapping[str, Variable]) -> dict[str, np.ndarray]:
-    """The values that make rows of a file."""
+    """Return the values that make rows of a file."""
     return {"time": coords["time"].values} | {name: variable.values for name, variable in variables.items()}
 
 
 def file_text(report: dict, rows: int | None = None) -> str:
-    """A report as it stands in a file, in one line; rows: number of rows of a file that is whole."""
+    """Return a report as it stands in a file, in one line; rows: number of rows of a file that is whole."""
     return json.dumps(report if rows is None else {"rows": rows, **report}, default=methodcaller("tolist"))
 
 
 def create_file(path: str | os.PathLike, coords: Mapping[str, Variable], variables: Mapping[str, Variable], scene: str,
-                report: str, room: int = 0, descriptor: int | None = None) -> File:
+                report: str, spare: int = 0, descriptor: int | None = None) -> File:
     """A new file of results, without rows; report: from `file_text`; see `funicular.netcdf.create`. Raises OSError."""
-    return create(path, coords, variables, {"funicular_format": FILE_FORMAT, "scene": scene}, report, room, descriptor)
+    return create(path, coords, variables, {"funicular_format": FILE_FORMAT, "scene": scene}, report, spare, descriptor)
 
 
 def open_file(path: str | os.PathLike) -> File:
-    """A file of results, open to be read. Raises ResultFileError."""
+    """Return a file of results, open to be read. Raises ResultFileError."""
     if not os.path.isfile(path):
         raise ResultFileError(f"{shown_path(path)}: there is no such file")
     try:
@@ -107,7 +107,7 @@ class _Report(BaseModel):
 
 
 def read_report(file: File) -> dict:
-    """The report in a file. Raises ValueError, KeyError where it is damaged."""
+    """Return the report in a file. Raises ValueError, KeyError where it is damaged."""
     report = last_report(file.attributes["report"], file.has_checksums)
     _Report.model_validate(report)
     return report
@@ -116,7 +116,7 @@ def read_report(file: File) -> dict:
 def check_rows(file: File, rows: int | None, salvage: bool) -> None:
     """Find damaged rows, to leave them out or to raise ResultFileError; warn where there are no checksums.
 
-    rows: number of rows that the report tells, None where the run goes on.
+    rows: number of rows that the report has, None where the run goes on.
     """
     if rows is not None and rows != file.rows:
         raise ValueError(f"its header says that it has {file.rows} times, its report {rows}")

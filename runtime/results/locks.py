@@ -62,7 +62,7 @@ def lock(descriptor: int) -> bool:
 
 
 def is_at(descriptor: int, path: str | os.PathLike) -> bool:
-    """Whether an open file is the one of that name."""
+    """Return whether an open file is the one of that name."""
     try:
         return os.path.samestat(os.fstat(descriptor), os.stat(path, follow_symlinks=False))
     except OSError:

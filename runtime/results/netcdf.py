@@ -46,9 +46,9 @@ class File:
         Raises OSError, ValueError where it is no such file, was cut short or has a damaged header.
         """
         self.path = os.fspath(path)
-        self.descriptor = descriptor
         if descriptor is None:
-            self.descriptor = os.open(path, (os.O_RDWR if writable else os.O_RDONLY) | BYTES)
+            descriptor = os.open(path, (os.O_RDWR if writable else os.O_RDONLY) | BYTES)
+        self.descriptor = descriptor
         self.close = weakref.finalize(self, os.close, self.descriptor)
         size = os.fstat(self.descriptor).st_size
         self.rows, self.attributes, places, self.entries = self._head(size)
@@ -82,7 +82,7 @@ class File:
 
     @property
     def row_bytes(self) -> int:
-        """Size of a row."""
+        """Return the size of a row."""
         return self._row.itemsize
 
     def read(self, name: str) -> np.ndarray:
@@ -100,14 +100,14 @@ class File:
         return values
 
     def damaged_rows(self, rows: int | None = None) -> np.ndarray:
-        """Numbers of the rows, of all or of so many, whose checksum is not theirs. Raises OSError."""
+        """Return the numbers of the rows, of all or of so many, whose checksum is not theirs. Raises OSError."""
         damaged = [np.zeros(0, int)]
         for start, block in self._blocks(self.rows if rows is None else rows):
             damaged.append(start + np.flatnonzero(block[ROW_CHECKSUM] != self._checksums(block)))
         return np.concatenate(damaged)
 
     def _checksums(self, rows: np.ndarray) -> np.ndarray:
-        """(rows,): of whole rows as they are in the file."""
+        """Return (rows,): of whole rows as they are in the file."""
         words = rows.view("<u8").reshape(len(rows), self.row_bytes // 8)
         return row_checksums(words[:, :-1])
 
@@ -118,7 +118,7 @@ class File:
         for start in range(0, rows, len(block)):
             part = block[: rows - start]
             at = self._first + start * self.row_bytes
-            if read_into(self.descriptor, memoryview(part.view("u1")), at) != part.nbytes:
+            if read_into(self.descriptor, memoryview(part.view("u1").data), at) != part.nbytes:
                 raise OSError(f"{self.path}: was cut short while it was read")
             yield start, part
 
@@ -129,12 +129,12 @@ class File:
             yield np.delete(block, gone) if len(gone) else block
 
     def described(self, over_time: bool) -> dict[str, Variable]:
-        """The variables over time without their values, or the other ones."""
+        """Return the variables over time without their values, or the other ones."""
         return {name: self.variable(name, np.empty((0, *entry.shape)) if over_time else self.read(name))
                 for name, entry in self.entries.items() if entry.in_rows == over_time and name != ROW_CHECKSUM}
 
     def variable(self, name: str, values: np.ndarray) -> Variable:
-        """A variable with its labels."""
+        """Return a variable with its labels."""
         entry = self.entries[name]
         units, long_name = (str(entry.attributes.get(label, "")) for label in ("units", "long_name"))
         return Variable(entry.dims[: values.ndim], values, units, long_name)
@@ -158,15 +158,15 @@ class File:
     def copy_rows(self, source: File) -> None:
         """Add all rows of a file with the same variables, but for those that it leaves out."""
         for block in source._kept_blocks():
-            self.write(self.rows, {name: block[name] for name in self._row.names if name != ROW_CHECKSUM})
+            self.write(self.rows, {name: block[name] for name in self._row.names or () if name != ROW_CHECKSUM})
 
     def truncate(self, rows: int) -> None:
-        """Drop the rows from `rows` on."""
+        """Drop the rows of number `rows` and above."""
         self._check_follows(rows)
         self._set_rows(rows)
 
     def add_report(self, text: str) -> bool:
-        """Put a new text, of a JSON object, into the attribute `report`; False where there is no room for it.
+        """Put a new text, of a JSON object, into the attribute `report`; False where it does not fit.
 
         The last line that has an end of line counts: the new one is whole before blanks go over the old one.
         """
@@ -201,10 +201,11 @@ class Stored(Mapping[str, Variable]):
 
     def __init__(self, file: File, names: list[str]):
         """names: of those variables."""
-        self.file, self._names, self._read = file, dict.fromkeys(names), {}
+        self.file, self._names = file, dict.fromkeys(names)
+        self._read: dict[str, Variable] = {}
 
     def __getitem__(self, name: str) -> Variable:
-        """A variable with its values."""
+        """Return a variable with its values."""
         if name not in self._names:
             raise KeyError(name)
         if name not in self._read:
@@ -212,28 +213,28 @@ class Stored(Mapping[str, Variable]):
         return self._read[name]
 
     def __contains__(self, name: object) -> bool:
-        """Whether there is such a variable."""
+        """Return whether there is such a variable."""
         return name in self._names
 
     def __iter__(self) -> Iterator[str]:
-        """Their names."""
+        """Iterate over the names of the variables."""
         return iter(self._names)
 
     def __len__(self) -> int:
-        """Their number."""
+        """Return the number of variables."""
         return len(self._names)
 
 
 def create(path: str | os.PathLike, coords: Mapping[str, Variable], variables: Mapping[str, Variable],
-           attributes: Mapping[str, str | int], report: str, room: int = 0, descriptor: int | None = None) -> File:
-    """A new file, without rows yet; of the variables over time only shapes count.
+           attributes: Mapping[str, str | int], report: str, spare: int = 0, descriptor: int | None = None) -> File:
+    """Return a new file, without rows yet; of the variables over time only shapes count.
 
-    attributes: but for the report, a JSON object, for which there is room to grow by so many bytes; descriptor: of a
+    attributes: but for the report, a JSON object, which can grow by `spare` bytes; descriptor: of a
     file of that path which is open already, and becomes this one.
     """
     checksum = Variable(("time",), np.zeros(0), "1", "checksum of the row")
     header = header_of({**coords, **variables, ROW_CHECKSUM: checksum},
-                     {**attributes, HEADER_CHECKSUM: NOT_YET, "report": report_line(report) + b" " * room})
+                     {**attributes, HEADER_CHECKSUM: NOT_YET, "report": report_line(report) + b" " * spare})
     places = parsed(header)[2]
     at, size = places[HEADER_CHECKSUM]
     header = header[:at] + header_checksum(header, places).encode() + header[at + size :]

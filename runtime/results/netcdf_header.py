@@ -47,7 +47,7 @@ def header_checksum(head: bytes, places: Mapping[str, tuple[int, int]]) -> str:
 
 
 def header_of(variables: dict[str, Variable], attributes: dict) -> bytes:
-    """The header, and behind it the variables that are not over time."""
+    """Return the header, and behind it the variables that are not over time."""
     sizes, entries, fixed = {"time": 0}, {}, {}
     for name, variable in variables.items():
         values, dims = variable.values, variable.dims
@@ -106,7 +106,7 @@ def _attributes(attributes: Mapping[str, str | bytes | int]) -> bytes:
 
 
 def parsed(header: bytes) -> tuple[int, dict, dict[str, tuple[int, int]], dict[str, Entry]]:
-    """Number of rows, attributes, their places and sizes, variables.
+    """Return the number of rows, attributes, their places and sizes, variables.
 
     Raises ValueError, and what struct and dicts raise, where the header is damaged or longer than what is given.
     """
@@ -114,11 +114,14 @@ def parsed(header: bytes) -> tuple[int, dict, dict[str, tuple[int, int]], dict[s
     if header[:at] != MAGIC:
         raise ValueError("it does not begin as the classic format with 64-bit offsets does")
 
-    def ints(count: int = 1) -> tuple[int, ...]:
+    def ints(count: int) -> tuple[int, ...]:
         nonlocal at
         found = struct.unpack_from(f">{count}i", header, at)
         at += 4 * count
         return found
+
+    def integer() -> int:
+        return ints(1)[0]
 
     def data(size: int) -> bytes:
         nonlocal at
@@ -131,7 +134,7 @@ def parsed(header: bytes) -> tuple[int, dict, dict[str, tuple[int, int]], dict[s
     def attributes() -> tuple[dict, dict]:
         found, places = {}, {}
         for _ in range(ints(2)[1]):
-            name = data(*ints()).decode()
+            name = data(integer()).decode()
             kind, count = ints(2)
             dtype = np.dtype(_TYPES[kind])
             places[name] = at, count
@@ -144,13 +147,13 @@ def parsed(header: bytes) -> tuple[int, dict, dict[str, tuple[int, int]], dict[s
             raise ValueError("the header is damaged")
         return value
 
-    rows = known(*ints(), 2**31)
-    dims = [(data(*ints()).decode(), known(*ints(), 2**31)) for _ in range(ints(2)[1])]
+    rows = known(integer(), 2**31)
+    dims = [(data(integer()).decode(), known(integer(), 2**31)) for _ in range(ints(2)[1])]
     general, places = attributes()
     entries = {}
     for _ in range(ints(2)[1]):
-        name = data(*ints()).decode()
-        along = [dims[known(k, len(dims) - 1)] for k in ints(known(*ints(), len(dims)))]
+        name = data(integer()).decode()
+        along = [dims[known(k, len(dims) - 1)] for k in ints(known(integer(), len(dims)))]
         labels, _ = attributes()
         kind, _ = ints(2)
         (begin,) = struct.unpack_from(">q", header, at)
@@ -163,19 +166,19 @@ def parsed(header: bytes) -> tuple[int, dict, dict[str, tuple[int, int]], dict[s
 
 
 def size_of(entry: Entry) -> int:
-    """Bytes of a variable, or of its part of a row."""
+    """Return the bytes of a variable, or of its part of a row."""
     return entry.dtype.itemsize * math.prod(entry.shape)
 
 
 def report_line(text: str) -> bytes:
-    """A JSON object as a line of the report, with its checksum as first entry."""
+    """Return a JSON object as a line of the report, with its checksum as first entry."""
     bare = f'{_REPORT_CHECKSUM}{NOT_YET}", {text[1:]}'
     checksum = f"{text_checksum(bare.encode()):08x}"
     return f'{_REPORT_CHECKSUM}{checksum}", {text[1:]}\n'.encode()
 
 
 def last_report(text: str, has_checksum: bool) -> dict:
-    """What the last whole line of the attribute `report` says, or all of it where it is not in lines.
+    """Return what the last whole line of the attribute `report` says, or all of it where it is not in lines.
 
     Raises ValueError where it is damaged.
     """

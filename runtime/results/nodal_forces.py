@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import block_diag, coo_array, csc_array, kron
+from scipy.sparse import block_diag, coo_array, csc_array, csr_array, kron
 from scipy.sparse.linalg import splu
 
 from ..model.model import CableModel, Model
 from ..parts.scene_data import SceneData
-from .cable_loads import CableActions, Instants, element_coordinates, rows
+from .cable_loads import CableLoads, Instants, element_coordinates, rows
 
 
 @dataclass
@@ -27,21 +27,21 @@ class ElementForces:
     e: np.ndarray
 
 
-def element_forces(scene: SceneData, model: Model, at: Instants, actions: CableActions, cable: int,
+def element_forces(scene: SceneData, model: Model, at: Instants, loads: CableLoads, cable: int,
                    at_rest: bool) -> ElementForces:
-    """Those of cable number `cable`; at_rest: without accelerations."""
+    """Return those of cable number `cable`; at_rest: without accelerations."""
     tied = [cable] if at_rest else tied_cables(scene, model, cable)
-    forces = {k: internal(model.cables[k], at) - _external(model, k, at, actions) for k in tied}
+    forces = {k: internal(model.cables[k], at) - _external(model, k, at, loads) for k in tied}
     accelerations = np.zeros_like(at.v) if at_rest else _accelerations(model, at, forces)
     of = model.cables[cable]
     a = element_coordinates(of, accelerations)
     given = forces[cable] + np.einsum("kl,teld->tekd", of.m, a)
-    inertia = a + of.mass_damping * element_coordinates(of, at.v) - _uniform(of, actions.gravity)
+    inertia = a + of.mass_damping * element_coordinates(of, at.v) - _uniform(of, loads.gravity)
     return ElementForces(given, inertia, element_coordinates(of, at.q))
 
 
 def tied_cables(scene: SceneData, model: Model, cable: int) -> list[int]:
-    """Numbers of the cables that joins tie to one, itself included: their accelerations go together."""
+    """Return the numbers of the cables that joins tie to one, itself included: their accelerations go together."""
     found, new = {model.cables[cable].name}, [model.cables[cable].name]
     while new:
         name = new.pop()
@@ -54,7 +54,7 @@ def tied_cables(scene: SceneData, model: Model, cable: int) -> list[int]:
 
 
 def internal(cable: CableModel, at: Instants) -> np.ndarray:
-    """(T, elements, vectors, dim): elastic forces, those of Kelvin-Voigt and of mass damping."""
+    """Return (T, elements, vectors, dim): elastic forces, those of Kelvin-Voigt and of mass damping."""
     e, v = element_coordinates(cable, at.q), element_coordinates(cable, at.v)
     law = f"{cable.law}_"
     moving = cable.tau > 0 and np.any(v)
@@ -76,19 +76,19 @@ def internal(cable: CableModel, at: Instants) -> np.ndarray:
 
 
 def _uniform(cable: CableModel, acceleration: np.ndarray) -> np.ndarray:
-    """(vectors, dim): nodal accelerations of a uniform field."""
+    """Return (vectors, dim): nodal accelerations of a uniform field."""
     return np.array([name == "r" for name in cable.vectors] * 2)[:, None] * acceleration
 
 
-def _external(model: Model, number: int, at: Instants, actions: CableActions) -> np.ndarray:
-    """(T, elements, vectors, dim): gravity, and all that acts between nodes."""
+def _external(model: Model, number: int, at: Instants, loads: CableLoads) -> np.ndarray:
+    """Return (T, elements, vectors, dim): gravity, and all that acts between nodes."""
     cable = model.cables[number]
     f = np.zeros((len(at.time), cable.n_elements, 2 * cable.shape[1], cable.shape[2]))
-    f += np.einsum("kl,ld->kd", cable.m, _uniform(cable, actions.gravity))
+    f += np.einsum("kl,ld->kd", cable.m, _uniform(cable, loads.gravity))
     instants = np.arange(len(at.time))
-    for action in actions.points.get(number, []):
-        f[instants, action.element] += action.f
-    for spread in actions.spreads.get(number, []):
+    for load in loads.points.get(number, []):
+        f[instants, load.element] += load.f
+    for spread in loads.spreads.get(number, []):
         f[:, spread.element] += spread.f
     return f
 
@@ -99,7 +99,7 @@ def _accelerations(model: Model, at: Instants, forces: dict[int, np.ndarray]) ->
     M a = -forces on what is free, with what supports and joins hold and motions prescribe. Eq 38 gave the same at each
     of the instants: so a run need not keep them.
     """
-    held = np.concatenate([np.arange(model.cables[k].coordinates.start, model.cables[k].coordinates.stop)
+    chosen = np.concatenate([np.arange(model.cables[k].coordinates.start, model.cables[k].coordinates.stop)
                            for k in forces])
     masses, assembled = [], np.zeros((len(at.time), model.n_dof))
     for k, f in forces.items():
@@ -110,19 +110,19 @@ def _accelerations(model: Model, at: Instants, forces: dict[int, np.ndarray]) ->
         assembled[:, cable.coordinates] = nodal.reshape(len(f), -1)
         masses.append(_mass(cable))
     M = block_diag(masses, format="csr")
-    T = _reduction(model, held)
-    prescribed = _prescribed(model, at.time)[:, held]
-    right = -(assembled[:, held] + (M @ prescribed.T).T)
+    T = _reduction(model, chosen)
+    prescribed = _prescribed(model, at.time)[:, chosen]
+    right = -(assembled[:, chosen] + (M @ prescribed.T).T)
     found = np.zeros_like(assembled)
     if T.shape[1]:
         solve = splu(csc_array(T.T @ M @ T)).solve
-        found[:, held] = (T @ solve(np.ascontiguousarray(T.T @ right.T))).T
-    found[:, held] += prescribed
+        found[:, chosen] = (T @ solve(np.ascontiguousarray(T.T @ right.T))).T
+    found[:, chosen] += prescribed
     return found
 
 
-def _mass(cable: CableModel):
-    """(coordinates, coordinates) sparse."""
+def _mass(cable: CableModel) -> csr_array:
+    """Return the mass matrix of a cable, (coordinates, coordinates), sparse."""
     per_node = cable.shape[1]
     n = cable.shape[0] * per_node
     index = np.arange(cable.n_elements)[:, None, None] * per_node
@@ -147,7 +147,7 @@ def _reduction(model: Model, dofs: np.ndarray):
 
 
 def _prescribed(model: Model, time: np.ndarray) -> np.ndarray:
-    """(T, n_dof): accelerations that motions prescribe."""
+    """Return (T, n_dof): accelerations that motions prescribe."""
     found = np.zeros((len(time), model.n_dof))
     for motion in model.motions:
         f, rate, second = (model.signals[motion.signal].value(time, order) for order in range(3))

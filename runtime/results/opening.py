@@ -17,7 +17,7 @@ from .run import ReadScene, Run, SceneText
 
 def opened(file: File, read_scene: ReadScene, libraries: Iterable[str | os.PathLike] = (), salvage: bool = False,
            check: bool = True) -> Run:
-    """The results in an open file, see `funicular.load_run`; check: its rows, too. Raises ResultFileError."""
+    """Return the results in an open file, see `funicular.load_run`; check: its rows, too. Raises ResultFileError."""
     path = file.path
     if "funicular_format" not in file.attributes:
         raise ResultFileError(f"{path}: is a netCDF file, but not one that funicular wrote")

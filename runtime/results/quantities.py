@@ -34,7 +34,7 @@ ENERGIES = {
 
 
 def labelled(rows) -> tuple[dict[str, Variable], dict[str, Variable]]:
-    """Results of the rows that `funicular.recording` names, with their labels; coordinates."""
+    """Return results of the rows that `funicular.recording` names, with their labels; coordinates."""
     variables = {}
     coords = {
         "time": Variable(("time",), rows.time, "s", "time"),

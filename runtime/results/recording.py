@@ -50,7 +50,7 @@ class Recording(Rows):
 
 
 def named(model: Model, scene: SceneData, engine) -> Rows:
-    """The engine's rows by name."""
+    """Return the engine's rows by name."""
     rows = engine.rows()
     q, v, a = rows["q"], rows["v"], rows["acceleration"]
     cables = {}
@@ -129,8 +129,9 @@ def _costs(model: Model, engine) -> dict[str, float]:
     """µs of a step that each slide and joint takes by itself; a slide that ties its rider's axes has both its parts."""
     found: dict[str, float] = {}
     if model.slides or model.joints:
-        for part, seconds in zip([*model.slides, *model.joints], engine.costs(), strict=True):
-            found[part.name] = found.get(part.name, 0.0) + 1e6 * float(seconds)
+        names = [*(slide.name for slide in model.slides), *(joint.name for joint in model.joints)]
+        for name, seconds in zip(names, engine.costs(), strict=True):
+            found[name] = found.get(name, 0.0) + 1e6 * float(seconds)
     return found
 
 

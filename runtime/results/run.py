@@ -63,7 +63,7 @@ class Run:
                  scene_text: SceneText):
         """report: how the run went, status, message and messages among it; scene_text: the scene that was run.
 
-        report["us_per_step"] tells what each slide and joint takes of a step in µs, without solving for its forces.
+        report["us_per_step"] is what each slide and joint takes of a step in µs, without solving for its forces.
         """
         self.variables, self.coords, self.report, self._scene_text = variables, coords, report, scene_text
 
@@ -83,7 +83,7 @@ class Run:
 
     @property
     def time(self) -> np.ndarray:
-        """(time,): the times of the results, in s."""
+        """Return (time,): the times of the results, in s."""
         return self.coords["time"].values
 
     @property
@@ -96,7 +96,7 @@ class Run:
 
     @property
     def events(self) -> list[dict]:
-        """What has happened. Of the scene's events: name, time (s), and the state of bodies and slides there.
+        """Return what has happened. Of the scene's events: name, time (s), and the state of bodies and slides there.
 
         Of slides: name, time (s), s (m), and what: "stuck", "broke loose", "turned round" (friction); "struck the end",
         "came to rest at the end", "left the end" (hard stops); "entered the buffer", "left the buffer"; "left".
@@ -105,7 +105,7 @@ class Run:
 
     @property
     def scene_toml(self) -> str:
-        """The scene that was run, as the text of a scene file."""
+        """Return the scene that was run, as the text of a scene file."""
         return self._scene_text.toml
 
     @property
@@ -115,7 +115,7 @@ class Run:
 
     @cached_property
     def scene(self) -> SceneData:
-        """The `funicular.Scene` that was run, read back from its text; what was adjusted then is in the report.
+        """Return the `funicular.Scene` that was run, read back from its text; what was adjusted then is in the report.
 
         Raises SceneError for a library that is not allowed.
         """
@@ -124,15 +124,15 @@ class Run:
             return self._scene_text.read(self.scene_toml, "the scene of the run", libraries=self.libraries)
 
     def keys(self) -> list[str]:
-        """The names of all results; a cable's ``wire.position`` is a part of its ``wire.nodal_vectors``."""
+        """Return the names of all results; a cable's ``wire.position`` is a part of its ``wire.nodal_vectors``."""
         return list(self.variables)
 
     def __contains__(self, name: str) -> bool:
-        """Whether there is a result of that name."""
+        """Return whether there is a result of that name."""
         return name in self.variables or name in self._positions
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """The array called ``name``, time first; units and dimensions stand in ``variables[name]``."""
+        """Return the array called ``name``, time first; units and dimensions stand in ``variables[name]``."""
         if name == "time":
             return self.time
         if name in self._positions:
@@ -200,7 +200,7 @@ class Run:
             part.unlink(missing_ok=True)
 
     def energy_balance(self) -> EnergyBalance:
-        """How well the energy books close; see `EnergyBalance`."""
+        """Return how well the energy balance closes; see `EnergyBalance`."""
         energies = {name: self[f"energy.{name}"] for name in ENERGIES if f"energy.{name}" in self}
         changes = np.array([(e - e[:1]) * (-1 if name == "external" else 1) for name, e in energies.items()])
         residual = changes.sum(axis=0)
@@ -209,14 +209,14 @@ class Run:
 
     @cached_property
     def model(self) -> Model:
-        """The model of the scene, as it was drawn: numbers of its coordinates, what holds and joins them."""
+        """Return the model of the scene, as it was drawn: numbers of its coordinates, what holds and joins them."""
         from ..model.build import build  # brings SciPy, which results alone do not need
 
         return build(self.scene)
 
     def section_forces(self, cable: Cable | str, s=None, *, method: str = "balance",
                        side: str = "after") -> xarray.Dataset:
-        """Forces and moments in sections of ``cable``.
+        """Return the forces and moments in sections of ``cable``.
 
         s: arc-lengths (n,) in m; or the name of a slide on it, for the section where that is at each time. None given:
         along all of the cable, with both sides of supports, ties and loads.
@@ -239,7 +239,7 @@ class Run:
         return dataset(self, cable, s, method=method, side=side)
 
     def summary_rows(self) -> list[tuple[str, str]]:
-        """What to tell about the run in short: pairs of a heading and a text."""
+        """Return what to tell about the run in short: pairs of a heading and a text."""
         report = self.report
         if not len(self.time):
             return [("status", f"{self.status} before the first output time: there are no results"),
@@ -269,12 +269,12 @@ class Run:
         return rows + [("note", message) for message in report["messages"]]
 
     def summary(self) -> str:
-        """A few lines on how the run went."""
+        """Return a few lines on how the run went."""
         return "\n".join(f"{heading}: {text}" for heading, text in self.summary_rows())
 
 
 def _dearest(costs: dict[str, float]) -> str:
-    """What slides and joints take of a step, the dearest by name."""
+    """Return what slides and joints take of a step, the dearest by name."""
     order = sorted(costs, key=costs.__getitem__, reverse=True)
     named = ", ".join(f"{name} {costs[name]:.3g}" for name in order[:_MOST_COSTS])
     rest = f" and {len(order) - _MOST_COSTS} more" if len(order) > _MOST_COSTS else ""

@@ -9,8 +9,9 @@ From there on
 
     n' = rho A (a - g) - p,     m' = -r' x n + rate of spin of the section - moments a length,
 
-with jumps where a rider, a force, a spring or a joint holds on, are integrated over the part of the element before the
-cut. a, r and the section's slopes are those of the shape functions, for which the balance of the element holds exactly.
+with jumps where a rider, a force, a spring or a joint is attached, are integrated over the part of the element before
+the cut. a, r and the section's slopes are those of the shape functions, for which the balance of the element is
+exact.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ import numpy as np
 from ..model.model import CableModel
 from ..model.states import spatial
 from ..parts.cable import EXACT, Cable
-from .cable_loads import CableActions, positions, rows, shape_on_axis
+from .cable_loads import CableLoads, positions, rows, shape_on_axis
 from .nodal_forces import ElementForces
 
 
@@ -50,9 +51,9 @@ def resultants(f: np.ndarray, e: np.ndarray, is_r: np.ndarray, about: np.ndarray
     return f[..., is_r, :].sum(axis=-2), np.cross(arms, f).sum(axis=-2)
 
 
-def balanced(cable: Cable, model: CableModel, forces: ElementForces, actions: CableActions, number: int,
+def balanced(cable: Cable, model: CableModel, forces: ElementForces, loads: CableLoads, number: int,
              cuts: Cuts) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Force and moment (T, n, 3) on the part before each cut, along the ground's axes, in N and N m.
+    """Return the force and moment (T, n, 3) on the part before each cut, along the ground's axes, in N and N m.
 
     The third is the derivative of the force by s there, in N/m.
     """
@@ -71,7 +72,7 @@ def balanced(cable: Cable, model: CableModel, forces: ElementForces, actions: Ca
     taken = _of_inertia(cable, model, cuts, e, inertia)
     force, moment = force + taken[0], moment + taken[1]
     change = cable.material.density * cable.section.area * _at(_shape(model, cuts.x), inertia)
-    for spread in actions.spreads.get(number, []):
+    for spread in loads.spreads.get(number, []):
         inside = (cuts.element == spread.element) & (cuts.x > spread.start)
         columns = np.flatnonzero(inside.any(axis=0))
         if len(columns):
@@ -80,11 +81,11 @@ def balanced(cable: Cable, model: CableModel, forces: ElementForces, actions: Ca
             parts = _of_spread(model, spread, np.clip(reach, spread.start, spread.stop), e[:, columns])
             for total, part, where in zip((force, moment, change), parts, (here, here, ends), strict=True):
                 total[:, columns] -= np.where(where, part, 0.0)
-    for action in actions.points.get(number, []):
-        of = forces.e[instants[:, 0], action.element]
-        jump = resultants(action.f, of, is_r, spatial(of[:, 0]))
+    for load in loads.points.get(number, []):
+        of = forces.e[instants[:, 0], load.element]
+        jump = resultants(load.f, of, is_r, spatial(of[:, 0]))
         near = np.where(after, cuts.near, -cuts.near)
-        before = (element == action.element[:, None]) & (action.x[:, None] <= x + near)
+        before = (element == load.element[:, None]) & (load.x[:, None] <= x + near)
         for total, value in zip((force, moment), jump, strict=True):
             total -= before[..., None] * value[:, None]
     r = np.einsum("tnk,tnkd->tnd", _shape(model, cuts.x), e)
@@ -103,7 +104,7 @@ def _of_inertia(cable: Cable, model: CableModel, cuts: Cuts, e: np.ndarray, a: n
     places, weights = np.polynomial.legendre.leggauss(2 * sum(set(name) <= set("r_x") for name in model.vectors))
     density = cable.material.density
     area, yy, zz = cable.section.mass_moments()[:3]
-    force = moment = 0.0
+    force = moment = np.zeros(3)
     across = [(k, I) for k, (name, I) in enumerate((("r_y", yy), ("r_z", zz)), start=1) if name in model.vectors]
     for place, weight in zip((1 + places) / 2, weights / 2, strict=True):
         x = cuts.x * place
@@ -129,7 +130,7 @@ def _of_spread(model: CableModel, spread, x: np.ndarray, e: np.ndarray) -> tuple
     x: (T or 1, n) in m; e: (T, n, vectors, 3).
     """
     places, weights = np.polynomial.legendre.leggauss(len(spread.x))
-    force = moment = 0.0
+    force = moment = np.zeros(3)
     length = x - spread.start
     for place, weight in zip((1 + places) / 2, weights / 2, strict=True):
         at = spread.start + place * length
@@ -140,13 +141,13 @@ def _of_spread(model: CableModel, spread, x: np.ndarray, e: np.ndarray) -> tuple
 
 
 def _density(spread, x: np.ndarray) -> np.ndarray:
-    """(T, n, 3): force a length at x (T or 1, n)."""
+    """Return (T, n, 3): force a length at x (T or 1, n)."""
     weights, times = _lagrange(spread.x, x), len(spread.density)
     return np.einsum("tnp,tpd->tnd", np.broadcast_to(weights, (times, *weights.shape[1:])), spread.density)
 
 
 def _lagrange(nodes: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """(..., nodes): weights of the values at nodes in the polynomial through them, at x (...)."""
+    """Return (..., nodes): weights of the values at nodes in the polynomial through them, at x (...)."""
     others = [np.delete(nodes, k) for k in range(len(nodes))]
     return np.stack([np.prod((x[..., None] - other) / (node - other), axis=-1)
                      for node, other in zip(nodes, others, strict=True)], axis=-1)

@@ -36,19 +36,19 @@ BEAM = {
 
 
 def labels(cable: Cable) -> dict[str, tuple[str, str]]:
-    """Unit and long name of each component."""
+    """Return unit and long name of each component."""
     return BEAM if cable.kind_of_element.director else CABLE
 
 
 def components(cable: Cable, force: np.ndarray, moment: np.ndarray, axes: np.ndarray,
                strain: np.ndarray) -> dict[str, np.ndarray]:
-    """The components that `labels` names, (T, n): of force and moment (T, n, 3) along axes (T, n, 3, 3)."""
+    """Return the components that `labels` names, (T, n): of force and moment (T, n, 3) along axes (T, n, 3, 3)."""
     along = np.einsum("tsi,tsi->ts", force, axes[..., 0, :])
     return _named(cable, along, force - along[..., None] * axes[..., 0, :], moment, axes, strain)
 
 
 def unresolved(cable: Cable, force: np.ndarray) -> np.ndarray:
-    """(T, n): how much of a kink the mesh draws as an arc, from 0, nothing, to 1, all.
+    """Return (T, n): how much of a kink the mesh draws as an arc, from 0, nothing, to 1, all.
 
     Under an axial force N a cable bends beside a point force over sqrt(E I / N) alone, a cubic over an element of
     length l. N l^2 is what tension has of the stiffness against a kink, 12 E I what bending has: with their ratio x it
@@ -86,11 +86,11 @@ def taut_bending(cable: Cable, force: np.ndarray, change: np.ndarray, axes: np.n
 
 def balanced_components(cable: Cable, balance: tuple[np.ndarray, np.ndarray], law: tuple[np.ndarray, np.ndarray],
                         taut: np.ndarray, axes: np.ndarray, strain: np.ndarray) -> dict[str, np.ndarray]:
-    """Force, moment and components in balance; (force, moment) of the balance and of the elastic law, (T, n, 3).
+    """Return force, moment and components in balance; (force, moment) of the balance and of the elastic law, (T, n, 3).
 
     Where a mesh cannot show how a taut cable bends, its tangent beside a kink is off, and so are the points of its
     centreline. The force across that tangent is then no shear, nor is the force's moment about those points bending.
-    There, by the part that `unresolved` tells, the angle between force and tangent is the one that the elastic law has,
+    There, by the part that `unresolved` gives, the angle between force and tangent is the one that the elastic law has,
     and the moment across the tangent is that of `taut_bending`. A force's size and direction, and torque, stay.
     """
     force, moment = balance

@@ -11,11 +11,12 @@ from ..errors import FunicularError, UnknownResultError, near
 from ..kernels.libraries import kernels_of
 from ..model.model import Model
 from ..parts.cable import EXACT, Cable
+from ..parts.load import DistributedForce
 from ..parts.scene_data import SceneData
 from ..parts.section_stiffness import section_stiffness
 from ..parts.validation import show
 from ..solve.rest_state import RestState
-from .cable_loads import CableActions, Instants, rows
+from .cable_loads import CableLoads, Instants, rows
 from .nodal_forces import element_forces
 from .section_balance import Cuts, balanced
 from .section_components import balanced_components, components, labels, taut_bending
@@ -44,22 +45,22 @@ class Results(Protocol):
 
     @property
     def scene(self) -> SceneData:
-        """The scene that was run."""
+        """Return the scene that was run."""
 
     @property
     def model(self) -> Model:
-        """Its model."""
+        """Return the model of the scene."""
 
     @property
     def time(self) -> np.ndarray:
-        """(time,): in s."""
+        """Return the times (time,) in s."""
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """The result of a name, time first."""
+        """Return the result of a name, time first."""
 
 
 def constitutive(cable: Cable, nodal_vectors: np.ndarray, cuts: Cuts) -> tuple[np.ndarray, ...]:
-    """The elastic law at cuts: force, moment (T, n, 3), axes of the section (T, n, 3, 3), strains (T, n, 6).
+    """Return the elastic law at cuts: force, moment (T, n, 3), axes of the section (T, n, 3, 3), strains (T, n, 6).
 
     nodal_vectors: (T, nodes, vectors, 3). Force and moment are along the ground's axes.
     """
@@ -77,7 +78,7 @@ def constitutive(cable: Cable, nodal_vectors: np.ndarray, cuts: Cuts) -> tuple[n
 
 def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.ndarray, *, method: str = "balance",
                side: str = "after", at_rest: bool = False) -> dict[str, np.ndarray]:
-    """Forces in sections of the cable ``name`` at instants.
+    """Return the forces in sections of the cable ``name`` at instants.
 
     s: (1 or T, n) arc-lengths in m. Returns force and moment (T, n, 3), along the ground's axes, and the components
     of `section_components.labels` (T, n). at_rest: accelerations are nil.
@@ -89,12 +90,12 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
     force, moment, axes, strain = constitutive(cable, nodal, cuts)
     if method == "constitutive":
         return {"force": force, "moment": moment} | components(cable, force, moment, axes, strain)
-    actions = CableActions(scene, model, at)
-    forces = element_forces(scene, model, at, actions, number, at_rest)
-    *balance, change = balanced(cable, of, forces, actions, number, cuts)
+    loads = CableLoads(scene, model, at)
+    forces = element_forces(scene, model, at, loads, number, at_rest)
+    balance_force, balance_moment, change = balanced(cable, of, forces, loads, number, cuts)
     taut = moment if cable.is_curved else taut_bending(  # a bent wire that is drawn straight has a moment
-        cable, balance[0], change, axes, cuts, lambda: kinks(scene, cable, of, forces, actions, number))
-    return balanced_components(cable, balance, (force, moment), taut, axes, strain)
+        cable, balance_force, change, axes, cuts, lambda: kinks(scene, cable, of, forces, loads, number))
+    return balanced_components(cable, (balance_force, balance_moment), (force, moment), taut, axes, strain)
 
 
 def of_run(run: Results, name: str, s: np.ndarray, chosen=slice(None), *, method: str = "balance",
@@ -134,29 +135,31 @@ def of_equilibrium(state: RestState, name: str, s: np.ndarray, *, method: str = 
 
 
 def rest_instants(state: RestState) -> Instants:
-    """A state of rest as one instant, with as much of the loads as it has."""
+    """Return a state of rest as one instant, with as much of the loads as it has."""
     return Instants(np.zeros(1), state.placed["q"][None], np.zeros((1, state.model.n_dof)),
                     lambda quantity: state[quantity][None], state.load_fraction, state.gravity_fraction)
 
 
 def jumps(scene: SceneData, name: str) -> np.ndarray:
-    """Arc-lengths of the cable at which something that stays there holds on: inside, in order."""
+    """Return the arc-lengths of the cable at which something fixed to it is attached: inside, in order."""
     cable = scene.cables[name]
-    places = [load.s for load in scene.loads.values() if getattr(load, "on", None) == name]
+    places: list[float | None] = []
+    for load in scene.loads.values():
+        if isinstance(load, DistributedForce):
+            places += [load.start, load.stop] if load.cable == name else []
+        elif load.on == name:
+            places.append(load.s)
     attachments = [*(slide.rider for slide in scene.slides.values()), *scene.attachments()]
     places += [attachment.s for attachment in attachments if attachment.on == name]
     places += [support.s for support in scene.supports if support.cable == name]
     for tie in scene.ties.values():
         places += [s for on, s in ((tie.cable, tie.s), (tie.to, tie.at)) if on == name]
-    for load in scene.loads.values():
-        if getattr(load, "cable", None) == name:
-            places += [load.start, load.stop]
     beside = BESIDE * cable.length
     return np.array(sorted({float(s) for s in places if s is not None and beside < s < cable.length - beside}))
 
 
 def even(cable: Cable) -> np.ndarray:
-    """Places along all of a cable, its nodes among them."""
+    """Return the places along all of a cable, its nodes among them."""
     return np.linspace(0, cable.length, PLACES * cable.elements + 1)
 
 
@@ -167,37 +170,37 @@ def with_sides(cable: Cable, s: np.ndarray, places: np.ndarray) -> np.ndarray:
     return np.sort(np.concatenate([np.broadcast_to(s, (*sides.shape[:-1], len(s))), sides], axis=-1), axis=-1)
 
 
-def dataset(state: Results | RestState, name: str, s=None, *, method: str = "balance",
+def dataset(state: Results | RestState, cable: Cable | str, s=None, *, method: str = "balance",
             side: str = "after") -> xarray.Dataset:
     """See `Run.section_forces`; of an equilibrium without the time."""
     import xarray  # 0.5 s, for those who ask for it
 
-    scene, name = state.scene, getattr(name, "name", name)
+    scene, name = state.scene, cable.name if isinstance(cable, Cable) else cable
     if name not in scene.cables:
         raise UnknownResultError(f'there is no cable "{name}"; {near(name, scene.cables)}')
     for word, value, known in (("method", method, METHODS), ("side", side, SIDES)):
         if value not in known:
             raise FunicularError(f'section forces of "{name}": {word} must be '
                                  + " or ".join(f'"{each}"' for each in known) + f", got {value!r}")
-    cable, over_time = scene.cables[name], hasattr(state, "time")
-    s, follows = _places(state, cable, s, over_time)
+    drawn, over_time = scene.cables[name], not isinstance(state, RestState)
+    s, follows = _places(state, drawn, s, over_time)
     compute: Callable = of_run if over_time else of_equilibrium
     values = compute(state, name, s, method=method, side=side)
-    label = GLOBAL | labels(cable)
+    label = GLOBAL | labels(drawn)
     coords: dict = {"xyz": ["x", "y", "z"]}
-    told = {"units": "m", "long_name": "undeformed arc-length"}
-    if over_time:
+    of_s = {"units": "m", "long_name": "undeformed arc-length"}
+    if not isinstance(state, RestState):
         coords["time"] = ("time", state.time, {"units": "s", "long_name": "time"})
     if follows:
-        coords["s"] = ("time", s[:, 0], told) if over_time else ((), s[0, 0], told)
+        coords["s"] = ("time", s[:, 0], of_s) if over_time else ((), s[0, 0], of_s)
     else:
-        coords["s"] = ("s", s[0], told)
+        coords["s"] = ("s", s[0], of_s)
     dims = ("time",) * over_time + ("s",) * (not follows) + ("xyz",)
     index = (slice(None) if over_time else 0, 0 if follows else slice(None))
     return xarray.Dataset(
         {key: (dims[: value[index].ndim], value[index], {"units": label[key][0], "long_name": label[key][1]})
          for key, value in values.items()},
-        coords, {"cable": name, "element": cable.element, "law": cable.law, "method": method, "side": side})
+        coords, {"cable": name, "element": drawn.element, "law": drawn.law, "method": method, "side": side})
 
 
 def _places(state: Results | RestState, cable: Cable, s, over_time: bool) -> tuple[np.ndarray, bool]:

@@ -1,4 +1,4 @@
-"""Where the force along a cable kinks: at riders, loads, springs, joints, supports; and where its direction is held."""
+"""Where the force along a cable kinks (at riders, loads, springs, joints, supports), or has a fixed direction."""
 
 from __future__ import annotations
 
@@ -8,35 +8,35 @@ from ..model.model import CableModel
 from ..model.states import spatial
 from ..parts.cable import Cable
 from ..parts.scene_data import SceneData
-from ..parts.support import Clamp, Motion, Tie
-from .cable_loads import CableActions, positions, shape_on_axis
+from ..parts.support import Clamp, Motion, Support
+from .cable_loads import CableLoads, positions, shape_on_axis
 from .nodal_forces import ElementForces
 from .section_balance import Cuts, balanced, resultants
-from .section_layer import Kink, held
+from .section_layer import Kink, fixed_direction
 
 
-def kinks(scene: SceneData, cable: Cable, model: CableModel, forces: ElementForces, actions: CableActions,
+def kinks(scene: SceneData, cable: Cable, model: CableModel, forces: ElementForces, loads: CableLoads,
           number: int) -> list[Kink]:
-    """Those of one cable at the instants of its forces."""
+    """Return those of one cable at the instants of its forces."""
 
     def force_at(s: np.ndarray, after: bool) -> np.ndarray:
-        return balanced(cable, model, forces, actions, number, Cuts(model, s, after))[0]
+        return balanced(cable, model, forces, loads, number, Cuts(model, s, after))[0]
 
-    return [*_of_actions(cable, model, forces, actions, number, force_at),
+    return [*_of_points(cable, model, forces, loads, number, force_at),
             *_of_nodes(scene, cable, model, forces, force_at)]
 
 
-def _of_actions(cable, model, forces, actions, number, force_at) -> list[Kink]:
-    points, is_r = actions.points.get(number, []), positions(model)
+def _of_points(cable, model, forces, loads, number, force_at) -> list[Kink]:
+    points, is_r = loads.points.get(number, []), positions(model)
     if not points:
         return []
-    s = np.stack([action.element * model.length + action.x for action in points], axis=1)
+    s = np.stack([load.element * model.length + load.x for load in points], axis=1)
     inside = (s > 1e-9 * cable.length) & (s < (1 - 1e-9) * cable.length)
     before, instants, found = force_at(s, after=False), np.arange(len(s)), []
-    for k, action in enumerate(points):
-        e = forces.e[instants, action.element]
-        at = spatial(np.einsum("tk,tkd->td", shape_on_axis(model, action.x), e))
-        jump, moment = resultants(action.f, e, is_r, at)
+    for k, load in enumerate(points):
+        e = forces.e[instants, load.element]
+        at = spatial(np.einsum("tk,tkd->td", shape_on_axis(model, load.x), e))
+        jump, moment = resultants(load.f, e, is_r, at)
         one_side = np.where(inside[:, k], 1.0, 2.0)[:, None]  # of an end: it has one
         found.append(Kink(s[:, k], before[:, k], before[:, k] - np.where(inside[:, k, None], jump, 0.0),
                           one_side * moment))
@@ -44,25 +44,26 @@ def _of_actions(cable, model, forces, actions, number, force_at) -> list[Kink]:
 
 
 def _of_nodes(scene: SceneData, cable: Cable, model: CableModel, forces: ElementForces, force_at) -> list[Kink]:
-    """Supports and joins; a section that they keep from turning holds the direction of the line."""
+    """Supports and joins; a section that they keep from turning fixes the direction of the line."""
     found: list[Kink] = []
-    places: dict[int, bool] = {}
-    for part in (*scene.supports, *scene.ties.values()):
-        ends = [(part.cable, part.s)] + ([(part.to, part.at)] if isinstance(part, Tie) else [])
-        for on, s in ends:
-            if on == cable.name:
-                node = cable.node_at(s)
-                places[node] = places.get(node, False) or _holds(part)
+    directed: dict[int, bool] = {}  # nodes, and whether their section keeps its direction
+    ends = [(support.cable, support.s, _keeps_direction(support)) for support in scene.supports]
+    for tie in scene.ties.values():
+        ends += [(tie.cable, tie.s, tie.rotation == "rigid"), (tie.to, tie.at, tie.rotation == "rigid")]
+    for on, at_s, keeps in ends:
+        if on == cable.name:
+            node = cable.node(at_s)
+            directed[node] = directed.get(node, False) or keeps
     times = len(forces.e)
-    for node, is_held in places.items():
+    for node, is_directed in directed.items():
         s = np.full(times, node * model.length)
         first, last = node == 0, node == cable.elements
         element, at = (node - 1, len(model.vectors)) if last else (node, 0)
         direction = _normal(model, spatial(forces.e[:, element, at : at + len(model.vectors)]))
         sides = [(False, -1)] * (not first) + [(True, 1)] * (not last)
         n = {side: force_at(s[:, None], after)[:, 0] for after, side in sides}
-        if is_held:
-            found += [held(s, direction, force, side) for side, force in n.items()]
+        if is_directed:
+            found += [fixed_direction(s, direction, force, side) for side, force in n.items()]
         elif len(n) == 2:
             found.append(Kink(s, n[-1], n[1], np.zeros((times, 3))))
     return found
@@ -76,6 +77,5 @@ def _normal(model: CableModel, vectors: np.ndarray) -> np.ndarray:
     return np.cross(named["r_y"], named.get("r_z", np.array([0.0, 0.0, 1.0])))
 
 
-def _holds(part) -> bool:
-    return (isinstance(part, Clamp) or (isinstance(part, Motion) and part.rotation is not None)
-            or (isinstance(part, Tie) and part.rotation == "rigid"))
+def _keeps_direction(support: Support) -> bool:
+    return isinstance(support, Clamp) or (isinstance(support, Motion) and support.rotation is not None)

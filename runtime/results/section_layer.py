@@ -3,7 +3,7 @@
 Away from point forces the line of a taut cable is that of its force n: it turns by n x n'/n^2 a length. Beside a kink
 of n by an angle 2 theta0 it bends as an elastica with straight ends: E I theta'^2/2 = N (1 - cos theta), where theta is
 the angle between tangent and force. So M = 2 sqrt(N E I) sin(theta/2), and tan(theta/4) = tan(theta0/4)
-exp(-d/sqrt(E I/N)) at a distance d. At a section whose direction is held theta0 is the angle between that and the
+exp(-d/sqrt(E I/N)) at a distance d. At a section whose direction is fixed theta0 is the angle between that and the
 force. Half of a moment on a point goes to either side, and dies out likewise.
 """
 
@@ -31,12 +31,12 @@ class Kink(NamedTuple):
     side: int = 0
 
 
-def held(s: np.ndarray, direction: np.ndarray, force: np.ndarray, side: int) -> Kink:
-    """A section whose direction (T, 3) is held, as a kink of which there is one half: that with this force."""
+def fixed_direction(s: np.ndarray, direction: np.ndarray, force: np.ndarray, side: int) -> Kink:
+    """Return a section whose direction (T, 3) is fixed, as a kink of which there is one half: that with this force."""
     along = np.sum(direction * force, axis=-1) / np.sum(direction**2, axis=-1)
     mirrored = 2 * along[:, None] * direction - force
-    pair = (mirrored, force) if side > 0 else (force, mirrored)
-    return Kink(s, *pair, np.zeros_like(force), side)
+    before, after = (mirrored, force) if side > 0 else (force, mirrored)
+    return Kink(s, before, after, np.zeros_like(force), side)
 
 
 Stiffness = Callable[[np.ndarray], np.ndarray]
@@ -44,14 +44,14 @@ Stiffness = Callable[[np.ndarray], np.ndarray]
 
 
 def line_bending(stiffness: Stiffness, force: np.ndarray, change: np.ndarray) -> np.ndarray:
-    """(T, n, 3): moment from how the force's line turns; change (T, n, 3): derivative of the force by s."""
+    """Return (T, n, 3): moment from how the force's line turns; change (T, n, 3): derivative of the force by s."""
     square = np.sum(force**2, axis=-1)[..., None]
     turn = np.cross(force, change) / np.where(square > 0, square, 1.0)
     return stiffness(turn)[..., None] * turn
 
 
 def beside(kink: Kink, s: np.ndarray, after: np.ndarray, stiffness: Stiffness, force: np.ndarray) -> np.ndarray:
-    """(T, n, 3): moment beside a kink at cuts s (T or 1, n) with these forces.
+    """Return (T, n, 3): moment beside a kink at cuts s (T or 1, n) with these forces.
 
     after (T or 1, n): of a cut at the kink, whether it is on the side of larger s.
     """

@@ -13,7 +13,7 @@ import json
 import os
 import shutil
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from copy import copy
 from pathlib import Path
 
@@ -22,6 +22,7 @@ import scipy
 from funicular.generated import kernels
 
 from .. import engine
+from ..engine import Engine
 from ..errors import ResultFileError
 from ..kernels.libraries import load
 from ..model.model import Model
@@ -35,7 +36,7 @@ from .files import check_writable, create_file, file_text, open_file, over_time
 from .locks import NoLocks, Taken, claimed, is_at, lock
 from .netcdf import File
 from .opening import opened
-from .quantities import labelled
+from .quantities import Variable, labelled
 from .recording import Recording, Rows, named
 from .run import ReadScene, Run
 
@@ -43,7 +44,7 @@ ROWS_INTERVAL = 0.5
 """Seconds between two times that rows are written, at most."""
 CHECKPOINT_INTERVAL = 0.5
 """Seconds between two checkpoints, at least, where the buffer lasts so long."""
-REPORT_ROOM = 8192
+REPORT_SPARE = 8192
 """Bytes for what the report will say at the end."""
 GOES_ON = ("unfinished", "interrupted")
 """What the status of a run is that can be resumed."""
@@ -61,9 +62,10 @@ class Stream:
         self._path = check_writable(path)
         self._state, self._part = checkpoint_of(self._path), _part_of(self._path)
         self._scene, self._settings, self._read_scene = scene, settings, read_scene
-        self._file: File | None = None
+        self._opened: File | None = None
         self._new = self._older = -1  # descriptors of the part file, and of the file that it will take the place of
-        self._taken, self._resumed = 0, []
+        self._taken = 0
+        self._resumed: list[float] = []
         self._added = self._checked = time.monotonic()
         self._facts = _facts(scene, settings)
         try:
@@ -76,7 +78,7 @@ class Stream:
             raise
 
     def __enter__(self) -> Stream:
-        """The stream."""
+        """Return the stream itself."""
         return self
 
     def __exit__(self, *exception) -> None:
@@ -90,20 +92,25 @@ class Stream:
             if descriptor >= 0:
                 os.close(descriptor)
         self._new = self._older = -1
-        if self._file is not None:
-            self._file.close()
+        if self._opened is not None:
+            self._opened.close()
+
+    @property
+    def _file(self) -> File:
+        assert self._opened is not None, "the run has no file yet"
+        return self._opened
 
     @property
     def elapsed(self) -> float:
-        """Seconds that the run took before it was resumed."""
+        """Return the seconds that the run took before it was resumed."""
         return self._kept.facts.elapsed_s if self._kept else 0.0
 
     @property
     def free(self) -> int:
-        """Bytes that the file can have: those that are free, and those of the one that is there."""
+        """Return the bytes that the file can have: those that are free, and those of the one that is there."""
         return shutil.disk_usage(self._path.parent).free + (self._path.stat().st_size if self._path.exists() else 0)
 
-    def start(self, model: Model, engine: engine.Engine, pace: Pauses, events: list[dict]) -> None:
+    def start(self, model: Model, engine: Engine, pace: Pauses, events: list[dict]) -> None:
         """Make the file, with the first row, or go on where the checkpoint was taken.
 
         events: those that have happened, a list to which more are added.
@@ -117,8 +124,8 @@ class Stream:
             self._checkpoint()
             return
         facts, state = self._kept
-        self._compare("start", "from another state")
-        self._compare("integrator", f'with integrator "{engine.integrator}"')
+        self._compare(facts, "start", "from another state")
+        self._compare(facts, "integrator", f'with integrator "{engine.integrator}"')
         try:
             engine.restore(state, facts.rows)
         except ValueError:
@@ -142,7 +149,7 @@ class Stream:
             self._take()
 
     def _rows(self) -> Rows:
-        """Rows that the engine has, by name."""
+        """Return the rows that the engine has, by name."""
         return named(self._model, self._scene, self._engine)
 
     def _take(self) -> None:
@@ -158,7 +165,7 @@ class Stream:
         last = Run.from_recording(recording, self._scene, self._settings, self._read_scene)
         if self._resumed:
             last.report["resumed_at_s"] = self._resumed
-        if self._file is None:
+        if self._opened is None:
             if not len(recording.time):
                 return last
             self._make((last.variables, last.coords))
@@ -176,7 +183,7 @@ class Stream:
         return {"status": "unfinished", "message": "the run goes on, or was killed", "resumed_at_s": self._resumed,
                 "messages": self._scene.messages, "settings": self._settings.model_dump()}
 
-    def _make(self, arrays: tuple[dict, dict]) -> None:
+    def _make(self, arrays: tuple[Mapping[str, Variable], Mapping[str, Variable]]) -> None:
         """A new file with these rows, in the place of an older one, whose checkpoint goes first."""
         variables, coords = arrays
 
@@ -189,11 +196,12 @@ class Stream:
         self._written(make)
         self._taken = self._file.rows
 
-    def _replace(self, coords: dict, variables: dict, report: dict, rows: int | None = None) -> None:
+    def _replace(self, coords: Mapping[str, Variable], variables: Mapping[str, Variable], report: dict,
+                 rows: int | None = None) -> None:
         """The part file, whole but for its rows."""
         descriptor, self._new = self._new if self._new >= 0 else self._claim(self._part), -1
-        self._file = create_file(self._part, coords, variables, dumps(self._scene), file_text(report, rows),
-                                 REPORT_ROOM, descriptor)
+        self._opened = create_file(self._part, coords, variables, dumps(self._scene), file_text(report, rows),
+                                 REPORT_SPARE, descriptor)
 
     def _add(self, rows: Rows) -> None:
         variables, coords = labelled(rows)
@@ -203,7 +211,7 @@ class Stream:
     def _report(self, report: dict, rows: int | None = None) -> None:
         """Write a report; rows: number of rows of a file that is whole."""
         def add() -> None:
-            if not self._file.add_report(file_text(report, rows)):  # with more room, then
+            if not self._file.add_report(file_text(report, rows)):  # it does not fit: a file with more space for it
                 old = self._file
                 self._replace(old.described(over_time=False), old.described(over_time=True), report, rows)
                 self._file.copy_rows(old)
@@ -228,12 +236,12 @@ class Stream:
         try:
             write()
         except OSError as error:
-            whole = f"its first {self._file.rows} times are whole; " if self._file and self._path.exists() else ""
+            whole = f"its first {self._file.rows} times are whole; " if self._opened and self._path.exists() else ""
             raise ResultFileError(f"{self._path}: the results could not be written: {error.strerror}; {whole}"
                                   "make room, and go on with resume where there is a checkpoint") from error
 
     def _claim(self, path: Path) -> int:
-        """A descriptor of a file that is this run's alone."""
+        """Return a descriptor of a file that is this run's alone."""
         try:
             return claimed(path)
         except Taken:
@@ -274,26 +282,26 @@ class Stream:
     def _refused(self, cause: str, remedy: str = "start the run anew, without resume") -> ResultFileError:
         return ResultFileError(f"{self._path}: {cause}; {remedy}")
 
-    def _compare(self, name: str, difference: str) -> None:
-        if getattr(self._kept.facts, name) != self._facts[name]:
+    def _compare(self, facts: Facts, name: str, difference: str) -> None:
+        if getattr(facts, name) != self._facts[name]:
             raise self._refused(f"its run cannot go on {difference}")
 
     def _to_resume(self) -> Checkpoint:
-        """The checkpoint, if it is one of this scene and these settings; opens the file."""
+        """Return the checkpoint, if it is one of this scene and these settings; opens the file."""
         if self._older < 0:
             raise self._refused("there is no run to resume: there is no such file")
         status = opened(open_file(self._path), self._read_scene, check=False).status
         if status not in GOES_ON:
             raise self._refused(f"its run has come to its end ({status}): there is nothing to resume")
-        self._kept = kept = self._read_checkpoint()
+        kept = self._read_checkpoint()
         for name, now in self._facts["settings"].items():
             if (before := kept.facts.settings.get(name)) != now:
                 raise self._refused(f"its run was started with {name} = {before}, and cannot go on with {now}",
                                     "resume it with the settings that it was started with, or start it anew")
-        self._compare("scene", "with another scene")
-        self._compare("programs", "with another version of funicular, NumPy or SciPy")
+        self._compare(kept.facts, "scene", "with another scene")
+        self._compare(kept.facts, "programs", "with another version of funicular, NumPy or SciPy")
         descriptor, self._older = self._older, -1
-        self._file = File(self._path, descriptor=descriptor)
+        self._opened = File(self._path, descriptor=descriptor)
         if kept.facts.rows > self._file.rows:
             raise self._refused(f"it has {self._file.rows} times, but its checkpoint is of the one after "
                                 f"{kept.facts.rows}")
@@ -314,12 +322,12 @@ class Stream:
 
 
 def _part_of(path: Path) -> Path:
-    """What becomes the file when it is whole; the same for all runs, so that a killed one's is written over."""
+    """Return what becomes the file when it is whole; the same for all runs, so that a killed one's is written over."""
     return path.with_name(f".{path.name}.part")
 
 
 def _facts(scene: SceneData, settings: RunSettings) -> dict:
-    """What must be the same for a run to go on."""
+    """Return what must be the same for a run to go on."""
     alone = copy(scene)
     alone.run_settings = {}
     said = {name: value for name, value in settings.model_dump().items() if name != "save"}

@@ -17,7 +17,7 @@ from .threads import one_blas_thread
 
 
 def of_mesh(body: ModalBody) -> Shape:
-    """The lowest modes of a straight mesh in the body's axes; integrals exact, by the elements' mass matrices.
+    """Return the lowest modes of a straight mesh in the body's axes; integrals exact, by the elements' mass matrices.
 
     A unit of each mode moves the mass by 1 m in the mean square.
     """
@@ -66,7 +66,7 @@ def _integrals(model, fields: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _section_turns(names: tuple[str, ...], vectors: np.ndarray) -> np.ndarray:
-    """(n, N, 3): small turns of the sections; of cables those of the tangent, about which they say nothing."""
+    """Return (n, N, 3): small turns of the sections; of cables those of the tangent, about which they say nothing."""
     by = {name: vectors[:, :, k] for k, name in enumerate(names)}
     turns = np.zeros((*vectors.shape[:2], 3))
     if "r_y" in by:

@@ -24,11 +24,11 @@ STEADY = 0.01
 
 QUIET_ERROR, QUIET_LOSS, LOOSE_LOSS = 5e-3, 0.01, 0.05
 """Of the largest motion, and of the energy exchanged: errors of a fixed step, and energy that nothing explains, beyond
-these are told; the last is for loose tolerances, where energy may be off by so much more."""
+these are reported; the last is for loose tolerances, where energy may be off by so much more."""
 
 
 def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
-    """The message of a run that found no acceptable step, lost a joint or whose energy grew."""
+    """Return the message of a run that found no acceptable step, lost a joint or whose energy grew."""
     when = f"t = {engine.time:.6g} s of {settings.duration:.6g} s"
     cause, dof, joint = engine.failure
     _, q, v, _ = engine.now()
@@ -80,7 +80,7 @@ def _too_large(engine, settings: RunSettings) -> str:
 
 
 def place(model: Model, dof: int, joint: int | None = None) -> str:
-    """What a dof, or a joint, is of."""
+    """Return what a dof, or a joint, is of."""
     if joint is not None:
         return f'slide "{model.slides[joint].name}" on cable "{model.cables[model.slides[joint].cable].name}"'
     if (found := _node(model, dof)) is not None:
@@ -100,7 +100,7 @@ def damping(model: Model, dof: int, joint: int | None = None) -> str:
 
 
 def condition(model: Model, dof: int, q: np.ndarray, v: np.ndarray) -> tuple[str, bool]:
-    """How the place of a dof fares, and whether its cable is folded up there."""
+    """Return how the place of a dof fares, and whether its cable is folded up there."""
     speed = f"{abs(v[dof]) * model.weight[dof]:.3g} m/s"
     if (found := _node(model, dof)) is None:
         return speed, False
@@ -109,12 +109,12 @@ def condition(model: Model, dof: int, q: np.ndarray, v: np.ndarray) -> tuple[str
     stretch = np.linalg.norm(np.diff(r, axis=0), axis=1)[max(node - 1, 0) : node + 1] / cable.length
     worst = stretch[np.argmax(np.abs(np.log(np.maximum(stretch, 1e-300))))]
     fair = FOLDED < worst < STRETCHED
-    told = "" if fair else f"its elements there are {worst:.3g} times their length at rest, "
-    return told + speed, bool(worst <= FOLDED)
+    notes = "" if fair else f"its elements there are {worst:.3g} times their length at rest, "
+    return notes + speed, bool(worst <= FOLDED)
 
 
 def _node(model: Model, dof: int) -> tuple[CableModel, int] | None:
-    """Cable and number of the node that a dof is of; None where it is a body's."""
+    """Return the cable and number of the node that a dof is of; None where it is a body's."""
     for cable in model.cables:
         if cable.coordinates.start <= dof < cable.coordinates.stop:
             return cable, (dof - cable.first) // (cable.shape[1] * cable.shape[2])
@@ -122,22 +122,22 @@ def _node(model: Model, dof: int) -> tuple[CableModel, int] | None:
 
 
 def notes(engine, settings: RunSettings) -> list[str]:
-    """What a user should know of a completed run whose results are coarse; empty where they are good."""
-    counts, told = engine.statistics, []
+    """Return what a user should know of a completed run whose results are coarse; empty where they are good."""
+    counts, notes = engine.statistics, []
     if settings.step is not None and counts["rejected_steps"]:
-        told.append(f"{counts['rejected_steps']} times no step of {settings.step:g} s was possible: it was divided, "
+        notes.append(f"{counts['rejected_steps']} times no step of {settings.step:g} s was possible: it was divided, "
                     f"down to {counts['smallest_step_s']:.3g} s")
     rounded, motion = ROUNDED * engine.extent, counts["largest_motion_m"]
     if settings.step is None and LEAST_MOTION * engine.extent < motion < rounded / settings.tol:
-        told.append(f"positions are rounded to {rounded:.2g} m so far from the origin, which is more than tol = "
+        notes.append(f"positions are rounded to {rounded:.2g} m so far from the origin, which is more than tol = "
                     f"{settings.tol:g} allows: draw the scene nearer to it")
     if not engine.moves:
-        return told
+        return notes
     error = counts["sum_of_local_error_estimates_m"] / counts["largest_motion_m"]
     if settings.step is not None and error > QUIET_ERROR:
-        told.append(f"the estimated errors of the steps sum up to {error:.2g} of the largest motion: take a smaller "
+        notes.append(f"the estimated errors of the steps sum up to {error:.2g} of the largest motion: take a smaller "
                     "step, or none, so that tol chooses it")
-    return told + unexplained(engine, settings)
+    return notes + unexplained(engine, settings)
 
 
 def unexplained(engine, settings: RunSettings) -> list[str]:

@@ -1,4 +1,4 @@
-"""What the engine watches for a scene's events, and what a run tells of them."""
+"""What the engine watches for a scene's events, and what a run reports of them."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Watch:
         if event.function is not None:
             self.kind, self.index = "function", 0
             return
-        name, what, *axis = event.quantity.split(".")
+        name, what, *axis = _quantity(event).split(".")
         if name in scene.slides:
             self.kind, self.index = what, list(scene.slides).index(name)
             return
@@ -39,8 +39,14 @@ class Watch:
         if name in scene.bodies:
             start = getattr(model.bodies[list(scene.bodies).index(name)], of)
         else:
-            start = model.nodes[name][scene.cables[name].node_at(event.s)].dofs("r")[0]
+            assert event.s is not None, f"{event.where} is not complete"
+            start = model.nodes[name][scene.cables[name].node(event.s)].dofs("r")[0]
         self.index = start + AXES.index(axis[0])
+
+
+def _quantity(event: Event) -> str:
+    assert event.quantity is not None, f"{event.where} has a function"
+    return event.quantity
 
 
 class State:
@@ -62,8 +68,10 @@ class State:
         return found[quantity]
 
     def names(self) -> list[str]:
-        """Bodies, cables and slides that the state has quantities of."""
-        return [part.name for part in (*self._model.bodies, *self._model.cables, *self._model.slides)]
+        """Return the bodies, cables and slides that the state has quantities of."""
+        model = self._model
+        return [*(body.name for body in model.bodies), *(cable.name for cable in model.cables),
+                *(slide.name for slide in model.slides)]
 
     def _all(self, name: str) -> dict[str, Any]:
         model = self._model
@@ -80,7 +88,7 @@ class State:
         return {"s": float(self._s[slides.index(name)])} if name in slides else {}
 
 
-class Watcher:
+class EventWatcher:
     """The events of a run as the engine meets them: what it asks, and what has happened."""
 
     def __init__(self, scene: SceneData, model: Model):
@@ -90,7 +98,7 @@ class Watcher:
         self.stopped_by: str | None = None
 
     def call(self, which: int, time: float, q: np.ndarray, v: np.ndarray, s: np.ndarray) -> float:
-        """The function of an event at a state. Raises SceneError where it fails or gives no number."""
+        """Return the function of an event at a state. Raises SceneError where it fails or gives no number."""
         event = self.watches[which].event
         try:
             value = float((event.function or self._of_quantity(event))(time, State(self.model, q, v, s)))
@@ -102,9 +110,9 @@ class Watcher:
         return value
 
     def _of_quantity(self, event: Event) -> Callable[[float, State], float]:
-        """The function that a threshold on a body's origin stands for."""
-        name, axis = event.quantity.rsplit(".", 1)
-        return lambda time, state: state[name][AXES.index(axis)] - event.value
+        """Return the function that a threshold on a body's origin stands for."""
+        name, axis = _quantity(event).rsplit(".", 1)
+        return lambda time, state: np.asarray(state[name])[AXES.index(axis)] - event.value
 
     def acts(self, which: int, what: str, time: float, s: float) -> None:
         """Note what a slide has done of itself: stuck, struck the end, and so on."""
@@ -113,7 +121,7 @@ class Watcher:
     def happens(self, which: int, time: float, q: np.ndarray, v: np.ndarray, s: np.ndarray) -> bool:
         """Note an event; whether the run goes on."""
         event, state = self.watches[which].event, State(self.model, q, v, s)
-        at = {f"{body.name}.{k}": state[f"{body.name}.{k}"].tolist() for body in self.model.bodies
+        at = {f"{body.name}.{k}": np.asarray(state[f"{body.name}.{k}"]).tolist() for body in self.model.bodies
               for k in ("position", "velocity")}
         at |= {f"{slide.name}.s": state[f"{slide.name}.s"] for slide in self.model.slides}
         self.happened.append({"name": event.name, "time": time, "state": at})

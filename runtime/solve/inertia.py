@@ -17,7 +17,7 @@ from scipy.sparse.linalg import splu
 DENSE = 200
 """Unknowns up to which the eigenvalues themselves are computed, by LAPACK."""
 ZERO = 1e-13
-"""Of the scaled stiffness, whose diagonal is one: an eigenvalue this small cannot be told from zero."""
+"""Of the scaled stiffness, whose diagonal is one: an eigenvalue this small cannot be distinguished from zero."""
 FLOOR = 1e-6
 """Of the largest stiffness: an unknown less stiff than this is scaled as if it had so much, so that the rounding of a
 direction that is free is not scaled up to a stiffness."""
@@ -88,7 +88,7 @@ def _check(K: csc_array) -> None:
 
 
 def _scale(K: csc_array, units: np.ndarray) -> np.ndarray:
-    """(n,): what unknowns are multiplied by, so that no row of K has an entry much above one."""
+    """Return (n,): what unknowns are multiplied by, so that no row of K has an entry much above one."""
     units = np.where(units > 0, units, 1.0)
     per_unit = diags_array(1.0 / units)
     stiffness = abs(per_unit @ K @ per_unit).max(axis=1).toarray().ravel()
@@ -97,7 +97,7 @@ def _scale(K: csc_array, units: np.ndarray) -> np.ndarray:
 
 
 def _independent(C: csr_array) -> csr_array:
-    """Rows of unit length that span what C does."""
+    """Return the rows of unit length that span what C does."""
     length = np.sqrt(np.asarray(C.multiply(C).sum(axis=1)).ravel())
     C = (diags_array(1.0 / np.where(length > 0, length, 1.0)) @ C).tocsr()[length > 0]
     if not C.shape[0]:

@@ -12,13 +12,13 @@ from ..integrators import INTEGRATORS, stable_at
 from ..model.model import Model
 from ..parts.settings import RunSettings
 from .diagnosis import damping, place
-from .event_watcher import Watcher
+from .event_watcher import EventWatcher
 from .integrator_choice import fastest_rates
 from .progress import Meter
 
 MANY_STEPS = 1_000_000
 """A run that needs more of them says so."""
-SETTLED = 2000
+PREDICTED_AFTER = 2000
 """Steps after which their number is predicted: the first ones are short."""
 WINDOW = 4.0
 """s of wall time over which the rates are taken."""
@@ -31,13 +31,13 @@ NEAR = 0.3
 
 
 class LongRun:
-    """Watches the steps of a run; called with the time reached, s, it passes that on to the progress meter."""
+    """Follows the steps of a run; called with the time reached, s, it passes that on to the progress meter."""
 
-    def __init__(self, model: Model, engine, settings: RunSettings, watcher: Watcher, meter: Meter):
+    def __init__(self, model: Model, engine, settings: RunSettings, watcher: EventWatcher, meter: Meter):
         self._model, self._engine, self._settings = model, engine, settings
         self._watcher, self._meter = watcher, meter
         self._marks: deque[tuple[float, float, int]] = deque([(time.monotonic(), engine.time, self._steps)])
-        self._told = False
+        self._warned = False
 
     def __call__(self, reached: float) -> None:
         """Show the progress; where the run will be long, its rate and end, and once a warning that says why."""
@@ -48,7 +48,7 @@ class LongRun:
             self._marks.popleft()
         since, start, before = self._marks[0]
         made = self._steps - before
-        if made < SETTLED or reached <= start or now <= since:
+        if made < PREDICTED_AFTER or reached <= start or now <= since:
             return
         more = (self._settings.duration - reached) * made / (reached - start)
         if self._steps + more <= MANY_STEPS:
@@ -56,16 +56,16 @@ class LongRun:
         rate = made / (now - since)
         self._meter.tell(f"{self._steps:.3g} of about {self._steps + more:.2g} steps, {rate:.2g} a second, "
                          f"{_duration(more / rate)} left")
-        if not self._told:
-            self._told = True
+        if not self._warned:
+            self._warned = True
             warnings.warn(f"the run needs about {self._steps + more:.2g} steps, {_duration(more / rate)} at the "
-                          f"present rate of {rate:.2g} a second: {self._why()}", FunicularWarning, stacklevel=5)
+                          f"present rate of {rate:.2g} a second: {self._why()}", FunicularWarning, stacklevel=6)
 
     def notes(self) -> list[str]:
         """For the report: how many steps the run has taken or was to take, and why; empty for a run of few steps."""
         if self._steps > MANY_STEPS:
             return [f"the run took {self._steps:.3g} steps: {self._why()}"]
-        if self._told and self._engine.time < self._settings.duration:
+        if self._warned and self._engine.time < self._settings.duration:
             return [f"the run took {self._steps:.3g} steps to t = {self._engine.time:.3g} s of "
                     f"{self._settings.duration:.3g} s: {self._why()}"]
         return []
@@ -75,7 +75,7 @@ class LongRun:
         return self._engine.statistics["steps"]
 
     def _why(self) -> str:
-        """What rules the step, and what makes it larger."""
+        """Return what rules the step, and what makes it larger."""
         engine, settings, counts = self._engine, self._settings, self._engine.statistics
         mean = engine.time / max(counts["steps"], 1)
         if settings.step is not None:
@@ -112,7 +112,7 @@ class LongRun:
 
 
 def _duration(seconds: float) -> str:
-    """In words."""
+    """Return a duration as text, such as 3.2 min."""
     for unit, name in ((86400, "days"), (3600, "h"), (60, "min")):
         if seconds >= unit:
             return f"{seconds / unit:.2g} {name}"

@@ -24,7 +24,7 @@ ASYMMETRY, LEAST_ASYMMETRY = 1e-9, 1e-13
 """Of the stiffness of two coordinates, and of the largest: what rounding leaves; more comes from loads that turn."""
 
 DENSE, LOST = 600, 1e-9
-"""Unknowns up to which LAPACK computes all modes, and of the largest eigenvalue: those below are not told from zero."""
+"""Unknowns up to which LAPACK computes all modes, and of the largest eigenvalue: smaller ones count as zero."""
 
 MOST_UNSYMMETRIC = 3000
 """Degrees of freedom up to which modes with an unsymmetric stiffness are computed: all of them at once."""
@@ -56,11 +56,11 @@ class Modes:
 
     @property
     def frequency(self) -> np.ndarray:
-        """(n,) in Hz."""
+        """Return the frequencies (n,) in Hz."""
         return self.angular_frequency / (2 * np.pi)
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """A shape by its name. Raises UnknownResultError naming the near ones."""
+        """Return a shape by its name. Raises UnknownResultError naming the near ones."""
         if name not in self.shapes:
             raise UnknownResultError(f'no shape "{name}"; {near(name, self.shapes)}')
         return self.shapes[name]
@@ -70,9 +70,9 @@ class Modes:
 
 
 def modes(scene: SceneData, n: int, about: RestState | None = None) -> Modes:
-    """The n lowest modes about a state, as drawn if none is given; damping and friction are left out.
+    """Return the n lowest modes about a state, as drawn if none is given; damping and friction are left out.
 
-    What is left out or uncertain is told in ``messages``, and by a FunicularWarning. Raises SceneError.
+    What is left out or uncertain is reported in ``messages``, and by a FunicularWarning. Raises SceneError.
     """
     model = build(scene)
     engine = Engine(model)
@@ -106,7 +106,7 @@ def _without_friction(scene: SceneData) -> list[str]:
 
 
 def _rounded_shape(engine, model, K: csc_array) -> csc_array:
-    """What of the stiffness comes of rounded coordinates, which strain the cables by `ROUNDING`.
+    """Return what of the stiffness comes of rounded coordinates, which strain the cables by `ROUNDING`.
 
     A tension of so much of EA is nothing beside EA, but not beside the bending of a long thin cable.
     """
@@ -122,19 +122,19 @@ def _rounded_shape(engine, model, K: csc_array) -> csc_array:
 
 def _uncertain(modes: Modes, lowest: float) -> list[str]:
     """What rounding of the stiffness leaves unknown; lowest: the angular frequency of the lowest that is not zero."""
-    told, w, error = [], np.maximum(modes.angular_frequency, modes.growth_rate), modes.uncertainty
+    notes, w, error = [], np.maximum(modes.angular_frequency, modes.growth_rate), modes.uncertainty
     zero = (w == 0) & (error > HIDDEN * lowest)
     if zero.any():
-        told.append(f"rounding of the stiffness hides frequencies below {error[zero].max() / (2 * np.pi):.3g} Hz: "
+        notes.append(f"rounding of the stiffness hides frequencies below {error[zero].max() / (2 * np.pi):.3g} Hz: "
                     f"{np.count_nonzero(zero)} of those given as 0 may be higher; take fewer elements, or look for a "
                     "part that is far stiffer or far lighter than the others")
     vague = (w > 0) & (error > KNOWN * w)
     if vague.any():
         numbers = ", ".join(str(k + 1) for k in np.flatnonzero(vague)[:5]) + ", ..." * bool(np.count_nonzero(vague) > 5)
-        told.append(f"rounding of the stiffness may change the frequencies of modes {numbers} by up to "
+        notes.append(f"rounding of the stiffness may change the frequencies of modes {numbers} by up to "
                     f"{100 * np.max(error[vague] / w[vague]):.2g} %; take fewer elements, or look for a part that is "
                     "far stiffer or far lighter than the others")
-    return told
+    return notes
 
 
 def _refuse_what_is_out_of_range(scene: SceneData, model, K: csc_array, M: csc_array) -> None:
@@ -162,7 +162,7 @@ def _owner(scene: SceneData, model, unknown: int) -> str:
 
 def _solve(K: csc_array, M: csc_array, constraints: csc_array, n: int
            ) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
-    """The n smallest squares of frequencies of K x = w² M x on constraints x = 0, or some more.
+    """Return the n smallest squares of frequencies of K x = w² M x on constraints x = 0, or some more.
 
     Returns (n,), their vectors (coordinates, n), what rounding may change in the squares (n,), and the square that
     follows, infinite if that is not known.
@@ -185,7 +185,7 @@ def _solve(K: csc_array, M: csc_array, constraints: csc_array, n: int
 
 def _small(K: csc_array, M: csc_array, constraints: csc_array, n: int, pencil: Pencil
            ) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
-    """The same by LAPACK, but for what is lost in the rounding of the largest eigenvalue, zeros among it."""
+    """Return the same by LAPACK, but for what is lost in the rounding of the largest eigenvalue, zeros among it."""
     free = null_space(constraints.toarray()) if constraints.shape[0] else np.eye(K.shape[0])
     k, m = free.T @ (K @ free), free.T @ (M @ free)
     try:
@@ -212,7 +212,7 @@ def _is_symmetric(K: csc_array) -> bool:
 
 def _unsymmetric(K: csc_array, M: csc_array, constraints: csc_array, n: int, pencil: Pencil
                  ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The same where loads turn with what they act on; squares may be complex: what grows while it vibrates."""
+    """Return the same where loads turn with what they act on; squares may be complex: what grows while it vibrates."""
     by = diags_array(pencil.scale)
     free = basis(pencil.C)
     squares, x = eig(free.T @ (by @ (K / pencil.unit) @ by @ free), free.T @ (pencil.M @ free))
@@ -247,7 +247,7 @@ def _named(model, squares: np.ndarray, dofs: np.ndarray, error: np.ndarray) -> M
 
 
 def _nodes(model, body, dofs: np.ndarray) -> np.ndarray:
-    """(n, node, 3): what the nodes of a modal body are moved by."""
+    """Return (n, node, 3): what the nodes of a modal body are moved by."""
     at = body.dof + model.dim
     turn = dofs[:, at : at + 3] if model.dim == 3 else np.pad(dofs[:, at : at + 1], ((0, 0), (2, 0)))
     at += 3 if model.dim == 3 else 1

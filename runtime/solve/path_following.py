@@ -21,7 +21,7 @@ MOST_CORRECTIONS = 12
 GROWTH = 10.0
 """Of a correction over the least one before: it does not converge."""
 SMALLEST_STEP = 1e-8
-"""Of the path, in units of the load fraction or of the scene's size: shorter steps make no way."""
+"""Of the path, in units of the load fraction or of the scene's size: shorter steps make no progress."""
 TURN = 0.8
 """Cosine of the angle between the directions of states that follow each other, at least."""
 SHARP = 1e-6
@@ -32,7 +32,7 @@ SHARP = 1e-6
 class Point:
     """A state on the path: its load fraction, and where the path leads. along (unknowns,) and rate are dx and dp for a
     unit of arc-length, which is measured over displacements relative to the scene's size, and p; heading
-    (unknowns + 1,) is the unit vector of these; way: the arc-length from the point that it was found from.
+    (unknowns + 1,) is the unit vector of these; advance: the arc-length from the point that it was found from.
     """
 
     kept: dict
@@ -41,11 +41,11 @@ class Point:
     rate: float
     heading: np.ndarray
     stability: Stability
-    way: float = 0.0
+    advance: float = 0.0
 
     @property
     def kind(self) -> tuple[int, bool]:
-        """What changes at a critical point: unstable directions, and whether the load rises along the path."""
+        """Return what changes at a critical point: unstable directions, and whether the load rises along the path."""
         return self.stability.unstable, self.rate > 0
 
 
@@ -62,7 +62,7 @@ class Critical:
 
 
 def follow(problem: StaticProblem, fraction: float, heading: np.ndarray | None) -> Iterator[Point | Critical]:
-    """Points and critical points from the static state, at rest at this load fraction, until p = 1 or no way is left.
+    """Points and critical points from the static state, at rest at this load fraction, until p = 1 or the path ends.
 
     heading: as of a `Point`, the sense in which to go on; None: to higher loads.
     """
@@ -94,8 +94,8 @@ def follow(problem: StaticProblem, fraction: float, heading: np.ndarray | None) 
         point, step = following, 1.5 * step
 
 
-def _point(problem: StaticProblem, before: np.ndarray | None, way: float = 0.0) -> Point | None:
-    """The static state as a point of the path, in the sense of the heading before."""
+def _point(problem: StaticProblem, before: np.ndarray | None, advance: float = 0.0) -> Point | None:
+    """Return the static state as a point of the path, in the sense of the heading before."""
     if before is None:
         before = np.append(np.zeros(len(problem.weight)), 1.0)
     try:
@@ -107,23 +107,24 @@ def _point(problem: StaticProblem, before: np.ndarray | None, way: float = 0.0) 
     if not np.isfinite(length):
         return None
     return Point(problem.keep(), problem.fraction, ahead[:-1] / length, float(ahead[-1] / length), heading / length,
-                 stability(problem), way)
+                 stability(problem), advance)
 
 
 def _bordered(problem: StaticProblem, heading: np.ndarray):
-    """Solver of the tangent with the load as a further unknown, and a further row: the way along the heading. It is not
-    singular where the load turns. Raises RuntimeError where it is.
+    """Return the solver of the tangent with the load as a further unknown, and the advance along the heading as a row.
+
+    It is not singular where the load turns. Raises RuntimeError where it is.
     """
     row = heading * np.append(problem.weight / problem.size, 1.0)
     return solver(block_array([[problem.regular_tangent(), -problem.load_vector()[:, None]],
                                [row[None, :-1], row[None, -1:]]], format="csc"))
 
 
-def _advance(problem: StaticProblem, point: Point, way: float) -> Point | None:
+def _advance(problem: StaticProblem, point: Point, advance: float) -> Point | None:
     """Predict along the heading, then Newton in the plane normal to it; None where that does not converge."""
     problem.restore(point.kept)
-    problem.move(way * point.along)
-    problem.load(point.fraction + way * point.rate)
+    problem.move(advance * point.along)
+    problem.load(point.fraction + advance * point.rate)
     tolerance, least = problem.settings.tolerance, np.inf
     for _ in range(MOST_CORRECTIONS):
         problem.iterations += 1
@@ -137,34 +138,34 @@ def _advance(problem: StaticProblem, point: Point, way: float) -> Point | None:
         problem.move(change[:-1])
         problem.load(problem.fraction + float(change[-1]))
         least = max(min(size, least), tolerance * problem.size)
-        if size <= tolerance * problem.size and abs(change[-1]) <= tolerance * max(abs(problem.fraction), way):
-            return _point(problem, point.heading, way) if problem.on_cables() else None
+        if size <= tolerance * problem.size and abs(change[-1]) <= tolerance * max(abs(problem.fraction), advance):
+            return _point(problem, point.heading, advance) if problem.on_cables() else None
     return None
 
 
 def _at_full_load(problem: StaticProblem, point: Point, beyond: Point) -> Point | None:
-    """The state at p = 1 between two points; None where Newton does not find it there."""
-    way = beyond.way * (1.0 - point.fraction) / (beyond.fraction - point.fraction)
-    if _advance(problem, point, way) is None:
+    """Return the state at p = 1 between two points; None where Newton does not find it there."""
+    advance = beyond.advance * (1.0 - point.fraction) / (beyond.fraction - point.fraction)
+    if _advance(problem, point, advance) is None:
         return None
     problem.load(1.0)
-    if not problem.newton() or problem.distance(point.kept) > 3.0 * beyond.way * problem.size:
+    if not problem.newton() or problem.distance(point.kept) > 3.0 * beyond.advance * problem.size:
         return None
-    return _point(problem, point.heading, way)
+    return _point(problem, point.heading, advance)
 
 
 def _critical(problem: StaticProblem, point: Point, following: Point) -> list[Critical]:
-    """The critical points between a point and one that was found from it, by bisection."""
+    """Return the critical points between a point and one that was found from it, by bisection."""
     found: list[Critical] = []
     intervals = [(point, following)]
     while intervals:
         near, far = intervals.pop()
         if near.kind == far.kind:
             continue
-        start = 0.0 if near is point else near.way
+        start = 0.0 if near is point else near.advance
         between = None
         if not _sharp(near, far, start):
-            tries = (_advance(problem, point, start + part * (far.way - start)) for part in (0.5, 0.4, 0.65))
+            tries = (_advance(problem, point, start + part * (far.advance - start)) for part in (0.5, 0.4, 0.65))
             between = next((each for each in tries if each is not None), None)
         if between is None:
             _add(found, near, far)
@@ -177,7 +178,7 @@ def _sharp(near: Point, far: Point, start: float) -> bool:
     """Whether two points are so near that what lies between them is one critical point: the load cannot differ by more
     than the arc-length between them times its rate at either end.
     """
-    width, rate = far.way - start, max(abs(near.rate), abs(far.rate))
+    width, rate = far.advance - start, max(abs(near.rate), abs(far.rate))
     return width < SMALLEST_STEP or width * rate <= SHARP * max(abs(far.fraction), SHARP)
 
 

@@ -11,7 +11,7 @@ OnProgress = Callable[[float], None]
 
 
 def _nothing(_) -> None:
-    """Shows nothing."""
+    """Show no progress at all."""
 
 
 @dataclass(frozen=True)

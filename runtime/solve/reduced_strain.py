@@ -10,7 +10,7 @@ from ..parts.section_stiffness import STABILISATION, is_reduced
 
 
 def notes(scene: SceneData, model: Model, time: np.ndarray, q: np.ndarray) -> list[str]:
-    """A note for each cable with a reduced axial strain that was compressed too much at one of the times.
+    """Return a note for each cable with a reduced axial strain that was compressed too much at one of the times.
 
     time (n,) in s; q (n, coordinates). The strain is that of the chords of elements.
     """

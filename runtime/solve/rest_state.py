@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Self
 
 import numpy as np
 
@@ -23,7 +24,7 @@ from .static_problem import StaticProblem
 
 
 def layout(scene: SceneData) -> dict[str, list]:
-    """What must be the same in two scenes for a state of one to be a state of the other."""
+    """Return what must be the same in two scenes for a state of one to be a state of the other."""
     return {"cables": [(c.name, c.element, c.elements, c.length) for c in scene.cables.values()],
             "bodies": list(scene.bodies), "slides": list(scene.slides),
             "joints": [(j.name, j.pair) for j in scene.joints.values()], "springs": list(scene.springs)}
@@ -74,7 +75,7 @@ class RestState:
     layout: dict[str, list] = field(default_factory=dict, repr=False)
 
     @classmethod
-    def of(cls, problem: StaticProblem, stability: Stability, heading: np.ndarray | None = None) -> RestState:
+    def of(cls, problem: StaticProblem, stability: Stability, heading: np.ndarray | None = None) -> Self:
         """Read the static state of a problem, under the load that is on; heading: of the path there."""
         left = problem.residual()
         units = np.where(problem.weight > 0, problem.weight, np.inf)
@@ -93,20 +94,20 @@ class RestState:
 
     @property
     def neutral_directions(self) -> int:
-        """How many independent directions leave the energy as it is: what is free to move."""
+        """Return how many independent directions leave the energy as it is: what is free to move."""
         return self.stability.neutral
 
     @property
     def stable(self) -> bool:
-        """Whether no direction lowers the energy; False also where that could not be counted."""
+        """Return whether no direction lowers the energy; False also where that could not be counted."""
         return self.stability.known and self.stability.unstable == 0
 
     def keys(self) -> list[str]:
-        """Names of all quantities."""
+        """Return the names of all quantities."""
         return list(self.quantities)
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """A quantity by its name. Raises UnknownResultError naming the near ones."""
+        """Return a quantity by its name. Raises UnknownResultError naming the near ones."""
         if name not in self.quantities:
             raise UnknownResultError(f'no result "{name}"; {near(name, self.quantities)}')
         return self.quantities[name]

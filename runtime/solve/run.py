@@ -21,7 +21,7 @@ from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
 from . import reduced_strain, straight_struts
 from .diagnosis import notes
-from .event_watcher import Watcher
+from .event_watcher import EventWatcher
 from .integrator_choice import choose
 from .long_runs import LongRun
 from .pauses import Pauses, pauses
@@ -38,20 +38,20 @@ class Sink(Protocol):
 
     @property
     def elapsed(self) -> float:
-        """Seconds that the run took before it was resumed."""
+        """Return the seconds that the run took before it was resumed."""
 
     @property
     def free(self) -> int:
-        """Bytes that it can take."""
+        """Return the bytes that it can take."""
 
     def start(self, model: Model, engine: Engine, pace: Pauses, events: list[dict]) -> None:
         """Take the first row, or bring the engine to where the run is resumed."""
 
     def pause(self) -> None:
-        """Take rows, at a pause."""
+        """Take the rows that the engine has at a pause, and write a checkpoint if it is time to."""
 
     def between(self) -> None:
-        """Take rows, between pauses."""
+        """Take the rows that the engine has between pauses, if it is time to."""
 
 
 @dataclass
@@ -63,7 +63,7 @@ class Simulation:
 
     model: Model
     engine: Engine
-    watcher: Watcher
+    watcher: EventWatcher
     status: str
     messages: list[str]
     reason: str
@@ -83,7 +83,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     model = build(scene)
     if initial is not None:
         initial.start(model)
-    engine, watcher = Engine(model), Watcher(scene, model)
+    engine, watcher = Engine(model), EventWatcher(scene, model)
     _check_size(engine.row_bytes, settings, stream)
     pace = pauses(int(np.ceil(settings.duration / settings.output_step)) + 1, engine.row_bytes)
     engine.watch(watcher)
@@ -97,7 +97,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     messages += changed.gaps
     warned = _broken_velocities(model, changed.velocities) + velocity_jumps(scene, settings.duration)
     for message in warned:
-        warnings.warn(message, FunicularWarning, stacklevel=3)
+        warnings.warn(message, FunicularWarning, stacklevel=4)
     messages += warned
     if status is None:
         if stream is not None:
@@ -111,7 +111,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
         for note in [*notes(engine, settings), *straight_struts.notes(scene, model, engine),
                      *reduced_strain.notes(scene, model, rows["time"], rows["q"])]:
             messages.append(note)
-            warnings.warn(note, FunicularWarning, stacklevel=3)
+            warnings.warn(note, FunicularWarning, stacklevel=4)
     return Simulation(model, engine, watcher, status, messages, reason, set_up, total, cpu)
 
 

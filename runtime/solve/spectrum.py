@@ -35,13 +35,13 @@ DEEPEST = 1e-30
 """Of the largest eigenvalue: below this nothing is looked for. It is the square of what rounding leaves of a shape."""
 
 CLUSTER = 1e-4
-"""Of the shift: smaller eigenvalues are not well told apart by its inverse."""
+"""Of the shift: smaller eigenvalues are not well separated by its inverse."""
 
 LEVEL = 1e6
 """Ratio of eigenvalues that rounding makes of zeros to those that are none, at least."""
 
 MOST_AT_ONE_PLACE = 2000
-"""Eigenvalues too close to each other to be told apart, of which all are computed."""
+"""Eigenvalues too close to each other to be separated, of which all are computed."""
 
 RELATIVE = 1e-14
 """Of the largest eigenvalue computed together with others: the rounding of these."""
@@ -96,7 +96,7 @@ class Pencil:
         self.random = np.random.default_rng(0)
 
     def below(self, shift: float) -> int:
-        """How many eigenvalues are smaller than a shift. Raises ArithmeticError where that is not known."""
+        """Return how many eigenvalues are smaller than a shift. Raises ArithmeticError where that is not known."""
         for nudge in (0.0, 1e-7, -1e-7, 1e-5):  # beside a shift at which a part of the matrix is singular
             try:
                 return negatives((self.K - shift * (1 + nudge) * self.M).tocsc(), self.C)
@@ -105,7 +105,7 @@ class Pencil:
         raise ArithmeticError("the pivots of the stiffness are too small for their signs to be known")
 
     def inverse(self, shift: float) -> Callable[[np.ndarray], np.ndarray]:
-        """Solver of (K - shift M) x = M y on C x = 0 for y (n, k)."""
+        """Return the solver of (K - shift M) x = M y on C x = 0 for y (n, k)."""
         n, m = self.K.shape[0], self.C.shape[0]
         whole = (self.K - shift * self.M).tocsc()
         if m:
@@ -184,11 +184,11 @@ class Pencil:
         return values, x, error
 
     def uncertainty(self, x: np.ndarray) -> np.ndarray:
-        """What rounding of K's entries makes of x'Kx / x'Mx, for each column of x."""
+        """Return what rounding of K's entries makes of x'Kx / x'Mx, for each column of x."""
         return ROUNDING * np.sum(np.abs(x) * (abs(self.K) @ np.abs(x)), axis=0) / np.sum(x * (self.M @ x), axis=0)
 
     def reaching(self, n: int) -> float:
-        """A positive shift with n eigenvalues or more below it, not much larger than it need be."""
+        """Return a positive shift with n eigenvalues or more below it, not much larger than it need be."""
         low, high = self.floor, self.largest
         while self.below(high) < n:
             high *= FACTOR
@@ -201,7 +201,7 @@ class Pencil:
 
     def _above(self, shift: float, n: int, values: np.ndarray, x: np.ndarray
                ) -> tuple[np.ndarray, np.ndarray, float]:
-        """The lowest pairs, n or some more, and the eigenvalue after them; known are those below the shift."""
+        """Return the lowest pairs, n or some more, and the eigenvalue after them; known are those below the shift."""
         known, more, solve = len(values), MORE, self.inverse(shift)
         start = np.zeros((self.K.shape[0], 0))
         for _ in range(MOST_STARTS):
@@ -266,7 +266,7 @@ class Pencil:
         return W @ y / of  # once more by the inverse: what rounding left of the highest eigenvalues is gone
 
     def _orthonormal(self, x: np.ndarray, *against: np.ndarray) -> np.ndarray:
-        """A basis of the columns of x, x'Mx = 1, orthogonal to others; columns that follow are left out."""
+        """Return a basis of the columns of x, x'Mx = 1, orthogonal to others; columns that follow are left out."""
         for _ in range(2):
             for others in against:
                 x = x - others @ (others.T @ (self.M @ x))
@@ -279,7 +279,7 @@ class Pencil:
 
 
 def basis(C: csc_array) -> np.ndarray:
-    """(n, n - m): orthonormal vectors with C x = 0; C (m, n) of rank m."""
+    """Return (n, n - m): orthonormal vectors with C x = 0; C (m, n) of rank m."""
     m, n = C.shape
     return qr(C.toarray().T)[0][:, m:] if m else np.eye(n)
 

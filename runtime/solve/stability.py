@@ -36,7 +36,7 @@ class Stability:
     known: bool = True
 
     def __str__(self) -> str:
-        """In words."""
+        """Return what is known of the stability, as messages state it."""
         if not self.known:
             return "of unknown stability: no factorisation of its stiffness is accurate enough to count"
         if not self.unstable:

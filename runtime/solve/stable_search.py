@@ -35,7 +35,7 @@ def find_rest(problem: StaticProblem) -> Stability | None:
     What was passed on the way, and what is doubtful, is added to problem.messages.
     """
     begin = problem.keep()
-    passed = passed_at = None
+    passed, passed_at = None, begin
     problem.pushed = False
     if problem.newton():
         found = stability(problem)
@@ -44,11 +44,11 @@ def find_rest(problem: StaticProblem) -> Stability | None:
         passed, passed_at = found, problem.keep()
     for descend in (stiffen, relax) if problem.settings.seek_stable else (relax,):
         problem.restore(begin)
-        if (found := descend(problem)) is not None:
+        if (stable := descend(problem)) is not None:
             if passed is not None:
                 problem.messages.append(f"Newton's method found a state of rest that is {passed}; the search went on "
                                         f"to a stable one{CHOICE * problem.pushed}")
-            return found
+            return stable
     if passed is not None:
         problem.restore(passed_at)
     return passed

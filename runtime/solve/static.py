@@ -8,6 +8,7 @@ comes to rest without them.
 from __future__ import annotations
 
 import warnings
+from typing import Generic, TypeVar
 
 from ..errors import EquilibriumError, FunicularWarning
 from ..parts.scene_data import SceneData
@@ -18,6 +19,8 @@ from .stability import stability
 from .stable_search import find_rest
 from .static_problem import StaticProblem
 
+S = TypeVar("S", bound=RestState)
+
 SMALLEST_STEP = 1e-3
 """Of the load: where smaller steps do not converge either, the search ends."""
 FEW = 1e-3
@@ -26,8 +29,7 @@ MOVED = 1e-9
 """Of the scene's size: what rounding may move."""
 
 
-def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestState | None = None,
-                made: type[RestState] = RestState) -> RestState:
+def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestState | None, made: type[S]) -> S:
     """The scene at rest under gravity, its loads at t = 0 and its springs; start: a state to begin from, else as drawn.
 
     made: what the states are, of which it returns one.
@@ -39,7 +41,7 @@ def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestStat
         problem.restore(start.placed)
     search = _Search(problem, made)
     reached = search.along_path(start) if settings.method == "arc_length" else search.in_steps()
-    state = search.state
+    state = search.found
     _note(problem, state)
     if reached < 1.0:
         remedy = ('; take method="newton", which goes on to any stable state, or draw the scene nearer to its rest'
@@ -65,16 +67,22 @@ def _note(problem: StaticProblem, state: RestState) -> None:
         warnings.warn(message, FunicularWarning, stacklevel=4)
 
 
-class _Search:
-    """The states of rest found so far, and the ways to the next ones; the last one is `state`."""
+class _Search(Generic[S]):
+    """The states of rest found so far, and the searches for the next ones; the last one is `state`."""
 
-    def __init__(self, problem: StaticProblem, made: type[RestState]):
+    def __init__(self, problem: StaticProblem, made: type[S]):
         self.problem, self.made = problem, made
-        self.state: RestState | None = None
-        self.path: list[RestState] = []
+        self.state: S | None = None
+        self.path: list[S] = []
         self.critical: list[CriticalPoint] = []
 
-    def remember(self, state: RestState) -> None:
+    @property
+    def found(self) -> S:
+        """Return the last state, of a search that has begun."""
+        assert self.state is not None, "no state was sought yet"
+        return self.state
+
+    def remember(self, state: S) -> None:
         """Add a state to the path."""
         self.state = state
         self.path.append(state)
@@ -148,7 +156,7 @@ class _Search:
             reached, heading = 0.0, None
             if not self.without_loads():
                 return reached
-            if self.state.neutral_directions:
+            if self.found.neutral_directions:
                 reached = self.lightly_loaded()
         else:
             reached, heading = start.load_fraction, start.heading
@@ -166,8 +174,8 @@ class _Search:
                 reached = point.fraction
         return min(reached, 1.0)
 
-    def at(self, point: Point) -> RestState:
-        """A point of the path as a state."""
+    def at(self, point: Point) -> S:
+        """Return a point of the path as a state."""
         fraction, kept = self.problem.fraction, self.problem.keep()
         self.problem.restore(point.kept)
         self.problem.load(point.fraction)

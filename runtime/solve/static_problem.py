@@ -62,13 +62,13 @@ class StaticProblem:
         return float(np.max(np.abs(drawn[points]) / inertia, initial=0.0, where=inertia > 0)) / self.size
 
     def _extent(self) -> float:
-        """The scene's size in m."""
+        """Return the scene's size in m."""
         model = self.model
         lengths = [cable.length * cable.n_elements for cable in model.cables]
-        lengths += [np.linalg.norm(model.q[b.configuration : b.configuration + model.dim]) for b in model.bodies]
+        lengths += [float(np.linalg.norm(model.q[b.configuration : b.configuration + model.dim])) for b in model.bodies]
         gaps = [np.subtract(*(attachment_points(model, end, model.q[None]) for end in force.ends))
                 for force in model.point_forces]
-        return max([*lengths, *(np.linalg.norm(gap) for gap in gaps)], default=0.0) or 1.0
+        return max([*lengths, *(float(np.linalg.norm(gap)) for gap in gaps)], default=0.0) or 1.0
 
     def load(self, fraction: float) -> None:
         """Put this fraction of all loads on; of gravity, too, unless the settings say that it stays whole."""
@@ -80,7 +80,7 @@ class StaticProblem:
         return self.engine.static_residual()
 
     def load_vector(self) -> np.ndarray:
-        """-dR/dp at the static state."""
+        """Return -dR/dp (n,) at the static state, p the fraction of the loads."""
         fraction = self.fraction
         self.load(0.0)
         without = self.residual()
@@ -90,7 +90,7 @@ class StaticProblem:
         return without - with_all
 
     def tangent(self) -> csc_array:
-        """dR/dx."""
+        """Return the tangent stiffness dR/dx over the unknowns, (n, n), sparse."""
         return self.engine.matrix(0.0, 0.0, 1.0)
 
     def stiffness(self) -> tuple[csc_array, csc_array, np.ndarray]:
@@ -105,12 +105,12 @@ class StaticProblem:
         return float(along @ (K @ along)) + 0.9 * mass * float(change @ (self.mass @ change))
 
     def distance(self, kept: dict) -> float:
-        """How far the farthest coordinate of a position has moved from a state, in m."""
+        """Return how far the farthest coordinate of a position has moved from a state, in m."""
         moved = np.abs(self.engine.placed()["q"] - kept["q"])[self.places]
         return float(np.max(moved, initial=0.0))
 
     def solver(self, inertia: float = 0.0) -> Callable[[np.ndarray], np.ndarray]:
-        """Solver of the tangent, with some mass added. Raises RuntimeError where it is exactly singular."""
+        """Return the solver of the tangent, with some mass added. Raises RuntimeError where it is exactly singular."""
         return solver(self.regular_tangent() if inertia == 0.0 else self.tangent() + inertia * self.mass)
 
     def regular_tangent(self) -> csc_array:
@@ -118,16 +118,16 @@ class StaticProblem:
         return self.tangent() + FREE * self.fastest * self.mass
 
     def length(self, change: np.ndarray) -> float:
-        """Size of a correction in m."""
+        """Return the size of a correction in m."""
         size = float(np.linalg.norm(self.weight * change))
         return size if np.isfinite(size) else np.inf
 
     def keep(self) -> dict:
-        """The static state."""
+        """Return the static state, as `restore` takes it."""
         return self.engine.placed()
 
     def restore(self, kept: dict) -> None:
-        """Back to a state."""
+        """Go back to a state that `keep` returned."""
         self.engine.place(0.0, **kept)
 
     def move(self, change: np.ndarray) -> None:
@@ -159,7 +159,7 @@ class StaticProblem:
         return False
 
     def on_cables(self) -> bool:
-        """Whether no slide is past an end of its cable, where the last element would go on for ever."""
+        """Return whether no slide is past an end of its cable, where the last element would go on for ever."""
         ends = np.array([self.model.cables[j.cable].length * self.model.cables[j.cable].n_elements
                          for j in self.model.slides])
         s = self.engine.placed()["s"]

@@ -19,13 +19,13 @@ STRAIGHT = 1e-9
 
 
 def notes(scene: SceneData, model: Model, engine) -> list[str]:
-    """A note for each such strut at the time at which it is compressed most, of those still in memory."""
+    """Return a note for each such strut at the time at which it is compressed most, of those still in memory."""
     rows = engine.rows()
     times, states, arcs = rows["time"], rows["q"], rows["s"]
     if not len(times):  # all are in the file
         end, q, _, s = engine.now()
         times, states, arcs = np.array([end]), q[None], s[None]
-    told = []
+    notes = []
     for cable in model.cables:
         part = scene.cables[cable.name]
         if part.is_curved:
@@ -47,17 +47,17 @@ def notes(scene: SceneData, model: Model, engine) -> list[str]:
         except ArithmeticError:  # no factorisation is accurate enough to count
             continue
         if buckles:
-            told.append(f'cable "{part.name}" is perfectly straight at t = {times[k]:.6g} s under a compression of '
+            notes.append(f'cable "{part.name}" is perfectly straight at t = {times[k]:.6g} s under a compression of '
                         f"{force:.4g} N, beyond its buckling load ({buckles} independent direction"
                         f"{'s lower' if buckles > 1 else ' lowers'} its energy): nothing in the scene bends it. "
                         "Draw it slightly bent, or add a small force across it")
-    return told
+    return notes
 
 
 def _straight(r: np.ndarray) -> np.ndarray:
     """Return (times,): whether nodes r (times, nodes, dim) lie on a line, one after the other.
 
-    The middle node tells of most states that they do not: only of the others all nodes are looked at.
+    The middle node shows of most states that they do not: only of the others all nodes are looked at.
     """
     on_line = _on_line(r[:, [0, r.shape[1] // 2, -1]]) if r.shape[1] > 3 else np.ones(len(r), dtype=bool)
     on_line[on_line] = _on_line(r[on_line])
@@ -68,14 +68,14 @@ def _on_line(r: np.ndarray) -> np.ndarray:
     """Return (times,): whether all nodes r (times, nodes, dim) lie on the line through the first and the last."""
     chord = r[:, -1] - r[:, 0]
     length = np.linalg.norm(chord, axis=1)
-    way = r - r[:, :1]
-    along = np.einsum("tnd,td->tn", way, chord) / np.where(length > 0, length, 1.0)[:, None] ** 2
-    off = np.linalg.norm(way - along[:, :, None] * chord[:, None], axis=2).max(axis=1)
+    offset = r - r[:, :1]
+    along = np.einsum("tnd,td->tn", offset, chord) / np.where(length > 0, length, 1.0)[:, None] ** 2
+    off = np.linalg.norm(offset - along[:, :, None] * chord[:, None], axis=2).max(axis=1)
     return (off <= STRAIGHT * length) & np.all(np.diff(along, axis=1) > 0, axis=1)
 
 
 def _unstable(model: Model, cable, t: float, q: np.ndarray, s: np.ndarray) -> int:
-    """How many directions of a cable, all else fixed, lower the energy; joints hold it, with forces left out."""
+    """Return how many directions of a cable, all else fixed, lower the energy; joints hold it, with forces left out."""
     engine = Engine(model)
     engine.place(t, q=q, s=s)
     K, C = condensed(engine.matrix(0.0, 0.0, 1.0), model)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import threading
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from threadpoolctl import ThreadpoolController
@@ -17,7 +17,7 @@ _used_in: int | None = None
 
 
 def available() -> int:
-    """Processors that this process may use."""
+    """Return the processors that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
@@ -53,7 +53,8 @@ class _OneBlasThread:
         os.register_at_fork(after_in_child=self._reset)  # what other threads were inside of is not in the child
 
     def _reset(self) -> None:
-        self._lock, self._inside, self._limiter = threading.Lock(), 0, None
+        self._lock, self._inside = threading.Lock(), 0
+        self._limiter: Any = None
 
     def __enter__(self) -> None:
         with self._lock:
@@ -81,7 +82,7 @@ def _let_this_thread_set_limits() -> None:
     import threadpoolctl  # for runs alone, not for `import funicular`
 
     controller = getattr(threadpoolctl, "OpenBLASController", None)
-    if hasattr(controller, "clear_controlling_thread"):
+    if controller is not None and hasattr(controller, "clear_controlling_thread"):
         controller.clear_controlling_thread(force=True)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -21,8 +21,9 @@ from ..rotations import rotate
 if TYPE_CHECKING:
     from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure
+    from matplotlib.typing import RcKeyType
 
-STYLE = {
+STYLE: dict[RcKeyType, Any] = {
     "font.size": 10,
     "axes.spines.top": False,
     "axes.spines.right": False,
@@ -78,7 +79,7 @@ def save_plots(run: Run, directory: str | os.PathLike, prefix: str = "", forces:
 
 
 def view_of(scene: SceneData) -> View:
-    """The vertical plane of the first cable; y is up without gravity."""
+    """Return the vertical plane of the first cable; y is up without gravity."""
     gravity = np.array(scene.gravity)
     up = -gravity / np.linalg.norm(gravity) if gravity.any() else np.array([0.0, 1.0, 0.0])
     candidates = [cable.point(cable.length) - cable.point(0.0) for cable in scene.cables.values()]
@@ -98,7 +99,7 @@ def _axis_name(direction: np.ndarray) -> str:
 
 
 def centreline(nodal_vectors: np.ndarray, node_s: np.ndarray) -> np.ndarray:
-    """Points (..., points, 3) of the centreline, cubic between nodes.
+    """Return the points (..., points, 3) of the centreline, cubic between nodes.
 
     nodal_vectors: (..., nodes, vectors, 3) with r and r_x first; node_s: (nodes,) in m.
     """
@@ -116,37 +117,37 @@ def centreline(nodal_vectors: np.ndarray, node_s: np.ndarray) -> np.ndarray:
 
 
 def rider_path(run: Run, slide: str) -> np.ndarray:
-    """(time, 3): where the rider's point of ``slide`` was, in m."""
+    """Return (time, 3): where the rider's point of ``slide`` was, in m."""
     return attachment_path(run, run.scene.slides[slide].rider)
 
 
 def attachment_path(run: Run, attachment: Attachment) -> np.ndarray:
-    """(time, 3): where an attachment was, in m."""
+    """Return (time, 3): where an attachment was, in m."""
     if attachment.on is None:
-        return np.broadcast_to(attachment.at, (len(run.time), 3))
+        return np.broadcast_to(attachment.point, (len(run.time), 3))
     body = run.scene.bodies.get(attachment.on)
     if isinstance(body, ModalBody):
-        node = np.argmin(np.linalg.norm(body.shape.nodes - attachment.at, axis=1))
+        node = np.argmin(np.linalg.norm(body.shape.nodes - attachment.point, axis=1))
         return run[f"{attachment.on}.nodes"][:, node]
     if body is not None:
-        return run[f"{attachment.on}.position"] + rotate(run[f"{attachment.on}.orientation"], attachment.at)
+        return run[f"{attachment.on}.position"] + rotate(run[f"{attachment.on}.orientation"], attachment.point)
     points = centreline(run[f"{attachment.on}.nodal_vectors"], run.coords[f"{attachment.on}.node"].values)
-    return points[:, round(attachment.s / run.scene.cables[attachment.on].length * (points.shape[1] - 1))]
+    return points[:, round(attachment.arc_length / run.scene.cables[attachment.on].length * (points.shape[1] - 1))]
 
 
-def held_points(run: Run) -> dict[str, np.ndarray]:
-    """(time, points, 3) by body: where slides and joints hold it, of those that are held at more than one place."""
-    held: dict[str, list] = {}
+def attached_points(run: Run) -> dict[str, np.ndarray]:
+    """(time, points, 3) by body: where slides and joints hold it, of those that are attached at more than one point."""
+    paths_of: dict[str, list] = {}
     ends = [slide.rider for slide in run.scene.slides.values()]
     ends += [end for joint in run.scene.joints.values() for end in (joint.a, joint.b)]
     for end in ends:
         if end.on in run.scene.bodies:
-            held.setdefault(end.on, []).append(attachment_path(run, end))
-    return {name: np.stack(paths, axis=1) for name, paths in held.items() if len(paths) > 1}
+            paths_of.setdefault(end.on, []).append(attachment_path(run, end))
+    return {name: np.stack(paths, axis=1) for name, paths in paths_of.items() if len(paths) > 1}
 
 
 def _snapshots(run: Run) -> tuple[np.ndarray, ScalarMappable]:
-    """Numbers of the few times that are drawn, and the colours of times."""
+    """Return the numbers of the few times that are drawn, and the colours of times."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
@@ -155,7 +156,7 @@ def _snapshots(run: Run) -> tuple[np.ndarray, ScalarMappable]:
 
 
 def draw_shape(run: Run) -> Figure | None:
-    """The cables at a few times, coloured by time, with the riders and their paths; None without cables."""
+    """Return the cables at a few times, coloured by time, with the riders and their paths; None without cables."""
     from matplotlib.figure import Figure
 
     scene = run.scene
@@ -170,7 +171,7 @@ def draw_shape(run: Run) -> Figure | None:
         shapes = centreline(run[f"{name}.nodal_vectors"][shown], run.coords[f"{name}.node"].values) @ plane.T
         for index, shape in zip(shown, shapes, strict=True):
             axes.plot(*shape.T, color=colour.to_rgba(run.time[index]), zorder=2)
-    for points in held_points(run).values():
+    for points in attached_points(run).values():
         for index in shown:
             axes.plot(*(points[index] @ plane.T).T, color=colour.to_rgba(run.time[index]), linewidth=2.2, zorder=2)
     for number, name in enumerate(scene.slides):
@@ -184,7 +185,8 @@ def draw_shape(run: Run) -> Figure | None:
             label=None if number else "path of the rider",
         )
         axes.scatter(
-            *path[shown].T,
+            path[shown, 0],
+            path[shown, 1],
             c=colour.to_rgba(run.time[shown]),
             s=42,
             edgecolors="0.1",
@@ -196,13 +198,13 @@ def draw_shape(run: Run) -> Figure | None:
     for number, name in enumerate(name for name in scene.bodies if name not in riding):
         path = run[f"{name}.position"] @ plane.T
         axes.plot(*path.T, color="0.25", linewidth=0.9, linestyle=":", zorder=3)
-        axes.scatter(*path[shown].T, c=colour.to_rgba(run.time[shown]), marker="h", s=48, edgecolors="0.1",
-                     linewidths=0.8, zorder=4, label=None if number else "body")
+        axes.scatter(path[shown, 0], path[shown, 1], c=colour.to_rgba(run.time[shown]), marker="h", s=48,
+                     edgecolors="0.1", linewidths=0.8, zorder=4, label=None if number else "body")
     for marker, label, supports in (("^", "pin", scene.pins), ("s", "clamp", scene.clamps),
                                     ("D", "moved", scene.motions)):
         if supports:
-            held = np.array([scene.cables[support.cable].point(support.s) for support in supports]) @ plane.T
-            axes.scatter(*held.T, marker=marker, s=60, color="0.1", zorder=5, label=label)
+            at = np.array([scene.cables[support.cable].point(support.s) for support in supports]) @ plane.T
+            axes.scatter(at[:, 0], at[:, 1], marker=marker, s=60, color="0.1", zorder=5, label=label)
     _set_scales(axes, view)
     if axes.get_legend_handles_labels()[0]:
         axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
@@ -211,7 +213,7 @@ def draw_shape(run: Run) -> Figure | None:
 
 
 def _set_scales(axes, view: View) -> None:
-    """Equal scales, or the upright one exaggerated by a round factor that its label tells."""
+    """Equal scales, or the upright one exaggerated by a round factor that its label states."""
     axes.margins(0.04, 0.12)
     width, height = np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())
     most = 0.42 * width / height  # the height of a picture that the page can take, over its width
@@ -224,7 +226,7 @@ def _set_scales(axes, view: View) -> None:
 
 
 def draw_acceleration(run: Run) -> Figure | None:
-    """The bodies' accelerations upwards over time, the paper's Fig. 5; None without a slide or a body."""
+    """Return the bodies' accelerations upwards over time, the paper's Fig. 5; None without a slide or a body."""
     from matplotlib.figure import Figure
 
     bodies = list(run.scene.bodies)
@@ -289,7 +291,7 @@ def draw_section_forces(run: Run, cable: str) -> Figure:
 
 
 def draw_energy(run: Run) -> Figure:
-    """The changes of the energies since the start, and how well they cancel."""
+    """Return the changes of the energies since the start, and how well they cancel."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(7, 4.8))

@@ -63,7 +63,7 @@ def test_a_cable_that_is_pushed_through_itself():
     ({"step": 0.02, "spectral_radius": 0.0},
      r"the energy balance is off by up to [\d.]+ J, 0.\d+ of the [\d.]+ J exchanged: energy went that neither .*: "
      r"take a smaller step, or none, so that tol chooses it, or a spectral_radius nearer to 1")])
-def test_coarse_results_are_told(settings, says):
+def test_coarse_results_are_reported(settings, says):
     with pytest.warns(FunicularWarning, match=says):
         run = rider(0.25, 1.0, elements=3).run(1.0, output_step=0.1, progress=False, **settings)
     assert any(re.search(says, note) for note in run.report["messages"])
@@ -76,7 +76,7 @@ def test_good_results_need_no_note(settings, recwarn):
     assert not [w for w in recwarn if issubclass(w.category, FunicularWarning)]
 
 
-def test_a_scene_at_rest_has_no_books_to_break():
+def test_a_scene_at_rest_has_no_energy_balance_to_break():
     """Rounding is all that is exchanged there."""
     for integrator in ("genalpha", "explicit"):
         run = rider(0.75, 0.0, gravity=(0, 0, 0), elements=2).run(0.1, integrator=integrator, progress=False)

@@ -1,4 +1,4 @@
-/* Where a slide is on its cable: s by C_l = 0 (eq 21), and the director that goes with the tangent there. */
+/* Where a slide is on its cable: s by C_l = 0, eq 21, and the director that goes with the tangent there. */
 #include "engine.h"
 
 /* Newton step for s of a slide, and the unit tangent there */
@@ -11,7 +11,7 @@ static double evaluate_constraint(const fu_model *model, const fu_state *state, 
     return step;
 }
 
-/* Newton for C_l(s) = 0 (eq 21) on the curve of the element that holds s; 0 when it converged. */
+/* Newton for C_l(s) = 0, eq 21 on the curve of the element that holds s; 0 when it converged. */
 int fu_find_arc_length(const fu_model *model, const fu_state *state, int j, double *s)
 {
     const double length = model->cables[model->slides[j].cable].length;

@@ -1,5 +1,5 @@
 /* What a slide does as a coupling. Own unknowns: s and the force f on the rider. Their equations are f . r_x = R, equilibrium
- * along the cable (eq 30), and phi = r - p = 0.
+ * along the cable, eq 30, and phi = r - p = 0.
  */
 #include "engine.h"
 
@@ -253,7 +253,7 @@ static int may_start_open(const fu_coupling *coupling, const fu_state *state)
     return state->mode[coupling->index] == FU_LOCKED || !((const fu_slide *)coupling)->rider_is_rigid;
 }
 
-/* s where C_l = 0 (eq 21) */
+/* s where C_l = 0, eq 21 */
 static int follow(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     const int j = coupling->index;

@@ -172,8 +172,8 @@ static void reactions(const fu_model *model, const fu_state *state, fu_accelerat
                       const double *lambda, double *reaction)
 {
     fu_mass_times(model, state->q, acceleration, work->work);
-    for (int i = 0; i < model->n_dof; ++i) reaction[i] = work->work[i] + work->force[i];
-    for (int r = 0; r < model->n_rows; ++r) {
+    for (int i = 0; i < model->n_dof; ++i) reaction[i] = work->work[i] + work->force[i]; /* M q'' - Q (eq 26) */
+    for (int r = 0; r < model->n_rows; ++r) { /* + H' lambda (eq 32) */
         const fu_rows *rows = &work->rows[r];
         for (int c = 0; c < rows->rows; ++c)
             for (int k = 0; k < rows->n; ++k)

@@ -31,12 +31,12 @@ def gradient(now, then):
     law, inputs, expr = staged()
     program = Program("step", "", "")
     ends = [tuple(program.input(f"{s}{k}", (), "1", "") for k in (0, 1)) for s in inputs]
-    secant = DiscreteGradient(program, law, dict(zip(inputs, ends, strict=True)))
+    discrete = DiscreteGradient(program, law, dict(zip(inputs, ends, strict=True)))
     program.stage("gradient")
-    D = secant.gradient(expr, inputs)
+    D = discrete.gradient(expr, inputs)
     values = {symbol: sp.Rational(v) for pair, both in zip(ends, zip(now, then, strict=True), strict=True)
               for symbol, v in zip(pair, both, strict=True)}
-    return [evaluated(program, d, values) for d in D], [evaluated(program, v, values) for v in secant.pair(expr)]
+    return [evaluated(program, d, values) for d in D], [evaluated(program, v, values) for v in discrete.pair(expr)]
 
 
 def test_it_is_the_difference():
@@ -71,7 +71,7 @@ def test_other_powers_are_refused():
     law.stage("function")
     program = Program("step", "", "")
     ends = tuple(program.input(f"x{k}", (), "1", "") for k in (0, 1))
-    secant = DiscreteGradient(program, law, {x: ends})
+    discrete = DiscreteGradient(program, law, {x: ends})
     program.stage("gradient")
     with pytest.raises(ValueError, match="kernels have products, quotients and square roots"):
-        secant.gradient(x ** sp.Rational(1, 3), [x])
+        discrete.gradient(x ** sp.Rational(1, 3), [x])

@@ -4,16 +4,8 @@ import re
 
 import numpy as np
 import pytest
-from funicular import (
-    Circle,
-    ConvergenceError,
-    FunicularWarning,
-    Material,
-    Scene,
-    SceneError,
-    load_run,
-)
-from test_streaming import short
+from funicular import Circle, ConvergenceError, FunicularWarning, Material, Scene, SceneError, load_run
+from interrupted_runs import short
 
 STEEL = Material(youngs_modulus=2e11, poisson_ratio=0.3, density=7850)
 FAR = (0, 2e9, 0)

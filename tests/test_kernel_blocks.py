@@ -10,6 +10,7 @@ from funicular.derive.codegen import drift
 from funicular.engine import Engine
 from funicular.integrators import GeneralisedAlpha
 from funicular.model.build import build
+from shared_scenes import cable_scene
 
 ELEMENTS = 7  # a block and a rest
 SAME_BITS = platform.machine() in ("x86_64", "AMD64")  # no contraction to fused operations there
@@ -29,14 +30,11 @@ def arc(u):
 
 
 def scene(element: str, law: dict, curved: bool) -> Scene:
-    made = Scene()
-    shape = {"curve": arc} if curved else {"start": (0, 0, 0), "end": (1, 0, 0)}
+    shape = {"curve": arc} if curved else {}
     up = {"up": (0, 0, 1)} if element == "beam24" and curved else {}
-    made.cable("wire", elements=ELEMENTS, element=element, section=Rectangle(height=0.02, width=0.02),
-               material=Material(youngs_modulus=1e7, poisson_ratio=0.3, density=1000, damping_time=1e-2), **shape, **up,
-               **law)
-    made.pin("wire", s=0.0)
-    return made
+    return cable_scene(pins=(0.0,), elements=ELEMENTS, element=element, section=Rectangle(height=0.02, width=0.02),
+                       material=Material(youngs_modulus=1e7, poisson_ratio=0.3, density=1000, damping_time=1e-2),
+                       **shape, **up, **law)
 
 
 @pytest.mark.parametrize(("element", "law", "curved"), CASES)

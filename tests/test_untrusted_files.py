@@ -1,4 +1,4 @@
-"""Files are data: nothing that a scene, its arrays or a file of results says is run. Libraries: test_own_element.py."""
+"""Files are data: nothing that a scene, its arrays or its results say is run. Libraries: test_user_elements.py."""
 
 import pickle
 import re
@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from funicular import Scene, SceneError
 from funicular.scene_file import loads
-from test_scene_file import CABLE
+from shared_scenes import CABLE
 
 MARKER = []
 

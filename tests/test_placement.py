@@ -1,10 +1,10 @@
-"""Supports, joins, loads and springs: what the scene completes of them, and what it refuses of them."""
+"""Supports, ties, loads and springs: what the scene completes of them, and what it refuses of them."""
 
-import re
 
 import numpy as np
 import pytest
-from funicular import Circle, GeneralSection, Material, Ramp, Rectangle, Scene, SceneError
+from expectations import refused
+from funicular import Circle, GeneralSection, Material, Ramp, Rectangle, Scene
 from funicular.parts.attachment import Attachment
 from funicular.parts.signal import Constant
 from numpy.testing import assert_allclose
@@ -23,10 +23,6 @@ def scene():
     made.cable("rope", start=(2, 0, 0), end=(2, 0, 2), element="cable12", up=(1, 0, 0), **common)
     made.rigid_body("A", **BODY)
     return made
-
-
-def refused(complaint):
-    return pytest.raises(SceneError, match="^" + re.escape(complaint) + "$")
 
 
 def test_supports_are_kept_with_their_labels(scene):
@@ -83,8 +79,8 @@ def test_two_supports_on_one_node(scene, held, complaint):
 
 
 def test_joins_that_hold_what_is_held(scene):
-    join = scene.tie("beam", s=2, to="rope", at=0)
-    assert (join.cable, join.s, join.to, join.at, join.rotation) == ("beam", 2, "rope", 0, "rigid")
+    tie = scene.tie("beam", s=2, to="rope", at=0)
+    assert (tie.cable, tie.s, tie.to, tie.at, tie.rotation) == ("beam", 2, "rope", 0, "rigid")
     with refused('tie "tie_2": the nodes are already joined'):
         scene.tie("rope", s=0, to="beam", at=2)
     with refused('tie "tie_2": the nodes are one and the same'):

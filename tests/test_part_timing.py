@@ -4,13 +4,14 @@ import time
 
 import numpy as np
 import pytest
+from difficult_scenes import tied
+from expectations import INTEGRATORS
 from funicular import Scene
 from funicular.engine import Engine
 from funicular.integrators import GeneralisedAlpha
 from funicular.model.build import build
-from scenery import one_rider
-from test_joints import INTEGRATORS, of_bodies
-from test_newton_matrix import tied
+from shared_scenes import one_rider
+from test_joints import of_bodies
 
 
 @pytest.mark.filterwarnings("ignore:initial velocities broke a joint")

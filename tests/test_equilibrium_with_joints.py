@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from funicular import GeneralSection, Material, Scene
 from numpy.testing import assert_allclose
-from scenery import SQUARE
+from shared_scenes import SQUARE
 from test_joints import LEFT, rod
 from test_mechanisms import Z, door, four_bars
 

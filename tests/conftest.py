@@ -1,0 +1,48 @@
+"""Fixtures of more than one test file; scenes are in shared_scenes.py, expectations in expectations.py."""
+
+import sys
+from types import ModuleType
+
+import pytest
+from fake_recording import fake_recording
+from funicular.results import recording, streaming
+from interrupted_runs import SETTINGS, WRITES, Killed, content, failing, short
+
+
+@pytest.fixture
+def engine(monkeypatch, tmp_path):
+    """A stand-in for funicular.solve.run, whose recordings are hand-made; runs take place in an empty directory."""
+    module = ModuleType("funicular.solve.run")
+    module.outcome = {}
+    module.calls = []
+
+    def simulate(scene, settings, on_progress, **_):
+        module.calls.append(settings)
+        on_progress(settings.duration / 2)
+        return fake_recording(scene, **module.outcome)
+
+    module.simulate = simulate
+    monkeypatch.setitem(sys.modules, "funicular.solve.run", module)
+    monkeypatch.setattr(recording, "recorded", lambda recorded, *_: recorded)
+    monkeypatch.chdir(tmp_path)
+    return module
+
+
+@pytest.fixture(scope="module")
+def uninterrupted(tmp_path_factory):
+    """The content of the file of a run that nothing stops."""
+    path = tmp_path_factory.mktemp("whole") / "x.nc"
+    short().run(**SETTINGS, save=path)
+    return content(path)
+
+
+@pytest.fixture
+def stopped(tmp_path, monkeypatch):
+    """The file of a run that was killed half-way."""
+    path = tmp_path / "x.nc"
+    with monkeypatch.context() as patch:
+        patch.setattr(streaming, "CHECKPOINT_INTERVAL", -1.0)
+        failing(patch, WRITES // 2, Killed())
+        with pytest.raises(Killed):
+            short().run(**SETTINGS, save=path)
+    return path
