@@ -53,7 +53,7 @@ def test_a_bracket_sinks_as_timoshenko_says_however_short_its_elements(element, 
 
 @pytest.mark.parametrize("angle", [0.0, np.pi / 4])
 def test_in_space_a_tie_at_an_angle_says_that_it_is_soft_and_a_weld_is_right(angle):
-    with pytest.warns(FunicularWarning, match='^join "corner": .* too soft, the more so the shorter .* are; .*weld'):
+    with pytest.warns(FunicularWarning, match='^tie "corner": .* too soft, the more so the shorter .* are; .*weld'):
         soft = bracket("beam24", angle, 32, True)
     assert any("too soft" in message for message in soft.messages)
     assert -sunk(soft, angle) > 1.05 * sinking(angle)

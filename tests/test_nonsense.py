@@ -173,7 +173,7 @@ def test_parts(added):
         (lambda: fu.Pulse(start=1e6, end=2e6, rise=1e-11), "Pulse: times must be 1e-08 s apart or more, got 0 s between"
          " 1000000.0 s and 1000000.0 s"),
         (lambda: fu.TableSignal(time=[0, 1, 1 + 1e-13], value=[0, 1, 2]),
-         "Table: times must be 1e-12 s apart or more, got "
+         "TableSignal: times must be 1e-12 s apart or more, got "
          "9.99e-14 s between 1.0 s and 1.0000000000001 s"),
         (lambda: scene().joint("revolute", "A", (0.25, 0, 0), axis=(1e-200, 0, 0)),
          "joint: axis must not be shorter than 1e-30, got (1e-200, 0, 0)"),

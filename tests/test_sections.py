@@ -101,7 +101,7 @@ def test_a_section_by_its_constants():
     ({"second_moment": 1}, '"second_moment" is not known here; did you mean "second_moment_about_y"?'),
 ])
 def test_general_is_refused(changes, complaint):
-    with refused(f"General: {complaint}"):
+    with refused(f"GeneralSection: {complaint}"):
         GeneralSection(**{"area": 2, "second_moment_about_z": 3, "second_moment_about_y": 3} | changes)
 
 

@@ -73,12 +73,13 @@ def test_numbers_and_tables_are_signals():
     (lambda: Pulse(start=0, end=1, rise=0.6), "Pulse: rise must not exceed half of the pulse, 0.5 s, got 0.6 s"),
     (lambda: Harmonic(amplitude=1, frequency=0), "Harmonic: frequency must be positive, got 0 Hz"),
     (lambda: Harmonic(amplitde=1, frequency=1), 'Harmonic: "amplitde" is not known here; did you mean "amplitude"?'),
-    (lambda: TableSignal(time=[0], value=[1]), "Table: time must be a list of 2 numbers or more, got [0]"),
-    (lambda: TableSignal(time=[0, 1], value=[1, 2, 3]), "Table: time and value must be of equal length, got 2 and 3"),
-    (lambda: TableSignal(time=[0, 2, 1], value=[1, 2, 3]), "Table: time must increase, got 1 s after 2 s"),
-    (lambda: TableSignal(time=[0, 1], value=[1, "2"]), "Table: value must be a number, got '2'"),
+    (lambda: TableSignal(time=[0], value=[1]), "TableSignal: time must be a list of 2 numbers or more, got [0]"),
+    (lambda: TableSignal(time=[0, 1], value=[1, 2, 3]),
+     "TableSignal: time and value must be of equal length, got 2 and 3"),
+    (lambda: TableSignal(time=[0, 2, 1], value=[1, 2, 3]), "TableSignal: time must increase, got 1 s after 2 s"),
+    (lambda: TableSignal(time=[0, 1], value=[1, "2"]), "TableSignal: value must be a number, got '2'"),
     (lambda: TableSignal(time=[0, 1], value=[1, 2], interpolation="cubik"),
-     'Table: interpolation "cubik" is not known; did you mean "cubic"?'),
+     'TableSignal: interpolation "cubik" is not known; did you mean "cubic"?'),
 ])
 def test_refused(make, complaint):
     with refused(complaint):
