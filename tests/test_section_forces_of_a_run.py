@@ -44,7 +44,7 @@ def calls(monkeypatch):
 @pytest.fixture
 def run():
     scene = load_scene("paper51")
-    return Run.from_recording(fake_recording(scene, times=3), scene, RunSettings(duration=1.0))
+    return Run.from_recording(fake_recording(scene, times=3), scene, RunSettings(duration=1.0), Scene.from_toml)
 
 
 def by_law(scene: Scene, *s: float) -> dict[str, np.ndarray]:
