@@ -126,6 +126,7 @@ def _check_without_section(load: Force | DistributedForce | Moment, cable: Cable
     """Without axes of the section there is nothing to turn about the tangent, and no direction across it."""
     with_axes = "element=" + " or ".join(f'"{n}"' for n, kind in built_in().items() if kind.director and kind.dim == 3)
     if isinstance(load, Moment):
+        assert load.s is not None, f"{load.where} is not complete"
         value, tangent = np.array(load.value), cable.axes_at(load.s)[0]
         twist = float(np.dot(value, tangent))
         if abs(twist) > EXACT * np.linalg.norm(value):

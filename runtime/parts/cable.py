@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 from pydantic import PlainValidator, ValidationInfo, model_validator
 
 from ..errors import near
@@ -298,7 +299,7 @@ class Cable(Part):
         return ElementLine(self.library, self.element, self.length / self.elements,
                            self.nodal_vectors[..., : self.dim])
 
-    def axes_at(self, s) -> np.ndarray:
+    def axes_at(self, s: ArrayLike) -> np.ndarray:
         """Return (..., 3, 3): unit vectors along axis, height and width, as rows, at arc-lengths ``s`` as drawn."""
         s = np.asarray(s, dtype=float)
         places, which = np.unique(np.append(s.ravel() * self.stretch, [0.0, self.drawn_length]), return_inverse=True)

@@ -13,6 +13,7 @@ from math import acos, degrees
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .validation import show, shown, vector
 
@@ -55,16 +56,16 @@ class Line:
         self.start, self.end = np.array(start, dtype=float), np.array(end, dtype=float)
         self.length = float(np.linalg.norm(self.end - self.start))
 
-    def point(self, s) -> np.ndarray:
+    def point(self, s: ArrayLike) -> np.ndarray:
         """Return the points at arc-lengths s."""
         ratio = np.asarray(s)[..., None] / self.length  # weighting both ends makes both of them exact
         return (1 - ratio) * self.start + ratio * self.end
 
-    def tangent(self, s) -> np.ndarray:
+    def tangent(self, s: ArrayLike) -> np.ndarray:
         """Return the unit tangents at arc-lengths s."""
         return np.broadcast_to((self.end - self.start) / self.length, (*np.shape(s), 3))
 
-    def curvature(self, s) -> np.ndarray:
+    def curvature(self, s: ArrayLike) -> np.ndarray:
         """Return the curvature vectors at arc-lengths s: zero."""
         return np.zeros((*np.shape(s), 3))
 
@@ -152,16 +153,16 @@ class Spline:
                 break
         return t.reshape(s.shape)
 
-    def point(self, s) -> np.ndarray:
+    def point(self, s: ArrayLike) -> np.ndarray:
         """Return the points at arc-lengths s."""
         return self._r(self._parameter(s))
 
-    def tangent(self, s) -> np.ndarray:
+    def tangent(self, s: ArrayLike) -> np.ndarray:
         """Return the unit tangents at arc-lengths s."""
         slope = self._r_t(self._parameter(s))
         return slope / np.linalg.norm(slope, axis=-1, keepdims=True)
 
-    def curvature(self, s) -> np.ndarray:
+    def curvature(self, s: ArrayLike) -> np.ndarray:
         """Return the curvature vectors at arc-lengths s, across the tangent."""
         t = self._parameter(s)
         slope, second = self._r_t(t), self._r_tt(t)

@@ -11,9 +11,10 @@ import itertools
 from collections.abc import Iterable
 from math import pi
 from numbers import Real
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, Protocol
 
 import numpy as np
+from numpy.typing import ArrayLike
 from pydantic import Field, PlainValidator, model_validator
 
 from ..errors import near
@@ -59,12 +60,29 @@ class Signal(Part):
         """Return the phase of the sine at t = 0, in rad."""
         return 0.0
 
-    def value(self, time, derivative: int = 0) -> np.ndarray:
+    def value(self, time: ArrayLike, derivative: int = 0) -> np.ndarray:
         """Return the signal, or a derivative of it, at the times ``time`` (any shape, s)."""
         return value_at(self, *self.pieces(), time, derivative)
 
 
-def value_at(signal, breaks: np.ndarray, coefficients: np.ndarray, time, derivative: int = 0) -> np.ndarray:
+class Sine(Protocol):
+    """The sine of a signal: amplitude sin(angular_frequency t + phase), rad and s."""
+
+    @property
+    def amplitude(self) -> float:
+        """Return the amplitude, 0 where there is no sine."""
+
+    @property
+    def angular_frequency(self) -> float:
+        """Return the angular frequency in rad/s."""
+
+    @property
+    def phase(self) -> float:
+        """Return the phase at t = 0 in rad."""
+
+
+def value_at(signal: Sine, breaks: np.ndarray, coefficients: np.ndarray, time: ArrayLike,
+             derivative: int = 0) -> np.ndarray:
     """Return a derivative, at times of any shape, of such a piecewise polynomial with the sine of ``signal``."""
     time = np.asarray(time, dtype=float)
     result = np.zeros(time.shape)

@@ -10,12 +10,14 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..errors import FunicularWarning, ResultFileError, UnknownResultError, near
 from ..parts.cable import Cable
 from ..parts.scene_data import SceneData
 from ..parts.scene_text import dumps
 from ..parts.settings import RunSettings
+from ..parts.slide import Slide
 from .quantities import ENERGIES, Variable, labelled
 
 if TYPE_CHECKING:
@@ -214,7 +216,7 @@ class Run:
 
         return build(self.scene)
 
-    def section_forces(self, cable: Cable | str, s=None, *, method: str = "balance",
+    def section_forces(self, cable: Cable | str, s: ArrayLike | Slide | None = None, *, method: str = "balance",
                        side: str = "after") -> xarray.Dataset:
         """Return the forces and moments in sections of ``cable``.
 

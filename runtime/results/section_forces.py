@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..errors import FunicularError, UnknownResultError, near
 from ..kernels.libraries import kernels_of
@@ -14,6 +15,7 @@ from ..parts.cable import EXACT, Cable
 from ..parts.load import DistributedForce
 from ..parts.scene_data import SceneData
 from ..parts.section_stiffness import section_stiffness
+from ..parts.slide import Slide
 from ..parts.validation import show
 from ..solve.rest_state import RestState
 from .cable_loads import CableLoads, Instants, rows
@@ -170,8 +172,8 @@ def with_sides(cable: Cable, s: np.ndarray, places: np.ndarray) -> np.ndarray:
     return np.sort(np.concatenate([np.broadcast_to(s, (*sides.shape[:-1], len(s))), sides], axis=-1), axis=-1)
 
 
-def dataset(state: Results | RestState, cable: Cable | str, s=None, *, method: str = "balance",
-            side: str = "after") -> xarray.Dataset:
+def dataset(state: Results | RestState, cable: Cable | str, s: ArrayLike | Slide | None = None, *,
+            method: str = "balance", side: str = "after") -> xarray.Dataset:
     """See `Run.section_forces`; of an equilibrium without the time."""
     import xarray  # 0.5 s, for those who ask for it
 
