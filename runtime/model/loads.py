@@ -154,5 +154,5 @@ class LoadBuilder:
         """Return the model of a force between two points."""
         ends = [self.attachments.model(part.a), self.attachments.model(part.b)]
         dim = self.scene.dim
-        return PointForceModel(part.kind, part.kernel(dim), part.name, ends, dim, part.parameters, part.is_damped,
+        return PointForceModel(part.kind, part.kernel(dim), part.name or "", ends, dim, part.parameters, part.is_damped,
                                max(end.mass for end in ends), n_unknowns=dim)
