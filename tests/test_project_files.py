@@ -9,7 +9,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 PAGES = [str(path.relative_to(ROOT)) for pattern in ("*.md", "*/README.md", "tests/*/README.md")
-         for path in ROOT.glob(pattern)]
+         for path in ROOT.glob(pattern) if not path.parent.name.startswith(".")]  # not of caches
 
 
 def text(name: str) -> str:
@@ -67,3 +67,14 @@ def test_functions_are_below_60_lines():
 def test_docstrings_are_sentences():
     words = {where: len((ast.get_docstring(node) or "").split()) for where, node in functions()}
     assert [where for where, count in words.items() if where.startswith("runtime") and 0 < count <= 3] == []
+
+
+def test_the_packages_are_listed():
+    """Setuptools finds no packages below mapped folders: each folder with an __init__.py stands in the list."""
+    listed = set(tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["setuptools"]["packages"])
+    folders = {".".join([package, *file.parent.relative_to(ROOT / top).parts])
+               for top, package in (("runtime", "funicular"), ("derive", "funicular.derive"),
+                                    ("generated", "funicular.generated"))
+               for file in (ROOT / top).rglob("__init__.py")}
+    assert folders <= listed
+    assert listed - folders == {"funicular.scenes", "funicular.derive.codegen.templates"}  # data alone
