@@ -140,7 +140,7 @@ def test_the_traction_of_a_driven_slide():
     scene = fu.Scene(gravity=(0, 0, 0))
     scene.cable("wire", start=(0, 0, 0), end=(10, 0, 0), elements=6, element="cable12",
                 section=fu.Rectangle(height=0.05, width=0.05),
-                material=fu.Material(youngs_modulus=2e11, density=1000, poisson_ratio=0.0, damping_time=1e-2))
+                material=fu.Material(youngs_modulus=2e9, density=1000, poisson_ratio=0.0, damping_time=1e-2))
     scene.pin("wire", s=0.0)
     scene.pin("wire", s=10.0)
     scene.rigid_body("A", mass=5.0, inertia=(0.1, 0.2, 0.3), position=(2, 0, 0))

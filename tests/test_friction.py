@@ -207,9 +207,10 @@ def test_friction_holds_what_the_moment_on_a_tied_frame_puts_along_the_cable():
     """On a curve a moment pushes along it; the run was refused, as the multiplier of sticking had no equation yet."""
     began = []
     for integrator in ("radau", "genalpha"):
-        run = on_an_arc(frame="tangent").run(0.66, initial="equilibrium", integrator=integrator, tol=1e-5,
+        run = on_an_arc(frame="tangent").run(0.722, initial="equilibrium", integrator=integrator, tol=1e-5,
                                              output_step=2e-3, progress=False)
-        began.append(next(event["time"] for event in run.events if event["what"] == "broke loose"))
+        began.append(next(event["time"] for event in run.events
+                          if event["what"] == "broke loose" and event["time"] > 0.7))  # 0.65 s: it touches the limit
         grip = np.abs(run["trolley.traction"]) / np.linalg.norm(run["trolley.multiplier"], axis=1)
         stuck = run.time < began[-1]
         assert grip[stuck].max() < 0.3 * (1 + 1e-9) and np.ptp(run["trolley.s"][stuck]) < 1e-9
