@@ -80,7 +80,8 @@ def long(spectral_radius: float):
     return measure
 
 
-HERE.case("100,000 steps", integrators=["energy", "explicit", "radau"], steps=(1e5, 1.01e5), crossings=(40, 200), residual=1e-11, gap=1e-11, drift=1e-12,
+HERE.case("100,000 steps", integrators=["energy", "explicit", "radau"], steps=(1e5, 1.01e5),
+          crossings=(40, 200), residual=1e-11, gap=1e-11, drift=1e-12,
           growth={"energy": 1e-12, "explicit": 1e-12, "radau": 1e-12},
           loss={"energy": 1e-12, "explicit": 1e-9, "radau": 6e-4},
           slow=["energy", "explicit", "radau"])(long(1.0))
