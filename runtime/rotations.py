@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-import numpy as np
-from numpy.typing import ArrayLike
+from typing import TYPE_CHECKING
 
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
 
 def rotate(quaternion: ArrayLike, vector: ArrayLike) -> np.ndarray:
     """Return vectors (..., 3) given in body axes in the ground's, by unit quaternions (..., 4)."""

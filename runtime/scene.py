@@ -8,9 +8,6 @@ from collections.abc import Callable, Iterable
 from contextlib import nullcontext
 from typing import TYPE_CHECKING, TypeVar
 
-from .checks.adding import check_of
-from .checks.planarity import check_plane
-from .checks.whole_scene import check_scene, check_start_as_drawn
 from .errors import (
     ConvergenceError,
     EndOfCableError,
@@ -29,8 +26,8 @@ from .solve.progress import progress_bar
 from .solve.threads import one_blas_thread
 
 if TYPE_CHECKING:
-    # Model, solvers and their results bring SciPy along, which would double the time of `import funicular`. So they
-    # are imported by the methods that need them, here and below.
+    # Model, solvers and their results bring SciPy along, which would double the time of `import funicular`; checks take
+    # a tenth of it. So they are imported by the methods that need them, here and below.
     from .parts.body_shape import Shape
     from .results.equilibrium import Equilibrium
     from .solve.modes import Modes
@@ -51,6 +48,9 @@ class Scene(SceneMethods):
 
         Returns the part as it stands in the scene. Raises SceneError.
         """
+        from .checks.adding import check_of  # not needed where saved runs are read alone
+        from .checks.planarity import check_plane  # likewise
+
         if part.is_named():
             if part.given_name is None:
                 part = part.model_copy(update={"name": self.free_name(type(part))})
@@ -78,6 +78,8 @@ class Scene(SceneMethods):
 
     def check(self) -> None:
         """Check the scene as a whole, as `run` does first. Raises SceneError."""
+        from .checks.whole_scene import check_scene  # likewise
+
         check_scene(self)
 
     def run(
@@ -124,6 +126,8 @@ class Scene(SceneMethods):
         settings = RunSettings(**self.run_settings | {k: v for k, v in given.items() if v is not None})
         self.check()
         if settings.initial == "drawn":
+            from .checks.whole_scene import check_start_as_drawn  # likewise
+
             check_start_as_drawn(self)
         if not isinstance(resume, bool):
             raise SceneError("run", f"resume must be true or false, got {shown(resume)}")

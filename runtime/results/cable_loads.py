@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ..kernels.libraries import kernels_of
 from ..model.attachments import CARRIED, UP, AttachmentModel
@@ -17,6 +17,8 @@ from ..parts.load import DistributedForce, Moment
 from ..parts.scene_data import SceneData
 from ..rotations import rotate
 
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
 
 @dataclass
 class Instants:

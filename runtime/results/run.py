@@ -10,7 +10,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ..errors import FunicularWarning, ResultFileError, UnknownResultError, near
 from ..parts.cable import Cable
@@ -23,6 +22,7 @@ from .quantities import ENERGIES, Variable, labelled
 if TYPE_CHECKING:
     # These bring SciPy or xarray along: `import funicular` does without.
     import xarray
+    from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
 
     from ..model.model import Model
     from .recording import Recording

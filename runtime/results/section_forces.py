@@ -6,7 +6,6 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ..errors import FunicularError, UnknownResultError, near
 from ..kernels.libraries import kernels_of
@@ -26,6 +25,7 @@ from .section_kinks import kinks
 
 if TYPE_CHECKING:
     import xarray
+    from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
 
 PLACES = 8
 """Places on each element, where none are asked for."""
