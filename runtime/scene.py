@@ -82,6 +82,14 @@ class Scene(SceneMethods):
 
         check_scene(self)
 
+    def _check_for(self, settings: RunSettings) -> None:
+        """Check the scene for a run of these settings. Raises SceneError."""
+        from .checks.whole_scene import check_start_as_drawn  # likewise
+
+        self.check()
+        if settings.initial == "drawn":
+            check_start_as_drawn(self)
+
     def run(
         self,
         duration: float | None = None,
@@ -124,11 +132,7 @@ class Scene(SceneMethods):
             "save": save,
         }
         settings = RunSettings(**self.run_settings | {k: v for k, v in given.items() if v is not None})
-        self.check()
-        if settings.initial == "drawn":
-            from .checks.whole_scene import check_start_as_drawn  # likewise
-
-            check_start_as_drawn(self)
+        self._check_for(settings)
         if not isinstance(resume, bool):
             raise SceneError("run", f"resume must be true or false, got {shown(resume)}")
         if resume and settings.save is None:
