@@ -324,3 +324,10 @@ def test_a_saved_run_does_not_repeat_what_was_adjusted(tmp_path):
         assert list(run.scene.bodies) == ["A", "B"]
         run.summary()
     assert any("they are brought together" in message for message in run.report["messages"])
+
+
+def test_a_distance_that_follows_a_signal_needs_no_length():
+    scene = Scene(gravity=(0, 0, 0))
+    scene.rigid_body("A", mass=1.0, inertia=(1, 1, 1), position=(1, 0, 0))
+    scene.joint("distance", (0, 0, 0), "A", distance=Ramp(start=0.0, end=0.1, before=1.0, after=1.1), name="rod")
+    assert scene.run(0.1, progress=False)["A.position"][-1, 0] == pytest.approx(1.1, abs=1e-6)

@@ -60,8 +60,8 @@ def joint_model(attachments: AttachmentBuilder, joint: Joint, signal: Callable[[
             turned = True
     base = 0.0
     if joint.pair == "distance":
-        assert joint.length is not None, f"{joint.where} is not complete"
-        base = 0.0 if driven else joint.length
+        assert driven or joint.length is not None, f"{joint.where} is not complete"
+        base = 0.0 if driven else joint.length or 0.0
     elif driven and DRIVEN[joint.pair] == "distance":
         base = float(joint.axes[:, 2] @ (point_of(scene, joint.b) - point_of(scene, joint.a)))
     model = _model(joint.name or "", kind, scene.dim, ends,
