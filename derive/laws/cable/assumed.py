@@ -22,6 +22,8 @@ whose quadrature has five points, has the full law's energy if its upper modes h
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import reduce
+from operator import add
 
 import numpy as np
 import sympy as sp
@@ -154,8 +156,9 @@ class AssumedCable(Cable):
             return self._product(m, i, k)
         if (m + i + k) % 2:
             return sp.S.Zero
-        return sp.Float((2 * m + 1) / 2 * sum(
-            float(point.weight * point.value[m] * point.value[i] * point.value[k]) for point in points))
+        values = [float(point.weight * point.value[m] * point.value[i] * point.value[k]) for point in points]
+        # not sum(), which compensates since Python 3.12: generated text must have the same digits everywhere
+        return sp.Float((2 * m + 1) / 2 * reduce(add, values))
 
     # --- second derivatives -----------------------------------------------------------------------------------
 
