@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar
 from pydantic import PlainValidator, model_validator
 
 from ..errors import near
-from .validation import Part, not_negative, positive, shown, within
+from .validation import Part, not_negative, part_of_table, positive, shown, within
 
 WORDS = ("error", "leave")
 """The run ends with an `EndOfCableError`; the rider leaves the cable and flies on."""
@@ -58,15 +58,7 @@ def _end(value: Any) -> str | Stop:
     if not isinstance(value, dict):
         raise ValueError(f"must be a word or a stop such as HardStop(restitution=0.5), got {shown(value)}",
                          "words: " + ", ".join(WORDS))
-    data = dict(value)
-    stop = data.pop("stop", None)
-    if stop is None:
-        raise ValueError("has no stop", "known: " + ", ".join(STOPS))
-    if not isinstance(stop, str):
-        raise ValueError(f"has the stop {shown(stop)}, not a name", "known: " + ", ".join(STOPS))
-    if stop not in STOPS:
-        raise ValueError(f'has the unknown stop "{stop}"', near(stop, STOPS))
-    return STOPS[stop].model_validate(data)
+    return part_of_table(value, "stop", STOPS)
 
 
 CableEnd = Annotated[Any, PlainValidator(_end)]

@@ -11,8 +11,8 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from pydantic import Field, PlainValidator, model_validator
 
-from ..errors import SceneError, check_renamed, near
-from .validation import Part, positive, show, shown, vector
+from ..errors import SceneError, check_renamed
+from .validation import Part, part_of_table, positive, show, shown, vector
 
 Length = Annotated[float, positive("m")]
 THINNEST = 1e-12
@@ -228,15 +228,7 @@ def _section(value: Any) -> Section:
         return value
     if not isinstance(value, dict):
         raise ValueError(f"must be a section such as Rectangle(height=0.05, width=0.05), got {shown(value)}")
-    sizes = dict(value)
-    shape = sizes.pop("shape", None)
-    if shape is None:
-        raise ValueError("has no shape", "known: " + ", ".join(SHAPES))
-    if not isinstance(shape, str):
-        raise ValueError(f"has the shape {shown(shape)}, not a name", "known: " + ", ".join(SHAPES))
-    if shape not in SHAPES:
-        raise ValueError(f'has the unknown shape "{shape}"', near(shape, SHAPES))
-    return SHAPES[shape].model_validate(sizes)
+    return part_of_table(value, "shape", SHAPES)
 
 
 AnySection = Annotated[Section, PlainValidator(_section)]

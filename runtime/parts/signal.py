@@ -16,8 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Protocol
 import numpy as np
 from pydantic import Field, PlainValidator, model_validator
 
-from ..errors import near
-from .validation import Part, finite, list_of, one_of, positive, show, shown
+from .validation import Part, finite, list_of, one_of, part_of_table, positive, show, shown
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
@@ -306,15 +305,7 @@ def signal(value: Any) -> Signal:
         return Constant.model_validate({"constant": value})
     if not isinstance(value, dict):
         raise ValueError(f"must be a number or a signal such as Ramp(start=0, end=1), got {shown(value)}")
-    data = dict(value)
-    form = data.pop("form", None)
-    if form is None:
-        raise ValueError("has no form", "known: " + ", ".join(FORMS))
-    if not isinstance(form, str):
-        raise ValueError(f"has the form {shown(form)}, not a name", "known: " + ", ".join(FORMS))
-    if form not in FORMS:
-        raise ValueError(f'has the unknown form "{form}"', near(form, FORMS))
-    return FORMS[form].model_validate(data)
+    return part_of_table(value, "form", FORMS)
 
 
 AnySignal = Annotated[Signal, PlainValidator(signal)]

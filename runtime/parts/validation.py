@@ -11,9 +11,9 @@ from __future__ import annotations
 
 import math
 import reprlib
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from numbers import Integral, Real
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeVar
 
 import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainValidator, ValidationError, model_validator
@@ -326,3 +326,22 @@ def _scene_error(place: str, error: ValidationError) -> SceneError:
         case _:
             cause, remedy = f"{first['msg'][:1].lower() + first['msg'][1:]}, got {shown(first['input'])}", []
     return SceneError(place, f"{path} {cause}".strip(), *remedy)
+
+
+P = TypeVar("P", bound="Part")
+
+
+def part_of_table(table: dict, tag: str, kinds: Mapping[str, type[P]]) -> P:
+    """Return what a table such as {shape="circle", radius=0.01} describes; its entry `tag` names one of the kinds.
+
+    Raises ValueError where that entry is missing, no name, or unknown.
+    """
+    data = dict(table)
+    kind = data.pop(tag, None)
+    if kind is None:
+        raise ValueError(f"has no {tag}", "known: " + ", ".join(kinds))
+    if not isinstance(kind, str):
+        raise ValueError(f"has the {tag} {shown(kind)}, not a name", "known: " + ", ".join(kinds))
+    if kind not in kinds:
+        raise ValueError(f'has the unknown {tag} "{kind}"', near(kind, kinds))
+    return kinds[kind].model_validate(data)
