@@ -64,7 +64,7 @@ static int coordinates(const joint_view *view, int *at)
 }
 
 /* whether the slide that it is on has left its cable */
-int fu_joint_is_inactive(const fu_joint *joint, const fu_state *state)
+static int is_inactive(const fu_joint *joint, const fu_state *state)
 {
     for (int e = 0; e < 2; ++e)
         if (joint->ends[e].slide >= 0 && state->mode[joint->ends[e].slide] == FU_LEFT) return 1;
@@ -72,7 +72,7 @@ int fu_joint_is_inactive(const fu_joint *joint, const fu_state *state)
 }
 
 /* phi, its derivatives J over the joint's coordinates, and their numbers for fu_add; returns how many they are */
-int fu_joint_residual(const fu_model *model, const fu_joint *joint, const fu_state *state, double *phi, int *at, double *J)
+static int equations_of(const fu_model *model, const fu_joint *joint, const fu_state *state, double *phi, int *at, double *J)
 {
     double by_moves[6 * MOVES], K[MOVES * MOVES];
     const double *multipliers = state->forces + joint->base.force;
@@ -185,7 +185,7 @@ static void constraint_rows(const fu_model *model, const fu_coupling *coupling, 
     const int m = joint->kernel->rows, dim = model->dim;
     double by_moves[6 * MOVES], K[MOVES * MOVES], J[6 * 2 * FU_ATTACHMENT_COORDINATES], s_rate[2], gap_rate[3];
     joint_view view;
-    if (fu_joint_is_inactive(joint, state)) {
+    if (is_inactive(joint, state)) {
         rows->n = rows->rows = 0;
         return;
     }
@@ -237,11 +237,11 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
     const double *multipliers = next->forces + coupling->force, scale = equations->weights.stiffness;
     double phi[6], J[6 * 2 * FU_ATTACHMENT_COORDINATES];
     int at[2 * FU_ATTACHMENT_COORDINATES];
-    if (fu_joint_is_inactive(joint, next)) {
+    if (is_inactive(joint, next)) {
         for (int r = 0; r < joint->kernel->rows; ++r) own[coupling->unknown + r] = -scale * multipliers[r];
         return;
     }
-    const int n = fu_joint_residual(model, joint, next, phi, at, J);
+    const int n = equations_of(model, joint, next, phi, at, J);
     for (int r = 0; r < joint->kernel->rows; ++r) {
         if (joint->redundant_rows >> r & 1) phi[r] = 0.0;
         own[coupling->unknown + r] = -fu_row_unit(equations->weights.inertia, coupling->scale[r]) * phi[r];
@@ -276,7 +276,7 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     const int rows = joint->kernel->rows, first = fu_extra(model, coupling->unknown);
     double J[6 * 2 * FU_ATTACHMENT_COORDINATES], K[4 * FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
     int at[2 * FU_ATTACHMENT_COORDINATES], unused[FU_ATTACHMENT_COORDINATES];
-    if (fu_joint_is_inactive(joint, next)) {
+    if (is_inactive(joint, next)) {
         unit_rows(model, joint, ~0, w.inertia, system);
         return;
     }
@@ -307,7 +307,7 @@ static void gaps(const fu_model *model, const fu_coupling *coupling, const fu_st
 {
     double J[6 * 2 * FU_ATTACHMENT_COORDINATES];
     int at[2 * FU_ATTACHMENT_COORDINATES];
-    fu_joint_residual(model, (const fu_joint *)coupling, state, phi, at, J);
+    equations_of(model, (const fu_joint *)coupling, state, phi, at, J);
 }
 
 static int may_start_open(const fu_coupling *coupling, const fu_state *state)
@@ -331,7 +331,7 @@ void fu_joint_outputs(const fu_model *model, const fu_joint *joint, const fu_sta
     double phi[6], by_moves[6 * MOVES], K[MOVES * MOVES];
     joint_view view;
     *out = (fu_joint_output){0};
-    if (fu_joint_is_inactive(joint, state)) return;
+    if (is_inactive(joint, state)) return;
     look(model, joint, state, 0, &view);
     joint->kernel->force(view.gap, view.at[0].A, view.at[1].A, view.c, multipliers, phi, by_moves, K);
     for (int r = 0; r < joint->kernel->rows; ++r) {

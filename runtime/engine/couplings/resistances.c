@@ -14,7 +14,7 @@
 #define LEAST_NORMAL 1e-30 /* N: of a normal force of zero there is no direction */
 
 /* whether R acts on a slide as it is */
-int fu_has_resistance(const fu_model *model, const fu_state *state, int j)
+static int has_resistance(const fu_model *model, const fu_state *state, int j)
 {
     const fu_slide *slide = &model->slides[j];
     return slide->resistance && (state->mode[j] == FU_SLIDES || (state->mode[j] == FU_LOCKED && slide->drive >= 0));
@@ -61,8 +61,8 @@ void fu_resistance_at(const fu_model *model, const fu_state *state, int j, const
 }
 
 /* W that go to heat: all of R but the buffer's spring, which keeps what it takes */
-double fu_resistance_power(const fu_model *model, const fu_state *state, int j, const double *t, const double *u,
-                      const double *f)
+static double power_of(const fu_model *model, const fu_state *state, int j, const double *t, const double *u,
+                       const double *f)
 {
     const fu_end_stop *stop = pressed(model, state, j);
     const int side = state->contact[j];
@@ -184,7 +184,7 @@ double fu_resistance_react(const fu_model *model, const fu_coupling *coupling, c
     if (lambda) fu_slide_force(model, work, j, lambda, f);
     else memcpy(f, state->forces + coupling->force, sizeof(double) * (size_t)dim);
     fu_resistance_at(model, state, j, t, u, f, &resistance);
-    slide_state->power = fu_resistance_power(model, state, j, t, u, f);
+    slide_state->power = power_of(model, state, j, t, u, f);
     const double change = resistance.R - slide_state->R, step = lambda ? secant_step(slide_state, change) : change;
     for (int d = 0; d < dim; ++d) size = fmax(size, fabs(f[d]));
     size = fmax(size, fabs(resistance.R));
@@ -204,12 +204,12 @@ void fu_resistance_reacted(const fu_model *model, const fu_coupling *coupling, c
     double t[3], u[3], f[3];
     fu_resistance resistance;
     slide_state->driven_R = 0.0;
-    if (model->slides[j].drive < 0 || !fu_has_resistance(model, state, j)) return;
+    if (model->slides[j].drive < 0 || !has_resistance(model, state, j)) return;
     along(model, slide_state, t, u);
     fu_slide_force(model, work, j, lambda, f);
     fu_resistance_at(model, state, j, t, u, f, &resistance);
     slide_state->driven_R = resistance.R;
-    slide_state->power = fu_resistance_power(model, state, j, t, u, f);
+    slide_state->power = power_of(model, state, j, t, u, f);
     work->rows[coupling->row].opposed = resistance.R * slide_state->s_rate;
 }
 
@@ -221,10 +221,10 @@ double fu_resistance_dissipation(const fu_model *model, const fu_coupling *coupl
     double J[3 * (FU_SLIDE_COORDINATES + 1)], K[(FU_SLIDE_COORDINATES + 1) * (FU_SLIDE_COORDINATES + 1)], t[3], u[3];
     if (!model->slides[j].resistance) return 0.0;
     if (work) return work->slide_states[j].power;
-    if (!fu_has_resistance(model, state, j)) return 0.0;
+    if (!has_resistance(model, state, j)) return 0.0;
     fu_slide_tangent(model, state, j, f, J, K);
     fu_slide_motion(model, state, j, J, t, u);
-    return fu_resistance_power(model, state, j, t, u, f);
+    return power_of(model, state, j, t, u, f);
 }
 
 /* Where the normal force turns round within a step, friction has a kink, and no quadrature over the step is right: the

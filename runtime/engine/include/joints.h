@@ -22,8 +22,6 @@ typedef struct {
 } fu_joint_output;
 _Static_assert(sizeof(fu_joint_output) == 7 * sizeof(double), "rows of output are arrays of doubles");
 
-int fu_joint_is_inactive(const fu_joint *joint, const fu_state *state);
-int fu_joint_residual(const fu_model *model, const fu_joint *joint, const fu_state *state, double *phi, int *at, double *J);
 int fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, int *at, double *J, double *K);
 void fu_joint_outputs(const fu_model *model, const fu_joint *joint, const fu_state *state, const double *multipliers,
                       fu_joint_output *out);

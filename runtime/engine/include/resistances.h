@@ -9,11 +9,8 @@ typedef struct {
     double R, by_t[3], by_u[3], by_f[3], by_s;
 } fu_resistance;
 
-int fu_has_resistance(const fu_model *model, const fu_state *state, int j);
 void fu_resistance_at(const fu_model *model, const fu_state *state, int j, const double *t, const double *u, const double *f,
                       fu_resistance *resistance);
-double fu_resistance_power(const fu_model *model, const fu_state *state, int j, const double *t, const double *u,
-                           const double *f);
 double fu_compression(const fu_model *model, const fu_state *state, int j, int side);
 void fu_slide_motion(const fu_model *model, const fu_state *state, int j, const double *J, double *t, double *u);
 void fu_resistance_rows(const fu_model *model, const fu_state *state, int j, const double *J,
