@@ -12,8 +12,7 @@ from typing import Any
 
 from .parts.kinds import KINDS
 from .parts.scene_data import SceneData
-from .parts.signal import Constant
-from .parts.validation import Part
+from .parts.validation import Part, parameters_of
 
 
 class SceneMethods(SceneData):
@@ -26,18 +25,10 @@ class SceneMethods(SceneData):
 
 def signature(kind: type[Part]) -> inspect.Signature:
     """Return the signature of the method that adds such parts; None stands for what is not given."""
-    keywords = kind.keywords()
-    order = [*kind.positional, *(name for name in keywords if name not in (*kind.positional, "name"))]
-    order += ["name"] * ("name" in keywords and "name" not in kind.positional)
     parameters = [inspect.Parameter("self", inspect.Parameter.POSITIONAL_OR_KEYWORD)]
-    for name in order:
-        field = kind.model_fields[keywords[name]]
-        default = (inspect.Parameter.empty if field.is_required()
-                   else None if field.default_factory is not None else field.default)
-        default = default.constant if isinstance(default, Constant) else default  # a number may be given for it
-        place = (inspect.Parameter.POSITIONAL_OR_KEYWORD if name in kind.positional
-                 else inspect.Parameter.KEYWORD_ONLY)
-        parameters.append(inspect.Parameter(name, place, default=default))
+    for parameter in parameters_of(kind):
+        positional = parameter.name in kind.positional
+        parameters.append(parameter.replace(kind=inspect.Parameter.POSITIONAL_OR_KEYWORD) if positional else parameter)
     return inspect.Signature(parameters)
 
 

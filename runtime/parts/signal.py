@@ -122,6 +122,10 @@ class Constant(Signal):
     form: ClassVar[str] = "constant"
     constant: Value
 
+    def as_given(self) -> float:
+        """Return the number."""
+        return self.constant
+
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
         """Return its polynomials between breaks, see `Signal.pieces`."""
         return np.array([0.0, 1.0]), np.eye(1, DEGREE + 1) * self.constant

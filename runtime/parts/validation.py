@@ -9,6 +9,7 @@ precision: the sixth power of a radius, for instance, is a moment of its section
 
 from __future__ import annotations
 
+import inspect
 import math
 import reprlib
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -233,8 +234,29 @@ Vector = tuple[float, float, float]
 
 if TYPE_CHECKING:
     from pydantic._internal._model_construction import ModelMetaclass
+    from pydantic.fields import FieldInfo
 else:
     ModelMetaclass = type(BaseModel)  # pydantic exports its metaclass in no other way
+
+
+def parameters_of(kind: type[Part]) -> list[inspect.Parameter]:
+    """Return what a part is made with, as parameters; the positional ones of its kind first, a name last.
+
+    None stands for what has no fixed default.
+    """
+    keywords = kind.keywords()
+    order = [*kind.positional, *(name for name in keywords if name not in (*kind.positional, "name"))]
+    order += ["name"] * ("name" in keywords and "name" not in kind.positional)
+    return [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=_default(kind.model_fields[keywords[name]]))
+            for name in order if name in keywords]
+
+
+def _default(field: FieldInfo) -> Any:
+    """Return the default of a field as a signature shows it."""
+    if field.is_required():
+        return inspect.Parameter.empty
+    default = None if field.default_factory is not None else field.default
+    return default.as_given() if isinstance(default, Part) else default
 
 
 class _TranslatingType(ModelMetaclass):
@@ -244,7 +266,20 @@ class _TranslatingType(ModelMetaclass):
     which knows the path to it.
     """
 
-    def __call__(cls, /, **data):  # noqa: N805  it is a metaclass
+    @property
+    def __signature__(cls) -> inspect.Signature:  # noqa: N805  it is a metaclass
+        """What the part is made with, for `help`, notebooks and editors: pydantic would show ``**data``."""
+        return inspect.Signature(parameters_of(cls))
+
+    @__signature__.setter
+    def __signature__(cls, made: Any) -> None:  # noqa: N805
+        """Leave out what pydantic makes when it builds a model: annotations with all their validators."""
+
+    def __call__(cls, /, *given, **data):  # noqa: N805  it is a metaclass
+        if given:
+            example = ", ".join(f"{name}=..." for name in list(cls.keywords())[:max(2, len(given))])
+            raise SceneError(cls.__name__, f"takes its values by name, got {len(given)} without one",
+                             f"write {cls.__name__}({example})")
         try:
             return super().__call__(**data)
         except ValidationError as error:
@@ -267,6 +302,10 @@ class Part(BaseModel, metaclass=_TranslatingType):
 
     quantities: ClassVar[dict[str, Quantity]] = {}
     """What results tell of such parts, beside the nodal vectors of cables and the modes of bodies."""
+
+    def as_given(self) -> Any:
+        """Return what a user may write for it in short: by default the part itself."""
+        return self
 
     @classmethod
     def place(cls, data: dict) -> str:
