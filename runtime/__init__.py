@@ -13,36 +13,62 @@ from .errors import (
     UnknownResultError,
     check_renamed,
 )
+from .parts.cable import Cable
 from .parts.end_stops import Buffer, HardStop
+from .parts.event import Event
 from .parts.friction import Friction
+from .parts.joint import Joint
+from .parts.load import DistributedForce, Force, Moment
 from .parts.material import Material
+from .parts.modal_body import ModalBody
+from .parts.rigid_body import RigidBody
 from .parts.section import Circle, GeneralSection, Rectangle, Tube
+from .parts.settings import EquilibriumSettings, RunSettings
 from .parts.signal import Harmonic, Pulse, Ramp, TableSignal
+from .parts.slide import Slide
+from .parts.spring import Spring
+from .parts.support import Clamp, Motion, Pin, Tie
 from .results.run import Run
 from .scene import Scene
 from .scene_file import bundled_scenes, load_run, load_scene
 
 __all__ = [
     "Buffer",
+    "Cable",
     "Circle",
+    "Clamp",
     "ConvergenceError",
+    "DistributedForce",
     "EndOfCableError",
     "EquilibriumError",
+    "EquilibriumSettings",
+    "Event",
+    "Force",
     "Friction",
     "FunicularError",
     "FunicularWarning",
     "GeneralSection",
     "HardStop",
     "Harmonic",
+    "Joint",
     "Material",
+    "ModalBody",
+    "Moment",
+    "Motion",
+    "Pin",
     "Pulse",
     "Ramp",
     "Rectangle",
     "ResultFileError",
+    "RigidBody",
     "Run",
+    "RunSettings",
     "Scene",
     "SceneError",
+    "Slide",
+    "Spring",
     "TableSignal",
+    "Tie",
     "Tube",
     "UnknownResultError",
     "__version__",

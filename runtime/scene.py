@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable, Mapping
 from contextlib import nullcontext
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Never, TypeVar
 
 from .errors import (
     ConvergenceError,
@@ -15,6 +15,7 @@ from .errors import (
     ResultFileError,
     SceneError,
     enough_memory,
+    near,
 )
 from .parts.modal_body import ModalBody
 from .parts.scene_text import dumps, read
@@ -28,11 +29,20 @@ from .solve.threads import one_blas_thread
 if TYPE_CHECKING:
     # Model, solvers and their results bring SciPy along, which would double the time of `import funicular`; checks take
     # a tenth of it. So they are imported by the methods that need them, here and below.
+    from numpy.typing import ArrayLike
+
     from .parts.body_shape import Shape
     from .results.equilibrium import Equilibrium
     from .solve.modes import Modes
+    from .solve.run import Start
 
 P = TypeVar("P", bound=Part)
+
+SYNONYMS = {"dt": "step", "time_step": "step", "timestep": "step", "h": "step", "t_end": "duration", "tend": "duration",
+            "end_time": "duration", "time": "duration", "rtol": "tol", "tolerance": "tol", "solver": "integrator",
+            "method": "integrator", "output": "save", "path": "save", "file": "save", "dt_out": "output_step",
+            "output_dt": "output_step", "n_threads": "threads"}
+"""What other programs call the settings of a run."""
 
 
 class Scene(SceneMethods):
@@ -99,19 +109,22 @@ class Scene(SceneMethods):
         output_step: float | None = None,
         integrator: str | None = None,
         spectral_radius: float | None = None,
-        initial: str | Equilibrium | None = None,
+        initial: str | Equilibrium | Mapping[str, ArrayLike] | None = None,
         threads: int | None = None,
         save: str | os.PathLike | None = None,
         resume: bool = False,
         progress: bool | Callable[[float], None] | None = None,
+        **unknown: Never,
     ) -> Run:
         """Simulate the scene for ``duration`` (s); see `RunSettings` for the settings and their defaults.
 
         Settings not given here are the scene file's, if it gave them. initial: "drawn", "equilibrium" (found first),
-        or a state that `equilibrium` returned. save: a netCDF file, written while the run goes on, with a checkpoint
-        (the same name and ``.state``) that stays when the run is killed or interrupted; results are read from the file
-        when they are asked for. resume: go on from there, to the same numbers. progress: a bar (True), none (False), a
-        bar if a terminal watches (None), or a function of the time reached.
+        a state that `equilibrium` returned, at the velocities drawn, a state ``run.at(time)`` of another run, or arrays
+        by the names of results such as ``{"wire.nodal_vectors": ...}``, see `InitialState`. save: a netCDF file,
+        written while the run goes on, with a checkpoint (the same name and ``.state``) that stays when the run is
+        killed or interrupted; results are read from the file when they are asked for. resume: go on from there, to the
+        same numbers. progress: a bar (True), none (False), a bar if a terminal watches (None), or a function of the
+        time reached.
 
         While it goes on the BLAS of NumPy and SciPy has one thread, in the whole process: what other threads of it
         compute meanwhile with large matrices takes longer.
@@ -119,7 +132,8 @@ class Scene(SceneMethods):
         Raises SceneError, ResultFileError, EquilibriumError; EndOfCableError and ConvergenceError, whose ``run`` holds
         everything up to then. Ctrl-C returns what was computed, with a `FunicularWarning`.
         """
-        state = None if initial is None or isinstance(initial, str) else _equilibrium_state(self, initial)
+        _refuse_unknown("run", unknown, (*RunSettings.keywords(), "resume", "progress"))
+        state = None if initial is None or isinstance(initial, str) else _state(self, initial)
         given = {
             "duration": duration,
             "tol": tol,
@@ -127,11 +141,13 @@ class Scene(SceneMethods):
             "output_step": output_step,
             "integrator": integrator,
             "spectral_radius": spectral_radius,
-            "initial": initial if state is None else "equilibrium",
+            "initial": initial if state is None else "state" if isinstance(initial, Mapping) else "equilibrium",
             "threads": threads,
             "save": save,
         }
         settings = RunSettings(**self.run_settings | {k: v for k, v in given.items() if v is not None})
+        if settings.initial == "state" and state is None:
+            raise SceneError("run", 'initial = "state" needs a state', "give what run.at() or equilibrium() returned")
         self._check_for(settings)
         if not isinstance(resume, bool):
             raise SceneError("run", f"resume must be true or false, got {shown(resume)}")
@@ -147,7 +163,7 @@ class Scene(SceneMethods):
                 warnings.warn(run.report["message"], FunicularWarning, stacklevel=2)
         return run
 
-    def _simulated(self, settings: RunSettings, state: Equilibrium | None, resume: bool,
+    def _simulated(self, settings: RunSettings, state: Start | None, resume: bool,
                    progress: bool | Callable[[float], None] | None) -> Run:
         """Return the run with these settings, however it ended, from a state or as the settings say."""
         from .results.streaming import Stream  # brings SciPy and the engine
@@ -177,6 +193,7 @@ class Scene(SceneMethods):
         seek_stable: bool | None = None,
         scale_gravity: bool | None = None,
         start: Equilibrium | None = None,
+        **unknown: Never,
     ) -> Equilibrium:
         """Find the static equilibrium under all loads at t = 0; see `EquilibriumSettings` for the defaults.
 
@@ -186,6 +203,7 @@ class Scene(SceneMethods):
         goes on from its load_fraction in its sense, or, from a state under all its loads, anew from rest without loads.
         Raises SceneError; EquilibriumError, which keeps the state that was reached.
         """
+        _refuse_unknown("equilibrium", unknown, (*EquilibriumSettings.keywords(), "start"))
         given = {"load_steps": load_steps, "tolerance": tolerance, "max_iterations": max_iterations, "method": method,
                  "largest_step": largest_step, "seek_stable": seek_stable, "scale_gravity": scale_gravity}
         begin = None if start is None else _equilibrium_state(self, start)
@@ -219,6 +237,25 @@ def _modes_of_mesh(body: ModalBody) -> Shape:
     from .solve.body_modes import of_mesh  # brings SciPy
 
     return of_mesh(body)
+
+
+def _refuse_unknown(method: str, unknown: Iterable[str], known: Collection[str]) -> None:
+    """Raise SceneError for a keyword that a method does not take."""
+    for name in unknown:
+        meant = SYNONYMS.get(name)
+        raise SceneError(method, f'"{name}" is not known here',
+                         f'did you mean "{meant}"?' if meant in known else near(name, known))
+
+
+def _state(scene: Scene, given: Equilibrium | Mapping[str, ArrayLike]) -> Start:
+    """Return a state to start a run from, checked against the scene. Raises SceneError."""
+    from .model.initial_state import InitialState  # brings SciPy
+
+    if not isinstance(given, Mapping):
+        return _equilibrium_state(scene, given)
+    state = given if isinstance(given, InitialState) else InitialState(given)
+    state.check_fits(scene)
+    return state
 
 
 def _equilibrium_state(scene: Scene, state: Equilibrium) -> Equilibrium:

@@ -197,7 +197,7 @@ def test_a_file_is_named_by_its_path(tmp_path):
         ("[run]\nduration = 1\ntoll = 1e-3", 'x.toml: run: "toll" is not known here; did you mean "tol"?'),
         ("run = 3", "x.toml: [run]: must be a table"),
         ('[run]\nduration = 1\ninitial = "rest"',
-         'x.toml: run: initial "rest" is not known; known: drawn, equilibrium'),
+         'x.toml: run: initial "rest" is not known; known: drawn, equilibrium, state'),
         ("equilibrium = 3", "x.toml: [equilibrium]: must be a table"),
         ("[equilibrium]\nload_step = 3",
          'x.toml: equilibrium: "load_step" is not known here; did you mean "load_steps"?'),

@@ -124,6 +124,12 @@ class SlideModel(CouplingModel):
     friction: Friction | None = None
     ends: tuple[str | Stop, str | Stop] = ("error", "error")
 
+    def place_at(self, s: float, cable: CableModel) -> None:
+        """Put the slide at arc-length s (m) of its cable, on the element there; at a node the one that it is on."""
+        self.s, at = s, s / cable.length
+        if not self.element <= at <= self.element + 1:
+            self.element = min(max(int(at), 0), cable.n_elements - 1)
+
 
 @dataclass
 class MotionModel:

@@ -240,13 +240,14 @@ else:
 
 
 def parameters_of(kind: type[Part]) -> list[inspect.Parameter]:
-    """Return what a part is made with, as parameters; the positional ones of its kind first, a name last.
+    """Return what a part is made with, as parameters: the positional ones of its kind first, then what is required.
 
-    None stands for what has no fixed default.
+    A name comes last. None stands for what has no fixed default.
     """
     keywords = kind.keywords()
-    order = [*kind.positional, *(name for name in keywords if name not in (*kind.positional, "name"))]
-    order += ["name"] * ("name" in keywords and "name" not in kind.positional)
+    others = [name for name in keywords if name not in kind.positional]
+    others.sort(key=lambda name: (not kind.model_fields[keywords[name]].is_required(), name == "name"))
+    order = [*kind.positional, *others]
     return [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=_default(kind.model_fields[keywords[name]]))
             for name in order if name in keywords]
 
@@ -269,7 +270,7 @@ class _TranslatingType(ModelMetaclass):
     @property
     def __signature__(cls) -> inspect.Signature:  # noqa: N805  it is a metaclass
         """What the part is made with, for `help`, notebooks and editors: pydantic would show ``**data``."""
-        return inspect.Signature(parameters_of(cls))
+        return inspect.Signature(parameters_of(cls))  # type: ignore[arg-type]  # its one user is Part
 
     @__signature__.setter
     def __signature__(cls, made: Any) -> None:  # noqa: N805
@@ -277,7 +278,7 @@ class _TranslatingType(ModelMetaclass):
 
     def __call__(cls, /, *given, **data):  # noqa: N805  it is a metaclass
         if given:
-            example = ", ".join(f"{name}=..." for name in list(cls.keywords())[:max(2, len(given))])
+            example = ", ".join(f"{name}=..." for name in list(inspect.signature(cls).parameters)[:max(2, len(given))])
             raise SceneError(cls.__name__, f"takes its values by name, got {len(given)} without one",
                              f"write {cls.__name__}({example})")
         try:

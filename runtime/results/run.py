@@ -24,8 +24,12 @@ if TYPE_CHECKING:
     import xarray
     from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
 
+    from ..model.initial_state import InitialState
     from ..model.model import Model
     from .recording import Recording
+
+SAME_TIME = 1e-9
+"""Times that differ by this part of the run's last one are taken as equal."""
 
 _BLOCK = 1 << 22
 """Bytes that are written at once."""
@@ -149,6 +153,23 @@ class Run:
         """Cables' positions of nodes, (time, node, 3) in m, by name; each is the first of these nodal vectors."""
         suffix = ".nodal_vectors"
         return {name.removesuffix(suffix) + ".position": name for name in self.variables if name.endswith(suffix)}
+
+    def at(self, time: float) -> InitialState:
+        """Return the state at an output time (s), for ``scene.run(initial=...)`` of this scene or one like it.
+
+        Raises UnknownResultError where no row has that time: states are not interpolated.
+        """
+        from ..model.initial_state import BODY, MODAL, SLIDE, InitialState  # brings SciPy, which results do without
+
+        row = int(np.argmin(np.abs(self.time - time))) if len(self.time) else -1
+        if row < 0 or abs(self.time[row] - time) > SAME_TIME * self.time[-1]:
+            there = f"the nearest is {self.time[row]:.9g} s" if row >= 0 else "there is none"
+            raise UnknownResultError(f"the run has no row at t = {time:.9g} s; {there}")
+        scene = self.scene
+        names = [f"{cable}.{name}" for cable in scene.cables for name in ("nodal_vectors", "nodal_velocity")]
+        names += [f"{body}.{name}" for body in scene.bodies for name in (*MODAL, *BODY)]
+        names += [f"{slide}.{name}" for slide in scene.slides for name in SLIDE]
+        return InitialState({name: self[name][row] for name in names if name in self}, float(self.time[row]))
 
     def __repr__(self) -> str:
         """Status, times and number of results."""

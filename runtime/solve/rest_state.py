@@ -119,15 +119,11 @@ class RestState:
                 raise SceneError("scene", f"the state to start from is of another scene: its {kind} are "
                                  f"{self.layout[kind]}, here they are {here}", "take an equilibrium of this scene")
 
-    def start(self, model: Model) -> None:
-        """Put a freshly built model of the same scene into this state."""
+    def start(self, model: Model, scene: SceneData) -> None:
+        """Put a freshly built model of the scene into this state."""
         model.q = self.placed["q"].copy()
         for slide, s in zip(model.slides, self.placed["s"], strict=True):
-            cable = model.cables[slide.cable]
-            slide.s = float(s)
-            at = s / cable.length
-            if not slide.element <= at <= slide.element + 1:
-                slide.element = min(max(int(at), 0), cable.n_elements - 1)
+            slide.place_at(float(s), model.cables[slide.cable])
 
     def _quantities(self) -> dict[str, np.ndarray]:
         model, scene, q, reaction = self.model, self.scene, self.placed["q"][None], self.reaction[None]

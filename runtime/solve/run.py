@@ -26,11 +26,21 @@ from .integrator_choice import choose
 from .long_runs import LongRun
 from .pauses import Pauses, pauses
 from .progress import Meter
-from .rest_state import RestState
 from .threads import share_elements
 
 MOST_OUTPUT = 4e9
 """Bytes of results that a run may keep in memory."""
+
+
+class Start(Protocol):
+    """A state that a run starts from."""
+
+    @property
+    def messages(self) -> list[str]:
+        """Return what the report says of it."""
+
+    def start(self, model: Model, scene: SceneData) -> None:
+        """Put a freshly built model of the scene into this state. Raises SceneError."""
 
 
 class Sink(Protocol):
@@ -72,24 +82,24 @@ class Simulation:
     solve_cpu_s: float
 
 
-def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initial: RestState | None = None,
+def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initial: Start | None = None,
              stream: Sink | None = None) -> Simulation:
     """Integrate a checked scene; calls on_progress(time reached in s) about twenty times a second.
 
-    initial: a state of rest of this scene to start from, at the scene's velocities; stream: takes the rows as they
+    initial: a state of this scene to start from; stream: takes the rows as they
     come, so that only the last ones are in what is returned.
     """
     begin = time.perf_counter()
     model = build(scene)
     if initial is not None:
-        initial.start(model)
+        initial.start(model, scene)
     engine, watcher = Engine(model), EventWatcher(scene, model)
     _check_size(engine.row_bytes, settings, stream)
     pace = pauses(int(np.ceil(settings.duration / settings.output_step)) + 1, engine.row_bytes)
     engine.watch(watcher)
     messages = drop_redundant_rows(model, engine)
     if initial is not None:
-        messages += [f"equilibrium to start from: {message}" for message in initial.messages]
+        messages += [f"state to start from: {message}" for message in initial.messages]
     messages += _divided_step(settings) + share_elements(engine, settings.threads)
     method, reason = choose(settings, scene, model, engine)
     set_up, cpu = time.perf_counter() - begin, time.process_time()

@@ -1,0 +1,189 @@
+"""A state that a run starts from, given as arrays with the names that results have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from ..errors import SceneError, near
+from ..parts.cable import Cable
+from ..parts.modal_body import ModalBody
+from ..parts.rigid_body import RigidBody
+from ..parts.scene_data import SceneData
+from ..parts.validation import EXACT, show, shown
+from .bodies import configuration_of, velocity_of
+from .model import BodyModel, CableModel, Model
+
+CABLE = ("nodal_vectors", "nodal_velocity", "position", "velocity")
+BODY = ("position", "orientation", "velocity", "angular_velocity")
+MODAL = (*BODY, "modal_coordinates", "modal_velocities")
+SLIDE = ("s",)
+
+
+class InitialState(Mapping[str, np.ndarray]):
+    """A state of cables, bodies and slides by the names of results, for ``scene.run(initial=...)``.
+
+    ``state["wire.nodal_vectors"]`` (node, vector, 3), ``state["wire.nodal_velocity"]``, or of cables without directors
+    ``state["wire.position"]`` and ``state["wire.velocity"]`` (node, 3): slopes are then those of the cubic spline
+    through the nodes over the undeformed arc-length. Of bodies position, orientation, velocity, angular_velocity,
+    modal_coordinates, modal_velocities; of slides s. Units are those of the results. What is not given is as drawn.
+    """
+
+    def __init__(self, arrays: Mapping[str, Any], time: float | None = None):
+        """Keep the arrays; time: of the run that they are from, in s. Raises SceneError for what is no number."""
+        self.time = time
+        self._arrays = {}
+        for name, values in arrays.items():
+            try:
+                array = np.array(values, dtype=float)
+            except (TypeError, ValueError):
+                raise SceneError("initial", f'"{name}" must be an array of numbers, got {shown(values)}') from None
+            if not np.isfinite(array).all():
+                raise SceneError("initial", f'"{name}" must be finite')
+            self._arrays[str(name)] = array
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """Return an array by its name."""
+        return self._arrays[name]
+
+    def __iter__(self) -> Iterator[str]:
+        """Iterate over the names."""
+        return iter(self._arrays)
+
+    def __len__(self) -> int:
+        """Return the number of arrays."""
+        return len(self._arrays)
+
+    def __repr__(self) -> str:
+        """Return the names, and the time that the state is from."""
+        of = "" if self.time is None else f" of t = {self.time:g} s"
+        return f"<funicular.InitialState{of}: {', '.join(self)}>"
+
+    @property
+    def messages(self) -> list[str]:
+        """Return what the report of a run says of its start."""
+        if self.time is None:
+            return []
+        return [f"starts from a state of another run, at its t = {self.time:.6g} s: signals begin anew at t = 0"]
+
+    def check_fits(self, scene: SceneData) -> None:
+        """Raise SceneError for a name that is of nothing in the scene."""
+        known = [f"{part.name}.{quantity}" for parts, quantities in _groups(scene) for part in parts
+                 for quantity in quantities]
+        for name in self:
+            if name not in known:
+                raise SceneError("initial", f'"{name}" is no part of a state of this scene', near(name, known))
+
+    def start(self, model: Model, scene: SceneData) -> None:
+        """Put a freshly built model of the scene into this state. Raises SceneError."""
+        drawn, moving = model.q.copy(), model.v.copy()
+        for cable in model.cables:
+            self._place_cable(model, cable, scene.cables[cable.name])
+        for body in model.bodies:
+            self._place_body(model, body, scene.bodies[body.name])
+        _check_supports(model, model.q - drawn, "places", "m")
+        _check_supports(model, model.v - moving, "moves", "m/s")
+        for slide in model.slides:
+            if (s := self.get(f"{slide.name}.s")) is not None:
+                slide.place_at(float(_of_shape(s, (), f"{slide.name}.s")), model.cables[slide.cable])
+
+    def _place_cable(self, model: Model, cable: CableModel, drawn: Cable) -> None:
+        for whole, points, into in (("nodal_vectors", "position", model.q), ("nodal_velocity", "velocity", model.v)):
+            name = f"{cable.name}.{whole}"
+            if name in self:
+                vectors = _of_shape(self[name], (*cable.shape[:2], 3), name)
+            elif f"{cable.name}.{points}" in self:
+                name = f"{cable.name}.{points}"
+                vectors = _along_spline(_of_shape(self[name], (cable.shape[0], 3), name), cable, drawn, name)
+            else:
+                continue
+            _check_plane(vectors, cable.shape[2], name)
+            into[cable.coordinates] = vectors[..., : cable.shape[2]].ravel()
+
+    def _place_body(self, model: Model, body: BodyModel, drawn: RigidBody | ModalBody) -> None:
+        given = {name: self[f"{body.name}.{name}"] for name in BODY if f"{body.name}.{name}" in self}
+        modes = {name: _of_shape(self[f"{body.name}.{name}"], (body.modes,), f"{body.name}.{name}")
+                 for name in MODAL[len(BODY):] if f"{body.name}.{name}" in self}
+        if not given and not modes:
+            return
+        q, v = _frame(body, drawn, given, model.dim)
+        if body.modes:
+            q[-body.modes:] = modes.get("modal_coordinates", q[-body.modes:])
+            v[-body.modes:] = modes.get("modal_velocities", v[-body.modes:])
+        model.q[body.configuration : body.configuration + len(q)] = q
+        model.v[body.dof : body.dof + len(v)] = v
+
+
+def _groups(scene: SceneData):
+    """Yield parts with the names of what a state says of them."""
+    yield scene.cables.values(), CABLE
+    for body in scene.bodies.values():
+        yield [body], MODAL if isinstance(body, ModalBody) else BODY
+    yield scene.slides.values(), SLIDE
+
+
+def _frame(body: BodyModel, drawn: RigidBody | ModalBody, given: dict[str, np.ndarray],
+           dim: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return configuration and rates of a body that starts elsewhere than drawn."""
+    position, orientation = drawn.frame if isinstance(drawn, ModalBody) else (drawn.position, drawn.orientation)
+    at = {"position": position, "orientation": orientation, "velocity": drawn.velocity,
+          "angular_velocity": drawn.angular_velocity}
+    given = {name: _of_shape(values, np.shape(at[name]), f"{body.name}.{name}") for name, values in given.items()}
+    moved = RigidBody(name=body.name, mass=body.mass, inertia=np.eye(3).tolist(), centre=body.centre.tolist(),
+                      **{name: np.asarray(values).tolist() for name, values in (at | given).items()})
+    if dim == 2:
+        for what in moved.off_plane():
+            raise SceneError("initial", f"{body.name}: {what}, but the scene lies in the plane z = 0")
+    modes = np.zeros(body.modes)
+    return (np.concatenate([configuration_of(moved, dim), modes]), np.concatenate([velocity_of(moved, dim), modes]))
+
+
+def _along_spline(points: np.ndarray, cable: CableModel, drawn: Cable, name: str) -> np.ndarray:
+    """Return (node, vector, 3): points of nodes, and the derivatives of the spline through them over arc-length."""
+    orders = {"r": 0, "r_x": 1, "r_xx": 2}
+    if not set(cable.vectors) <= set(orders):
+        raise SceneError("initial", f'"{name}" does not say how the sections of {drawn.where} are turned',
+                         f'give "{cable.name}.nodal_vectors" or "{cable.name}.nodal_velocity"')
+    s = cable.length * np.arange(cable.shape[0])
+    ends = "not-a-knot" if len(s) > 2 else "natural"
+    spline = CubicSpline(s, points, bc_type=ends)
+    return np.stack([spline(s, orders[vector]) for vector in cable.vectors], axis=1)
+
+
+def _of_shape(values: np.ndarray, shape: tuple[int, ...], name: str) -> np.ndarray:
+    """Return the values. Raises SceneError where they have another shape."""
+    if values.shape != shape:
+        raise SceneError("initial", f'"{name}" must have the shape {shape}, got {values.shape}')
+    return values
+
+
+def _check_plane(vectors: np.ndarray, dim: int, name: str) -> None:
+    if dim == 2 and np.any(vectors[..., 2]):
+        raise SceneError("initial", f'"{name}" leaves the plane z = 0, in which the scene lies')
+
+
+def _check_supports(model: Model, change: np.ndarray, does: str, unit: str) -> None:
+    """Raise SceneError where a state does not fit pins, clamps, motions and ties; change (n_dof,) of the cables' part.
+
+    Every dof of a cable is linear in the unknowns: what the supports fix must not change, what they tie must follow.
+    """
+    if not model.cables:
+        return
+    cables = slice(0, model.cables[-1].coordinates.stop)
+    change, place = change[cables], model.place[cables]
+    unknowns = np.zeros(model.combinations.shape[1])
+    free = place >= 0
+    unknowns[place[free]] = change[free]
+    expected = np.where(free, change, 0.0)
+    tied = place < -1
+    expected[tied] = (model.combinations @ unknowns)[-2 - place[tied]]
+    wrong = np.abs(change - expected) * model.weight[cables]
+    if np.any(wrong > EXACT * max(cable.length * cable.n_elements for cable in model.cables)):
+        dof = int(np.argmax(wrong))
+        where, k = next((node.where, k) for nodes in model.nodes.values() for k, node in enumerate(nodes)
+                        if node.first <= dof < node.first + node.vectors.size)
+        raise SceneError("initial", f"the state {does} node {k} of {where} by {show(float(wrong[dof]), unit)} "
+                         "where a support or tie keeps it", "give a state that fits, or draw the supports elsewhere")
