@@ -6,7 +6,7 @@ import os
 import warnings
 from collections.abc import Callable, Collection, Iterable, Mapping
 from contextlib import nullcontext
-from typing import TYPE_CHECKING, Never, TypeVar
+from typing import TYPE_CHECKING, Any, Never, Self, TypeVar
 
 from .errors import (
     ConvergenceError,
@@ -71,6 +71,35 @@ class Scene(SceneMethods):
         part = check_of(part)(self, part)
         self.put(part)
         return part
+
+    def replace(self, part: Part | str, **changes: Any) -> Self:
+        """Return a scene like this one with other values of one part, checked as any scene is; this one stays.
+
+        part: its name, or the part itself; changes: by the keywords that such a part is made with, such as
+        ``scene.replace("trolley", friction=fu.Friction(coefficient=0.1))``. Raises SceneError.
+        """
+        old = self._part(part)
+        scene = type(self)(gravity=self.gravity)
+        scene.run_settings, scene.equilibrium_settings = dict(self.run_settings), dict(self.equilibrium_settings)
+        for each in self.parts():
+            if each is old:
+                given = {keyword: getattr(old, field) for keyword, field in old.keywords().items()
+                         if field in old.model_fields_set}
+                scene.add(type(old)(**given | changes))
+            else:
+                scene.add(each)
+        return scene
+
+    def _part(self, part: Part | str) -> Part:
+        """Return the part of a name, or this part where it is the scene's. Raises SceneError."""
+        parts = list(self.parts())
+        for each in parts:
+            if each is part or (isinstance(part, str) and each.given_name == part):
+                return each
+        names = [each.given_name for each in parts if each.given_name is not None]
+        if isinstance(part, str):
+            raise SceneError("scene", f'there is no part "{part}"', near(part, names))
+        raise SceneError("scene", f"has no such part: {shown(part)}", "give its name, or a part that the scene holds")
 
     @classmethod
     def from_toml(cls, text: str, origin: str = "scene", directory: str | os.PathLike = "",

@@ -304,6 +304,14 @@ class Part(BaseModel, metaclass=_TranslatingType):
     quantities: ClassVar[dict[str, Quantity]] = {}
     """What results tell of such parts, beside the nodal vectors of cables and the modes of bodies."""
 
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Refuse the change of a part, which the scene would not check."""
+        if name in type(self).model_fields or name in self.keywords():
+            example = f'scene.replace("{self.given_name}", {name}=...)' if self.given_name else f"{name}=..."
+            raise SceneError(self.where, f"{name} cannot be changed once the part is made",
+                             f"make another part, or another scene: {example}")
+        super().__setattr__(name, value)
+
     def as_given(self) -> Any:
         """Return what a user may write for it in short: by default the part itself."""
         return self
