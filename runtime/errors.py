@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from difflib import get_close_matches
 from typing import Any
@@ -32,16 +32,42 @@ class FunicularWarning(UserWarning):
 
 
 class SceneError(FunicularError, ValueError):
-    """The scene cannot be simulated as it is described."""
+    """The scene cannot be simulated as it is described.
 
-    def __init__(self, place: str, cause: str, remedy: str | None = None):
-        """place: what is wrong, such as ``cable "wire"``; cause: why; remedy: what to do, or None."""
+    ``errors`` are all that were found: of a scene file, or of the values of a part; the message is that of the first,
+    of a file that of all.
+    """
+
+    def __init__(self, place: str, cause: str, remedy: str | None = None, entry: str | None = None):
+        """place: what is wrong, such as ``cable "wire"``; cause: why; remedy: what to do, or None.
+
+        entry: the keyword whose value is wrong, None where it is not one alone.
+        """
         super().__init__(f"{place}: {cause}" + (f"; {remedy}" if remedy else ""))
-        self.place, self.cause, self.remedy = place, cause, remedy
+        self.place, self.cause, self.remedy, self.entry = place, cause, remedy, entry
+        self.errors: tuple[SceneError, ...] = (self,)
 
     def inside(self, outer: str) -> SceneError:
         """Return the same error seen from ``outer`` (a file, say)."""
         return SceneError(f"{outer}: {self.place}", self.cause, self.remedy)
+
+
+class SceneFileError(SceneError):
+    """All that is wrong with a scene file, a line each."""
+
+    def __init__(self, origin: str, found: Sequence[tuple[int | None, SceneError]], more: bool = False):
+        """origin: what messages call the file; found: errors with the numbers of their lines, where these are known.
+
+        more: whether there may be others, which were not looked for.
+        """
+        found = sorted(found, key=lambda each: (each[0] is None, each[0] or 0))
+        first = found[0][1]
+        lines = [(f"line {number}: " if number else "") + str(error) for number, error in found]
+        one = f"{origin}, {lines[0]}" if found[0][0] else f"{origin}: {lines[0]}"
+        number = f"{len(found)} errors, and perhaps more" if more else f"{len(found)} errors"
+        super().__init__(origin, first.cause, first.remedy)
+        self.args = (one if len(found) == 1 else f"{origin}: {number}" + "".join(f"\n  {x}" for x in lines),)
+        self.errors = tuple(error for _, error in found)
 
 
 class _StoppedError(FunicularError):

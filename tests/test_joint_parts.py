@@ -302,9 +302,9 @@ def test_round_trip(scene):
 
 def test_in_a_file():
     text = '[[rigid_body]]\nname="A"\nmass=1\ninertia=[1,1,1]\nposition=[0,0,0]\n[[joint]]\na="A"\nb=[0,0,0]\n'
-    with refused("x.toml: [[joint]] 1: kind is missing"):
+    with refused("x.toml, line 6: [[joint]] 1: kind is missing"):
         loads(text, "x.toml")
-    with refused('x.toml: joint "j": "axes" is not known here; did you mean "axis"?'):
+    with refused('x.toml, line 11: joint "j": "axes" is not known here; did you mean "axis"?'):
         loads(text + 'kind="revolute"\nname="j"\naxes=[0,0,1]\n', "x.toml")
     scene = loads(text + 'kind="revolute"\naxis=[0,0,1]\nangle={form="ramp", start=0, end=2}\n', "x.toml")
     assert scene.joints["joint_1"].angle == Ramp(start=0, end=2)

@@ -199,18 +199,21 @@ def test_bounds_are_stated(make, complaint):
         ("gravity = " + "{a=" * 10_000 + "1" + "}" * 10_000, "x.toml: is nested too deeply"),
         ("gravity = [0, 1" + "0" * 5000 + ", 0]",
          "x.toml: has an integer of too many digits; write it as a number such as 1e9"),
-        ("gravity = [0, 0x1" + "0" * 5000 + ", 0]", "x.toml: scene: gravity must be finite, got (0, inf, 0) m/s²"),
+        ("gravity = [0, 0x1" + "0" * 5000 + ", 0]",
+         "x.toml, line 1: scene: gravity must be finite, got (0, inf, 0) m/s²"),
         (WIRE.replace("= 3", "= 0x1" + "0" * 5000),
-         'x.toml: cable "wire": elements must not exceed 1000000, got an integer of 20001 bits'),
-        (WIRE.replace('"wire"', '["wire"]'), "x.toml: [[cable]] 1: name must be made of letters, digits, _ and -, and "
+         'x.toml, line 6: cable "wire": elements must not exceed 1000000, got an integer of 20001 bits'),
+        (WIRE.replace('"wire"', '["wire"]'),
+         "x.toml, line 3: [[cable]] 1: name must be made of letters, digits, _ and -, and "
          "begin with no digit, got ['wire']"),
         (WIRE.replace('shape = "rectangle"', 'shape = ["rectangle"]'),
-         "x.toml: cable \"wire\": section has the shape ['rectangle'], not a name; known: rectangle, circle, tube, "
-         "general"),
+         "x.toml, line 7: cable \"wire\": section has the shape ['rectangle'], not a name; known: rectangle, circle, "
+         "tube, general"),
         (WIRE + 'element = ["beam24"]', None),
         (WIRE + 'strain = ["green"]', None),
-        (WIRE + "up = 1979-05-27", "x.toml: cable \"wire\": up must be 3 numbers, got datetime.date(1979, 5, 27)"),
-        ("[run]\nduration = 1\nsave = 3", "x.toml: run: save input should be a valid string, got 3"),
+        (WIRE + "up = 1979-05-27",
+         "x.toml, line 9: cable \"wire\": up must be 3 numbers, got datetime.date(1979, 5, 27)"),
+        ("[run]\nduration = 1\nsave = 3", "x.toml, line 3: run: save input should be a valid string, got 3"),
     ],
 )
 def test_files(text, complaint):

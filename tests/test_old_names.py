@@ -55,7 +55,7 @@ def test_rotary_moments_are_those_about_their_axes():
 
 
 def test_tables_and_keys_of_a_scene_file():
-    with refused(fu.SceneError, 'x: "join" is not known here; it is called "tie" now'):
+    with refused(fu.SceneError, 'x, line 1: scene: "join" is not known here; it is called "tie" now'):
         loads("[[join]]\ncable = 'a'\n", "x")
     text = """
         [[cable]]

@@ -99,7 +99,7 @@ def check_file(text: str) -> None:
         try:
             scene = loads(text, "x.toml")
         except FunicularError as error:
-            assert str(error).startswith("x.toml: ")
+            assert str(error).startswith(("x.toml: ", "x.toml, line "))
             return
     check_text(scene)
 

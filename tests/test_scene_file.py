@@ -20,6 +20,7 @@ from funicular import (
     bundled_scenes,
     load_scene,
 )
+from funicular.parts.scene_text import TABLES
 from funicular.scene_file import loads
 from shared_scenes import CABLE
 
@@ -155,62 +156,76 @@ def test_a_moved_rider_is_not_moved_again():
 def test_a_file_is_named_by_its_path(tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text(CABLE.replace("height = 0.05", "height = -0.05"))
-    with refused(f'{path}: cable "wire": section.height must be positive, got -0.05 m'):
+    with refused(f'{path}, line 7: cable "wire": section.height must be positive, got -0.05 m'):
         load_scene(path)
 
 
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("[[cabel]]", 'x.toml: "cabel" is not known here; did you mean "cable"?'),
-        ("gravty = [0, 0, 0]", 'x.toml: "gravty" is not known here; did you mean "gravity"?'),
-        ("gravity = [0, nan, 0]", "x.toml: scene: gravity must be finite, got (0, nan, 0) m/s²"),
+        ("[[cabel]]", 'x.toml, line 1: scene: "cabel" is not known here; did you mean "cable"?'),
+        ("gravty = [0, 0, 0]", 'x.toml, line 1: scene: "gravty" is not known here; did you mean "gravity"?'),
+        ("gravity = [0, nan, 0]", "x.toml, line 1: scene: gravity must be finite, got (0, nan, 0) m/s²"),
         ("[cable]", "x.toml: [cable]: must be an array of tables; write [[cable]], in two brackets"),
-        ("[[cable]]", "x.toml: [[cable]] 1: name is missing"),
-        ('[[cable]]\nname = "wire"', 'x.toml: cable "wire": elements is missing'),
-        (CABLE + "elemnts = 3", 'x.toml: cable "wire": "elemnts" is not known here; did you mean "elements"?'),
+        ("[[cable]]", "x.toml: 4 errors"
+                      "\n  line 1: [[cable]] 1: name is missing"
+                      "\n  line 1: [[cable]] 1: elements is missing"
+                      "\n  line 1: [[cable]] 1: section is missing"
+                      "\n  line 1: [[cable]] 1: material is missing"),
+        ('[[cable]]\nname = "wire"', 'x.toml: 3 errors'
+                                     '\n  line 1: cable "wire": elements is missing'
+                                     '\n  line 1: cable "wire": section is missing'
+                                     '\n  line 1: cable "wire": material is missing'),
+        (CABLE + "elemnts = 3", 'x.toml, line 9: cable "wire": "elemnts" is not known here; did you mean "elements"?'),
         (
             CABLE.replace("width =", "widht ="),
-            'x.toml: cable "wire": section "widht" is not known here; did you mean "width"?',
+            'x.toml, line 7: cable "wire": section "widht" is not known here; did you mean "width"?',
         ),
         (
             CABLE.replace("density", "desnity"),
-            'x.toml: cable "wire": material "desnity" is not known here; did you mean "density"?',
+            'x.toml, line 8: cable "wire": material "desnity" is not known here; did you mean "density"?',
         ),
         (
             CABLE.replace('"rectangle"', '"rectangel"'),
-            'x.toml: cable "wire": section has the unknown shape "rectangel"; did you mean "rectangle"?',
+            'x.toml, line 7: cable "wire": section has the unknown shape "rectangel"; did you mean "rectangle"?',
         ),
-        (CABLE.replace("= 3", '= "3"'), "x.toml: cable \"wire\": elements must be a whole number, 1 or more, got '3'"),
-        (CABLE * 2, 'x.toml: cable "wire": there is already a cable of that name; give each part its own name'),
+        (CABLE.replace("= 3", '= "3"'),
+         "x.toml, line 6: cable \"wire\": elements must be a whole number, 1 or more, got '3'"),
+        (CABLE * 2,
+         'x.toml, line 10: cable "wire": there is already a cable of that name; give each part its own name'),
         (
             CABLE + '[[pin]]\ncable = "wire"\ns = 0\n[[pin]]\ncable = "wire"\nt = 0',
-            'x.toml: [[pin]] 2: "t" is not known here; known: cable, s',
+            'x.toml: 2 errors'
+            '\n  line 12: [[pin]] 2: s is missing'
+            '\n  line 14: [[pin]] 2: "t" is not known here; known: cable, s',
         ),
         (
             CABLE + '[[pin]]\ncable = "wir"\ns = 0',
-            'x.toml: pin on "wir": there is no cable "wir"; did you mean "wire"?',
+            'x.toml, line 9: pin on "wir": there is no cable "wir"; did you mean "wire"?',
         ),
-        ('[[rigid_body]]\nname = "A"', 'x.toml: rigid_body "A": mass is missing'),
-        ("[run]\ntol = 1e-3", "x.toml: run: duration is missing"),
-        ("[run]\nduration = -1", "x.toml: run: duration must be positive, got -1 s"),
-        ("[run]\nduration = 1\ntoll = 1e-3", 'x.toml: run: "toll" is not known here; did you mean "tol"?'),
-        ("run = 3", "x.toml: [run]: must be a table"),
+        ('[[rigid_body]]\nname = "A"', 'x.toml: 3 errors'
+                                       '\n  line 1: rigid_body "A": mass is missing'
+                                       '\n  line 1: rigid_body "A": inertia is missing'
+                                       '\n  line 1: rigid_body "A": position is missing'),
+        ("[run]\ntol = 1e-3", "x.toml, line 1: run: duration is missing"),
+        ("[run]\nduration = -1", "x.toml, line 2: run: duration must be positive, got -1 s"),
+        ("[run]\nduration = 1\ntoll = 1e-3", 'x.toml, line 3: run: "toll" is not known here; did you mean "tol"?'),
+        ("run = 3", "x.toml, line 1: [run]: must be a table"),
         ('[run]\nduration = 1\ninitial = "rest"',
-         'x.toml: run: initial "rest" is not known; known: drawn, equilibrium, state'),
-        ("equilibrium = 3", "x.toml: [equilibrium]: must be a table"),
+         'x.toml, line 3: run: initial "rest" is not known; known: drawn, equilibrium, state'),
+        ("equilibrium = 3", "x.toml, line 1: [equilibrium]: must be a table"),
         ("[equilibrium]\nload_step = 3",
-         'x.toml: equilibrium: "load_step" is not known here; did you mean "load_steps"?'),
-        ("[[clmp]]", 'x.toml: "clmp" is not known here; did you mean "clamp"?'),
-        (CABLE + '[[force]]\non = "wire"\ns = 0', "x.toml: [[force]] 1: value is missing"),
+         'x.toml, line 2: equilibrium: "load_step" is not known here; did you mean "load_steps"?'),
+        ("[[clmp]]", 'x.toml, line 1: scene: "clmp" is not known here; did you mean "clamp"?'),
+        (CABLE + '[[force]]\non = "wire"\ns = 0', "x.toml, line 9: [[force]] 1: value is missing"),
         (CABLE + '[[force]]\nname = "F"\non = "wire"\ns = 0\nvalue = [0, 0, 1]\nscale = { start = 0 }',
-         'x.toml: force "F": scale has no form; known: table, ramp, harmonic, pulse'),
+         'x.toml, line 14: force "F": scale has no form; known: table, ramp, harmonic, pulse'),
         (CABLE + '[[force]]\nname = "F"\non = "wire"\ns = 0\nvalue = [0, 0, 1]\nscale = { form = "ramp", begin = 0 }',
-         'x.toml: force "F": scale "begin" is not known here; known: start, end, before, after'),
+         'x.toml, line 14: force "F": scale "begin" is not known here; known: start, end, before, after'),
         (CABLE + '[[spring]]\na = "wire"\nb = [0, 0, 1]\nstiffness = 1',
-         'x.toml: spring "spring_1": a: acts on cable "wire" and needs the arc-length s there'),
+         'x.toml, line 9: spring "spring_1": a: acts on cable "wire" and needs the arc-length s there'),
         (CABLE.replace("end = [1.5, 0, 0]", "curve = 1"),
-         'x.toml: cable "wire": curve must be a function of u from 0 to 1, got 1; or give points'),
+         'x.toml, line 2: cable "wire": curve must be a function of u from 0 to 1, got 1; or give points'),
         (
             'gravity = [0, -9.81, 0]\nname "wire"',
             "x.toml: is not valid TOML: Expected '=' after a key in a key/value pair (at line 2, column 6)",
@@ -235,5 +250,75 @@ def test_a_binary_file(tmp_path):
 
 
 def test_text_is_never_run():
-    with refused('x.toml: rigid_body "A": mass must be a number, got \'__import__("os").getpid()\''):
-        loads('[[rigid_body]]\nname = "A"\nmass = \'__import__("os").getpid()\'', "x.toml")
+    with refused('x.toml, line 3: rigid_body "A": mass must be a number, got \'__import__("os").getpid()\''):
+        loads('[[rigid_body]]\nname = "A"\nmass = \'__import__("os").getpid()\'\n'
+              "inertia = [1, 1, 1]\nposition = [0, 0, 0]", "x.toml")
+
+
+SEVERAL = '''gravity = [0, -9.81, 0]
+note = """
+[[cable]]
+name = "in a text"
+"""
+
+[[cable]]
+name = "wire"
+elements = 0
+start = [0, 0, 0]
+end = [
+  1.5,
+  0, 0]
+section = { shape = "rectangle", height = -0.05, width = 0.05 }
+up = [0, 1, 0]
+[cable.material]
+youngs_modulus = 4e8
+density = "heavy"
+poisson_ratio = 0
+
+[[pin]]
+cable = "wire"
+s = 0.0
+
+[[pin]]
+cable = "wyre"
+s = 0.0
+
+[[rigid_body]]
+name = "A"
+mass = 1.0
+inertia = [1e-3, 1e-3, 1e-3]
+position = [0, 0, 0]
+
+[[rigid_body]]
+name = "A"
+mass = 1.0
+inertia = [1e-3, 1e-3, 1e-3]
+position = [0, 0, 0]
+'''
+
+
+def test_all_errors_of_a_file_at_once_by_line():
+    """A pin on the cable that is refused is no error of its own; what stands in a text is no table."""
+    with pytest.raises(SceneError) as error:
+        loads(SEVERAL, "x.toml")
+    assert str(error.value) == """x.toml: 6 errors
+  line 2: scene: "note" is not known here; known: """ + ", ".join(TABLES) + """
+  line 9: cable "wire": elements must be a whole number, 1 or more, got 0
+  line 14: cable "wire": section.height must be positive, got -0.05 m
+  line 16: cable "wire": material.density must be a number, got 'heavy'
+  line 25: pin on "wyre": there is no cable "wyre"; there is none yet
+  line 35: rigid_body "A": there is already a rigid_body of that name; give each part its own name"""
+    assert len(error.value.errors) == 6
+
+
+def test_all_wrong_values_of_a_part_are_at_hand():
+    with pytest.raises(SceneError, match='"widht" is not known') as error:
+        Rectangle(widht=1)
+    assert [each.entry for each in error.value.errors] == ["widht", "height", "width"]
+
+
+def test_a_file_of_many_errors_is_answered_at_once():
+    with pytest.raises(SceneError) as error:
+        loads(CABLE + '[[pin]]\ncable = "wyre"\ns = 0\n' * 3000, "x.toml")
+    assert len(error.value.errors) == 20
+    assert str(error.value).startswith("x.toml: 20 errors, and perhaps more\n  line 9: pin on ")

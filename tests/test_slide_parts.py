@@ -241,10 +241,10 @@ def test_in_a_file():
     slide = loads(FILE, "x.toml").slides["A_on_wire"]
     assert slide.friction == Friction(coefficient=0.2, static_coefficient=0.3)
     assert (slide.frame, slide.at_start, slide.at_end) == ("tangent", "leave", Buffer(length=0.2, stiffness=100))
-    with refused('x.toml: [[slide]] 1: "fricton" is not known here; did you mean "friction"?'):
+    with refused('x.toml, line 21: [[slide]] 1: "fricton" is not known here; did you mean "friction"?'):
         loads(FILE.replace("[slide.friction]", "[slide.fricton]"), "x.toml")
     nearest = 'did you mean "static_coefficient"?'
-    with refused(f'x.toml: [[slide]] 1: friction "static_coeficient" is not known here; {nearest}'):
+    with refused(f'x.toml, line 21: [[slide]] 1: friction "static_coeficient" is not known here; {nearest}'):
         loads(FILE.replace("static_coefficient", "static_coeficient"), "x.toml")
-    with refused("x.toml: [[slide]] 1: along is missing"):
+    with refused("x.toml, line 14: [[slide]] 1: along is missing"):
         loads(FILE.replace('along = "wire"\n', ""), "x.toml")

@@ -9,16 +9,17 @@ from __future__ import annotations
 import json
 import os
 import tomllib
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Protocol, TypeVar
 
-from ..errors import SceneError, near
+from ..errors import SceneError, SceneFileError, near
 from ..kernels.libraries import check_allowed, resolved
 from .attachment import Attachment
 from .end_stops import Stop
 from .event import Event
 from .kinds import PARTS
 from .scene_data import SceneData
+from .scene_lines import line_of
 from .section import Section
 from .settings import EquilibriumSettings, RunSettings
 from .signal import Constant, Signal
@@ -31,6 +32,10 @@ TAGS = {Section: "shape", Signal: "form", Stop: "stop"}
 """The word in a table that says which of several parts it is."""
 
 TABLES = ("gravity", *PARTS, *SETTINGS)
+
+
+MOST_ERRORS = 20
+"""That are looked for in a file; each is sought in its text, and nobody reads more."""
 
 
 class Addable(Protocol):
@@ -58,26 +63,90 @@ def read(text: str, origin: str, new: Callable[..., S], directory: str | os.Path
         raise SceneError(origin, "is nested too deeply") from None
     except ValueError:  # Python refuses to read an integer of thousands of digits
         raise SceneError(origin, "has an integer of too many digits", "write it as a number such as 1e9") from None
-    for name in tables:
-        if name not in TABLES:
-            raise SceneError(origin, f'"{name}" is not known here', near(name, TABLES))
     try:
         _check_libraries(tables, directory, [libraries] if isinstance(libraries, str | os.PathLike) else [*libraries])
-        scene = new(**{name: tables[name] for name in ("gravity",) if name in tables})
-        for kind, part in PARTS.items():
-            for index, table in enumerate(_array(tables, kind), start=1):
-                scene.add(_part(part, _placed(table, directory), index))
-        for name in SETTINGS:
-            if name in tables:
-                setattr(scene, f"{name}_settings", _settings(name, tables[name]))
     except SceneError as error:
         raise error.inside(origin) from None
+    reader = _Reader(text, tables, directory)
+    try:
+        scene = new(**{name: tables[name] for name in ("gravity",) if name in tables})
+    except SceneError as error:
+        reader.note(error, "gravity")
+        scene = new()
+    reader.read_all(scene)
+    if reader.found:
+        raise SceneFileError(origin, reader.found, more=len(reader.found) == MOST_ERRORS)
     return scene
+
+
+class _Reader:
+    """Adds the parts of a file to a scene, and goes on where one is wrong, so that all errors are found at once."""
+
+    def __init__(self, text: str, tables: dict, directory: str | os.PathLike):
+        self.text, self.tables, self.directory = text, tables, directory
+        self.found: list[tuple[int | None, SceneError]] = []
+        self.refused: set[str] = set()
+        """Names of parts that are not in the scene: what refers to them is checked no further."""
+
+    def note(self, error: SceneError, table: str, index: int | None = None) -> None:
+        """Keep what is wrong with a table of the file."""
+        for each in error.errors[: MOST_ERRORS - len(self.found)]:
+            self.found.append((line_of(self.text, table, index, each.entry), each))
+
+    def read_all(self, scene: Addable) -> None:
+        """Add all parts and settings to an empty scene."""
+        for name in self.tables:
+            if name not in TABLES:
+                self.note(SceneError("scene", f'"{name}" is not known here', near(name, TABLES)), name,
+                          0 if _is_array(self.tables[name]) else None)
+        for kind in PARTS:
+            try:
+                array = _array(self.tables, kind)
+            except SceneError as error:
+                self.note(error, kind)
+                continue
+            for index, table in enumerate(array):
+                if len(self.found) == MOST_ERRORS:
+                    return
+                self._add(scene, kind, index, table)
+        for name in SETTINGS:
+            if name in self.tables:
+                try:
+                    setattr(scene, f"{name}_settings", _settings(name, self.tables[name]))
+                except SceneError as error:
+                    self.note(error, name)
+
+    def _add(self, scene: Addable, kind: str, index: int, table: dict) -> None:
+        try:
+            part = _part(PARTS[kind], _placed(table, self.directory), index + 1)
+            if not self.refused & set(_words(table)):
+                scene.add(part)
+        except SceneError as error:
+            self.note(error, kind, index)
+            if isinstance(table.get("name"), str):
+                self.refused.add(table["name"])
+
+
+def _words(value: Any) -> Iterator[str]:
+    """Yield all texts in a table, at any depth."""
+    match value:
+        case str():
+            yield value
+        case dict():
+            for each in value.values():
+                yield from _words(each)
+        case list():
+            for each in value:
+                yield from _words(each)
+
+
+def _is_array(value: Any) -> bool:
+    return isinstance(value, list) and all(isinstance(table, dict) for table in value)
 
 
 def _array(tables: dict, kind: str) -> list:
     array = tables.get(kind, [])
-    if not isinstance(array, list) or not all(isinstance(table, dict) for table in array):
+    if not _is_array(array):
         raise SceneError(f"[{kind}]", "must be an array of tables", f"write [[{kind}]], in two brackets")
     return array
 
@@ -107,7 +176,9 @@ def _part(part: type[Part], table: dict, index: int) -> Part:
     except SceneError as error:
         if isinstance(table.get("name"), str):
             raise
-        raise SceneError(f"[[{part.kind}]] {index}", error.cause, error.remedy) from None
+        unnamed = [SceneError(f"[[{part.kind}]] {index}", each.cause, each.remedy, each.entry) for each in error.errors]
+        unnamed[0].errors = tuple(unnamed)
+        raise unnamed[0] from None
 
 
 def _settings(name: str, table: Any) -> dict:

@@ -235,6 +235,7 @@ Vector = tuple[float, float, float]
 if TYPE_CHECKING:
     from pydantic._internal._model_construction import ModelMetaclass
     from pydantic.fields import FieldInfo
+    from pydantic_core import ErrorDetails
 else:
     ModelMetaclass = type(BaseModel)  # pydantic exports its metaclass in no other way
 
@@ -281,10 +282,17 @@ class _TranslatingType(ModelMetaclass):
             example = ", ".join(f"{name}=..." for name in list(inspect.signature(cls).parameters)[:max(2, len(given))])
             raise SceneError(cls.__name__, f"takes its values by name, got {len(given)} without one",
                              f"write {cls.__name__}({example})")
+        place, known = cls.place(data), cls.keywords()  # type: ignore[attr-defined]  # of its one user, Part
+        found = [SceneError(place, *_unknown(name, known), entry=name) for name in data if name not in known]
         try:
-            return super().__call__(**data)
+            made = super().__call__(**{name: value for name, value in data.items() if name in known})
         except ValidationError as error:
-            raise _scene_error(cls.place(data), error) from None  # type: ignore[attr-defined]  # of its one user, Part
+            found += [_of_complaint(place, each) for each in error.errors(include_url=False)
+                      if each["type"] != "default_factory_not_called"]
+        if found:
+            found[0].errors = tuple(found)
+            raise found[0] from None
+        return made
 
 
 class Part(BaseModel, metaclass=_TranslatingType):
@@ -355,25 +363,30 @@ class Part(BaseModel, metaclass=_TranslatingType):
             known = cls.keywords()
             for key in data:
                 if key not in known:
-                    raise ValueError(f'"{key}" is not known here', near(key, known))
+                    raise ValueError(*_unknown(key, known))
         return data
 
 
-def _scene_error(place: str, error: ValidationError) -> SceneError:
-    """Return the first of pydantic's complaints in our words."""
-    first = error.errors(include_url=False)[0]
-    path = ".".join(map(str, first["loc"]))
-    match first["type"]:
+def _unknown(name: str, known: Iterable[str]) -> tuple[str, str]:
+    """Return cause and remedy for a name that is not known."""
+    return f'"{name}" is not known here', near(name, known)
+
+
+def _of_complaint(place: str, complaint: ErrorDetails) -> SceneError:
+    path = ".".join(map(str, complaint["loc"]))
+    match complaint["type"]:
         case "value_error":
-            cause, *remedy = first["ctx"]["error"].args
+            cause, *remedy = complaint["ctx"]["error"].args
         case "missing":
             cause, remedy = "is missing", []
         case "model_type":
-            name = first["ctx"]["class_name"]
-            cause, remedy = f"must be a {name} or a table of its values, got {shown(first['input'])}", []
+            name = complaint["ctx"]["class_name"]
+            cause, remedy = f"must be a {name} or a table of its values, got {shown(complaint['input'])}", []
         case _:
-            cause, remedy = f"{first['msg'][:1].lower() + first['msg'][1:]}, got {shown(first['input'])}", []
-    return SceneError(place, f"{path} {cause}".strip(), *remedy)
+            message = complaint["msg"]
+            cause, remedy = f"{message[:1].lower() + message[1:]}, got {shown(complaint['input'])}", []
+    entry = str(complaint["loc"][0]) if complaint["loc"] else None
+    return SceneError(place, f"{path} {cause}".strip(), remedy[0] if remedy else None, entry)
 
 
 P = TypeVar("P", bound="Part")
