@@ -177,6 +177,7 @@ def test_summary(run):
         "status": "completed at t = 1 s, 101 times",
         "steps": "1000 taken, 2 rejected, 2100 Newton iterations, 310 factorisations",
         "wall time": "0.03 s: set_up 0.01, solve 0.015",
+        "real-time factor": "33.3 s of motion in 1 s of wall time",
         "energy balance": "off by 1e-06 J at most, 1.2e-06 of the energy exchanged",
         "joint residual": "3e-13 m at most",
         "note": "the start was made consistent",

@@ -276,6 +276,8 @@ class Run:
             parts = dict(report["time_s"])
             total = parts.pop("total")
             rows.append(("wall time", f"{total:.3g} s: " + ", ".join(f"{p} {s:.2g}" for p, s in parts.items())))
+            if total > 0:
+                rows.append(("real-time factor", f"{self.time[-1] / total:.3g} s of motion in 1 s of wall time"))
         if costs := report.get("us_per_step"):
             rows.append(("slides and joints", _dearest(costs)))
         rows += [(f"modes of {name}", text) for name, text in report.get("modes", {}).items()]

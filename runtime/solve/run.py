@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import time
 import warnings
 from dataclasses import dataclass
@@ -9,6 +10,7 @@ from typing import Protocol
 
 import numpy as np
 
+from ..checks.plausibility import implausible
 from ..checks.velocity_jumps import velocity_jumps
 from ..engine import Engine
 from ..errors import FunicularWarning, SceneError
@@ -27,6 +29,8 @@ from .long_runs import LongRun
 from .pauses import Pauses, pauses
 from .progress import Meter
 from .threads import share_elements
+
+LOG = logging.getLogger(__name__)
 
 MOST_OUTPUT = 4e9
 """Bytes of results that a run may keep in memory."""
@@ -97,12 +101,14 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     _check_size(engine.row_bytes, settings, stream)
     pace = pauses(int(np.ceil(settings.duration / settings.output_step)) + 1, engine.row_bytes)
     engine.watch(watcher)
-    messages = drop_redundant_rows(model, engine)
+    messages = implausible(scene) + drop_redundant_rows(model, engine)
     if initial is not None:
         messages += [f"state to start from: {message}" for message in initial.messages]
     messages += _divided_step(settings) + share_elements(engine, settings.threads)
     method, reason = choose(settings, scene, model, engine)
     set_up, cpu = time.perf_counter() - begin, time.process_time()
+    LOG.info("run of %g s: %d degrees of freedom, %s (%s), set up in %.3g s", settings.duration, model.n_dof,
+             method.name, reason, set_up)
     status, changed = _start(scene, settings, model, engine, method, None if stream is None else pace.capacity)
     messages += changed.gaps
     warned = _broken_velocities(model, changed.velocities) + velocity_jumps(scene, settings.duration)
@@ -122,6 +128,9 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
                      *reduced_strain.notes(scene, model, rows["time"], rows["q"])]:
             messages.append(note)
             warnings.warn(note, FunicularWarning, stacklevel=4)
+    LOG.info("run %s after %.3g s", status.replace("_", " "), total)
+    for message in messages:
+        LOG.info("run: %s", message)
     return Simulation(model, engine, watcher, status, messages, reason, set_up, total, cpu)
 
 

@@ -7,9 +7,11 @@ comes to rest without them.
 
 from __future__ import annotations
 
+import logging
 import warnings
 from typing import Generic, TypeVar
 
+from ..checks.plausibility import implausible
 from ..errors import EquilibriumError, FunicularWarning
 from ..parts.scene_data import SceneData
 from ..parts.settings import EquilibriumSettings
@@ -18,6 +20,8 @@ from .rest_state import CriticalPoint, RestState
 from .stability import stability
 from .stable_search import find_rest
 from .static_problem import StaticProblem
+
+LOG = logging.getLogger(__name__)
 
 S = TypeVar("S", bound=RestState)
 
@@ -62,7 +66,9 @@ def _note(problem: StaticProblem, state: RestState) -> None:
     if not state.stable:
         leaves = "; a small disturbance leaves it" * state.stability.known
         problem.messages.append(f"the state is {state.stability}{leaves}")
-    state.messages = problem.messages
+    LOG.info("equilibrium: load fraction %g after %d iterations, residual %.3g N", state.load_fraction,
+             state.iterations, state.residual)
+    state.messages = problem.messages + implausible(problem.scene)
     for message in problem.messages:
         warnings.warn(message, FunicularWarning, stacklevel=4)
 

@@ -1,0 +1,47 @@
+"""Numbers that are allowed but look like another unit, in words: notes of a run, never a refusal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ..parts.material import Material
+from ..parts.scene_data import SceneData
+from ..parts.validation import show
+
+MODULI = 1e3, 2e12
+"""Pa: soft gels have 1e3, diamond 1.1e12."""
+DENSITIES = 20.0, 2.5e4
+"""kg/m³: foams have 20, osmium 22,600."""
+WAVE_SPEED = 2.5e4
+"""m/s: of axial waves, sqrt(E / density); diamond has 18,000."""
+GRAVITY = 300.0
+"""m/s²: above that of the Sun."""
+
+
+def implausible(scene: SceneData) -> list[str]:
+    """Return a note for each number of a scene that looks like one in other units than SI."""
+    return [*_gravity(scene), *_materials(scene)]
+
+
+def _gravity(scene: SceneData) -> Iterator[str]:
+    size = float(np.linalg.norm(scene.gravity))
+    if size > GRAVITY:
+        yield f"gravity is {show(size, 'm/s²')}: is it in m/s², and are all lengths in m?"
+
+
+def _materials(scene: SceneData) -> Iterator[str]:
+    for cable in scene.cables.values():
+        yield from (f"{cable.where}: {note}" for note in _material(cable.material))
+
+
+def _material(material: Material) -> Iterator[str]:
+    modulus, density = material.youngs_modulus, material.density
+    if not MODULI[0] <= modulus <= MODULI[1]:
+        yield f"youngs_modulus is {show(modulus, 'Pa')}: is it in Pa? Steel has 2e11, rubber 1e6"
+    if not DENSITIES[0] <= density <= DENSITIES[1]:
+        yield f"density is {show(density, 'kg/m³')}: is it in kg/m³? Steel has 7850, water 1000"
+    elif (speed := (modulus / density) ** 0.5) > WAVE_SPEED:
+        yield (f"youngs_modulus {show(modulus, 'Pa')} and density {show(density, 'kg/m³')} make axial waves of "
+               f"{speed:.3g} m/s, steel has 5200: are they in Pa and kg/m³?")
