@@ -28,6 +28,7 @@ from .parts.signal import Harmonic, Pulse, Ramp, TableSignal
 from .parts.slide import Slide
 from .parts.spring import Spring
 from .parts.support import Clamp, Motion, Pin, Tie
+from .results.combination import combine
 from .results.run import Run
 from .scene import Scene
 from .scene_file import bundled_scenes, load_run, load_scene
@@ -73,12 +74,21 @@ __all__ = [
     "UnknownResultError",
     "__version__",
     "bundled_scenes",
+    "combine",
     "load_run",
     "load_scene",
 ]
 
 
+LAZY = {"Equilibrium": "results.equilibrium", "InitialState": "model.initial_state", "Modes": "solve.modes"}
+"""What brings SciPy along, which takes as long as all the rest: imported when it is asked for."""
+
+
 def __getattr__(name: str) -> Any:
+    if name in LAZY:
+        from importlib import import_module
+
+        return getattr(import_module(f".{LAZY[name]}", __name__), name)
     if name == "__version__":  # the metadata take a tenth of the time of the whole import
         from importlib.metadata import version
 
