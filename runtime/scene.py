@@ -83,9 +83,7 @@ class Scene(SceneMethods):
         scene.run_settings, scene.equilibrium_settings = dict(self.run_settings), dict(self.equilibrium_settings)
         for each in self.parts():
             if each is old:
-                given = {keyword: getattr(old, field) for keyword, field in old.keywords().items()
-                         if field in old.model_fields_set}
-                scene.add(type(old)(**given | changes))
+                scene.add(type(old)(**old.entries() | changes))
             else:
                 scene.add(each)
         return scene

@@ -47,25 +47,32 @@ def check_on_cable(scene: SceneData, slide: Slide) -> None:
     """A rider has to be on its cable still, after others moved it."""
     gap, where = _gap(scene, slide)
     if gap > (EXACT if slide.body_s is None else MOVABLE) * scene.cables[slide.along].length:
-        raise SceneError(slide.where, where, f'body "{slide.body}" is on more than one slide: it cannot be moved for '
-                         "each")
+        raise SceneError(slide.where, where,
+                         f"{_carrier(slide)} is on more than one slide: it cannot be moved for each")
 
 
 def _check_rider(scene: SceneData, slide: Slide) -> None:
-    if slide.body == slide.along:
+    if slide.body is not None and slide.body == slide.along:
         raise SceneError(slide.where, f'cable "{slide.along}" rides itself', "let another cable ride, or a body")
     for other in scene.slides.values():
         if (other.body, other.along) != (slide.body, slide.along):
             continue
         if other.rider == slide.rider:
-            what = f'body "{slide.body}"' if slide.body_s is None else f'cable "{slide.body}"'
-            raise SceneError(slide.where, f'holds the same point of {what} on cable "{slide.along}" as slide '
+            raise SceneError(slide.where,
+                             f'holds the same point of {_carrier(slide)} on cable "{slide.along}" as slide '
                              f'"{other.name}"', "leave one of them out, or give them different points "
                              + ("at" if slide.body_s is None else "body_s"))
         both = slide.prescribed is not None and other.prescribed is not None
         if both and slide.body in scene.bodies:
             raise SceneError(slide.where, f'drives body "{slide.body}" along cable "{slide.along}", as slide '
                              f'"{other.name}" does', "leave one of the drives out")
+
+
+def _carrier(slide: Slide) -> str:
+    """Return what the rider's point belongs to, for messages."""
+    if slide.body is None:
+        return "the ground"
+    return f'{"body" if slide.body_s is None else "cable"} "{slide.body}"'
 
 
 def _framed(scene: SceneData, slide: Slide, cable: Cable) -> Slide:
@@ -107,7 +114,7 @@ def _gap(scene: SceneData, slide: Slide) -> tuple[float, str]:
     """Return the distance in m from the rider's point to its place on the cable, and a sentence on it."""
     point = point_of(scene, slide.rider)
     gap = float(np.linalg.norm(point - scene.cables[slide.along].point(slide.s)))
-    rider = f'the point of {"body" if slide.body_s is None else "cable"} "{slide.body}" at {show(point, "m")}'
+    rider = f'the point of {_carrier(slide)} at {show(point, "m")}'
     return gap, f'{rider} is {gap:.6g} m away from cable "{slide.along}" at s = {slide.s:.9g} m'
 
 
@@ -117,7 +124,7 @@ def _seat(scene: SceneData, slide: Slide, cable: Cable) -> None:
     if gap <= EXACT * cable.length:
         return
     start = point_of(scene, slide.rider)
-    body, onto = scene.bodies.get(slide.body), cable.point(slide.s) - start
+    body, onto = scene.bodies.get(slide.body or ""), cable.point(slide.s) - start
     body = body if isinstance(body, RigidBody) else None
     if gap > MOVABLE * cable.length:
         remedy = f"slide from s = {cable.nearest_s(start):.6g} m"

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from ..parts.attachment import Attachment
 from ..parts.end_stops import Buffer, HardStop
 from ..parts.rigid_body import RigidBody
 from ..parts.scene_data import SceneData
@@ -28,7 +29,7 @@ def slide_model(slide: Slide, scene: SceneData, attachments: AttachmentBuilder,
     axes = along.axes_at(slide.s)
     at = slide.s / along.length * along.elements
     node = along.node_at(slide.s)
-    body = scene.bodies.get(slide.body)
+    body = scene.bodies.get(slide.body or "")
     rider_is_rigid = isinstance(body, RigidBody)
     if node is not None:  # on a node: the element that the rider moves into
         forward = body is None or np.dot(axes[0], body.velocity) >= 0
@@ -46,7 +47,7 @@ def slide_model(slide: Slide, scene: SceneData, attachments: AttachmentBuilder,
         rider_is_rigid,
         -1 if slide.prescribed is None else signal(slide.prescribed),
         dim == 3 and not along.kind_of_element.director,
-        rider.mass,
+        rider.mass or attachments.model(Attachment(on=slide.along, s=slide.s)).mass,  # the ground has none
         slide.s,
         int(np.clip(np.floor(at), 0, along.elements - 1)),
         axes[1],

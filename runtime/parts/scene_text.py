@@ -224,8 +224,7 @@ def _data(value: Any) -> Any:
             return given | ({} if value.rotation is None else {"rotation": _data(value.rotation)})
         case Part():
             tag = {name: getattr(value, name) for base, name in TAGS.items() if isinstance(value, base)}
-            given = {keyword: getattr(value, name) for keyword, name in value.keywords().items()}
-            return tag | {keyword: _data(each) for keyword, each in given.items() if each is not None}
+            return tag | {keyword: _data(each) for keyword, each in value.entries().items()}
         case list() | tuple():
             return [_data(each) for each in value]
     return value

@@ -17,10 +17,11 @@ from .validation import Name, Part, Reference, Vector, direction, finite, one_of
 
 
 class Slide(Part):
-    """A body's point that rides the centreline of a cable.
+    """A point of a body, of another cable or of the ground that rides the centreline of a cable.
 
     body, along: what rides, and the cable; s: the arc-length where it starts, in m; at: the rider's point in body
     axes, in m; of a cable that rides, ``body_s`` (m) instead, its point's arc-length: body=("link", 0.5) gives both.
+    A point (x, y, z) of the ground as the body is an eyelet, through which the cable slides.
 
     frame: "point", the rider turns freely; "tangent", it keeps the angle to the cable's tangent that it starts with,
     so that a trolley's floor stays along the cable; "section", the whole orientation to the cable's section that it
@@ -46,12 +47,12 @@ class Slide(Part):
         "moment": vector_of_time("N m", "moment on the rider, of a slide that ties its axes to the cable's frame"),
         "residual": of_time("m", "distance of the rider's point to the cable"),
     }
-    body: Reference
+    body: Reference | None
     body_s: Annotated[float, finite("m")] | None = None
     along: Reference
     s: Annotated[float, finite("m")]
     at: Annotated[Vector, xyz("m")] = (0.0, 0.0, 0.0)
-    name: Name = Field(default_factory=lambda data: f"{data['body']}_on_{data['along']}")
+    name: Name = Field(default_factory=lambda data: f"{data['body'] or 'ground'}_on_{data['along']}")
     frame: Annotated[str, one_of(("point", "tangent", "section"))] = "point"
     roll: Annotated[str, one_of(("free", "held"))] = "free"
     up: Annotated[Vector | None, direction()] = None
@@ -63,10 +64,21 @@ class Slide(Part):
 
     @model_validator(mode="before")
     @classmethod
-    def _splits_a_point_of_a_cable(cls, data: Any) -> Any:
-        body = data.get("body") if isinstance(data, dict) else None
+    def _splits_what_rides(cls, data: Any) -> Any:
+        if not isinstance(data, dict) or "body" not in data:
+            return data
+        body: Any = data["body"]
+        body = body.tolist() if hasattr(body, "tolist") else body
         if isinstance(body, list | tuple) and len(body) == 2:
             return data | {"body": body[0], "body_s": body[1]}
+        if isinstance(body, list | tuple) and len(body) == 3:
+            if any(data.get("at") or ()):
+                raise ValueError("body is a point of the ground and takes no at", "leave at out")
+            return data | {"body": None, "at": body}
+        if body is None:
+            raise ValueError("body is missing", "give a body, (cable, s), or a point (x, y, z) of the ground")
+        if body is None:
+            raise ValueError("body is missing", "give a body, (cable, s), or a point (x, y, z) of the ground")
         return data
 
     @model_validator(mode="after")
@@ -85,6 +97,11 @@ class Slide(Part):
             if self.prescribed is not None and isinstance(getattr(self, name), Stop):
                 raise ValueError(f"is driven, and a stop {name} would hold against that", "leave one of them out")
         return self
+
+    def entries(self) -> dict[str, Any]:
+        """Return what it could be made with; of an eyelet its point as the body."""
+        entries = super().entries()
+        return entries if self.body is not None else {"body": self.at} | {k: v for k, v in entries.items() if k != "at"}
 
     @property
     def rider(self) -> Attachment:

@@ -340,6 +340,11 @@ class Part(BaseModel, metaclass=_TranslatingType):
         """Return whether such parts have names, by which a scene and its results know them."""
         return "name" in cls.model_fields
 
+    def entries(self) -> dict[str, Any]:
+        """Return what it could be made with, by keyword: all that is set, defaults too."""
+        given = {keyword: getattr(self, field) for keyword, field in self.keywords().items()}
+        return {keyword: value for keyword, value in given.items() if value is not None}
+
     @property
     def given_name(self) -> str | None:
         """Return its name, None where it has none, or none yet."""
