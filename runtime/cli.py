@@ -212,6 +212,25 @@ def scenes() -> None:
 
 
 @app.command()
+def schema(
+    output: Annotated[Path | None, typer.Option("-o", "--output", help="file to write (default: print it)")] = None,
+) -> None:
+    """Write the JSON Schema of scene files, by which editors complete and check them.
+
+    In the first line of a scene file, editors that know Taplo look for: #:schema ./funicular.schema.json
+    """
+    import json
+
+    from .scene_schema import scene_schema
+
+    text = json.dumps(scene_schema(), indent=1, ensure_ascii=False) + "\n"
+    if output is None:
+        print(text, end="")
+    else:
+        output.write_text(text, encoding="utf-8")
+
+
+@app.command()
 def derive(
     names: Names = None,
     check: Annotated[bool, typer.Option("--check", help="write nothing; fail if the files differ")] = False,

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import PlainValidator
 
+from .schemas import attachment_schema, checked
 from .validation import Part, Vector, finite, number, show, shown, vector3, xyz
 
 
@@ -64,5 +64,5 @@ def _attachment(value: Any) -> Attachment:
     return Attachment(on=on, s=number(place, "m"))
 
 
-AnyAttachment = Annotated[Attachment, PlainValidator(_attachment)]
+AnyAttachment = Annotated[Attachment, checked(_attachment, attachment_schema('["A", [x, y, z]] or [x, y, z]'))]
 """An attachment, or what `Attachment.data` gives, with a part of the scene for its name where that is at hand."""

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
-from pydantic import PlainValidator, ValidationInfo, model_validator
+from pydantic import ValidationInfo, model_validator
 
 from ..errors import near
 from ..kernels.element_line import ElementLine
@@ -15,6 +15,7 @@ from ..kernels.elements import ElementKind, LawTraits
 from ..kernels.libraries import of_library, resolved
 from . import cable_laws, curves
 from .material import Material
+from .schemas import ONLY_PYTHON, GivenAs, checked, list_of_lists
 from .section import AnySection, Circle, Tube
 from .validation import EXACT, Count, Name, Part, Vector, one_of, positive, show, shown, xyz
 
@@ -87,11 +88,11 @@ class Cable(Part):
     name: Name
     start: Annotated[Vector | None, xyz("m")] = None
     end: Annotated[Vector | None, xyz("m")] = None
-    points: Annotated[tuple[tuple[float, ...], ...] | None, PlainValidator(_points)] = None
-    curve: Callable | None = None  # kept as points, see `_settled`
+    points: Annotated[tuple[tuple[float, ...], ...] | None, checked(_points, list_of_lists("m"))] = None
+    curve: Annotated[Callable | None, GivenAs(ONLY_PYTHON)] = None  # kept as points, see `_settled`
     elements: Count
-    library: Annotated[str | None, PlainValidator(_library)] = None
-    element: Annotated[str, PlainValidator(_element)] = "beam24"
+    library: Annotated[str | None, checked(_library, {"type": "string"})] = None
+    element: Annotated[str, checked(_element, {"type": "string"})] = "beam24"
     law: str = None  # type: ignore[assignment]  # `_with_a_law` chooses one where none is given
     strain: Annotated[str | None, one_of(("green", "engineering"), optional=True)] = None
     curvature: Annotated[str | None, one_of(("exact", "linear"), optional=True)] = None

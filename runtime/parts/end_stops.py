@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import Annotated, Any, ClassVar
 
-from pydantic import PlainValidator, model_validator
+from pydantic import model_validator
 
 from ..errors import near
+from .schemas import checked, tagged
 from .validation import Part, not_negative, part_of_table, positive, shown, within
 
 WORDS = ("error", "leave")
@@ -61,4 +62,4 @@ def _end(value: Any) -> str | Stop:
     return part_of_table(value, "stop", STOPS)
 
 
-CableEnd = Annotated[Any, PlainValidator(_end)]
+CableEnd = Annotated[Any, checked(_end, {"anyOf": [{"enum": list(WORDS)}, tagged("stop")]})]

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Annotated, Any, ClassVar
 
-from pydantic import PlainValidator, model_validator
+from pydantic import model_validator
 
+from .schemas import ONLY_PYTHON, checked
 from .validation import Name, Part, finite, one_of, shown
 
 
@@ -34,10 +35,10 @@ class Event(Part):
     kind: ClassVar[str] = "event"
     group: ClassVar[str] = "events"
     name: Name | None = None
-    quantity: Annotated[str | None, PlainValidator(_text)] = None
+    quantity: Annotated[str | None, checked(_text, {"type": "string"})] = None
     s: Annotated[float, finite("m")] | None = None
     value: Annotated[float, finite()] = 0.0
-    function: Annotated[Any, PlainValidator(_function)] = None
+    function: Annotated[Any, checked(_function, ONLY_PYTHON)] = None
     direction: Annotated[str, one_of(("rising", "falling", "both"))] = "both"
     action: Annotated[str, one_of(("record", "stop"))] = "record"
 

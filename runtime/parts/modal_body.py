@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
 
 import numpy as np
-from pydantic import PlainValidator, PrivateAttr, model_validator
+from pydantic import PrivateAttr, model_validator
 
 from ..errors import SceneError
 from ..rotations import rotate
@@ -17,6 +17,7 @@ from .material import Material
 from .plane import across, in_plane
 from .quantity import Quantity
 from .rigid_body import Quaternion, RigidBody, unit_quaternion
+from .schemas import checked, list_schema
 from .section import AnySection
 from .validation import EXACT, Count, Flag, Name, Part, Vector, not_negative, one_of, show, shown, xyz
 
@@ -69,10 +70,10 @@ class ModalBody(Part):
     law: str | None = None
     modes: Count = 5
     boundary: Annotated[str, one_of(("free", "attached"))] = "free"
-    data: Annotated[str | None, PlainValidator(_path)] = None
+    data: Annotated[str | None, checked(_path, {"type": "string"})] = None
     orthogonal: Flag = True
     position: Annotated[Vector | None, xyz("m")] = None
-    orientation: Annotated[Quaternion, PlainValidator(unit_quaternion)] = (1.0, 0.0, 0.0, 0.0)
+    orientation: Annotated[Quaternion, checked(unit_quaternion, list_schema("", 4, 4))] = (1.0, 0.0, 0.0, 0.0)
     damping_ratio: Annotated[float, not_negative()] = 0.0
     velocity: Annotated[Vector, xyz("m/s")] = (0.0, 0.0, 0.0)
     angular_velocity: Annotated[Vector, xyz("rad/s")] = (0.0, 0.0, 0.0)

@@ -7,11 +7,11 @@ from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
-from pydantic import PlainValidator
 
 from ..rotations import rotate
 from .plane import across, in_plane
 from .quantity import Quantity, vector_of_time
+from .schemas import checked, list_of_lists, list_schema
 from .validation import EXACT, Name, Part, Vector, positive, show, vector, vector3, xyz
 
 Quaternion = tuple[float, float, float, float]
@@ -71,9 +71,10 @@ class RigidBody(Part):
     }
     name: Name
     mass: Annotated[float, positive("kg")]
-    inertia: Annotated[tuple[Vector, Vector, Vector], PlainValidator(_inertia)]
+    inertia: Annotated[tuple[Vector, Vector, Vector],
+                       checked(_inertia, {"anyOf": [list_schema("kg m²"), list_of_lists("kg m²")]})]
     position: Annotated[Vector, xyz("m")]
-    orientation: Annotated[Quaternion, PlainValidator(unit_quaternion)] = (1.0, 0.0, 0.0, 0.0)
+    orientation: Annotated[Quaternion, checked(unit_quaternion, list_schema("", 4, 4))] = (1.0, 0.0, 0.0, 0.0)
     centre: Annotated[Vector, xyz("m")] = (0.0, 0.0, 0.0)
     velocity: Annotated[Vector, xyz("m/s")] = (0.0, 0.0, 0.0)
     angular_velocity: Annotated[Vector, xyz("rad/s")] = (0.0, 0.0, 0.0)

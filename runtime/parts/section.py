@@ -9,9 +9,10 @@ from math import exp, nan, pi
 from typing import Annotated, Any, ClassVar
 
 import numpy as np
-from pydantic import Field, PlainValidator, model_validator
+from pydantic import Field, model_validator
 
 from ..errors import SceneError, check_renamed
+from .schemas import checked, list_schema, tagged
 from .validation import Part, part_of_table, positive, show, shown, vector
 
 Length = Annotated[float, positive("m")]
@@ -28,7 +29,7 @@ def _factors(value: Any) -> tuple[float, float]:
 
 
 TorsionConstant = Annotated[float, positive("m⁴")]
-ShearFactors = Annotated[tuple[float, float], PlainValidator(_factors)]
+ShearFactors = Annotated[tuple[float, float], checked(_factors, list_schema("", 2, 2))]
 
 
 class Section(Part):
@@ -231,4 +232,4 @@ def _section(value: Any) -> Section:
     return part_of_table(value, "shape", SHAPES)
 
 
-AnySection = Annotated[Section, PlainValidator(_section)]
+AnySection = Annotated[Section, checked(_section, tagged("section"))]

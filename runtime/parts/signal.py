@@ -14,8 +14,9 @@ from numbers import Real
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Protocol
 
 import numpy as np
-from pydantic import Field, PlainValidator, model_validator
+from pydantic import Field, model_validator
 
+from .schemas import checked, tagged
 from .validation import Part, finite, list_of, one_of, part_of_table, positive, show, shown
 
 if TYPE_CHECKING:
@@ -312,4 +313,4 @@ def signal(value: Any) -> Signal:
     return part_of_table(value, "form", FORMS)
 
 
-AnySignal = Annotated[Signal, PlainValidator(signal)]
+AnySignal = Annotated[Signal, checked(signal, {"anyOf": [{"type": "number"}, tagged("signal")]})]

@@ -12,6 +12,7 @@ from .end_stops import CableEnd, Stop
 from .friction import Friction
 from .plane import across
 from .quantity import Quantity, of_time, vector_of_time
+from .schemas import GivenAs, attachment_schema
 from .signal import AnySignal, Integral, Signal
 from .validation import Name, Part, Reference, Vector, direction, finite, one_of, xyz
 
@@ -47,7 +48,7 @@ class Slide(Part):
         "moment": vector_of_time("N m", "moment on the rider, of a slide that ties its axes to the cable's frame"),
         "residual": of_time("m", "distance of the rider's point to the cable"),
     }
-    body: Reference | None
+    body: Annotated[Reference | None, GivenAs(attachment_schema("or the point [x, y, z] of the ground"))]
     body_s: Annotated[float, finite("m")] | None = None
     along: Reference
     s: Annotated[float, finite("m")]

@@ -6,10 +6,11 @@ import math
 from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar
 
-from pydantic import PlainValidator, model_validator
+from pydantic import model_validator
 
 from .plane import in_plane
 from .quantity import Quantity, vector_of_time
+from .schemas import checked, some
 from .signal import Constant, Signal, signal
 from .validation import Name, Part, Reference, Vector, finite, one_of, shown, vector
 
@@ -143,8 +144,8 @@ class Motion(Support):
     kind: ClassVar[str] = "motion"
     group: ClassVar[str] = "motions"
     positional: ClassVar[tuple[str, ...]] = ("cable",)
-    displacement: Annotated[Displacement | None, PlainValidator(_displacement)] = None
-    rotation: Annotated[Rotation | None, PlainValidator(_rotation)] = None
+    displacement: Annotated[Displacement | None, checked(_displacement, some(3))] = None
+    rotation: Annotated[Rotation | None, checked(_rotation, some(2))] = None
 
     @model_validator(mode="after")
     def _moves_something(self) -> Motion:

@@ -21,6 +21,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainValidator, Val
 
 from ..errors import SceneError, near
 from .quantity import Quantity
+from .schemas import checked, list_schema, number_schema
 
 LIMITS = {"m": (1e-12, 1e9), "s": (1e-12, 1e12), "m²": (1e-24, 1e24), "m⁴": (1e-48, 1e48)}
 """By unit: the least size of a number that must be positive, and the largest of any number; else `OTHER_LIMITS`."""
@@ -112,6 +113,8 @@ def show(value: float | tuple[float, ...] | np.ndarray, unit: str = "") -> str:
 
 def one_of(known: Iterable[str], optional: bool = False) -> PlainValidator:
     """Check of a name among known ones, or of None where it may be left out; the refusal suggests the near one."""
+    known = tuple(known)
+
     def check(value: Any) -> str | None:
         if value is None and optional:
             return None
@@ -121,22 +124,22 @@ def one_of(known: Iterable[str], optional: bool = False) -> PlainValidator:
             raise ValueError(f'"{value}" is not known', near(value, known))
         return value
 
-    return PlainValidator(check)
+    return checked(check, {"enum": list(known)})
 
 
 def finite(unit: str = "") -> PlainValidator:
     """Check of a finite number."""
-    return PlainValidator(lambda value: number(value, unit))
+    return checked(lambda value: number(value, unit), number_schema(unit))
 
 
-def _bounded(unit: str, allowed: Callable[[float], bool], rule: str) -> PlainValidator:
+def _bounded(unit: str, allowed: Callable[[float], bool], rule: str, **bounds: float) -> PlainValidator:
     def check(value: Any) -> float:
         result = number(value, unit)
         if not allowed(result):
             raise ValueError(f"must {rule}, got {show(result, unit)}")
         return result
 
-    return PlainValidator(check)
+    return checked(check, number_schema(unit, **bounds))
 
 
 def positive(unit: str = "") -> PlainValidator:
@@ -151,29 +154,31 @@ def positive(unit: str = "") -> PlainValidator:
             raise ValueError(f"must not be below {show(least, unit)}, got {show(result, unit)}")
         return result
 
-    return PlainValidator(check)
+    return checked(check, number_schema(unit, exclusiveMinimum=0))
 
 
 def not_negative(unit: str = "") -> PlainValidator:
     """Check of a finite number, 0 or above."""
-    return _bounded(unit, lambda x: x >= 0, "not be negative")
+    return _bounded(unit, lambda x: x >= 0, "not be negative", minimum=0)
 
 
 def within(low: float, high: float, *, ends: bool) -> PlainValidator:
     """Check of a finite number between ``low`` and ``high``, the ends included or not."""
     if ends:
-        return _bounded("", lambda x: low <= x <= high, f"lie in [{low:g}, {high:g}]")
-    return _bounded("", lambda x: low < x < high, f"lie inside ({low:g}, {high:g})")
+        return _bounded("", lambda x: low <= x <= high, f"lie in [{low:g}, {high:g}]", minimum=low, maximum=high)
+    return _bounded("", lambda x: low < x < high, f"lie inside ({low:g}, {high:g})", exclusiveMinimum=low,
+                    exclusiveMaximum=high)
 
 
 def above(low: float, most: float) -> PlainValidator:
     """Check of a finite number above ``low`` and at most ``most``."""
-    return _bounded("", lambda x: low < x <= most, f"be above {low:g} and at most {most:g}")
+    return _bounded("", lambda x: low < x <= most, f"be above {low:g} and at most {most:g}", exclusiveMinimum=low,
+                    maximum=most)
 
 
 def xyz(unit: str = "") -> PlainValidator:
     """Check of three finite numbers."""
-    return PlainValidator(lambda value: vector(value, unit))
+    return checked(lambda value: vector(value, unit), list_schema(unit))
 
 
 def direction() -> PlainValidator:
@@ -186,7 +191,7 @@ def direction() -> PlainValidator:
             raise ValueError(f"must not be shorter than {show(OTHER_LIMITS[0])}, got {show(result)}")
         return result
 
-    return PlainValidator(check)
+    return checked(check, list_schema())
 
 
 def list_of(unit: str = "", *, least: int) -> PlainValidator:
@@ -197,7 +202,7 @@ def list_of(unit: str = "", *, least: int) -> PlainValidator:
             raise ValueError(f"must be a list of {least} numbers or more, got {shown(value)}")
         return vector(value, unit, len(value))
 
-    return PlainValidator(check)
+    return checked(check, list_schema(unit, least, None))
 
 
 def _count(value: Any) -> int:
@@ -224,9 +229,9 @@ def _name(value: Any) -> str:
     return value
 
 
-Count = Annotated[int, PlainValidator(_count)]
-Flag = Annotated[bool, PlainValidator(_flag)]
-Name = Annotated[str, PlainValidator(_name)]
+Count = Annotated[int, checked(_count, {"type": "integer", "minimum": 1, "maximum": MOST})]
+Flag = Annotated[bool, checked(_flag, {"type": "boolean"})]
+Name = Annotated[str, checked(_name, {"type": "string", "maxLength": LONGEST_NAME})]
 Reference = Annotated[str, BeforeValidator(lambda value: getattr(value, "name", value))]
 """The name of a part of the scene, given as that or as the part itself."""
 Vector = tuple[float, float, float]

@@ -1,0 +1,64 @@
+"""What a scene file may say, as JSON Schema beside each check; `scene_schema` makes one document of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Annotated, Any
+
+from pydantic import PlainValidator
+
+
+class GivenAs:
+    """The JSON Schema of what a scene file may say for a field; as pydantic's own, which would take 15 ms to import."""
+
+    def __init__(self, schema: Mapping[str, Any]):
+        self.schema = schema
+
+    def __get_pydantic_json_schema__(self, core_schema: Any, handler: Any) -> dict[str, Any]:
+        """Return the schema, as pydantic asks for it."""
+        return dict(self.schema)
+
+
+def checked(check: Callable[..., Any], schema: Mapping[str, Any]) -> PlainValidator:
+    """Return a check of values; schema: what a scene file may say there, as JSON Schema (`scene_schema`)."""
+    return PlainValidator(check, json_schema_input_type=Annotated[Any, GivenAs(schema)])
+
+
+ONLY_PYTHON: dict[str, Any] = {"not": {}}
+"""JSON Schema of what no scene file can hold."""
+
+
+def some(n: int) -> dict[str, Any]:
+    """Return the JSON Schema of a list of n things."""
+    return {"type": "array", "minItems": n, "maxItems": n}
+
+
+TABLE_OF = "table of"
+"""Stands for a reference to the tables of a base class, which pydantic would look up itself."""
+
+
+def tagged(base: str) -> dict[str, Any]:
+    """Return the JSON Schema of a table that says by an entry which of several parts it is; see `scene_schema`."""
+    return {TABLE_OF: base}
+
+
+def number_schema(unit: str = "", **bounds: float) -> dict[str, Any]:
+    """Return the JSON Schema of a number; its description is the unit."""
+    return {"type": "number", **bounds} | ({"description": f"in {unit}"} if unit else {})
+
+
+def list_schema(unit: str = "", least: int = 3, most: int | None = 3) -> dict[str, Any]:
+    """Return the JSON Schema of a list of numbers, of three if not said otherwise."""
+    lengths = {"minItems": least} | ({} if most is None else {"maxItems": most})
+    return {"type": "array", "items": {"type": "number"}, **lengths} | ({"description": f"in {unit}"} if unit else {})
+
+
+def list_of_lists(unit: str) -> dict[str, Any]:
+    """Return the JSON Schema of a list of lists of three numbers."""
+    return {"type": "array", "items": list_schema(), "minItems": 2, "description": f"in {unit}"}
+
+
+def attachment_schema(more: str) -> dict[str, Any]:
+    """Return the JSON Schema of an attachment; more: what it may be beside "A" and ["wire", s]."""
+    return {"description": f'"A", ["wire", s], {more}, in m',
+            "anyOf": [{"type": "string"}, {"type": "array", "minItems": 2, "maxItems": 3}]}
