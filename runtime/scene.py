@@ -161,17 +161,9 @@ class Scene(SceneMethods):
         """
         _refuse_unknown("run", unknown, (*RunSettings.keywords(), "resume", "progress"))
         state = None if initial is None or isinstance(initial, str) else _state(self, initial)
-        given = {
-            "duration": duration,
-            "tol": tol,
-            "step": step,
-            "output_step": output_step,
-            "integrator": integrator,
-            "spectral_radius": spectral_radius,
-            "initial": initial if state is None else "state" if isinstance(initial, Mapping) else "equilibrium",
-            "threads": threads,
-            "save": save,
-        }
+        given = {"duration": duration, "tol": tol, "step": step, "output_step": output_step, "integrator": integrator,
+                 "spectral_radius": spectral_radius, "threads": threads, "save": save,
+                 "initial": initial if state is None else "state" if isinstance(initial, Mapping) else "equilibrium"}
         settings = RunSettings(**self.run_settings | {k: v for k, v in given.items() if v is not None})
         if settings.initial == "state" and state is None:
             raise SceneError("run", 'initial = "state" needs a state', "give what run.at() or equilibrium() returned")
