@@ -1,0 +1,22 @@
+"""Builds the site: ``python -m funicular.guides.site DIR``. Needs the extra `docs`; the guides are run."""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from pathlib import Path
+
+from .build import build
+
+
+def main() -> int:
+    """Build the site into the directory that is given; returns 1 where something is wrong."""
+    if len(sys.argv) != 2:
+        print("usage: python -m funicular.guides.site DIR", file=sys.stderr)
+        return 2
+    with tempfile.TemporaryDirectory() as work:
+        return build(Path(sys.argv[1]), Path(work))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,154 @@
+"""Collects the sources of the site in a directory of their own, and runs Sphinx there; nothing else is written."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+from funicular.scene_schema import scene_schema
+
+SITE = Path(__file__).parent
+GUIDES = SITE.parent
+REPOSITORY = GUIDES.parents[1]
+"""Where the package is built from; installed, there is none, and the pages beside the code are left out."""
+
+PAGES = {"runtime/README.md": "reference.md", "derive/README.md": "derivation.md",
+         "tests/benchmarks/README.md": "benchmarks.md"}
+"""Pages beside the code, and what they are called in the site."""
+
+
+def build(out: Path, work: Path) -> int:
+    """Build the site; returns 0, or 1 where Sphinx warned of anything. work: an empty directory."""
+    for file in SITE.glob("*.md"):
+        shutil.copy(file, work)
+    shutil.copy(SITE / "conf.py", work)
+    shutil.copytree(SITE / "static", work / "static")
+    shutil.copytree(GUIDES, work / "guides_source", ignore=shutil.ignore_patterns("site", "__*"))
+    (work / "guides_source" / "GALLERY_HEADER.rst").write_text(GALLERY_HEADER, encoding="utf-8")
+    for page, name in PAGES.items():
+        if (REPOSITORY / page).is_file():
+            (work / name).write_text(_moved((REPOSITORY / page).read_text(encoding="utf-8"), page), encoding="utf-8")
+            _copy_pictures(REPOSITORY / page, work)
+    (work / "scene_files.md").write_text(scene_files(), encoding="utf-8")
+    (work / "command_line.md").write_text(command_line(), encoding="utf-8")
+    (work / "extra").mkdir()
+    (work / "extra" / "funicular.schema.json").write_text(json.dumps(scene_schema(), indent=1), encoding="utf-8")
+    command = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html", str(work), str(out)]
+    return subprocess.run(command, check=False).returncode
+
+
+GALLERY_HEADER = """Guides
+======
+
+Each is a script that runs; its pictures and numbers are what it printed when this site was built.
+"""
+
+
+def _copy_pictures(page: Path, work: Path) -> None:
+    """Copy the pictures that a page shows to where the site's page looks for them."""
+    for path in re.findall(r"!\[[^\]]*\]\(([^)]+)\)", page.read_text(encoding="utf-8")):
+        target = work / path
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(page.parent / path, target)
+
+
+def _moved(text: str, page: str) -> str:
+    """Return a page with links to other pages as they are in the site; links to code lose their target."""
+    here = Path(page).parent
+
+    def link(found: re.Match[str]) -> str:
+        words, target = found.groups()
+        if target.startswith(("#", "http")):
+            return found[0]
+        path, _, anchor = target.partition("#")
+        parts: list[str] = []
+        for part in (here / path).parts:
+            if part == ".." and parts:
+                parts.pop()
+            elif part != "..":
+                parts.append(part)
+        whole = "/".join(parts)
+        name = PAGES.get(whole) or PAGES.get(f"{whole}/README.md")
+        if name is not None:
+            return f"[{words}]({name}{'#' + anchor if anchor else ''})"
+        return found[0] if path.endswith(".png") and len(parts) == len(here.parts) + 1 else words
+
+    return re.sub(r"(?<!!)\[([^\]]*)\]\(([^)]+)\)", link, text)
+
+
+def command_line() -> str:
+    """Return the reference of the command line, as typer writes it."""
+    command = [sys.executable, "-m", "typer", "funicular.cli", "utils", "docs", "--name", "funicular"]
+    text = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    return re.sub(r"^# `funicular`", "# Command line", text, flags=re.MULTILINE)
+
+
+SCENE_FILES = """# Scene files
+
+The tables of a scene file, from the same fields that check it. Editors complete and check scene files by
+<a href="funicular.schema.json">the JSON Schema</a>: `funicular schema` prints it.
+
+`gravity`: three numbers in m/s².
+"""
+BOUNDS = {"minimum": "≥", "exclusiveMinimum": ">", "maximum": "≤", "exclusiveMaximum": "<"}
+
+
+def scene_files() -> str:
+    """Return the reference of scene files, from their schema: a section a table, a row an entry."""
+    schema = scene_schema()
+    lines = [SCENE_FILES]
+    for name, table in schema["properties"].items():
+        if name == "gravity":
+            continue
+        array = table.get("type") == "array"
+        lines += [f"## {'[[' + name + ']]' if array else '[' + name + ']'}", ""]
+        lines += _table(table["items"] if array else table)
+    for name, definition in schema["$defs"].items():
+        lines += [f"## {name}", ""]
+        for one in definition.get("oneOf", [definition]):
+            if "oneOf" in definition:
+                tag = next(iter(one["properties"]))
+                lines += [f"### {tag} = \"{one['properties'][tag]['const']}\"", ""]
+            lines += _table(one)
+    return "\n".join(lines) + "\n"
+
+
+def _table(schema: dict[str, Any]) -> list[str]:
+    """Return description and entries of a table as Markdown."""
+    rows = ["| entry | what it takes | default |", "|---|---|---|"]
+    required = set(schema.get("required", []))
+    for name, field in schema["properties"].items():
+        default = "required" if name in required else f"`{json.dumps(field['default'])}`" if "default" in field else ""
+        rows.append(f"| `{name}` | {_words(field)} | {default} |")
+    return [_prose(schema.get("description", "")), "", *rows, ""]
+
+
+def _prose(docstring: str) -> str:
+    """Return a docstring as Markdown."""
+    return re.sub(r"``([^`]+)``", r"`\1`", docstring)
+
+
+def _words(field: dict[str, Any]) -> str:
+    """Return in words what a field takes."""
+    note = f" {field['description']}" if "description" in field else ""
+    if "$ref" in field:
+        name = field["$ref"].rsplit("/", 1)[1]
+        return f"[{name}](#{name.lower()})"
+    if "enum" in field:
+        return ", ".join(f'`"{word}"`' for word in field["enum"])
+    if "const" in field:
+        return f'`"{field["const"]}"`'
+    if "anyOf" in field:
+        return " or ".join(dict.fromkeys(_words(each) for each in field["anyOf"])) + note
+    if field.get("type") == "array":
+        least, most = field.get("minItems"), field.get("maxItems")
+        count = f"{least}" if least == most else f"{least} to {most}" if most else f"{least} or more"
+        of = field.get("items", {})
+        return f"list of {count} {'lists' if of.get('type') == 'array' else 'numbers' if of else 'entries'}{note}"
+    bounds = [f"{sign} {field[key]:g}" for key, sign in BOUNDS.items() if key in field]
+    return field.get("type", "anything") + (" " + ", ".join(bounds) if bounds else "") + note

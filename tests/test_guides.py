@@ -1,0 +1,49 @@
+"""The guides are scripts of one page that run; the site made of them has no broken link and no warning."""
+
+import os
+import re
+import runpy
+from pathlib import Path
+
+import funicular.guides
+import matplotlib
+import pytest
+
+FOLDER = Path(funicular.guides.__file__).parent
+GUIDES = sorted(path for path in FOLDER.glob("*.py") if path.stem != "__init__")
+QUICK = ("first_scene",)
+"""Those that the default run executes; the site's test executes all."""
+
+
+@pytest.mark.parametrize("guide", GUIDES, ids=lambda guide: guide.stem)
+def test_form(guide):
+    text = guide.read_text(encoding="utf-8")
+    assert 60 <= text.count("\n") <= 160
+    assert re.match(r'"""\n\S.*\n=+\n\n', text), "a title, underlined"
+    assert max(map(len, text.splitlines())) <= 120
+    assert max(len(line) for line in text.splitlines() if not line.startswith("#")) <= 110
+
+
+@pytest.mark.parametrize("guide", [guide for guide in GUIDES if guide.stem in QUICK], ids=lambda guide: guide.stem)
+def test_runs(guide, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    matplotlib.use("Agg")
+    runpy.run_path(str(guide))
+    matplotlib.pyplot.close("all")
+
+
+@pytest.mark.site
+def test_site(tmp_path):
+    """Sphinx runs all guides; a warning, such as a link that leads nowhere, is an error."""
+    from funicular.guides.site.build import build
+
+    os.environ["MPLBACKEND"] = "Agg"
+    work, out = tmp_path / "work", tmp_path / "site"
+    work.mkdir()
+    assert build(out, work) == 0
+    pages = {path.relative_to(out).as_posix() for path in out.rglob("*.html")}
+    assert {"index.html", "reference.html", "scene_files.html", "command_line.html", "api.html"} <= pages
+    assert {f"guides/{guide.stem}.html" for guide in GUIDES} <= pages
+    for page in pages:  # it is read offline
+        text = (out / page).read_text(encoding="utf-8")
+        assert not re.search(r'<(?:script|link|img)[^>]*(?:src|href)="(?:https?:)?//', text), page
