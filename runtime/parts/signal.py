@@ -124,7 +124,7 @@ class Constant(Signal):
     constant: Value
 
     def as_given(self) -> float:
-        """Return the number."""
+        """Return the number that it is at all times."""
         return self.constant
 
     def pieces(self) -> tuple[np.ndarray, np.ndarray]:
