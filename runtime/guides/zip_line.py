@@ -11,8 +11,8 @@ before the lower one. How fast does he get, how far does the buffer give, and wh
 # --------
 #
 # Twelve millimetres of steel rope between platforms 12 m apart in height. It is made of wires: its bending stiffness is
-# far below that of a bar, so area and second moment are given instead of a shape. ``rest_length`` is 0.2 m shorter than the
-# distance of the pins: the rope is taut before anyone hangs on it.
+# far below that of a bar, so area and second moment are given instead of a shape. ``rest_length`` is 0.2 m shorter than
+# the distance of the pins: the rope is taut before anyone hangs on it.
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -38,7 +38,7 @@ scene.pin(rope, s=120.4)
 along = (END - START) / np.linalg.norm(END - START)
 at = START + 3.0 / 120.4 * (END - START)
 trolley = scene.rigid_body("trolley", mass=4.0, inertia=(0.02, 0.05, 0.05), position=at)
-rider = scene.rigid_body("rider", mass=80.0, inertia=(8, 2, 8), position=at + [0, -1.2, 0])
+rider = scene.rigid_body("rider", mass=80.0, inertia=(8, 2, 8), position=at - np.array([0, 1.2, 0]))
 scene.joint("revolute", trolley, (rider, (0, 1.2, 0)), name="swivel")
 
 # %%
@@ -59,8 +59,8 @@ for event in run.events:
     print(f"{event['name']} {event['what']} at t = {event['time']:.2f} s, s = {event['s']:.2f} m")
 
 # %%
-# The rope is loaded at once when the rider leaves. It swings up and down every two seconds, and his speed and the tension
-# beside him swing with it. The buffer throws him back, up the rope.
+# The rope is loaded at once when the rider leaves. It swings up and down every two seconds, and his speed and the
+# tension beside him swing with it. The buffer throws him back, up the rope.
 
 s, speed = run["wheels.s"], run["wheels.s_rate"]
 tension = run.section_forces(rope, s=wheels).tension
@@ -79,7 +79,7 @@ axes[2].set(xlabel="time in s", ylabel="kN", title="tension of the rope beside t
 # What to design for
 # ------------------
 #
-# The pins bear the pull of the rope: the largest force on the anchor of the upper platform, and the stroke of the buffer.
+# The pins bear the pull of the rope: the largest force on the upper anchor, and the stroke of the buffer.
 
 anchor = np.linalg.norm(run["rope@0.force"], axis=1)
 stroke = s.max() - (120.4 - 9.0)
