@@ -52,7 +52,7 @@ assert abs(tension / by_hand - 1) < 0.01
 # -------------
 #
 # Modes about the equilibrium, with the tension that the line has there. The slowest is a pendulum: the person swings
-# sideways below the anchors, with √(g / sag) / 2π. Then the person moves along the line, and up and down.
+# sideways below the anchors, with √(g / sag) / 2π. Then the person moves up and down, and along the line.
 
 modes = scene.modes(8, about=rest)
 for number, frequency in enumerate(modes.frequency):

@@ -1,0 +1,104 @@
+"""
+Results as arrays, datasets and tables
+======================================
+
+A run holds named NumPy arrays. With units and dimensions they are an xarray dataset, for selecting, combining and
+plotting; from there to pandas or a spreadsheet is one step.
+"""
+
+# %%
+# Names
+# -----
+#
+# ``run.keys()`` lists all results, ``run.variables`` says what each is, in which unit, over which dimensions. A name
+# that is not there is answered with those near it.
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import funicular as fu
+
+scene = fu.load_scene("paper51")
+run = scene.run(duration=1.0, tol=1e-4, output_step=0.01)
+for name in run.keys()[:8]:
+    dims, _, unit, meaning = run.variables[name]
+    print(f"{name:24} {unit:12} {meaning}, over {', '.join(dims)}")
+
+try:
+    run["trolley.forse"]
+except fu.UnknownResultError as error:
+    print(error)
+
+# %%
+# NumPy
+# -----
+#
+# Time is first, components last. The lowest place of the body, when it is there, and its speed then:
+
+height = run["A.position"][:, 1]
+lowest = int(height.argmin())
+print(f"{1e3 * height[lowest]:.1f} mm at t = {run.time[lowest]:.2f} s, "
+      f"at {np.linalg.norm(run['A.velocity'][lowest]):.2f} m/s")
+
+# %%
+# Forces in sections
+# ------------------
+#
+# ``section_forces`` returns a dataset over time and s: force and moment, tension, shear, strain, curvature. Here along
+# the whole cable at the instant of the lowest place. They come from balance with loads and inertia, so that they are
+# good on coarse meshes, too.
+
+forces = run.section_forces("wire", s=np.linspace(0.01, 1.49, 75))
+then = forces.isel(time=lowest)
+figure, (tension, moment) = plt.subplots(1, 2, figsize=(9, 3.2), layout="constrained")
+then.tension.plot(ax=tension)
+tension.set(xlabel="s in m", ylabel="N", title=f"tension at t = {run.time[lowest]:.2f} s")
+then.moment.sel(xyz="z").plot(ax=moment)
+moment.axvline(run["trolley.s"][lowest], color="0.6", linestyle=":")
+moment.set(xlabel="s in m", ylabel="N m", title="bending moment")
+
+# %%
+# xarray
+# ------
+#
+# ``run.dataset`` is everything with units and dimensions: select by name and time, average, interpolate.
+
+dataset = run.dataset
+print(dataset["trolley.force"].sel(time=slice(0.2, 0.8), xyz="y").mean().values)
+print(dataset["wire.nodal_vectors"].dims, dataset["wire.nodal_vectors"].attrs["units"])
+
+# %%
+# Several runs along a new dimension
+# ----------------------------------
+#
+# ``fu.combine`` makes one dataset of runs with the same results and times. The reports come along as texts.
+
+masses = [0.5, 1.0, 2.0]
+study = fu.combine([scene.replace("A", mass=mass).run(duration=1.0, tol=1e-4, output_step=0.01) for mass in masses],
+                   mass=masses)
+sag = study["A.position"].sel(xyz="y").min(dim="time")
+print({float(m): f"{1e3 * float(v):.1f} mm" for m, v in zip(sag.mass, sag, strict=True)})
+assert np.all(np.diff(sag) < 0)  # the heavier the body, the lower it gets
+
+# %%
+# A table
+# -------
+#
+# pandas, where it is installed, takes a selection of a dataset as it is: ``dataset[...].to_dataframe()``. Without it,
+# NumPy writes a file that a spreadsheet reads.
+
+columns = np.column_stack([run.time, run["trolley.s"], run["trolley.force"][:, 1]])
+np.savetxt("trolley.csv", columns, delimiter=",", header="time_s,s_m,force_y_N", comments="", fmt="%.9g")
+print(open("trolley.csv").readline().strip())
+
+# %%
+# The file
+# --------
+#
+# ``run.save("paper51.nc")`` writes netCDF: ``fu.load_run`` opens it as a run, ``xarray.open_dataset`` as a dataset, and
+# any other reader of netCDF sees the same names and units.
+
+run.save("paper51.nc")
+again = fu.load_run("paper51.nc")
+assert np.array_equal(again["A.position"], run["A.position"])
+print(again)
