@@ -11,7 +11,7 @@ import pytest
 
 FOLDER = Path(funicular.guides.__file__).parent
 GUIDES = sorted(path for path in FOLDER.glob("*.py") if path.stem != "__init__")
-QUICK = ("first_scene",)
+QUICK = ("first_scene", "modes")
 """Those that the default run executes; the site's test executes all."""
 
 
