@@ -27,6 +27,7 @@ from .long_runs import LongRun
 from .pauses import Pauses, pauses
 from .progress import Meter
 from .rest_state import RestState
+from .signal_steps import unresolved
 from .threads import share_elements
 
 MOST_OUTPUT = 4e9
@@ -96,6 +97,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     status, changed = _start(scene, settings, model, engine, method, None if stream is None else pace.capacity)
     messages += changed.gaps
     warned = _broken_velocities(model, changed.velocities) + velocity_jumps(scene, settings.duration)
+    warned += unresolved(scene, settings)
     for message in warned:
         warnings.warn(message, FunicularWarning, stacklevel=4)
     messages += warned
@@ -133,7 +135,7 @@ def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine
         step=settings.step or 0.0,
         method=method,
         first_step=min(settings.output_step, 1e-3 * settings.duration),
-        knots=knots(model, settings.duration, settings.tol),
+        knots=knots(model, settings.duration, settings.tol, turns=settings.step is None),
         capacity=capacity,
     )
     if status == "singular" and engine.jammed >= 0:

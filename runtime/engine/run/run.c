@@ -364,12 +364,11 @@ static const fu_knot *next_knot(const fu_run *run, double latest)
         if (run->knots[middle].t > run->now.t + close) high = middle;
         else low = middle + 1;
     }
-    for (; low < run->n_knots && run->knots[low].t <= latest + close; ++low)
-        if (run->fixed_step <= 0.0 || run->knots[low].jumps == FU_RATE_JUMPS) return &run->knots[low];
-    return 0;
+    return low < run->n_knots && run->knots[low].t <= latest + close ? &run->knots[low] : 0;
 }
 
-/* On from a knot that `now` has reached. What jumps there starts the scheme anew. Where a rate jumps, all that joints tie
+/* On from a knot that `now` has reached. What jumps there starts the scheme anew; so does any knot between steps of a
+ * fixed length, whose neighbours can be of any ratio. Where a rate jumps, all that joints tie
  * to it jumps, too, and what drives it does the work of that; a drive that turned within an instant would lose none. */
 static int pass_knot(fu_run *run, const fu_knot *knot, int event)
 {
@@ -377,7 +376,7 @@ static int pass_knot(fu_run *run, const fu_knot *knot, int event)
     fu_state *now = &run->now;
     now->t = knot->t;
     run->drive_step = fmin(run->drive_step, 0.0); /* powers before do not tell how it changes from here */
-    if (knot->jumps == FU_HIGHER_JUMPS) return FU_RUNNING;
+    if (knot->jumps == FU_HIGHER_JUMPS && is_adaptive(run)) return FU_RUNNING;
     if (knot->jumps == FU_RATE_JUMPS) {
         const double before = fu_kinetic_energy(model, now->q, now->v);
         fu_prescribe(model, now);
