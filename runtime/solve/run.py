@@ -19,7 +19,6 @@ from ..model.model import Model
 from ..model.redundant_constraints import drop_redundant_rows
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
-from . import reduced_strain, straight_struts
 from .diagnosis import notes
 from .event_watcher import EventWatcher
 from .integrator_choice import choose
@@ -27,6 +26,7 @@ from .long_runs import LongRun
 from .pauses import Pauses, pauses
 from .progress import Meter
 from .rest_state import RestState
+from .row_notes import RowNotes
 from .signal_steps import unresolved
 from .threads import share_elements
 
@@ -45,7 +45,7 @@ class Sink(Protocol):
     def free(self) -> int:
         """Return the bytes that it can take."""
 
-    def start(self, model: Model, engine: Engine, pace: Pauses, events: list[dict]) -> None:
+    def start(self, model: Model, engine: Engine, pace: Pauses, events: list[dict], row_notes: RowNotes) -> None:
         """Take the first row, or bring the engine to where the run is resumed."""
 
     def pause(self) -> None:
@@ -101,17 +101,17 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     for message in warned:
         warnings.warn(message, FunicularWarning, stacklevel=4)
     messages += warned
+    row_notes = RowNotes(scene, model)
     if status is None:
         if stream is not None:
-            stream.start(model, engine, pace, watcher.happened)
+            stream.start(model, engine, pace, watcher.happened, row_notes)
         long_run = LongRun(model, engine, settings, watcher, on_progress)
         status = engine.advance(long_run, pace.every, stream)
         messages += long_run.notes()
     cpu, total = time.process_time() - cpu, time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
+    row_notes.see(engine.rows())
     if status == "completed":
-        rows = engine.rows()
-        for note in [*notes(engine, settings), *straight_struts.notes(scene, model, engine),
-                     *reduced_strain.notes(scene, model, rows["time"], rows["q"])]:
+        for note in [*notes(engine, settings), *row_notes.notes()]:
             messages.append(note)
             warnings.warn(note, FunicularWarning, stacklevel=4)
     return Simulation(model, engine, watcher, status, messages, reason, set_up, total, cpu)
