@@ -19,7 +19,7 @@ from ..model.model import Model
 from ..model.redundant_constraints import drop_redundant_rows
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
-from .diagnosis import notes
+from .diagnosis import notes, trapped
 from .event_watcher import EventWatcher
 from .integrator_choice import choose
 from .long_runs import LongRun
@@ -111,7 +111,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     cpu, total = time.process_time() - cpu, time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
     row_notes.see(engine.rows())
     if status == "completed":
-        for note in [*notes(engine, settings), *row_notes.notes()]:
+        for note in [*notes(engine, settings), *trapped(scene, engine), *row_notes.notes()]:
             messages.append(note)
             warnings.warn(note, FunicularWarning, stacklevel=4)
     return Simulation(model, engine, watcher, status, messages, reason, set_up, total, cpu)

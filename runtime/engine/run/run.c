@@ -162,7 +162,9 @@ static int acted(fu_run *run, int j, int what)
 
 /* Put a slide that stands on a boundary into the neighbour. Accelerations and force jump with r_xx there: the scheme
  * starts anew. Were they carried over, the short steps around a boundary would raise what the constraints left in them
- * by the ratio of the steps, crossing by crossing, and a spectral radius of 1 never lets it decay. Returns
+ * by the ratio of the steps, crossing by crossing, and a spectral radius of 1 never lets it decay. The tangent of the
+ * neighbour differs by the jump of the curvature times how far the slide is beyond the boundary: were a frame that is tied
+ * to it not turned along at once, the first short step would turn it, at a speed that none of the energies has. Returns
  * FU_END_OF_CABLE where there is no neighbour. */
 static int enter(fu_run *run, int j, int side)
 {
@@ -178,6 +180,7 @@ static int enter(fu_run *run, int j, int side)
         if (fu_project_velocities(model, now, &run->accelerator, run->work)) return FU_SINGULAR;
         for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->work[i];
         now->element[j] = element;
+        if (fu_close(run)) return FU_NO_CONVERGENCE;
         if (fu_project_velocities(model, now, &run->accelerator, run->work)) return FU_SINGULAR;
         fu_impact(run, run->work, 0.0);
     }
