@@ -98,6 +98,18 @@ def test_a_checkpoint_holds_what_was_found(said):
 
 
 @pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
+def test_a_body_that_turns_by_radians_within_a_fixed_step_is_noted():
+    """Its axes went where they liked, without a word."""
+    def turning(rate: float, **step):
+        scene = Scene(gravity=(0, 0, 0))
+        scene.rigid_body("A", mass=1.0, inertia=(1, 2, 3), position=(0, 0, 0), angular_velocity=(0, rate, 0.1))
+        return scene.run(0.1, output_step=0.01, progress=False, **step).report["messages"]
+
+    assert turning(1000.0, step=0.01)[-1].startswith('body "A" turns by 10')
+    assert turning(10.0, step=0.01) == turning(1000.0) == []
+
+
+@pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
 def test_a_spring_of_no_length_has_no_direction_to_lose():
     assert noted(met(length=0.0).run(**SETTINGS), "direction is lost") == []
 

@@ -82,6 +82,9 @@ def _too_large(engine, settings: RunSettings) -> str:
     stable = ""
     if INTEGRATORS[engine.integrator].stability is not None:
         stable = f', or integrator="{stable_at(settings.step is not None).name}"'
+    elif INTEGRATORS[engine.integrator].loses_energy_by_spectral_radius and settings.spectral_radius == 1:
+        stable = (", or a spectral_radius below 1, as at 1 nothing damps the vibrations that joints excite from step "
+                  'to step; integrator="energy" needs no damping')
     return f'The {size} is too large for integrator "{engine.integrator}": take a smaller one{others}{stable}'
 
 

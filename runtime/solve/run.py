@@ -101,7 +101,7 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     for message in warned:
         warnings.warn(message, FunicularWarning, stacklevel=4)
     messages += warned
-    row_notes = RowNotes(scene, model)
+    row_notes = RowNotes(scene, model, min(settings.step or 0.0, settings.output_step))
     if status is None:
         if stream is not None:
             stream.start(model, engine, pace, watcher.happened, row_notes)
