@@ -165,7 +165,7 @@ cdef class Engine(Statics):
 
     @property
     def knots_passed(self):
-        """Return at how many knots of signals steps have ended, if they are not of a fixed length."""
+        """Return at how many knots of signals steps have ended."""
         cdef int k, passed = 0
         for k in range(self.run.n_knots):
             passed += self.run.knots[k].t <= self.run.now.t

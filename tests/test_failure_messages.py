@@ -128,3 +128,14 @@ def test_a_shape_of_modes_that_there_is_not():
     scene.spring("A", (0, 5, 0), stiffness=1)
     with pytest.raises(fu.UnknownResultError, match=r'no shape "A.position"; did you mean "A.rotation"\?'):
         scene.modes(1)["A.position"]
+
+
+def test_energy_that_grows_without_damping_is_told_to_take_some():
+    """genalpha with spectral radius 1 may blow up after 100,000 steps; a smaller step was all that was advised."""
+    model = build(two_hinges())
+    engine = failed(model, 1.0)
+    engine.balance = (2.0, 0.0, 1.0, 1.0, 0.0)
+    said = {radius: stopped(model, engine, "unstable", RunSettings(duration=1, step=1e-3, spectral_radius=radius))
+            for radius in (1, 0.9)}
+    assert "or a spectral_radius below 1" in said[1]
+    assert "spectral_radius" not in said[0.9]

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from expectations import energy_error
-from funicular import Harmonic, Material, Pulse, Ramp, Rectangle, Scene, TableSignal
+from funicular import FunicularWarning, Harmonic, Material, Pulse, Ramp, Rectangle, Scene, TableSignal
 from funicular.model.knots import ACCELERATION, HIGHER, RATE, knots
 from funicular.model.loads import SignalModel
 from funicular.parts.signal import Constant, Integral
@@ -14,6 +14,7 @@ from shared_scenes import cable_scene
 
 TIME = 0.1
 TIMES = (0, 0.013, 0.05, 0.071, 0.2)
+UNEVEN = (0, 0.0051, 0.0131, 0.0502, 0.0713, 0.2)
 TWO_PARTS = {"time": (0, 0.5, 1), "value": (0, 1, 0)}
 SAMPLES = tuple(np.linspace(0, TIME, 10_001))
 SMOOTH = {"time": SAMPLES, "value": tuple(0.05 * (1 - np.cos(2 * np.pi * np.array(SAMPLES) / TIME)))}
@@ -50,13 +51,24 @@ def test_knots_are_where_a_signal_is_not_smooth(signal, drives, times, jumps):
     assert kinds.tolist() == jumps
 
 
-def test_a_table_of_many_samples_of_a_smooth_function_has_no_knots_that_count():
+def test_a_table_of_many_samples_of_a_smooth_function_has_no_knots_but_its_turns():
     cubic, polygon = TableSignal(**SMOOTH), TableSignal(**SMOOTH, interpolation="linear")
     for tol in (1e-3, 1e-6):
-        assert len(knots(model(cubic, driving=[0]), TIME, tol)[0]) == 0
-        assert len(knots(model(polygon), TIME, tol)[0]) == 0
+        assert_allclose(knots(model(cubic, driving=[0]), TIME, tol)[0], [TIME / 2])
+        assert len(knots(model(cubic, driving=[0]), TIME, tol, turns=False)[0]) == 0
+        assert_allclose(knots(model(polygon), TIME, tol)[0], [TIME / 2])
     assert len(knots(model(polygon, driving=[0]), TIME, 1e-3)[0]) > 9000  # its rate jumps at each
-    assert len(knots(model(TableSignal(time=SAMPLES, value=np.sin(1e4 * np.array(SAMPLES)))), TIME, 1e-3)[0]) == 0
+    waves = TableSignal(time=SAMPLES, value=np.sin(1e4 * np.array(SAMPLES)))
+    assert len(knots(model(waves), TIME, 1e-3)[0]) == int(1e4 * TIME / np.pi + 0.5)
+
+
+def test_turns_are_larger_than_tol_and_a_stay_before_one_ends_at_a_knot():
+    """Two humps of a smooth table, the second of them 1e-3 of the first."""
+    time = np.linspace(0, 2, 4001)
+    table = TableSignal(time=time.tolist(), value=(hump(time, 1.0, 0.02) + 1e-3 * hump(time, 1.5, 0.02)).tolist())
+    start, top = knots(model(table), 2.0, 2e-3)[0]
+    assert 0.94 < start < top == 1.0
+    assert_allclose(knots(model(table), 2.0, 1e-4)[0][[1, 4]], [1.0, 1.5])
 
 
 def test_knots_at_one_instant_are_one_and_the_most_that_jumps_counts():
@@ -74,6 +86,49 @@ def test_a_pulse_much_shorter_than_the_steps_before_it_is_not_missed(integrator)
     scene.force("A", value=(100, 0, 0), scale=Pulse(start=0.5031, end=0.5041))
     run = scene.run(1.0, integrator=integrator, output_step=0.1, progress=False)
     assert_allclose(run["A.velocity"][-1, 0], 100 * 0.5e-3 / 2, rtol=1e-4)
+
+
+def hump(time, middle, width=1e-3):
+    """A smooth pulse, of a width in s."""
+    return np.exp(-(((time - middle) / width) ** 2))
+
+
+def pushed(signal) -> Scene:
+    """A free body of 2 kg at rest."""
+    scene = Scene(gravity=(0, 0, 0))
+    scene.rigid_body("A", mass=2.0, inertia=(1, 1, 1), position=(1, 0, 0))
+    scene.force("A", value=(100, 0, 0), scale=signal)
+    return scene
+
+
+@pytest.mark.parametrize("integrator", ["genalpha", "radau", "explicit", "energy"])
+def test_a_smooth_pulse_of_a_table_of_many_samples_is_not_missed(integrator):
+    """None of its samples is a knot: all four integrators went over it, without a word."""
+    time = np.linspace(0, 1, 20_001)
+    run = pushed(TableSignal(time=time.tolist(), value=hump(time, 0.5531).tolist())).run(
+        1.0, integrator=integrator, output_step=0.1, tol=1e-3, progress=False)
+    assert_allclose(run["A.velocity"][-1, 0], 50 * np.sqrt(np.pi) * 1e-3, rtol=1e-4)
+
+
+@pytest.mark.parametrize("integrator", ["genalpha", "radau", "explicit", "energy"])
+def test_a_pulse_shorter_than_a_fixed_step_gives_its_whole_impulse(integrator):
+    """It gave none with three of them, and the fourth made energy from nothing."""
+    run = pushed(Pulse(start=0.5031, end=0.5041)).run(1.0, integrator=integrator, step=0.01, progress=False)
+    assert_allclose(run["A.velocity"][-1, 0], 100 * 0.5e-3 / 2, rtol=1e-9)
+
+
+@pytest.mark.parametrize(("signal", "said"), [
+    (Harmonic(amplitude=1, frequency=100.0), "sine has a period of 0.01 s, and the fixed step is 0.01 s"),
+    (TableSignal(time=np.linspace(0, 1, 20_001).tolist(), value=hump(np.linspace(0, 1, 20_001), 0.5531).tolist()),
+     "the fixed step of 0.01 s is too long for its signal"),
+])
+def test_a_signal_that_a_fixed_step_cannot_follow_is_named(signal, said):
+    """A sine whose period is the step was no load at all."""
+    with pytest.warns(FunicularWarning, match=f'force "force_1": .*{said}'):
+        run = pushed(signal).run(1.0, step=0.01, progress=False)
+    assert said in run.report["messages"][0]
+    fine = Harmonic(amplitude=1, frequency=5.0) if isinstance(signal, Harmonic) else Pulse(start=0.5, end=0.6)
+    assert "fixed step" not in str(pushed(fine).run(1.0, step=0.01, progress=False).report["messages"])
 
 
 def hung(elements=6) -> Scene:
@@ -158,11 +213,11 @@ def test_a_table_of_many_samples_costs_no_steps(interpolation):
     assert abs(steps[1] - steps[0]) <= 2 < steps[0]
 
 
-def test_fixed_steps_keep_their_grid():
-    """But for a jump of a drive's rate, which is no function that a step could take in."""
-    load = hung()
-    load.force("rope", s=3.0, value=(0, 50, 0), scale=straight(0, 1, -1, 1, 0))
-    drive = moved(straight(0, 0, 0.013, 0.05, 0.072, 0.2, times=(0, 0.0051, 0.0131, 0.0502, 0.0713, 0.2)))
+def test_fixed_steps_end_at_knots_but_not_where_a_smooth_table_turns():
+    load, drive, smooth = hung(), moved(straight(0, 0, 0.013, 0.05, 0.072, 0.2, times=UNEVEN)), hung()
+    load.force("rope", s=3.0, value=(0, 50, 0), scale=straight(0, 1, -1, 1, 0, 1, times=UNEVEN))
+    smooth.force("rope", s=3.0, value=(0, 50, 0), scale=TableSignal(**SMOOTH))
     settings = {"integrator": "radau", "step": 1e-3, "output_step": 1e-2, "progress": False}
-    assert load.run(TIME, **settings).report["steps"] == 100
-    assert 100 < drive.run(TIME, **settings).report["steps"] <= 108
+    for scene in (load, drive):
+        assert 100 < scene.run(TIME, **settings).report["steps"] <= 108
+    assert smooth.run(TIME, **settings).report["steps"] == 100

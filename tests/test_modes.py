@@ -117,3 +117,17 @@ def test_more_than_there_are():
     with pytest.raises(SceneError, match="modes: the scene has 6 degrees of freedom, 7 modes were asked for; ask for "
                                          "fewer modes, or take more elements"):
         scene.modes(7)
+
+
+@pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
+def test_a_scene_without_cables_is_not_told_to_take_fewer_elements():
+    scene = Scene(gravity=(0, 0, 0))
+    for x, name in enumerate("AB"):
+        scene.rigid_body(name, mass=1.0, inertia=(1, 1, 1), position=(x, 0, 0))
+    scene.spring("A", "B", stiffness=1e14)
+    scene.spring("B", (3, 0, 0), stiffness=1.0)
+    scene.spring(("A", (0, 1, 0)), (0, 0, 1), stiffness=1e-3)
+    notes = scene.modes(12).messages
+    assert "; look for a part that is far stiffer or far lighter than the others" in str(notes)
+    with pytest.raises(SceneError, match=r"ask for fewer modes$"):
+        scene.modes(13)

@@ -150,7 +150,7 @@ def test_joins_that_hold_what_is_held(scene):
      "tangent (0, 0, 1), but cable12 has no torsion; give a moment across the tangent, or take element=\"beam24\""),
     (lambda s: s.spring("A", (0, 1, 0), stiffness=1),
      'spring "spring_1": both ends are at (0, 1, 0) m: its direction is lost; '
-     "join the points, or hold them apart at the start"),
+     "join the points, hold them apart at the start, or give a spring length=0"),
     (lambda s: s.spring((0, 0, 0), (0, 1, 0), stiffness=1),
      "spring: has both ends on the ground; let one of them hold a cable or a body"),
     (lambda s: s.spring("A", (0, 0, 0), stiffness=-1), "spring: stiffness must not be negative, got -1 N/m"),

@@ -62,6 +62,21 @@ def test_names_and_shapes(run, recording):
     assert repr(run) == "<funicular.Run: completed, 101 times to 1 s, 20 results>"
 
 
+def test_a_run_is_read_as_a_mapping(run):
+    """`for name in run` asked for a result of the name 0."""
+    assert list(run) == run.keys()
+    assert len(run) == len(run.keys())
+    assert {name: values.shape for name, values in run.items()} == {name: run[name].shape for name in run.keys()}
+    assert dict(run).keys() == set(run.keys())
+    assert "time" in run and 0 not in run
+    assert set(run._ipython_key_completions_()) == {*run, "time", "wire.position"}
+    assert all(name in run for name in run._ipython_key_completions_())
+
+
+def test_a_run_without_results_is_not_false():
+    assert Run({}, {}, {}, None)
+
+
 def test_an_unknown_name(run):
     with pytest.raises(UnknownResultError) as error:
         run["A.positon"]

@@ -179,7 +179,7 @@ def placed_point_force(scene: SceneData, force: PointForce) -> PointForce:
     force = placed_between(scene, force)
     points = point_of(scene, force.a), point_of(scene, force.b)
     distance = float(np.linalg.norm(points[1] - points[0]))
-    if not distance > 1e-12 * (1 + np.abs(points).max()):
+    if force.loses_direction and not distance > 1e-12 * (1 + np.abs(points).max()):
         raise SceneError(force.where, f"both ends are at {show(points[0], 'm')}: its direction is lost",
-                         "join the points, or hold them apart at the start")
+                         "join the points, hold them apart at the start, or give a spring length=0")
     return force.at_distance(distance)

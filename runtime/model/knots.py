@@ -3,7 +3,8 @@
 A piecewise polynomial has a knot where two pieces meet. A step over a knot sees one function where there are two:
 neither its result nor its estimate of the error is of the method's order, and a pulse shorter than the step is not seen
 at all. Knots that do not matter are left out, so that a table of many samples of a smooth function does not rule the
-steps. Steps of a fixed length keep their grid, but for knots where the rate of a prescribed motion jumps.
+steps. Where tol chooses the steps, they end where such a table turns round as well: a smooth pulse is short beside the
+steps of a scene at rest.
 """
 
 from __future__ import annotations
@@ -12,7 +13,6 @@ import math
 
 import numpy as np
 
-from .loads import SignalModel
 from .model import Model
 
 HIGHER, ACCELERATION, RATE = range(3)
@@ -27,11 +27,15 @@ ONE_INSTANT = 1e-12
 """Of the duration: knots that are no farther apart are one (engine/run.c)."""
 
 
-def knots(model: Model, duration: float, tol: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the times of the knots that count, in s, increasing, and what jumps at each."""
+def knots(model: Model, duration: float, tol: float, turns: bool = True) -> tuple[np.ndarray, np.ndarray]:
+    """Return the times of the knots that count, in s, increasing, and what jumps at each.
+
+    turns: whether the instants at which tables turn round are among them.
+    """
     driving = driving_signals(model)
     found = [each for number, signal in enumerate(model.signals)
-             for each in _of_signal(signal, number in driving, tol)
+             for each in [*of_pieces(signal.breaks, signal.coefficients, number in driving, tol),
+                          *(_turns(signal.breaks, signal.coefficients[:, 0], tol) if turns else [])]
              if ONE_INSTANT * duration < each[0] < (1 - ONE_INSTANT) * duration]
     times: list[float] = []
     jumps: list[float] = []
@@ -50,14 +54,13 @@ def driving_signals(model: Model) -> set[int]:
             | {joint.signal for joint in model.joints})
 
 
-def _of_signal(signal: SignalModel, drives: bool, tol: float) -> list[tuple[float, int]]:
-    """Return the time and jump of each knot of a signal that counts.
+def of_pieces(breaks: np.ndarray, coefficients: np.ndarray, drives: bool, tol: float) -> list[tuple[float, int]]:
+    """Return the time and jump of each knot of a piecewise polynomial that counts.
 
     A knot counts where the piece before it, continued over the shorter one of the two that meet there, parts from the
     one after it by more than tol of the signal; of a signal that prescribes a motion, also where their rates do. No
     step sees a jump of the rate, and what is lost at several adds up: all that are left out may be tol of the rate.
     """
-    breaks, coefficients = signal.breaks, signal.coefficients
     if len(coefficients) < 2:
         return []
     length = np.diff(breaks)[:, None]
@@ -79,3 +82,26 @@ def _of_signal(signal: SignalModel, drives: bool, tol: float) -> list[tuple[floa
         kinds[leaps] = RATE
         counts |= (of_rates.sum(axis=1) > 1) | leaps
     return list(zip(breaks[1:-1][counts].tolist(), kinds[counts].tolist(), strict=True))
+
+
+def _turns(breaks: np.ndarray, values: np.ndarray, tol: float) -> list[tuple[float, int]]:
+    """Return where values (n,) at breaks turn round by more than tol of their range on both sides; nothing jumps there.
+
+    Where they stay for longer than they then move, the last break of their stay is one of these instants, too.
+    """
+    least = tol * np.ptp(values) + ROUNDING * np.abs(values).max() + TINY
+    rises, falls, low, high = False, False, 0, 0  # low, high: breaks of the extremes since the last turn
+    turns, stays = [], []
+    for k, value in enumerate(values):
+        low, high = k if value < values[low] else low, k if value > values[high] else high
+        if value - values[low] > least and not rises:
+            rises, falls, turn, low, high = True, False, low, k, k
+        elif values[high] - value > least and not falls:
+            rises, falls, turn, low, high = False, True, high, k, k
+        else:
+            continue
+        turns.append(turn)
+        stays.append(k - 1)
+    moved = breaks[[*turns[1:], high if rises else low]] - breaks[stays]
+    stayed = breaks[stays] - np.maximum(breaks[turns], breaks[1])
+    return [(float(breaks[k]), HIGHER) for k in [*turns, *np.array(stays, dtype=int)[stayed > moved]] if k > 0]

@@ -43,6 +43,11 @@ class PointForce(Part):
         """Whether the force depends on velocities."""
         return False
 
+    @property
+    def loses_direction(self) -> bool:
+        """Return whether its force has no direction where its points meet."""
+        return True
+
     def at_distance(self, distance: float) -> Self:
         """Return the part complete; distance: of its points at the start, m."""
         return self

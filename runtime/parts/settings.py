@@ -33,7 +33,7 @@ class RunSettings(Part):
 
     duration in s; tol: the error aimed at in positions, relative to the largest motion in the scene, by which
     the step is chosen; step: a fixed step in s instead, divided where need be so that steps end on output times and
-    where the rate of what is prescribed jumps; output_step in s, a hundredth of the duration if not given;
+    where a signal is not smooth; output_step in s, a hundredth of the duration if not given;
     integrator: "explicit" (Runge-Kutta of order 8), "radau" (implicit, order 5, for stiff scenes), "genalpha"
     (implicit, order 2, with control of the dissipation), "energy" (order 2, keeps energy and momenta to rounding),
     or "auto": the cheaper of the first two for this scene and tol, genalpha where step or spectral_radius is given;

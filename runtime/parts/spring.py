@@ -37,6 +37,11 @@ class Spring(PointForce):
         """Return whether its force depends on velocities."""
         return self.damping > 0
 
+    @property
+    def loses_direction(self) -> bool:
+        """Return whether its force has no direction where its points meet: not if it is free of force there."""
+        return self.length != 0.0
+
     def at_distance(self, distance: float) -> Self:
         """Return the spring with its length, the distance of its points at the start if not given."""
         return self.model_copy(update={"length": distance}) if self.length is None else self

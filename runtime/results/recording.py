@@ -22,6 +22,7 @@ from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
 from ..solve.diagnosis import stopped
+from ..solve.meeting_points import MeetingPoints
 from ..solve.run import Simulation
 
 
@@ -120,7 +121,7 @@ def recorded(simulation: Simulation, scene: SceneData, settings: RunSettings) ->
     return Recording(
         **vars(named(model, scene, engine)),
         status="no_convergence" if status in ("singular", "unstable") else status,
-        message=_message(simulation, settings),
+        message=_message(simulation, scene, settings),
         report=report,
     )
 
@@ -135,7 +136,7 @@ def _costs(model: Model, engine) -> dict[str, float]:
     return found
 
 
-def _message(simulation: Simulation, settings: RunSettings) -> str:
+def _message(simulation: Simulation, scene: SceneData, settings: RunSettings) -> str:
     model, engine, status = simulation.model, simulation.engine, simulation.status
     when = f"t = {engine.time:.6g} s of {settings.duration:.6g} s"
     match status:
@@ -149,7 +150,10 @@ def _message(simulation: Simulation, settings: RunSettings) -> str:
                 "what was computed up to there is kept"
             )
         case "no_convergence" | "singular" | "unstable":
-            return stopped(model, engine, status, settings)
+            now, q, *_ = engine.now()
+            points = MeetingPoints(scene, model)
+            points.see({"time": np.array([now]), "q": q[None]})
+            return "; ".join([*points.notes(), stopped(model, engine, status, settings)])
         case "event":
             return f'stopped by event "{simulation.watcher.stopped_by}" at {when}'
         case "interrupted":

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import threading
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
@@ -133,9 +133,29 @@ class Run:
         """Return the names of all results; a cable's ``wire.position`` is a part of its ``wire.nodal_vectors``."""
         return list(self.variables)
 
-    def __contains__(self, name: str) -> bool:
+    def items(self) -> Iterator[tuple[str, np.ndarray]]:
+        """Yield all results with their names, in the order of `keys`."""
+        return ((name, self[name]) for name in self)
+
+    def __iter__(self) -> Iterator[str]:
+        """Yield the names of all results, as `keys` has them."""
+        return iter(self.variables)
+
+    def __len__(self) -> int:
+        """Return the number of results; the number of times is ``len(run.time)``."""
+        return len(self.variables)
+
+    def __bool__(self) -> bool:
+        """Return True: a run that ended before its first output time is one, too."""
+        return True
+
+    def __contains__(self, name: object) -> bool:
         """Return whether there is a result of that name."""
-        return name in self.variables or name in self._positions
+        return name in self.variables or name in self._positions or name == "time"
+
+    def _ipython_key_completions_(self) -> list[str]:
+        """Return what IPython offers after ``run["``."""
+        return ["time", *self.variables, *self._positions]
 
     def __getitem__(self, name: str) -> np.ndarray:
         """Return the array called ``name``, time first; units and dimensions stand in ``variables[name]``."""

@@ -31,6 +31,7 @@ from ..parts.scene_data import SceneData
 from ..parts.scene_text import dumps
 from ..parts.settings import RunSettings
 from ..solve.pauses import Pauses
+from ..solve.row_notes import RowNotes
 from .checkpoints import Checkpoint, DamagedCheckpointError, Facts, checkpoint_of
 from .files import check_writable, create_file, file_text, open_file, over_time
 from .locks import NoLocks, Taken, claimed, is_at, lock
@@ -110,17 +111,18 @@ class Stream:
         """Return the bytes that the file can have: those that are free, and those of the one that is there."""
         return shutil.disk_usage(self._path.parent).free + (self._path.stat().st_size if self._path.exists() else 0)
 
-    def start(self, model: Model, engine: Engine, pace: Pauses, events: list[dict]) -> None:
+    def start(self, model: Model, engine: Engine, pace: Pauses, events: list[dict], row_notes: RowNotes) -> None:
         """Make the file, with the first row, or go on where the checkpoint was taken.
 
-        events: those that have happened, a list to which more are added.
+        events: those that have happened, a list to which more are added; row_notes: sees all rows.
         """
         self._model, self._engine, self._pace, self._events = model, engine, pace, events
+        self._row_notes = row_notes
         self._begin = time.monotonic()
         self._facts |= {"start": _start_of(model), "integrator": engine.integrator}
         if self._kept is None:
             self._make(labelled(self._rows()))
-            engine.take_rows()
+            self._clear()
             self._checkpoint()
             return
         facts, state = self._kept
@@ -132,6 +134,7 @@ class Stream:
             raise self._refused(f"its checkpoint {self._state.name} is damaged") from None
         self._taken = facts.rows
         events[:] = facts.events
+        row_notes.go_on(facts.row_notes)
         self._resumed = [*facts.resumed_at_s, engine.time]
         self._report(self._unfinished())  # first: the older one may tell the number of times
         self._written(lambda: self._file.truncate(self._taken))
@@ -154,8 +157,13 @@ class Stream:
 
     def _take(self) -> None:
         self._add(self._rows())
-        self._engine.take_rows()
+        self._clear()
         self._added = time.monotonic()
+
+    def _clear(self) -> None:
+        """Let the engine write over the rows that it has."""
+        self._row_notes.see(self._engine.rows())
+        self._engine.take_rows()
 
     def finish(self, recording: Recording) -> Run:
         """Write the last rows and the report; the run as read from the file. Raises ResultFileError.
@@ -224,7 +232,7 @@ class Stream:
             raise self._lost()
         elapsed = self.elapsed + time.monotonic() - self._begin
         facts = Facts(**self._facts, rows=self._taken, elapsed_s=elapsed, resumed_at_s=self._resumed,
-                      events=self._events)
+                      events=self._events, row_notes=self._row_notes.found)
         self._written(lambda: Checkpoint(facts, self._engine.checkpoint()).write(self._state))
         self._checked = time.monotonic()
 

@@ -7,6 +7,7 @@ import numpy as np
 from ..integrators import INTEGRATORS, stable_at
 from ..model.model import CableModel, Model
 from ..model.redundant_constraints import redundant
+from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
 
 KEPT = "what was computed up to there is kept"
@@ -21,6 +22,11 @@ LEAST_MOTION = 1e-9
 """Of the farthest coordinate: what moves less may be at rest (engine/run/run.c)."""
 STEADY = 0.01
 """Of the kinetic energy: where less is exchanged, as where bodies turn freely, errors go by this part of it."""
+
+CONTINUOUS = "cable18"
+"""The element whose curvature is continuous at nodes."""
+MANY_CROSSINGS, OFTEN = 100, 0.02
+"""Crossings of nodes in a run, and for each step, from which on slides do not simply pass."""
 
 QUIET_ERROR, QUIET_LOSS, LOOSE_LOSS = 5e-3, 0.01, 0.05
 """Of the largest motion, and of the energy exchanged: errors of a fixed step, and energy that nothing explains, beyond
@@ -76,6 +82,9 @@ def _too_large(engine, settings: RunSettings) -> str:
     stable = ""
     if INTEGRATORS[engine.integrator].stability is not None:
         stable = f', or integrator="{stable_at(settings.step is not None).name}"'
+    elif INTEGRATORS[engine.integrator].loses_energy_by_spectral_radius and settings.spectral_radius == 1:
+        stable = (", or a spectral_radius below 1, as at 1 nothing damps the vibrations that joints excite from step "
+                  'to step; integrator="energy" needs no damping')
     return f'The {size} is too large for integrator "{engine.integrator}": take a smaller one{others}{stable}'
 
 
@@ -138,6 +147,18 @@ def notes(engine, settings: RunSettings) -> list[str]:
         notes.append(f"the estimated errors of the steps sum up to {error:.2g} of the largest motion: take a smaller "
                     "step, or none, so that tol chooses it")
     return notes + unexplained(engine, settings)
+
+
+def trapped(scene: SceneData, engine) -> list[str]:
+    """Return a note where slides that tie a frame went to and fro over nodes at which the curvature jumps."""
+    counts = engine.statistics
+    names = [f'"{slide.name}"' for slide in scene.slides.values()
+             if slide.frame != "point" and scene.cables[slide.along].element != CONTINUOUS]
+    if not names or counts["element_crossings"] < max(MANY_CROSSINGS, OFTEN * counts["steps"]):
+        return []
+    return [f"slides went over nodes {counts['element_crossings']} times in {counts['steps']} steps: the curvature of "
+            f"their cables jumps there, and pushes the frame that {' or '.join(names)} ties back to the node. Take "
+            f'element="{CONTINUOUS}", whose curvature is continuous, or more elements']
 
 
 def unexplained(engine, settings: RunSettings) -> list[str]:

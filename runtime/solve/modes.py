@@ -12,6 +12,7 @@ from scipy.sparse import csc_array, diags_array
 from ..engine import Engine
 from ..errors import FunicularWarning, SceneError, UnknownResultError, near
 from ..model.build import build
+from ..model.model import Model
 from ..model.redundant_constraints import drop_redundant_rows
 from ..model.states import body_state, spatial
 from ..parts.scene_data import SceneData
@@ -84,9 +85,9 @@ def modes(scene: SceneData, n: int, about: RestState | None = None) -> Modes:
     possible = size - constraints.shape[0]
     if n > possible:
         raise SceneError("modes", f"the scene has {possible} degrees of freedom, {n} modes were asked for",
-                         "ask for fewer modes, or take more elements")
+                         "ask for fewer modes" + ", or take more elements" * bool(model.cables))
     _refuse_what_is_out_of_range(scene, model, K, M)
-    squares, vectors, error, after = _solve(K, M, constraints, n)
+    squares, vectors, error, after = _solve(K, M, constraints, n, _fewer(model))
     strained = _rounded_shape(engine, model, K)
     error += np.abs(np.sum(vectors * (strained @ vectors), axis=0)) / np.sum(vectors * (M @ vectors), axis=0)
     after = min(after, np.min(squares.real, initial=np.inf, where=squares.real > error))
@@ -94,10 +95,15 @@ def modes(scene: SceneData, n: int, about: RestState | None = None) -> Modes:
     dofs = np.array([engine.spread(np.append(x, np.zeros(model.n_band + model.n_border_dof + model.n_extra - len(x))))
                      for x in vectors.T])
     found = _named(model, np.where(np.abs(squares) <= error, 0.0, squares), dofs, error)
-    found.messages += _without_friction(scene) + _uncertain(found, np.sqrt(max(after, 0.0)))
+    found.messages += _without_friction(scene) + _uncertain(found, np.sqrt(max(after, 0.0)), _fewer(model))
     for message in found.messages:
         warnings.warn(message, FunicularWarning, stacklevel=3)
     return found
+
+
+def _fewer(model: Model) -> str:
+    """Return the advice to take fewer elements, before another one; none for a scene without cables."""
+    return "take fewer elements, or " if model.cables else ""
 
 
 def _without_friction(scene: SceneData) -> list[str]:
@@ -120,19 +126,19 @@ def _rounded_shape(engine, model, K: csc_array) -> csc_array:
     return ROUNDING / STRAIN * change
 
 
-def _uncertain(modes: Modes, lowest: float) -> list[str]:
+def _uncertain(modes: Modes, lowest: float, fewer: str) -> list[str]:
     """What rounding of the stiffness leaves unknown; lowest: the angular frequency of the lowest that is not zero."""
     notes, w, error = [], np.maximum(modes.angular_frequency, modes.growth_rate), modes.uncertainty
     zero = (w == 0) & (error > HIDDEN * lowest)
     if zero.any():
         notes.append(f"rounding of the stiffness hides frequencies below {error[zero].max() / (2 * np.pi):.3g} Hz: "
-                    f"{np.count_nonzero(zero)} of those given as 0 may be higher; take fewer elements, or look for a "
+                    f"{np.count_nonzero(zero)} of those given as 0 may be higher; {fewer}look for a "
                     "part that is far stiffer or far lighter than the others")
     vague = (w > 0) & (error > KNOWN * w)
     if vague.any():
         numbers = ", ".join(str(k + 1) for k in np.flatnonzero(vague)[:5]) + ", ..." * bool(np.count_nonzero(vague) > 5)
         notes.append(f"rounding of the stiffness may change the frequencies of modes {numbers} by up to "
-                    f"{100 * np.max(error[vague] / w[vague]):.2g} %; take fewer elements, or look for a part that is "
+                    f"{100 * np.max(error[vague] / w[vague]):.2g} %; {fewer}look for a part that is "
                     "far stiffer or far lighter than the others")
     return notes
 
@@ -160,10 +166,11 @@ def _owner(scene: SceneData, model, unknown: int) -> str:
     return next(scene.bodies[body.name].where for body in reversed(model.bodies) if body.dof <= dof)
 
 
-def _solve(K: csc_array, M: csc_array, constraints: csc_array, n: int
+def _solve(K: csc_array, M: csc_array, constraints: csc_array, n: int, fewer: str
            ) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
     """Return the n smallest squares of frequencies of K x = w² M x on constraints x = 0, or some more.
 
+    fewer: an advice for messages, see `_fewer`.
     Returns (n,), their vectors (coordinates, n), what rounding may change in the squares (n,), and the square that
     follows, infinite if that is not known.
     """
@@ -172,14 +179,14 @@ def _solve(K: csc_array, M: csc_array, constraints: csc_array, n: int
     if not symmetric and pencil.degrees > MOST_UNSYMMETRIC:
         raise SceneError("modes", "the stiffness is not symmetric, because loads turn with what they act on, and the "
                          f"scene has {pencil.degrees} degrees of freedom: such modes are computed for up to "
-                         f"{MOST_UNSYMMETRIC}", "take fewer elements, or loads of fixed direction")
+                         f"{MOST_UNSYMMETRIC}", f"{fewer}take loads of fixed direction")
     try:
         if not symmetric:
             return *_unsymmetric(K, M, constraints, n, pencil), np.inf
         return _small(K, M, constraints, n, pencil) if K.shape[0] <= DENSE else pencil.lowest(n)
     except (IncompleteError, ArithmeticError, RuntimeError, ValueError, np.linalg.LinAlgError):
         raise SceneError("modes", f"rounding of the stiffness hides the {n} lowest modes: stiffness and inertia of the "
-                         "scene are too different", "take fewer elements, or look for a part that is far stiffer, far "
+                         "scene are too different", f"{fewer}look for a part that is far stiffer, far "
                          "lighter or far thinner than the others") from None
 
 

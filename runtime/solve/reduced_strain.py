@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ..model.model import Model
@@ -9,21 +11,28 @@ from ..parts.scene_data import SceneData
 from ..parts.section_stiffness import STABILISATION, is_reduced
 
 
-def notes(scene: SceneData, model: Model, time: np.ndarray, q: np.ndarray) -> list[str]:
-    """Return a note for each cable with a reduced axial strain that was compressed too much at one of the times.
+class ReducedStrain:
+    """The largest compression of each cable with a reduced axial strain; its strain is that of the chords of elements.
 
-    time (n,) in s; q (n, coordinates). The strain is that of the chords of elements.
+    found: strain and time in s, by the cable's name.
     """
-    found = []
-    for cable in model.cables:
-        if not len(q) or not is_reduced(scene.cables[cable.name].law):
-            continue
-        nodes = q[:, cable.coordinates].reshape(len(q), *cable.shape)[:, :, cable.vectors.index("r")]
-        strain = np.linalg.norm(np.diff(nodes, axis=1), axis=-1) / cable.length - 1
-        least = strain.min(axis=1)
-        worst = int(np.argmin(least))
-        if least[worst] < -STABILISATION:
-            found.append(f'cable "{cable.name}" was compressed by {-least[worst]:.2g} of its length at t = '
-                         f'{time[worst]:.4g} s: membrane="reduced" keeps the lengths of its slopes stable up to '
-                         f'{STABILISATION:g} alone; take membrane="assumed" or "full"')
-    return found
+
+    def __init__(self, scene: SceneData, model: Model):
+        self._cables = [cable for cable in model.cables if is_reduced(scene.cables[cable.name].law)]
+        self.found: dict[str, Any] = {}
+
+    def see(self, rows: dict[str, np.ndarray]) -> None:
+        """Take further output rows."""
+        for cable in self._cables:
+            nodes = rows["q"][:, cable.coordinates].reshape(-1, *cable.shape)[:, :, cable.vectors.index("r")]
+            strain = (np.linalg.norm(np.diff(nodes, axis=1), axis=-1) / cable.length - 1).min(axis=1)
+            k = int(np.argmin(strain))
+            if cable.name not in self.found or strain[k] < self.found[cable.name][0]:
+                self.found[cable.name] = [float(strain[k]), float(rows["time"][k])]
+
+    def notes(self) -> list[str]:
+        """Return a note for each cable that was compressed too much."""
+        return [f'cable "{name}" was compressed by {-strain:.2g} of its length at t = {time:.4g} s: '
+                f'membrane="reduced" keeps the lengths of its slopes stable up to {STABILISATION:g} alone; take '
+                'membrane="assumed" or "full"'
+                for name, (strain, time) in self.found.items() if strain < -STABILISATION]

@@ -21,13 +21,14 @@ from ..model.model import Model
 from ..model.redundant_constraints import drop_redundant_rows
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
-from . import reduced_strain, straight_struts
-from .diagnosis import notes
+from .diagnosis import notes, trapped
 from .event_watcher import EventWatcher
 from .integrator_choice import choose
 from .long_runs import LongRun
 from .pauses import Pauses, pauses
 from .progress import Meter
+from .row_notes import RowNotes
+from .signal_steps import unresolved
 from .threads import share_elements
 
 LOG = logging.getLogger(__name__)
@@ -58,7 +59,7 @@ class Sink(Protocol):
     def free(self) -> int:
         """Return the bytes that it can take."""
 
-    def start(self, model: Model, engine: Engine, pace: Pauses, events: list[dict]) -> None:
+    def start(self, model: Model, engine: Engine, pace: Pauses, events: list[dict], row_notes: RowNotes) -> None:
         """Take the first row, or bring the engine to where the run is resumed."""
 
     def pause(self) -> None:
@@ -112,20 +113,21 @@ def simulate(scene: SceneData, settings: RunSettings, on_progress: Meter, initia
     status, changed = _start(scene, settings, model, engine, method, None if stream is None else pace.capacity)
     messages += changed.gaps
     warned = _broken_velocities(model, changed.velocities) + velocity_jumps(scene, settings.duration)
+    warned += unresolved(scene, settings)
     for message in warned:
         warnings.warn(message, FunicularWarning, stacklevel=4)
     messages += warned
+    row_notes = RowNotes(scene, model, min(settings.step or 0.0, settings.output_step))
     if status is None:
         if stream is not None:
-            stream.start(model, engine, pace, watcher.happened)
+            stream.start(model, engine, pace, watcher.happened, row_notes)
         long_run = LongRun(model, engine, settings, watcher, on_progress)
         status = engine.advance(long_run, pace.every, stream)
         messages += long_run.notes()
     cpu, total = time.process_time() - cpu, time.perf_counter() - begin + (stream.elapsed if stream else 0.0)
+    row_notes.see(engine.rows())
     if status == "completed":
-        rows = engine.rows()
-        for note in [*notes(engine, settings), *straight_struts.notes(scene, model, engine),
-                     *reduced_strain.notes(scene, model, rows["time"], rows["q"])]:
+        for note in [*notes(engine, settings), *trapped(scene, engine), *row_notes.notes()]:
             messages.append(note)
             warnings.warn(note, FunicularWarning, stacklevel=4)
     LOG.info("run %s after %.3g s", status.replace("_", " "), total)
@@ -152,7 +154,7 @@ def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine
         step=settings.step or 0.0,
         method=method,
         first_step=min(settings.output_step, 1e-3 * settings.duration),
-        knots=knots(model, settings.duration, settings.tol),
+        knots=knots(model, settings.duration, settings.tol, turns=settings.step is None),
         capacity=capacity,
     )
     if status == "singular" and engine.jammed >= 0:

@@ -6,6 +6,8 @@ strut. Whether it would buckle is counted by the inertia of its stiffness, as in
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ..engine import Engine
@@ -18,40 +20,56 @@ STRAIGHT = 1e-9
 """Of the length: nodes that are nearer to the line between the ends lie on it."""
 
 
-def notes(scene: SceneData, model: Model, engine) -> list[str]:
-    """Return a note for each such strut at the time at which it is compressed most, of those still in memory."""
-    rows = engine.rows()
-    times, states, arcs = rows["time"], rows["q"], rows["s"]
-    if not len(times):  # all are in the file
-        end, q, _, s = engine.now()
-        times, states, arcs = np.array([end]), q[None], s[None]
-    notes = []
-    for cable in model.cables:
-        part = scene.cables[cable.name]
-        if part.is_curved:
-            continue
-        r = states[:, cable.coordinates].reshape(-1, *cable.shape)[:, :, cable.vectors.index("r")]
-        straight = _straight(r)
-        at = np.flatnonzero(straight & np.append(straight[1:], straight[-1]))  # else something bends it
-        if not len(at):
-            continue
-        shortening = 1 - np.linalg.norm(np.diff(r[at], axis=1), axis=2) / cable.length
-        forces = part.material.youngs_modulus * part.section.moments()[0] * shortening.max(axis=1)
-        k, force = at[np.argmax(forces)], forces.max()
-        length = cable.length * cable.n_elements
-        weakest = part.material.youngs_modulus * min(part.section.moments()[1:3])
-        if force < weakest / length**2:  # a cantilever, the weakest of struts, buckles at 2.47 times this
-            continue
-        try:
-            buckles = _unstable(model, cable, times[k], states[k], arcs[k])
-        except ArithmeticError:  # no factorisation is accurate enough to count
-            continue
-        if buckles:
-            notes.append(f'cable "{part.name}" is perfectly straight at t = {times[k]:.6g} s under a compression of '
-                        f"{force:.4g} N, beyond its buckling load ({buckles} independent direction"
-                        f"{'s lower' if buckles > 1 else ' lowers'} its energy): nothing in the scene bends it. "
-                        "Draw it slightly bent, or add a small force across it")
-    return notes
+class StraightStruts:
+    """Each cable that was perfectly straight at two output times on end, when it was compressed most.
+
+    found: by the cable's name whether it is straight in the last row, and the largest compression in N beyond what the
+    weakest of struts bears, with the time in s, the coordinates and the slides' arc-lengths then.
+    """
+
+    def __init__(self, scene: SceneData, model: Model):
+        self._scene, self._model = scene, model
+        self.found: dict[str, Any] = {}
+
+    def see(self, rows: dict[str, np.ndarray]) -> None:
+        """Take further output rows."""
+        for cable in self._model.cables:
+            part = self._scene.cables[cable.name]
+            if part.is_curved:
+                continue
+            r = rows["q"][:, cable.coordinates].reshape(-1, *cable.shape)[:, :, cable.vectors.index("r")]
+            straight = _straight(r)
+            before, worst = self.found.get(cable.name, (False, None))
+            at = np.flatnonzero(straight & np.append(before, straight[:-1]))  # else something bends it
+            if len(at):
+                shortening = 1 - np.linalg.norm(np.diff(r[at], axis=1), axis=2) / cable.length
+                forces = part.material.youngs_modulus * part.section.moments()[0] * shortening.max(axis=1)
+                k, force = at[np.argmax(forces)], float(forces.max())
+                length = cable.length * cable.n_elements
+                weakest = part.material.youngs_modulus * min(part.section.moments()[1:3])
+                least = weakest / length**2  # a cantilever, the weakest of struts, buckles at 2.47 times this
+                if force >= least and (worst is None or force > worst[0]):
+                    worst = [force, float(rows["time"][k]), rows["q"][k].tolist(), rows["s"][k].tolist()]
+            self.found[cable.name] = [bool(straight[-1]), worst]
+
+    def notes(self) -> list[str]:
+        """Return a note for each of them that would buckle at the time at which it is compressed most."""
+        notes = []
+        for cable in self._model.cables:
+            _, worst = self.found.get(cable.name, (False, None))
+            if worst is None:
+                continue
+            force, time, q, s = worst
+            try:
+                buckles = _unstable(self._model, cable, time, np.array(q), np.array(s))
+            except ArithmeticError:  # no factorisation is accurate enough to count
+                continue
+            if buckles:
+                notes.append(f'cable "{cable.name}" is perfectly straight at t = {time:.6g} s under a compression of '
+                             f"{force:.4g} N, beyond its buckling load ({buckles} independent direction"
+                             f"{'s lower' if buckles > 1 else ' lowers'} its energy): nothing in the scene bends it. "
+                             "Draw it slightly bent, or add a small force across it")
+        return notes
 
 
 def _straight(r: np.ndarray) -> np.ndarray:

@@ -37,7 +37,7 @@ struct fu_run {
     void *context;
     fu_event event;      /* that the run has stopped at */
     int n_knots;
-    const fu_knot *knots; /* increasing; steps end there, those of a fixed length where a rate jumps */
+    const fu_knot *knots; /* increasing; steps end there */
     double duration, output_step, fixed_step, tol;
     fu_state now, next;
     fu_system newton;

@@ -157,7 +157,7 @@ static double error(fu_run *run, double h)
 {
     const tableau method = tableau_of(run);
     const double fine = estimate(run, method.error, h);
-    if (fine == 0.0) return 0.0;
+    if (fine * fine == 0.0) return 0.0; /* of two that vanish together the quotient would be no number */
     const double coarse = estimate(run, method.coarse, h);
     return fine * fine / sqrt(fine * fine + COARSE_SHARE * coarse * coarse);
 }

@@ -162,7 +162,9 @@ static int acted(fu_run *run, int j, int what)
 
 /* Put a slide that stands on a boundary into the neighbour. Accelerations and force jump with r_xx there: the scheme
  * starts anew. Were they carried over, the short steps around a boundary would raise what the constraints left in them
- * by the ratio of the steps, crossing by crossing, and a spectral radius of 1 never lets it decay. Returns
+ * by the ratio of the steps, crossing by crossing, and a spectral radius of 1 never lets it decay. The tangent of the
+ * neighbour differs by the jump of the curvature times how far the slide is beyond the boundary: were a frame that is tied
+ * to it not turned along at once, the first short step would turn it, at a speed that none of the energies has. Returns
  * FU_END_OF_CABLE where there is no neighbour. */
 static int enter(fu_run *run, int j, int side)
 {
@@ -178,6 +180,7 @@ static int enter(fu_run *run, int j, int side)
         if (fu_project_velocities(model, now, &run->accelerator, run->work)) return FU_SINGULAR;
         for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->work[i];
         now->element[j] = element;
+        if (fu_close(run)) return FU_NO_CONVERGENCE;
         if (fu_project_velocities(model, now, &run->accelerator, run->work)) return FU_SINGULAR;
         fu_impact(run, run->work, 0.0);
     }
@@ -364,12 +367,11 @@ static const fu_knot *next_knot(const fu_run *run, double latest)
         if (run->knots[middle].t > run->now.t + close) high = middle;
         else low = middle + 1;
     }
-    for (; low < run->n_knots && run->knots[low].t <= latest + close; ++low)
-        if (run->fixed_step <= 0.0 || run->knots[low].jumps == FU_RATE_JUMPS) return &run->knots[low];
-    return 0;
+    return low < run->n_knots && run->knots[low].t <= latest + close ? &run->knots[low] : 0;
 }
 
-/* On from a knot that `now` has reached. What jumps there starts the scheme anew. Where a rate jumps, all that joints tie
+/* On from a knot that `now` has reached. What jumps there starts the scheme anew; so does any knot between steps of a
+ * fixed length, whose neighbours can be of any ratio. Where a rate jumps, all that joints tie
  * to it jumps, too, and what drives it does the work of that; a drive that turned within an instant would lose none. */
 static int pass_knot(fu_run *run, const fu_knot *knot, int event)
 {
@@ -377,7 +379,7 @@ static int pass_knot(fu_run *run, const fu_knot *knot, int event)
     fu_state *now = &run->now;
     now->t = knot->t;
     run->drive_step = fmin(run->drive_step, 0.0); /* powers before do not tell how it changes from here */
-    if (knot->jumps == FU_HIGHER_JUMPS) return FU_RUNNING;
+    if (knot->jumps == FU_HIGHER_JUMPS && is_adaptive(run)) return FU_RUNNING;
     if (knot->jumps == FU_RATE_JUMPS) {
         const double before = fu_kinetic_energy(model, now->q, now->v);
         fu_prescribe(model, now);

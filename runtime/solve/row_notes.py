@@ -1,0 +1,55 @@
+"""Notes on a run that take all of its output rows, also those that are on disk already."""
+
+from __future__ import annotations
+
+from typing import Any, Protocol
+
+import numpy as np
+
+from ..model.model import Model
+from ..parts.scene_data import SceneData
+from .fast_turns import FastTurns
+from .meeting_points import MeetingPoints
+from .reduced_strain import ReducedStrain
+from .straight_struts import StraightStruts
+
+
+class Watched(Protocol):
+    """Sees output rows and keeps what it has found, as JSON takes it, by the names of parts."""
+
+    found: dict[str, Any]
+
+    def see(self, rows: dict[str, np.ndarray]) -> None:
+        """Take further output rows, by name, time first."""
+
+    def notes(self) -> list[str]:
+        """Return the notes on all rows that were seen."""
+
+
+class RowNotes:
+    """What is noted of output rows, which are seen as they come, a batch after the other."""
+
+    def __init__(self, scene: SceneData, model: Model, step: float = 0.0):
+        self._watched: dict[str, Watched] = {
+            "straight struts": StraightStruts(scene, model), "reduced strain": ReducedStrain(scene, model),
+            "meeting points": MeetingPoints(scene, model), "fast turns": FastTurns(model, step)}
+
+    def see(self, rows: dict[str, np.ndarray]) -> None:
+        """Take further rows of the engine, by name, time first."""
+        if len(rows["time"]):
+            for each in self._watched.values():
+                each.see(rows)
+
+    def notes(self) -> list[str]:
+        """Return the notes on all rows that were seen."""
+        return [note for each in self._watched.values() for note in each.notes()]
+
+    @property
+    def found(self) -> dict[str, Any]:
+        """What rows have shown so far, as JSON takes it, for a checkpoint."""
+        return {name: each.found for name, each in self._watched.items()}
+
+    def go_on(self, found: dict[str, Any]) -> None:
+        """Go on from what the rows before a checkpoint had shown."""
+        for name, each in self._watched.items():
+            each.found = found.get(name, {})

@@ -1,0 +1,147 @@
+"""Notes on output rows take all of them, also those of a streamed run that are on disk: struts, strains, springs."""
+
+import json
+
+import numpy as np
+import pytest
+from funicular import (
+    Circle,
+    ConvergenceError,
+    FunicularWarning,
+    Material,
+    Pulse,
+    Ramp,
+    Rectangle,
+    Scene,
+    SceneError,
+    TableSignal,
+)
+from funicular.model.build import build
+from funicular.solve import pauses
+from funicular.solve.row_notes import RowNotes
+from shared_scenes import cable_scene
+
+RADIUS, MODULUS = 1e-3, 1e8
+EULER = np.pi**2 * MODULUS * np.pi / 4 * RADIUS**4
+
+
+def strut() -> Scene:
+    """1 m, straight, pressed along its axis beyond Euler's load for the first half of the run alone."""
+    scene = cable_scene("strut", pins=(0,), gravity=(0, 0, 0), elements=4, element="cable8p",
+                        section=Circle(radius=RADIUS),
+                        material=Material(youngs_modulus=MODULUS, poisson_ratio=0, density=1000, damping_time=1e-3))
+    scene.pin("strut", s=1.0)
+    scene.force("strut", s=0.5, value=(-40 * EULER, 0, 0), scale=Pulse(start=0, end=0.02))
+    return scene
+
+
+def squeezed() -> Scene:
+    """A cable with a reduced strain, pressed together by a tenth for the first half of the run alone."""
+    scene = cable_scene(pins=(0,), gravity=(0, 0, 0), elements=4, element="cable8p", membrane="reduced",
+                        section=Rectangle(height=0.05, width=0.05),
+                        material=Material(youngs_modulus=1e6, poisson_ratio=0, density=1000, damping_time=1e-2))
+    scene.motion("wire", s=1.0, displacement=(Pulse(start=0, end=0.02, height=-0.1), 0, 0))
+    return scene
+
+
+def met(length=0.5, stays=False) -> Scene:
+    """A body that is drawn through the other end of its spring, or that is put there."""
+    scene = Scene(gravity=(0, 0, 0))
+    scene.rigid_body("A", mass=1.0, inertia=(1, 1, 1), position=(-1, 0, 0))
+    signal = Ramp(start=0, end=0.02) if stays else TableSignal(time=(0, 0.02, 0.04), value=(0, 1, 1.5))
+    scene.joint("prismatic", (0, 0, 0), ("A", (1, 0, 0)), axis=(1, 0, 0), distance=signal)
+    scene.spring("A", (0, 0, 0), stiffness=10.0, length=length, name="coil")
+    return scene
+
+
+SCENES = {"perfectly straight": strut, "was compressed by": squeezed, 'spring "coil": at t': met}
+SETTINGS = {"duration": 0.04, "output_step": 1e-3, "tol": 1e-3, "integrator": "radau", "progress": False}
+
+
+def noted(run, said: str) -> list[str]:
+    return [message for message in run.report["messages"] if said in message]
+
+
+@pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
+@pytest.mark.parametrize("said", SCENES)
+def test_rows_on_disk_are_noted_too(said, tmp_path, monkeypatch):
+    """Of a streamed run the last rows alone were looked at, in which nothing is pressed any more."""
+    whole = SCENES[said]().run(**SETTINGS)
+    monkeypatch.setattr(pauses, "BUFFER", 1.0)
+    streamed = SCENES[said]().run(**SETTINGS, save=tmp_path / "run.nc")
+    assert len(noted(whole, said)) == 1
+    assert noted(streamed, said) == noted(whole, said)
+
+
+@pytest.mark.parametrize("said", SCENES)
+def test_a_checkpoint_holds_what_was_found(said):
+    """Rows one by one, and each time as a run that is resumed has it."""
+    scene = SCENES[said]()
+    model = build(scene)
+    q = np.repeat(model.q[None], 5, axis=0)
+    if said == "perfectly straight":
+        q[1:3, model.cables[0].coordinates].reshape(2, *model.cables[0].shape)[:, 2, 0, 0] -= 0.02
+    elif said == "was compressed by":
+        q[1, model.cables[0].coordinates].reshape(model.cables[0].shape)[2, 0, 0] -= 0.02
+    else:
+        q[2, model.bodies[0].configuration] = 0.0
+    rows = {"time": np.arange(5.0), "q": q, "s": np.zeros((5, 0))}
+    at_once, found = RowNotes(scene, model), {}
+    at_once.see(rows)
+    for k in range(5):
+        resumed = RowNotes(scene, model)
+        resumed.go_on(json.loads(json.dumps(found)))
+        resumed.see({name: values[k : k + 1] for name, values in rows.items()})
+        found = resumed.found
+    assert len([note for note in at_once.notes() if said in note]) == 1
+    assert resumed.notes() == at_once.notes()
+
+
+@pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
+def test_a_body_that_turns_by_radians_within_a_fixed_step_is_noted():
+    """Its axes went where they liked, without a word."""
+    def turning(rate: float, **step):
+        scene = Scene(gravity=(0, 0, 0))
+        scene.rigid_body("A", mass=1.0, inertia=(1, 2, 3), position=(0, 0, 0), angular_velocity=(0, rate, 0.1))
+        return scene.run(0.1, output_step=0.01, progress=False, **step).report["messages"]
+
+    assert turning(1000.0, step=0.01)[-1].startswith('body "A" turns by 10')
+    assert turning(10.0, step=0.01) == turning(1000.0) == []
+
+
+@pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
+def test_a_spring_of_no_length_has_no_direction_to_lose():
+    assert noted(met(length=0.0).run(**SETTINGS), "direction is lost") == []
+
+
+def test_a_body_that_is_put_on_the_end_of_its_spring_is_noted():
+    """The spring pushed it with 5 N in the direction of what rounding had left, without a word."""
+    said = (r'spring "coil": at t = 0.02 s both ends are at \(0, 0, 0\) m: its direction is lost; keep them apart, '
+            "or take length=0 where they may meet")
+    with pytest.warns(FunicularWarning, match=said):
+        met(stays=True).run(**SETTINGS)
+
+
+def test_a_spring_of_no_length_may_start_with_its_points_at_one_place():
+    """It was refused, although it has no direction; one that takes its length from there has none to take."""
+    scene = Scene(gravity=(0, -10, 0))
+    scene.rigid_body("A", mass=2.0, inertia=(1, 1, 1), position=(0, 0, 0))
+    with pytest.raises(SceneError, match="its direction is lost"):
+        scene.spring((0, 0, 0), "A", stiffness=50.0)
+    scene.spring((0, 0, 0), "A", stiffness=50.0, length=0.0)
+    np.testing.assert_allclose(scene.equilibrium()["A.position"], [0, -0.4, 0], atol=1e-12)
+    time = np.pi / 5  # a period and a quarter of sqrt(50/2) rad/s, less a quarter
+    np.testing.assert_allclose(scene.run(time, progress=False, tol=1e-6)["A.position"][-1, 1], -0.8, rtol=1e-5)
+
+
+@pytest.mark.parametrize("integrator", ["genalpha", "radau", "explicit"])
+@pytest.mark.filterwarnings("ignore::funicular.FunicularWarning")
+def test_a_distance_that_is_driven_to_nothing_is_named(integrator):
+    """It said that the body runs away, and to look at masses."""
+    scene = Scene()
+    scene.rigid_body("A", mass=1.0, inertia=(1, 1, 1), position=(0, -1, 0))
+    scene.joint("distance", (0, 0, 0), "A", name="winch",
+                distance=TableSignal(time=(0, 1, 2), value=(1, 0, -1), interpolation="linear"))
+    with pytest.raises(ConvergenceError, match=r'^joint "winch": at t = 1 s both ends are at .* its direction is '
+                                               'lost; keep them apart, or take kind="spherical"'):
+        scene.run(2.0, output_step=0.1, integrator=integrator, progress=False)
