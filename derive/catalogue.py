@@ -9,15 +9,24 @@ from functools import partial
 from .bodies import BODIES, RIDERS, Body, Rider, modal, modal_kernels
 from .bodies import kernels as body_kernels
 from .bodies.point import Point
-from .codegen.family import BodyFamily, CouplingFamily, ElementFamily, Family, LawFamily, SlideFamily
-from .couplings import frame, joint, resistance, slide, spring
+from .codegen.family import (
+    BodyFamily,
+    CouplingFamily,
+    ElementFamily,
+    Family,
+    LawFamily,
+    PointLawFamily,
+    SlideFamily,
+)
+from .couplings import frame, joint, point_law, resistance, slide
+from .couplings.point_laws import LAWS as POINT_LAWS
 from .elements import ELEMENTS
 from .elements import kernels as element_kernels
 from .laws import kernels as law_kernels
 from .laws import law_name, law_traits, stiffness_of
 from .laws.structural import kernels as structural_kernels
 from .laws.structural import structural
-from .spec import Element
+from .spec import Element, PointLaw
 
 _SPACE = {2: "the plane", 3: "space"}
 
@@ -89,11 +98,13 @@ def _joint(dim: int, name: str) -> CouplingFamily:
                           facts={"dim": dim, "rows": joint.rows(dim, name)}, dim=dim)
 
 
-def _spring(name: str, kind: spring.Spring) -> CouplingFamily:
-    length = "" if kind.has_length else " of no rest length"
-    return CouplingFamily(name, f"spring and damper{length} between two points in {_SPACE[kind.dim]}",
-                          partial(spring.build, name), ("couplings.spring",), role="spring", facts={"dim": kind.dim},
-                          dim=kind.dim)
+def of_point_law(name: str, law: PointLaw) -> list[Family]:
+    """Return the families of the force between two points by a law, in space and in the plane."""
+    return [PointLawFamily(prefix + name, f"{law.doc} in {_SPACE[dim]}",
+                           partial(point_law.build, prefix + name, law, dim),
+                           (f"couplings.point_laws.{name}", "couplings.point_law"), role="point_law",
+                           missing=point_law.missing(law), facts={"dim": dim, "parameters": len(law.parameters)},
+                           dim=dim, point_law=law) for dim, prefix in ((3, ""), (2, "planar_"))]
 
 
 def of_element(element: Element) -> list[Family]:
@@ -104,7 +115,7 @@ def of_element(element: Element) -> list[Family]:
 
 def families() -> dict[str, Family]:
     """Return every family by name: elements, laws, bodies, the slide of each element and rider, joints, resistances,
-    springs.
+    forces between two points.
     """
     of_role: dict[str, list[Family]] = {"element": [], "law": [], "slide": []}
     for element in ELEMENTS.values():
@@ -115,7 +126,7 @@ def families() -> dict[str, Family]:
              *(_modal(name, body) for name, body in modal.FRAMES.items()),
              *of_role["slide"],
              *map(_frame, frame.FRAMES), *joints, *map(_resistance, resistance.RESISTANCES),
-             *(_spring(name, kind) for name, kind in spring.SPRINGS.items())]
+             *(family for name, law in POINT_LAWS.items() for family in of_point_law(name, law))]
     return {f.name: f for f in every}
 
 

@@ -1,14 +1,17 @@
-"""What a spec is: of an element its basis and nodal conditions, of a law what it knows and what it takes.
+"""What a spec is: of an element its basis and nodal conditions, of a law what it knows and what it takes, of a force
+between two points its energy.
 
 The shape functions are solved from the nodal conditions (eq 1-2), never typed in.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Protocol
 
+import numpy as np
 import sympy as sp
 
 x, y, z, l = sp.symbols("x y z l", positive=True)
@@ -104,3 +107,47 @@ class Element:
             raise ValueError(f"{self.name}: {conditions.shape[0]} nodal conditions do not fix "
                              f"{len(basis)} basis functions")
         return tuple((sp.Matrix([basis]) * conditions.inv()).applyfunc(sp.expand))
+
+
+class Stages(Protocol):
+    """What a spec names its intermediate values with: a kernel's program."""
+
+    def stage(self, title: str) -> None:
+        """Open a stage of that title."""
+
+    def define(self, name: str, expr: sp.Expr) -> sp.Expr:
+        """Return the name of an expression. Roots and reciprocals need one: derivatives reuse their values."""
+
+
+@dataclass(frozen=True)
+class PointLaw:
+    """The law of a force between two points, by the gap from the first to the second, in the plane and in space.
+
+    doc, source  what it is, and where it is from
+    parameters   unit and meaning by name; the part of the scene has a field of each name
+    energy       energy(p, e, c): the stored energy U in J by the measures e, which makes the force dU/dgap on the first
+                 point and its opposite on the second; c.<name> is a parameter, p: see `Stages`
+    measures     measures(p, gap, c): what the energy is a function of, such as a distance; not given: the gap itself
+    damping      the parameter c of a damper, whose power is c e'.e'; empty where there is none
+
+    U and e.e must not change where the gap is turned: the law knows no axes.
+    """
+
+    doc: str
+    source: str
+    parameters: dict[str, tuple[str, str]]
+    energy: Callable[[Stages, np.ndarray, Any], sp.Expr]
+    measures: Callable[[Stages, np.ndarray, Any], list[sp.Expr]] | None = None
+    damping: str = ""
+
+    def __post_init__(self):
+        if self.damping and self.damping not in self.parameters:
+            raise ValueError(f'{self.doc}: the damper\'s parameter "{self.damping}" is not among '
+                             f"{', '.join(self.parameters)}")
+
+    def measured(self, p: Stages, gap: np.ndarray, c: Any) -> np.ndarray:
+        """Return the measures e, each a symbol."""
+        if self.measures is None:
+            return gap
+        p.stage("measures of the gap")
+        return np.array([p.define("e", value) for value in self.measures(p, gap, c)])

@@ -82,8 +82,8 @@ SOURCES = (
     "resistance.c",
     "planar_resistance.c",
     "spring.c",
-    "zero_length_spring.c",
     "planar_spring.c",
+    "zero_length_spring.c",
     "planar_zero_length_spring.c",
     "registry.c",
 )

@@ -1373,60 +1373,60 @@ void resistance_force(const fu_real *t, const fu_real *u, const fu_real *f, cons
 void planar_resistance_force(const fu_real *t, const fu_real *u, const fu_real *f, const fu_real *friction, const fu_real *buffer, fu_real *R, fu_real *R_t, fu_real *R_u, fu_real *R_f, fu_real *R_x);
 
 /* spring: spring and damper between two points in space */
-/* stored energy: stiffness [N/m]; rest_length [m]; gap 3[m] -> U 1[J] */
-void spring_energy(fu_real stiffness, fu_real rest_length, const fu_real *gap, fu_real *U);
-/* power that the damper takes: damping [N s/m]; rest_length [m]; gap 3[m]; gap_rate 3[m/s] -> P 1[W] */
-void spring_dissipation(fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
-/* force along the gap: stiffness [N/m]; damping [N s/m]; rest_length [m]; gap 3[m]; gap_rate 3[m/s] -> f 3[N] */
-void spring_force(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
-/* force along the gap, and its derivatives: stiffness [N/m]; damping [N s/m]; rest_length [m]; gap 3[m]; gap_rate
- * 3[m/s] -> f 3[N]; K 3x3[N/m]; D 3x3[N s/m] */
-void spring_tangent(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
-/* force over a step, which takes the work that is stored and dissipated: stiffness [N/m]; damping [N s/m];
- * rest_length [m]; h [s]; gap 3[m]; gap_next 3[m] -> f 3[N]; P 1[W] */
-void spring_discrete_force(fu_real stiffness, fu_real damping, fu_real rest_length, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
-
-/* zero_length_spring: spring and damper of no rest length between two points in space */
-/* stored energy: stiffness [N/m]; rest_length [m]; gap 3[m] -> U 1[J] */
-void zero_length_spring_energy(fu_real stiffness, fu_real rest_length, const fu_real *gap, fu_real *U);
-/* power that the damper takes: damping [N s/m]; rest_length [m]; gap 3[m]; gap_rate 3[m/s] -> P 1[W] */
-void zero_length_spring_dissipation(fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
-/* force along the gap: stiffness [N/m]; damping [N s/m]; rest_length [m]; gap 3[m]; gap_rate 3[m/s] -> f 3[N] */
-void zero_length_spring_force(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
-/* force along the gap, and its derivatives: stiffness [N/m]; damping [N s/m]; rest_length [m]; gap 3[m]; gap_rate
- * 3[m/s] -> f 3[N]; K 3x3[N/m]; D 3x3[N s/m] */
-void zero_length_spring_tangent(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
-/* force over a step, which takes the work that is stored and dissipated: stiffness [N/m]; damping [N s/m];
- * rest_length [m]; h [s]; gap 3[m]; gap_next 3[m] -> f 3[N]; P 1[W] */
-void zero_length_spring_discrete_force(fu_real stiffness, fu_real damping, fu_real rest_length, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
+/* stored energy: parameters 3[N/m, N s/m, m]; gap 3[m] -> U 1[J] */
+void spring_energy(const fu_real *parameters, const fu_real *gap, fu_real *U);
+/* power that the damper takes: parameters 3[N/m, N s/m, m]; gap 3[m]; gap_rate 3[m/s] -> P 1[W] */
+void spring_dissipation(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
+/* force between the points: parameters 3[N/m, N s/m, m]; gap 3[m]; gap_rate 3[m/s] -> f 3[N] */
+void spring_force(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
+/* force between the points, and its derivatives: parameters 3[N/m, N s/m, m]; gap 3[m]; gap_rate 3[m/s] -> f 3[N]; K
+ * 3x3[N/m]; D 3x3[N s/m] */
+void spring_tangent(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
+/* force over a step, which takes the work that is stored and dissipated: parameters 3[N/m, N s/m, m]; h [s]; gap
+ * 3[m]; gap_next 3[m] -> f 3[N]; P 1[W] */
+void spring_discrete_force(const fu_real *parameters, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
 
 /* planar_spring: spring and damper between two points in the plane */
-/* stored energy: stiffness [N/m]; rest_length [m]; gap 2[m] -> U 1[J] */
-void planar_spring_energy(fu_real stiffness, fu_real rest_length, const fu_real *gap, fu_real *U);
-/* power that the damper takes: damping [N s/m]; rest_length [m]; gap 2[m]; gap_rate 2[m/s] -> P 1[W] */
-void planar_spring_dissipation(fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
-/* force along the gap: stiffness [N/m]; damping [N s/m]; rest_length [m]; gap 2[m]; gap_rate 2[m/s] -> f 2[N] */
-void planar_spring_force(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
-/* force along the gap, and its derivatives: stiffness [N/m]; damping [N s/m]; rest_length [m]; gap 2[m]; gap_rate
- * 2[m/s] -> f 2[N]; K 2x2[N/m]; D 2x2[N s/m] */
-void planar_spring_tangent(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
-/* force over a step, which takes the work that is stored and dissipated: stiffness [N/m]; damping [N s/m];
- * rest_length [m]; h [s]; gap 2[m]; gap_next 2[m] -> f 2[N]; P 1[W] */
-void planar_spring_discrete_force(fu_real stiffness, fu_real damping, fu_real rest_length, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
+/* stored energy: parameters 3[N/m, N s/m, m]; gap 2[m] -> U 1[J] */
+void planar_spring_energy(const fu_real *parameters, const fu_real *gap, fu_real *U);
+/* power that the damper takes: parameters 3[N/m, N s/m, m]; gap 2[m]; gap_rate 2[m/s] -> P 1[W] */
+void planar_spring_dissipation(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
+/* force between the points: parameters 3[N/m, N s/m, m]; gap 2[m]; gap_rate 2[m/s] -> f 2[N] */
+void planar_spring_force(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
+/* force between the points, and its derivatives: parameters 3[N/m, N s/m, m]; gap 2[m]; gap_rate 2[m/s] -> f 2[N]; K
+ * 2x2[N/m]; D 2x2[N s/m] */
+void planar_spring_tangent(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
+/* force over a step, which takes the work that is stored and dissipated: parameters 3[N/m, N s/m, m]; h [s]; gap
+ * 2[m]; gap_next 2[m] -> f 2[N]; P 1[W] */
+void planar_spring_discrete_force(const fu_real *parameters, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
 
-/* planar_zero_length_spring: spring and damper of no rest length between two points in the plane */
-/* stored energy: stiffness [N/m]; rest_length [m]; gap 2[m] -> U 1[J] */
-void planar_zero_length_spring_energy(fu_real stiffness, fu_real rest_length, const fu_real *gap, fu_real *U);
-/* power that the damper takes: damping [N s/m]; rest_length [m]; gap 2[m]; gap_rate 2[m/s] -> P 1[W] */
-void planar_zero_length_spring_dissipation(fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
-/* force along the gap: stiffness [N/m]; damping [N s/m]; rest_length [m]; gap 2[m]; gap_rate 2[m/s] -> f 2[N] */
-void planar_zero_length_spring_force(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
-/* force along the gap, and its derivatives: stiffness [N/m]; damping [N s/m]; rest_length [m]; gap 2[m]; gap_rate
- * 2[m/s] -> f 2[N]; K 2x2[N/m]; D 2x2[N s/m] */
-void planar_zero_length_spring_tangent(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
-/* force over a step, which takes the work that is stored and dissipated: stiffness [N/m]; damping [N s/m];
- * rest_length [m]; h [s]; gap 2[m]; gap_next 2[m] -> f 2[N]; P 1[W] */
-void planar_zero_length_spring_discrete_force(fu_real stiffness, fu_real damping, fu_real rest_length, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
+/* zero_length_spring: spring and damper of no length between two points in space */
+/* stored energy: parameters 2[N/m, N s/m]; gap 3[m] -> U 1[J] */
+void zero_length_spring_energy(const fu_real *parameters, const fu_real *gap, fu_real *U);
+/* power that the damper takes: parameters 2[N/m, N s/m]; gap 3[m]; gap_rate 3[m/s] -> P 1[W] */
+void zero_length_spring_dissipation(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
+/* force between the points: parameters 2[N/m, N s/m]; gap 3[m]; gap_rate 3[m/s] -> f 3[N] */
+void zero_length_spring_force(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
+/* force between the points, and its derivatives: parameters 2[N/m, N s/m]; gap 3[m]; gap_rate 3[m/s] -> f 3[N]; K
+ * 3x3[N/m]; D 3x3[N s/m] */
+void zero_length_spring_tangent(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
+/* force over a step, which takes the work that is stored and dissipated: parameters 2[N/m, N s/m]; h [s]; gap 3[m];
+ * gap_next 3[m] -> f 3[N]; P 1[W] */
+void zero_length_spring_discrete_force(const fu_real *parameters, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
+
+/* planar_zero_length_spring: spring and damper of no length between two points in the plane */
+/* stored energy: parameters 2[N/m, N s/m]; gap 2[m] -> U 1[J] */
+void planar_zero_length_spring_energy(const fu_real *parameters, const fu_real *gap, fu_real *U);
+/* power that the damper takes: parameters 2[N/m, N s/m]; gap 2[m]; gap_rate 2[m/s] -> P 1[W] */
+void planar_zero_length_spring_dissipation(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
+/* force between the points: parameters 2[N/m, N s/m]; gap 2[m]; gap_rate 2[m/s] -> f 2[N] */
+void planar_zero_length_spring_force(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
+/* force between the points, and its derivatives: parameters 2[N/m, N s/m]; gap 2[m]; gap_rate 2[m/s] -> f 2[N]; K
+ * 2x2[N/m]; D 2x2[N s/m] */
+void planar_zero_length_spring_tangent(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
+/* force over a step, which takes the work that is stored and dissipated: parameters 2[N/m, N s/m]; h [s]; gap 2[m];
+ * gap_next 2[m] -> f 2[N]; P 1[W] */
+void planar_zero_length_spring_discrete_force(const fu_real *parameters, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
 
 /* What the engine needs of a element. */
 typedef struct {
@@ -1545,16 +1545,17 @@ typedef struct {
     void (*force)(const fu_real *t, const fu_real *u, const fu_real *f, const fu_real *friction, const fu_real *buffer, fu_real *R, fu_real *R_t, fu_real *R_u, fu_real *R_f, fu_real *R_x);
 } fu_resistance_kernels;
 
-/* What the engine needs of a spring. */
+/* What the engine needs of a point_law. */
 typedef struct {
     const char *name;
     int dim;
-    void (*energy)(fu_real stiffness, fu_real rest_length, const fu_real *gap, fu_real *U);
-    void (*dissipation)(fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
-    void (*force)(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
-    void (*tangent)(fu_real stiffness, fu_real damping, fu_real rest_length, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
-    void (*discrete_force)(fu_real stiffness, fu_real damping, fu_real rest_length, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
-} fu_spring_kernels;
+    int parameters;
+    void (*energy)(const fu_real *parameters, const fu_real *gap, fu_real *U);
+    void (*dissipation)(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *P);
+    void (*force)(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *f);
+    void (*tangent)(const fu_real *parameters, const fu_real *gap, const fu_real *gap_rate, fu_real *f, fu_real *K, fu_real *D);
+    void (*discrete_force)(const fu_real *parameters, fu_real h, const fu_real *gap, const fu_real *gap_next, fu_real *f, fu_real *P);
+} fu_point_law_kernels;
 
 /* Every table, one entry a family. */
 typedef struct {
@@ -1574,8 +1575,8 @@ typedef struct {
     const fu_joint_kernels *joints;
     int n_resistances;
     const fu_resistance_kernels *resistances;
-    int n_springs;
-    const fu_spring_kernels *springs;
+    int n_point_laws;
+    const fu_point_law_kernels *point_laws;
 } fu_tables;
 extern const fu_tables fu_all;
 
@@ -1598,8 +1599,8 @@ static inline const void *fu_find(const fu_tables *tables, const char *role, con
         if (!strcmp(tables->joints[i].name, name)) return &tables->joints[i];
     for (int i = 0; i < tables->n_resistances && !strcmp(role, "resistance"); ++i)
         if (!strcmp(tables->resistances[i].name, name)) return &tables->resistances[i];
-    for (int i = 0; i < tables->n_springs && !strcmp(role, "spring"); ++i)
-        if (!strcmp(tables->springs[i].name, name)) return &tables->springs[i];
+    for (int i = 0; i < tables->n_point_laws && !strcmp(role, "point_law"); ++i)
+        if (!strcmp(tables->point_laws[i].name, name)) return &tables->point_laws[i];
     return 0;
 }
 

@@ -225,13 +225,13 @@ static const fu_resistance_kernels resistances[] = {
     {"planar_resistance", 2, planar_resistance_force},
 };
 
-static const fu_spring_kernels springs[] = {
-    {"spring", 3, spring_energy, spring_dissipation, spring_force, spring_tangent, spring_discrete_force},
-    {"zero_length_spring", 3, zero_length_spring_energy, zero_length_spring_dissipation, zero_length_spring_force,
-     zero_length_spring_tangent, zero_length_spring_discrete_force},
-    {"planar_spring", 2, planar_spring_energy, planar_spring_dissipation, planar_spring_force, planar_spring_tangent,
+static const fu_point_law_kernels point_laws[] = {
+    {"spring", 3, 3, spring_energy, spring_dissipation, spring_force, spring_tangent, spring_discrete_force},
+    {"planar_spring", 2, 3, planar_spring_energy, planar_spring_dissipation, planar_spring_force, planar_spring_tangent,
      planar_spring_discrete_force},
-    {"planar_zero_length_spring", 2, planar_zero_length_spring_energy, planar_zero_length_spring_dissipation,
+    {"zero_length_spring", 3, 2, zero_length_spring_energy, zero_length_spring_dissipation, zero_length_spring_force,
+     zero_length_spring_tangent, zero_length_spring_discrete_force},
+    {"planar_zero_length_spring", 2, 2, planar_zero_length_spring_energy, planar_zero_length_spring_dissipation,
      planar_zero_length_spring_force, planar_zero_length_spring_tangent, planar_zero_length_spring_discrete_force},
 };
 
@@ -673,26 +673,26 @@ static const fu_spring_kernels springs[] = {
     X(joint_planar_locked_motion, a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], out[0], out[1]) \
     X(resistance_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]) \
     X(planar_resistance_force, a[0], a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3], out[4]) \
-    X(spring_energy, *a[0], *a[1], a[2], out[0]) \
-    X(spring_dissipation, *a[0], *a[1], a[2], a[3], out[0]) \
-    X(spring_force, *a[0], *a[1], *a[2], a[3], a[4], out[0]) \
-    X(spring_tangent, *a[0], *a[1], *a[2], a[3], a[4], out[0], out[1], out[2]) \
-    X(spring_discrete_force, *a[0], *a[1], *a[2], *a[3], a[4], a[5], out[0], out[1]) \
-    X(zero_length_spring_energy, *a[0], *a[1], a[2], out[0]) \
-    X(zero_length_spring_dissipation, *a[0], *a[1], a[2], a[3], out[0]) \
-    X(zero_length_spring_force, *a[0], *a[1], *a[2], a[3], a[4], out[0]) \
-    X(zero_length_spring_tangent, *a[0], *a[1], *a[2], a[3], a[4], out[0], out[1], out[2]) \
-    X(zero_length_spring_discrete_force, *a[0], *a[1], *a[2], *a[3], a[4], a[5], out[0], out[1]) \
-    X(planar_spring_energy, *a[0], *a[1], a[2], out[0]) \
-    X(planar_spring_dissipation, *a[0], *a[1], a[2], a[3], out[0]) \
-    X(planar_spring_force, *a[0], *a[1], *a[2], a[3], a[4], out[0]) \
-    X(planar_spring_tangent, *a[0], *a[1], *a[2], a[3], a[4], out[0], out[1], out[2]) \
-    X(planar_spring_discrete_force, *a[0], *a[1], *a[2], *a[3], a[4], a[5], out[0], out[1]) \
-    X(planar_zero_length_spring_energy, *a[0], *a[1], a[2], out[0]) \
-    X(planar_zero_length_spring_dissipation, *a[0], *a[1], a[2], a[3], out[0]) \
-    X(planar_zero_length_spring_force, *a[0], *a[1], *a[2], a[3], a[4], out[0]) \
-    X(planar_zero_length_spring_tangent, *a[0], *a[1], *a[2], a[3], a[4], out[0], out[1], out[2]) \
-    X(planar_zero_length_spring_discrete_force, *a[0], *a[1], *a[2], *a[3], a[4], a[5], out[0], out[1]) \
+    X(spring_energy, a[0], a[1], out[0]) \
+    X(spring_dissipation, a[0], a[1], a[2], out[0]) \
+    X(spring_force, a[0], a[1], a[2], out[0]) \
+    X(spring_tangent, a[0], a[1], a[2], out[0], out[1], out[2]) \
+    X(spring_discrete_force, a[0], *a[1], a[2], a[3], out[0], out[1]) \
+    X(planar_spring_energy, a[0], a[1], out[0]) \
+    X(planar_spring_dissipation, a[0], a[1], a[2], out[0]) \
+    X(planar_spring_force, a[0], a[1], a[2], out[0]) \
+    X(planar_spring_tangent, a[0], a[1], a[2], out[0], out[1], out[2]) \
+    X(planar_spring_discrete_force, a[0], *a[1], a[2], a[3], out[0], out[1]) \
+    X(zero_length_spring_energy, a[0], a[1], out[0]) \
+    X(zero_length_spring_dissipation, a[0], a[1], a[2], out[0]) \
+    X(zero_length_spring_force, a[0], a[1], a[2], out[0]) \
+    X(zero_length_spring_tangent, a[0], a[1], a[2], out[0], out[1], out[2]) \
+    X(zero_length_spring_discrete_force, a[0], *a[1], a[2], a[3], out[0], out[1]) \
+    X(planar_zero_length_spring_energy, a[0], a[1], out[0]) \
+    X(planar_zero_length_spring_dissipation, a[0], a[1], a[2], out[0]) \
+    X(planar_zero_length_spring_force, a[0], a[1], a[2], out[0]) \
+    X(planar_zero_length_spring_tangent, a[0], a[1], a[2], out[0], out[1], out[2]) \
+    X(planar_zero_length_spring_discrete_force, a[0], *a[1], a[2], a[3], out[0], out[1]) \
 
 #define FU_CALL(name, ...) static void call_##name(const fu_real *const *a, fu_real *const *out) { name(__VA_ARGS__); }
 FU_EVERY(FU_CALL)
@@ -712,5 +712,5 @@ const fu_tables fu_all = {
     2, frames,
     20, joints,
     2, resistances,
-    4, springs
+    4, point_laws
 };

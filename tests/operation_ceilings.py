@@ -2,6 +2,9 @@
 on purpose.
 """
 
+POINT_LAW = {"energy": 30, "dissipation": 40, "force": 60, "tangent": 250, "discrete_force": 80}
+"""Of a law of the force between two points that has no entry below."""
+
 CEILINGS = {
     "beam24": {
         "mass": 58, "gravity": 26, "inertia_force": 120, "position": 70,
@@ -220,7 +223,7 @@ CEILINGS = {
     "joint_planar_distance": {"force": 27, "motion": 21},
     "joint_planar_locked": {"force": 25, "motion": 23},
     "resistance": {"force": 338},
-    "spring": {"energy": 10, "dissipation": 17, "force": 22, "tangent": 109, "discrete_force": 44},
+    "spring": {"energy": 10, "dissipation": 17, "force": 22, "tangent": 109, "discrete_force": 43},
     "zero_length_spring": {"energy": 7, "dissipation": 6, "force": 9, "tangent": 9, "discrete_force": 31},
     "planar_spring": {"energy": 8, "dissipation": 12, "force": 16, "tangent": 58, "discrete_force": 33},
     "planar_zero_length_spring": {"energy": 5, "dissipation": 4, "force": 6, "tangent": 6, "discrete_force": 21},

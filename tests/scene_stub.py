@@ -8,7 +8,13 @@ from __future__ import annotations
 import inspect
 from pathlib import Path
 
+from funicular.parts.end_stops import Stop
+from funicular.parts.friction import Friction
 from funicular.parts.kinds import KINDS
+from funicular.parts.material import Material
+from funicular.parts.scene_data import SceneData
+from funicular.parts.section import Section
+from funicular.parts.signal import Signal
 from funicular.parts.validation import Part
 from funicular.scene_methods import signature
 
@@ -23,23 +29,9 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from .parts.cable import Cable
-from .parts.end_stops import Stop
-from .parts.event import Event
-from .parts.friction import Friction
-from .parts.joint import Joint
-from .parts.load import DistributedForce, Force, Moment
-from .parts.material import Material
-from .parts.modal_body import ModalBody
-from .parts.rigid_body import RigidBody
-from .parts.scene_data import SceneData
-from .parts.section import Section
-from .parts.signal import Signal
-from .parts.slide import Slide
-from .parts.spring import Spring
-from .parts.support import Clamp, Motion, Pin, Tie
-from .parts.validation import Part
+'''
 
+TYPE_ALIASES = '''
 Numbers: TypeAlias = Sequence[float] | np.ndarray
 Points: TypeAlias = Sequence[Numbers] | np.ndarray
 Named: TypeAlias = Part | str
@@ -50,6 +42,9 @@ def signature(kind: type[Part]) -> Signature: ...
 
 class SceneMethods(SceneData):
 '''
+
+OTHERS = (Stop, Friction, Material, SceneData, Section, Signal, Part)
+"""What signatures need beside the kinds of parts."""
 
 TYPES = {
     "Vector": "Numbers", "Quaternion": "Numbers", "inertia": "Numbers | Points", "points": "Points",
@@ -94,9 +89,17 @@ def method(kind: type[Part]) -> str:
     return f"    def {kind.kind}(\n{listed}    ) -> {kind.__name__}:\n        {documented}\n\n"
 
 
+def imports() -> str:
+    """The lines that import the kinds of parts and what else their signatures need."""
+    of_module: dict[str, set[str]] = {}
+    for each in (*KINDS, *OTHERS):
+        of_module.setdefault(each.__module__.removeprefix("funicular"), set()).add(each.__name__)
+    return "".join(f"from {module} import {', '.join(sorted(of_module[module]))}\n" for module in sorted(of_module))
+
+
 def stub() -> str:
     """The text of the file."""
-    return HEAD + "".join(method(kind) for kind in KINDS).rstrip() + "\n"
+    return HEAD + imports() + TYPE_ALIASES + "".join(method(kind) for kind in KINDS).rstrip() + "\n"
 
 
 if __name__ == "__main__":

@@ -76,13 +76,18 @@ def own_element(space):
     assert space["run"].status == "completed"
 
 
+def force_law(space):
+    assert list(space["LAW"].parameters) == [name for name in space["Magnet"].model_fields if name not in "name a b"]
+
+
 AFTERWARDS = {("README.md", "First scene"): saved,
               ("runtime/README.md", "Scenes"): first_scene,
               ("runtime/README.md", "Joints and springs"): trolley,
               ("runtime/README.md", "Events"): events,
               ("runtime/README.md", "Statics, modes and section forces"): rest,
               ("derive/README.md", "Kernels from Python"): middle_of_an_element,
-              ("derive/README.md", "Your own element"): own_element}
+              ("derive/README.md", "Your own element"): own_element,
+              ("derive/README.md", "A force between two points"): force_law}
 """What must be true when the Python of a section has run."""
 
 

@@ -89,6 +89,8 @@ class _Along:
             return self._product(expr.args)
         if expr.is_Pow:
             return self._power(expr, *self.discrete.pair(_root(expr)))
+        if any(self(symbol) != 0 for symbol in expr.free_symbols):
+            raise ValueError(f"{expr}: a discrete gradient goes through sums, products, quotients and roots only")
         return sp.S.Zero
 
     def _symbol(self, symbol: sp.Symbol) -> sp.Expr:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ..spec import Element, LawTraits
+from ..spec import Element, LawTraits, PointLaw
 from .program import Program
 
 
@@ -97,3 +97,10 @@ class CouplingFamily(Family):
     """The kernels of a coupling that knows its attachments by points and axes alone."""
 
     dim: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class PointLawFamily(CouplingFamily):
+    """The kernels of a force between two points."""
+
+    point_law: PointLaw

@@ -15,7 +15,7 @@ from importlib import metadata
 import jinja2
 
 from .c_printer import c_expression
-from .family import Family, FamilyError
+from .family import Family, FamilyError, PointLawFamily
 from .loops import sections
 from .program import Argument, Program
 from .provenance import deciding, spec_hash
@@ -180,6 +180,8 @@ def manifest(every: list[Derived], files: dict[str, str], like: dict | None = No
                "interface": interface(laid_out),
                "tables": laid_out,
                "elements": {d.family.name: _element(d.family, every) for d in every if d.family.role == "element"},
+               "point_laws": {d.family.name: _point_law(d.family) for d in every
+                              if isinstance(d.family, PointLawFamily)},
                "families": {d.family.name: {"doc": d.family.doc, "spec_hash": d.spec_hash,
                                             "sources": [sources.number(s) for s in d.sources]} for d in every},
                "sources": list(sources.every),
@@ -228,6 +230,12 @@ def _law(family: Family) -> dict:
     assert family.traits is not None
     return {"stiffness_of": family.stiffness_of, **asdict(family.traits),
             "discrete_gradient": "discrete_force" not in family.missing}
+
+
+def _point_law(family: PointLawFamily) -> dict:
+    """Return what a scene needs to know of the law of a force between two points; `parameters`: units by name."""
+    law = family.point_law
+    return {"parameters": {name: unit for name, (unit, _) in law.parameters.items()}, "damping": law.damping}
 
 
 def signature(program: Program | Recorded) -> str:

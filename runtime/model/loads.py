@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..checks.placement import placed_attachment
+from ..kernels.point_laws import point_law
 from ..parts.attachment import Attachment
 from ..parts.load import DistributedForce, Force, Moment
 from ..parts.point_force import PointForce
@@ -64,13 +65,11 @@ class LoadModel:
 class PointForceModel(CouplingModel):
     """A force between two points, whose unknowns are its components.
 
-    type: the engine's type of coupling, and the role of its kernels; kernel: their name, or none; parameters: of its
-    law, in the order that the engine has them; is_damped: whether the force depends on velocities; mass: scale of its
-    equations, kg.
+    law: the name of its kernels; parameters: of the law, in the order in which the kernels take them; is_damped:
+    whether the force depends on velocities; mass: scale of its equations, kg.
     """
 
-    type: str
-    kernel: str
+    law: str
     name: str
     ends: list[AttachmentModel]
     dim: int
@@ -154,5 +153,8 @@ class LoadBuilder:
         """Return the model of a force between two points."""
         ends = [self.attachments.model(part.a), self.attachments.model(part.b)]
         dim = self.scene.dim
-        return PointForceModel(part.kind, part.kernel(dim), part.name or "", ends, dim, part.parameters, part.is_damped,
-                               max(end.mass for end in ends), n_unknowns=dim)
+        kernels = ("planar_" if dim == 2 else "") + part.law
+        law = point_law(kernels)
+        parameters = {name: float(getattr(part, name)) for name in law.parameters}
+        return PointForceModel(kernels, part.name or "", ends, dim, tuple(parameters.values()),
+                               parameters.get(law.damping, 0.0) != 0, max(end.mass for end in ends), n_unknowns=dim)

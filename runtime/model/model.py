@@ -189,5 +189,5 @@ class Model:
                       | {slide.kernel for slide in self.slides} | {body.kernel for body in self.bodies}
                       | {joint.kernel for joint in self.joints}
                       | {slide.resistance for slide in self.slides if slide.resistance}
-                      | {force.kernel for force in self.point_forces if force.kernel}
+                      | {force.law for force in self.point_forces}
                       | {body.modal_kernel for body in self.bodies if body.modes})

@@ -14,8 +14,8 @@ from .validation import Name, Part
 class PointForce(Part):
     """Base of forces along the gap between the points of two attachments, a and b.
 
-    ``kind`` is also the name of the engine's type of coupling (engine/couplings/list.c), whose law takes `parameters`,
-    and the role of its kernels. A further force is a class of this kind and an entry in kinds.py.
+    The parameters of its law are fields of the same names. A further force is a class of this kind, an entry in
+    kinds.py, and its law in derive/couplings/point_laws.
     """
 
     group: ClassVar[str] = "springs"
@@ -30,18 +30,9 @@ class PointForce(Part):
     b: AnyAttachment
 
     @property
-    def parameters(self) -> tuple[float, ...]:
-        """Parameters of the law, in the order of the engine, in SI units."""
-        raise NotImplementedError
-
-    def kernel(self, dim: int) -> str:
-        """Return the name of the kernels of its law in a scene of that dimension; "" if the law is written in C."""
-        return ""
-
-    @property
-    def is_damped(self) -> bool:
-        """Whether the force depends on velocities."""
-        return False
+    def law(self) -> str:
+        """Return the name of its law, that of a file in derive/couplings/point_laws."""
+        return self.kind
 
     @property
     def loses_direction(self) -> bool:

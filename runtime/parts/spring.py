@@ -24,18 +24,9 @@ class Spring(PointForce):
     length: Annotated[float, not_negative("m")] | None = None
 
     @property
-    def parameters(self) -> tuple[float, ...]:
-        """Stiffness, damping and length, as the engine's law takes them (engine/couplings/springs.c)."""
-        return self.stiffness, self.damping, self.length or 0.0
-
-    def kernel(self, dim: int) -> str:
-        """Return the name of the kernels of its law (derive/couplings/spring.py)."""
-        return ("planar_" if dim == 2 else "") + ("spring" if self.length else "zero_length_spring")
-
-    @property
-    def is_damped(self) -> bool:
-        """Return whether its force depends on velocities."""
-        return self.damping > 0
+    def law(self) -> str:
+        """Return the name of its law, that of a file in derive/couplings/point_laws."""
+        return "spring" if self.length else "zero_length_spring"
 
     @property
     def loses_direction(self) -> bool:

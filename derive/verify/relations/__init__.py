@@ -7,11 +7,11 @@ from typing import Any
 
 from ...codegen.family import Family
 from ..methods import Relation
-from . import body, element, frame, joint, law, modal, resistance, slide, spring
+from . import body, element, frame, joint, law, modal, point_law, resistance, slide
 
 OF_ROLE: dict[str, Callable[[Any], list[Relation]]] = {
     "element": element.element, "law": law.law, "slide": slide.slide, "body": body.body, "modal": modal.modal,
-    "frame": frame.frame, "joint": joint.joint, "resistance": resistance.resistance, "spring": spring.spring}
+    "frame": frame.frame, "joint": joint.joint, "resistance": resistance.resistance, "point_law": point_law.point_law}
 
 
 def relations(family: Family) -> list[Relation]:

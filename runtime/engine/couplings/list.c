@@ -3,9 +3,7 @@
 
 #include <string.h>
 
-extern const fu_coupling_type fu_spring_type;
-
-static const fu_coupling_type *const types[] = {&fu_load_type, &fu_slide_type, &fu_joint_type, &fu_spring_type};
+static const fu_coupling_type *const types[] = {&fu_load_type, &fu_slide_type, &fu_joint_type, &fu_point_force_type};
 
 const fu_coupling_type *fu_coupling_type_of(const char *name)
 {

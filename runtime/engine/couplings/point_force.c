@@ -1,5 +1,5 @@
-/* Forces between the points of two attachments, whatever their law. In a Newton system the force is an unknown of its own,
- * so that two points far apart on cables do not widen the band.
+/* Forces between the points of two attachments by the kernels of a law (derive/couplings/point_law.py). In a Newton system
+ * the force is an unknown of its own, so that two points far apart on cables do not widen the band.
  */
 #include "engine.h"
 
@@ -28,19 +28,21 @@ static void gap_of(const fu_model *model, const fu_point_force *between, const d
 /* The force on the first point by the law. */
 static void force_at(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double force[3])
 {
+    const fu_point_force *between = (const fu_point_force *)coupling;
     double gap[3], rate[3];
-    gap_of(model, (const fu_point_force *)coupling, state->q, state->v, gap, rate);
-    coupling->type->law->force(coupling, gap, rate, force);
+    gap_of(model, between, state->q, state->v, gap, rate);
+    between->law->force(between->parameters, gap, rate, force);
 }
 
 /* The force over a step, and the power that it dissipates. */
 static double step_force(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double force[3])
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
-    double gap[3], gap_next[3], unused[3];
+    double gap[3], gap_next[3], unused[3], power;
     gap_of(model, between, at->now->q, model->zero, gap, unused);
     gap_of(model, between, at->next->q, model->zero, gap_next, unused);
-    return coupling->type->law->step_force(coupling, gap, gap_next, at->h, force);
+    between->law->discrete_force(between->parameters, at->h, gap, gap_next, force, &power);
+    return power;
 }
 
 /* f += P' force of one end */
@@ -85,7 +87,7 @@ static void own_rows(const fu_coupling *coupling, const fu_equations *at, const 
         own[coupling->unknown + d] = -at->weights.stiffness * (unknown[d] - force[d]);
 }
 
-void fu_point_force_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
+static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
                              double *own)
 {
     double force[3];
@@ -94,7 +96,7 @@ void fu_point_force_residual(const fu_model *model, const fu_coupling *coupling,
     own_rows(coupling, at, force, own);
 }
 
-void fu_point_force_step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
+static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
                                   double *own)
 {
     double force[3];
@@ -135,7 +137,7 @@ static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_
     const double unit = fu_row_unit(weights.inertia, coupling->scale[0]), stiffness = weights.stiffness;
     double gap[3], rate[3], force[3], by_gap[9], by_rate[9];
     gap_of(model, between, state->q, state->v, gap, rate);
-    coupling->type->law->tangent(coupling, gap, rate, force, by_gap, by_rate);
+    between->law->tangent(between->parameters, gap, rate, force, by_gap, by_rate);
     for (int d = 0; d < dim; ++d) fu_add(model, system, row + d, row + d, unit);
     for (int e = 0; e < 2; ++e) {
         fu_attachment_state at;
@@ -162,56 +164,65 @@ static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_
     }
 }
 
-void fu_point_force_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
+static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system)
 {
     matrix(model, coupling, at->next, at->next->forces + coupling->force, at->psi, at->weights, system);
 }
 
 /* The middle moves by half of psi, which weights.stiffness has. */
-void fu_point_force_step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at,
+static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *at,
                                  fu_system *system)
 {
     matrix(model, coupling, at->middle, at->next->forces + coupling->force, 0, at->weights, system);
 }
 
-double fu_point_force_step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)
+static double step_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_equations *at)
 {
     double force[3];
     return at->h * step_force(model, coupling, at, force);
 }
 
-void fu_point_force_force(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f)
+static void own_force(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f)
 {
     double force[3];
     force_at(model, coupling, state, force);
     add_forces(model, (const fu_point_force *)coupling, state->q, force, f);
 }
 
-void fu_point_force_outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                             const double *acceleration, const fu_accelerator *work, double *out)
 {
     (void)acceleration, (void)work;
     force_at(model, coupling, state, out);
 }
 
-void fu_point_force_take(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state)
+static void take_forces(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state)
 {
-    fu_point_force_outputs(model, coupling, state, 0, work, state->forces + coupling->force);
+    outputs(model, coupling, state, 0, work, state->forces + coupling->force);
 }
 
-double fu_point_force_energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+static double energy(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
-    double gap[3], rate[3];
-    gap_of(model, (const fu_point_force *)coupling, state->q, model->zero, gap, rate);
-    return coupling->type->law->energy(coupling, gap);
+    const fu_point_force *between = (const fu_point_force *)coupling;
+    double gap[3], rate[3], stored;
+    gap_of(model, between, state->q, model->zero, gap, rate);
+    between->law->energy(between->parameters, gap, &stored);
+    return stored;
 }
 
-double fu_point_force_dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
-                                  const fu_accelerator *work)
+static double dissipation(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
+                          const fu_accelerator *work)
 {
-    double gap[3], rate[3];
+    const fu_point_force *between = (const fu_point_force *)coupling;
+    double gap[3], rate[3], power;
     (void)work;
     if (!coupling->is_damped) return 0.0;
-    gap_of(model, (const fu_point_force *)coupling, state->q, state->v, gap, rate);
-    return coupling->type->law->dissipation(coupling, gap, rate);
+    gap_of(model, between, state->q, state->v, gap, rate);
+    between->law->dissipation(between->parameters, gap, rate, &power);
+    return power;
 }
+
+const fu_coupling_type fu_point_force_type = {
+    .name = "point_force", .n_outputs = 3, .residual = residual, .tangent = tangent, .step_residual = step_residual,
+    .step_tangent = step_tangent, .step_dissipation = step_dissipation, .force = own_force, .take_forces = take_forces,
+    .outputs = outputs, .energy = energy, .dissipation = dissipation};

@@ -21,6 +21,8 @@ cdef extern from "kernels.h" nogil:
     ctypedef struct fu_joint_kernels:
         const char *name
         int rows
+    ctypedef struct fu_point_law_kernels:
+        const char *name
     ctypedef struct fu_resistance_kernels:
         const char *name
     ctypedef struct fu_tables:
@@ -33,7 +35,7 @@ cdef extern from "blocks.h" nogil:
     const fu_law_blocks *fu_blocks_of(const char *law)
 
 cdef extern from "engine.h" nogil:
-    int FU_MAX_COORDINATES, FU_MAX_PARAMETERS, FU_MAX_RATES, FU_ATTACHMENT_COORDINATES, FU_SLIDES, FU_LOCKED, FU_LEFT
+    int FU_MAX_COORDINATES, FU_MAX_RATES, FU_ATTACHMENT_COORDINATES, FU_SLIDES, FU_LOCKED, FU_LEFT
     int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT, FU_UNSTABLE
     int FU_NO_FAILURE, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE, FU_JAM
     int FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_RATE, FU_WATCH_TRACTION, FU_WATCH_CALL
@@ -104,7 +106,6 @@ cdef extern from "engine.h" nogil:
     ctypedef struct fu_coupling_type:
         const char *name
         int n_outputs
-        const void *law
     ctypedef struct fu_coupling:
         const fu_coupling_type *type
         int index, unknown, n_coordinates, coordinate, n_forces, force, n_multipliers, multiplier, row, output
@@ -148,10 +149,10 @@ cdef extern from "engine.h" nogil:
         fu_modal_attachment spot
     ctypedef struct fu_point_force:
         fu_coupling base
-        const void *kernels
+        const fu_point_law_kernels *law
+        const double *parameters
         fu_attachment ends[2]
         int dim
-        double parameters[8]
     ctypedef struct fu_lapack:
         void *dgbtrf
         void *dgbtrs

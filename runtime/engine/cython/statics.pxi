@@ -110,8 +110,8 @@ cdef class Statics(Translation):
         return np.array(found).reshape(-1, width)
 
     cdef str _kind(self, const fu_coupling *coupling):
-        """"load", "slide", "joint", or "point_force" for all forces between two points."""
-        return "point_force" if coupling.type.law != NULL else coupling.type.name.decode()
+        """Return the name of a coupling's type: "load", "slide", "joint" or "point_force"."""
+        return coupling.type.name.decode()
 
     cdef int _count(self, str kind):
         """Number of couplings of a kind."""

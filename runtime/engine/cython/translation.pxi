@@ -217,13 +217,10 @@ cdef class Translation(Arrays):
                 self._end(&l.ends[k], joint.ends[k], tables)
         for i, force in enumerate(model.point_forces):
             p = &self.point_forces[i]
-            self._coupling(&p.base, force.type, i, force.unknown, [force.mass] * force.dim)
-            p.kernels = _found(tables, force.type, force.kernel) if force.kernel else NULL
+            self._coupling(&p.base, "point_force", i, force.unknown, [force.mass] * force.dim)
+            p.law = <const fu_point_law_kernels *>_found(tables, "point_law", force.law)
+            p.parameters = self._doubles(force.parameters)
             p.base.is_damped, p.dim = force.is_damped, force.dim
-            if len(force.parameters) > FU_MAX_PARAMETERS:
-                raise ValueError(f"{force.type}: more parameters than the engine's {FU_MAX_PARAMETERS}")
-            for k in range(len(force.parameters)):
-                p.parameters[k] = force.parameters[k]
             for k in range(2):
                 self._end(&p.ends[k], force.ends[k], tables)
         self.model.n_slides, self.model.slides = len(model.slides), self.slides

@@ -11,7 +11,7 @@
 typedef struct fu_coupling_type fu_coupling_type;
 typedef struct fu_accelerator fu_accelerator;
 
-/* What each coupling begins with: fu_slide, fu_joint, fu_spring and fu_load have it as their first member, `base`.
+/* What each coupling begins with: fu_slide, fu_joint, fu_point_force and fu_load have it as their first member, `base`.
  *
  * A coupling may have unknowns of its own in a Newton system. They stand together from `unknown` on: first its
  * coordinates (s of a slide), then its forces (multipliers are forces). fu_list_couplings numbers them. */
@@ -40,24 +40,11 @@ typedef struct {
     fu_weights weights;
 } fu_equations;
 
-/* The law of a force along the gap between two points; couplings/point_force.c does the rest. */
-typedef struct {
-    /* force on the first point; the same with its derivatives by gap and rate (dim x dim, row by row) */
-    void (*force)(const fu_coupling *coupling, const double *gap, const double *rate, double *force);
-    void (*tangent)(const fu_coupling *coupling, const double *gap, const double *rate, double *force, double *by_gap,
-                    double *by_rate);
-    /* force over a step that does as much work as the energy changes, and dissipates the power that is returned */
-    double (*step_force)(const fu_coupling *coupling, const double *gap, const double *gap_next, double h, double *force);
-    double (*energy)(const fu_coupling *coupling, const double *gap);
-    double (*dissipation)(const fu_coupling *coupling, const double *gap, const double *rate);
-} fu_point_law;
-
 /* What a coupling can do. A null operation: it does nothing of that. f: generalised forces on the dofs, as they stand on the
  * left of the equations of motion; own: minus the scaled residual of the unknowns beyond the dofs. */
 struct fu_coupling_type {
     const char *name;
-    int n_outputs;           /* numbers that it gives to a row of output */
-    const fu_point_law *law; /* of a force between two points */
+    int n_outputs; /* numbers that it gives to a row of output */
 
     /* Newton systems at an instant: residual and its derivative. */
     void (*residual)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own);
