@@ -35,11 +35,10 @@ STATUS = {FU_DONE: "completed", FU_END_OF_CABLE: "end_of_cable", FU_NO_CONVERGEN
           FU_UNSTABLE: "unstable"}
 CAUSES = {FU_NO_FAILURE: None, FU_ITERATION: "iteration", FU_MATRIX: "matrix", FU_ERROR: "error",
           FU_LOST_RIDER: "lost_rider", FU_NOT_FINITE: "not_finite", FU_JAM: "jam"}
-ACTIONS = {FU_STUCK: "stuck", FU_BROKE_LOOSE: "broke loose", FU_TURNED: "turned round", FU_STRUCK: "struck the end",
-           FU_RESTS: "came to rest at the end", FU_FREED: "left the end", FU_FLEW: "left", FU_ENTERED: "entered the buffer",
-           FU_CAME_OUT: "left the buffer"}
 ENDS = {"error": FU_END_IS_ERROR, "leave": FU_END_IS_OPEN, "hard": FU_END_IS_HARD, "buffer": FU_END_IS_BUFFERED}
-SLIDE_OUTPUTS = ("s_rate", "s_acceleration", "force", "multiplier", "traction", "residual")
+SLIDE_OUTPUTS = {"s_rate": 1, "s_acceleration": 1, "force": 3, "multiplier": 2, "traction": 1, "residual": 3}
+"""Numbers of a slide in a row of output, and how many each has; see fu_slide_output."""
+cdef int TRACTION = sum([SLIDE_OUTPUTS[name] for name in ("s_rate", "s_acceleration", "force", "multiplier")])
 
 
 cdef const void *_found(list tables, str role, str name) except NULL:
@@ -129,29 +128,24 @@ cdef class Engine(Statics):
         self.run.call, self.run.context = &_call, <void *>self
 
     def _watch(self, watches):
-        """Watch for these, and after them for what the slides do."""
+        """Watch for these, and after them for what couplings do by themselves."""
         kinds = {"q": FU_WATCH_Q, "v": FU_WATCH_V, "s": FU_WATCH_S, "s_rate": FU_WATCH_RATE,
-                 "traction": FU_WATCH_TRACTION, "function": FU_WATCH_CALL}
-        numbers = [(kinds[watch.kind], watch.index, watch.direction, watch.value) for watch in watches]
-        cdef int i, k, side
-        for i in range(self.model.n_slides):
-            j = &self.slides[i]
-            if j.drive < 0 and (j.sticks or FU_END_IS_HARD in (j.stops[0].kind, j.stops[1].kind)):
-                numbers.append((FU_WATCH_STICK, i, 1, 0.0))
-            for k, side in enumerate((-1, 1)):
-                if j.drive < 0 and j.stops[k].kind == FU_END_IS_BUFFERED:
-                    numbers.append((FU_WATCH_BUFFER, i, 0, side))
+                 "traction": FU_WATCH_OUTPUT, "function": FU_WATCH_CALL}
+        cdef int i, n = len(watches), own = fu_coupling_watches(&self.model, NULL)
         PyMem_Free(self.watches)
-        self.watches = <fu_watch *>PyMem_Calloc(len(numbers) + 1, sizeof(fu_watch))
+        self.watches = <fu_watch *>PyMem_Calloc(n + own + 1, sizeof(fu_watch))
         if not self.watches:
             raise MemoryError
-        for i, (kind, index, direction, value) in enumerate(numbers):
+        for i, watch in enumerate(watches):
             w = &self.watches[i]
-            w.kind, w.index, w.direction, w.value = kind, index, direction, value
+            w.kind, w.index, w.direction, w.value = kinds[watch.kind], watch.index, watch.direction, watch.value
+            if w.kind in (FU_WATCH_RATE, FU_WATCH_OUTPUT):
+                w.index, w.which = self.slides[watch.index].base.number, TRACTION
+        fu_coupling_watches(&self.model, self.watches + n)
         run = &self.run
-        run.n_watches, run.watches = len(numbers), self.watches
+        run.n_watches, run.watches = n + own, self.watches
         run.watched, run.late = self._doubles(np.zeros(run.n_watches)), self._ints(np.zeros(run.n_watches))
-        run.watch_work = self._doubles(np.zeros(self.model.n_dof))
+        run.watch_work = self._doubles(np.zeros(self.model.n_dof + self.model.n_outputs))
 
     def _knots(self, times, jumps):
         """Let steps end at these instants."""
@@ -241,8 +235,9 @@ cdef class Engine(Statics):
                 PyErr_CheckSignals()
                 if status == FU_EVENT and run.event.kind == FU_ACTED:
                     if self.watcher is not None:
-                        self.watcher.acts(run.event.which, ACTIONS[run.event.side], run.now.t,
-                                          self._view(&run.now, "s")[run.event.which])
+                        c = self.couplings[run.event.which]
+                        self.watcher.acts(c.number, run.event.what.decode(), run.now.t,
+                                          self._view(&run.now, "s")[c.coordinate])
                     status = FU_RUNNING
                 if status == FU_EVENT:
                     if not self.watcher.happens(run.event.which, *self._snapshot(&run.now)):
@@ -286,12 +281,11 @@ cdef class Engine(Statics):
 
     def slide_row(self, slides):
         """Split slides' numbers (..., numbers of a slide) by name; see fu_slide_output."""
-        sizes = (1, 1, 3, 2, 1, 3)
-        ends = np.cumsum(sizes)
+        ends = np.cumsum(list(SLIDE_OUTPUTS.values()))
         if slides.shape[-1] != ends[-1]:
             raise ValueError(f"a slide has {slides.shape[-1]} numbers, not {ends[-1]}")
         return {name: slides[..., end - size:end] if size > 1 else slides[..., end - 1]
-                for name, size, end in zip(SLIDE_OUTPUTS, sizes, ends)}
+                for (name, size), end in zip(SLIDE_OUTPUTS.items(), ends)}
 
     @property
     def statistics(self):
@@ -343,16 +337,16 @@ cdef class Engine(Statics):
 
     @property
     def failure(self):
-        """Of the last step that failed: why (see CAUSES), and the dof and slide (or None) where that shows most.
+        """Of the last step that failed: why (see CAUSES), and the dof and coupling (or None) where that shows most.
 
         Why is None where energy grew, and where no step was tried that failed.
         """
         f = self.run.failure
-        return CAUSES[f.cause], f.dof, f.slide if f.cause != FU_NO_FAILURE and f.slide >= 0 else None
+        return CAUSES[f.cause], f.dof, f.coupling if f.cause != FU_NO_FAILURE and f.coupling >= 0 else None
 
     @property
     def jammed(self):
-        """Index of the slide whose friction has no solution, -1."""
+        """Number of the coupling whose friction has no solution, -1."""
         return self.run.accelerator.jammed
 
     @property

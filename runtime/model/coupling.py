@@ -1,4 +1,4 @@
-"""What slides, joints and forces between points have in common in a model: unknowns and multipliers of their own."""
+"""What all couplings have in common in a model: a name, and unknowns and multipliers of their own."""
 
 from __future__ import annotations
 
@@ -10,11 +10,13 @@ from dataclasses import dataclass
 class CouplingModel:
     """Base of what acts between attachments.
 
-    n_unknowns: of its own in a Newton system, coordinates and then forces; n_multipliers: the most multipliers of eq 38
-    that it needs; unknown, multiplier: the first of each, of unknowns beyond the dofs, as `number` counts them.
+    name: of the part that it is of. n_unknowns: of its own in a Newton system, coordinates and then forces.
+    n_multipliers: the most multipliers of eq 38 that it needs. unknown, multiplier: the first of each, of unknowns
+    beyond the dofs, as `number` counts them.
     """
 
-    n_unknowns: int
+    name: str = ""
+    n_unknowns: int = 0
     n_multipliers: int = 0
     unknown: int = -1
     multiplier: int = -1

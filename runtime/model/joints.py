@@ -26,7 +26,6 @@ class JointModel(CouplingModel):
     reversed: the first end is the joint's b.
     """
 
-    name: str
     kernel: str
     ends: tuple[AttachmentModel, AttachmentModel]
     signal: int
@@ -84,7 +83,7 @@ def frame_joint_model(attachments: AttachmentBuilder, slide: Slide, number: int)
 def _model(name: str, kind: str, dim: int, ends: list[AttachmentModel], signal: int, base: float) -> JointModel:
     kernel = f"joint_{'planar_' * (dim == 2)}{kind}"
     scale = _scales(kernel, dim, ends)
-    return JointModel(name, kernel, (ends[0], ends[1]), signal, base, scale, n_unknowns=len(scale),
+    return JointModel(kernel, (ends[0], ends[1]), signal, base, scale, name=name, n_unknowns=len(scale),
                       n_multipliers=len(scale))
 
 

@@ -47,7 +47,7 @@ class DeadLoad:
 
 
 @dataclass
-class LoadModel:
+class LoadModel(CouplingModel):
     """A load that turns with what it acts on; spot: of a modal body, as of an `AttachmentModel`."""
 
     kind: int
@@ -71,7 +71,6 @@ class PointForceModel(CouplingModel):
 
     type: str
     kernel: str
-    name: str
     ends: list[AttachmentModel]
     dim: int
     parameters: tuple[float, ...]
@@ -154,5 +153,5 @@ class LoadBuilder:
         """Return the model of a force between two points."""
         ends = [self.attachments.model(part.a), self.attachments.model(part.b)]
         dim = self.scene.dim
-        return PointForceModel(part.kind, part.kernel(dim), part.name or "", ends, dim, part.parameters, part.is_damped,
-                               max(end.mass for end in ends), n_unknowns=dim)
+        return PointForceModel(part.kind, part.kernel(dim), ends, dim, part.parameters, part.is_damped,
+                               max(end.mass for end in ends), name=part.name or "", n_unknowns=dim)

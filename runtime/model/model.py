@@ -109,7 +109,6 @@ class SlideModel(CouplingModel):
     resistance: kernels of friction and buffers, or none; ends: what waits at the start and at the end of the cable.
     """
 
-    name: str
     kernel: str
     cable: int
     rider: AttachmentModel
@@ -165,6 +164,11 @@ class Model:
     chains: np.ndarray
     nodes: dict[str, list[Node]]
     tables: list[int] = field(default_factory=list)
+
+    @property
+    def couplings(self) -> list[CouplingModel]:
+        """Return all couplings in the engine's order, which adds up what they give in it."""
+        return [*self.loads, *self.slides, *self.joints, *self.point_forces]
 
     @property
     def n_q(self) -> int:

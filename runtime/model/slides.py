@@ -39,7 +39,6 @@ def slide_model(slide: Slide, scene: SceneData, attachments: AttachmentBuilder,
                      or any(isinstance(end, HardStop) for end in ends))
     resistances = friction is not None or any(isinstance(end, Buffer) for end in ends)
     return SlideModel(
-        slide.name,
         f"slide_{along.element}_{BODIES[dim][0] if rider_is_rigid else RIDERS[dim]}",
         attachments.cable_index[slide.along],
         rider,
@@ -53,6 +52,7 @@ def slide_model(slide: Slide, scene: SceneData, attachments: AttachmentBuilder,
         RESISTANCES[dim] * resistances,
         friction if resistances else None,
         ends,
+        name=slide.name,
         n_unknowns=1 + dim,
         n_multipliers=dim - 1 + may_be_locked,
     )

@@ -115,8 +115,8 @@ class EventWatcher:
         return lambda time, state: np.asarray(state[name])[AXES.index(axis)] - event.value
 
     def acts(self, which: int, what: str, time: float, s: float) -> None:
-        """Note what a slide has done of itself: stuck, struck the end, and so on."""
-        self.happened.append({"name": self.model.slides[which].name, "time": time, "what": what, "s": s})
+        """Note what a coupling of this number has done by itself: stuck, struck the end, and so on."""
+        self.happened.append({"name": self.model.couplings[which].name, "time": time, "what": what, "s": s})
 
     def happens(self, which: int, time: float, q: np.ndarray, v: np.ndarray, s: np.ndarray) -> bool:
         """Note an event; whether the run goes on."""

@@ -9,6 +9,7 @@ void fu_number_couplings(fu_coupling *const *couplings, int n, fu_model *model)
     model->n_reacting = model->n_external = model->n_driven = model->n_damped = 0;
     for (int k = 0; k < n; ++k) {
         fu_coupling *c = couplings[k];
+        c->number = k;
         c->coordinate = model->n_coordinates;
         c->force = model->n_forces;
         c->output = model->n_outputs;

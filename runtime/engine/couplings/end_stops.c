@@ -15,16 +15,6 @@ static int is_hard(const fu_model *model, int j, int side)
     return side && model->slides[j].stops[side > 0].kind == FU_END_IS_HARD;
 }
 
-/* whether such events can happen: steps then end where a slide passes a boundary, so that none is passed unseen */
-int fu_has_stops(const fu_model *model)
-{
-    for (int j = 0; j < model->n_slides; ++j) {
-        const fu_slide *slide = &model->slides[j];
-        if (slide->resistance || slide->stops[0].kind || slide->stops[1].kind) return 1;
-    }
-    return 0;
-}
-
 /* The force on the rider of a slide that is locked: by eq 38, as a Newton method's has the rounding of positions over h^2.
  * Returns whether it is by eq 38: then `traction` is what of it is along the cable, without what moments put there. */
 static int locked_force(const fu_run *run, const fu_state *state, int j, double *f, double *traction)
@@ -116,31 +106,25 @@ static int is_at_rest(const fu_run *run, int j)
     return fabs(fu_slide_rate(run->model, &run->now, j)) * run->duration <= AT_REST * fu_length(run->model, j);
 }
 
-/* the direction of sliding of each slide whose friction needs it */
-static void find_slip_directions(fu_run *run)
+/* Gives a slide whose friction needs it its direction of sliding. */
+void fu_find_slip_direction(fu_run *run, const fu_coupling *coupling)
 {
+    const int j = coupling->index;
     fu_state *now = &run->now;
-    for (int j = 0; j < run->model->n_slides; ++j) {
-        const double rate = fu_slide_rate(run->model, now, j);
-        if (run->model->slides[j].sticks && now->mode[j] == FU_SLIDES && rate != 0.0)
-            now->slip_direction[j] = rate > 0.0 ? 1 : -1;
-    }
+    const double rate = fu_slide_rate(run->model, now, j);
+    if (run->model->slides[j].sticks && now->mode[j] == FU_SLIDES && rate != 0.0) now->slip_direction[j] = rate > 0.0 ? 1 : -1;
 }
 
-/* At the start: which slides are in a buffer, and which stick. */
-int fu_begin_stops(fu_run *run)
+/* Finds in which buffer a slide is at the start, and whether it sticks; returns a status. */
+int fu_begin_stops(fu_run *run, const fu_coupling *coupling)
 {
     const fu_model *model = run->model;
-    find_slip_directions(run);
-    for (int j = 0; j < model->n_slides; ++j) {
-        if (model->slides[j].drive >= 0) continue;
-        for (int side = -1; side <= 1; side += 2)
-            if (model->slides[j].stops[side > 0].kind == FU_END_IS_BUFFERED &&
-                fu_buffer_margin(run, &run->now, j, side) > 0.0)
-                run->now.contact[j] = side;
-        if (model->slides[j].sticks && is_at_rest(run, j) && try_to_stick(run, j)) return FU_SINGULAR;
-    }
-    return FU_RUNNING;
+    const int j = coupling->index;
+    if (model->slides[j].drive >= 0) return FU_RUNNING;
+    for (int side = -1; side <= 1; side += 2)
+        if (model->slides[j].stops[side > 0].kind == FU_END_IS_BUFFERED && fu_buffer_margin(run, &run->now, j, side) > 0.0)
+            run->now.contact[j] = side;
+    return model->slides[j].sticks && is_at_rest(run, j) ? try_to_stick(run, j) : FU_RUNNING;
 }
 
 /* A slide comes to its hard stop; it stays there where it would come back no farther than counts. */
@@ -168,20 +152,20 @@ static int strike(fu_run *run, int j, int side)
         now->contact[j] = side;
         if (try_to_stick(run, j)) return FU_SINGULAR;
     }
-    find_slip_directions(run);
+    fu_couplings_take_velocities(run);
     return FU_RUNNING;
 }
 
-/* A slide that stands at an end of its cable goes on outwards; *what it does there. */
-int fu_reach_end(fu_run *run, int j, int side, int *what)
+/* Lets happen what follows where a slide that stands at an end of its cable goes on outwards; returns a status. */
+int fu_reach_end(fu_run *run, const fu_coupling *coupling, int side, const char **what)
 {
-    const fu_slide *slide = &run->model->slides[j];
+    const fu_slide *slide = (const fu_slide *)coupling;
+    const int j = coupling->index, kind = slide->stops[side > 0].kind;
     fu_state *now = &run->now;
-    const int kind = slide->stops[side > 0].kind;
     if (kind == FU_END_IS_OPEN) {
         now->mode[j] = FU_LEFT;
         now->slip_direction[j] = now->contact[j] = 0;
-        *what = FU_FLEW;
+        *what = "left";
         return FU_RUNNING;
     }
     if (kind != FU_END_IS_HARD || slide->drive >= 0) {
@@ -189,30 +173,32 @@ int fu_reach_end(fu_run *run, int j, int side, int *what)
         return FU_END_OF_CABLE;
     }
     const int last = is_at_rest(run, j) || slide->stops[side > 0].restitution > 0.0, status = strike(run, j, side);
-    *what = last && now->mode[j] == FU_LOCKED ? FU_RESTS : FU_STRUCK;
+    *what = last && now->mode[j] == FU_LOCKED ? "came to rest at the end" : "struck the end";
     return status;
 }
 
-/* What follows from a watch's passing to a side, and *what it is. */
-int fu_act(fu_run *run, const fu_watch *watch, int side, int *what)
+/* Lets a slide enter the buffer of one end, or leave it. */
+void fu_pass_buffer(fu_run *run, const fu_coupling *coupling, int end, int enters, const char **what)
+{
+    run->now.contact[coupling->index] = enters ? end : 0;
+    *what = enters ? "entered the buffer" : "left the buffer";
+}
+
+/* Lets a slide go that is locked by more than friction or its stop can take, or stick where it has come to rest; returns a
+ * status. */
+int fu_release_or_stick(fu_run *run, const fu_coupling *coupling, const char **what)
 {
     fu_state *now = &run->now;
-    const int j = watch->index;
-    *what = FU_NOTHING;
-    if (watch->kind == FU_WATCH_BUFFER) {
-        now->contact[j] = side > 0 ? (int)watch->value : 0;
-        *what = side > 0 ? FU_ENTERED : FU_CAME_OUT;
-        return FU_RUNNING;
-    }
+    const int j = coupling->index;
     if (now->mode[j] == FU_LOCKED) {
         double pull;
         excess(run, now, j, &pull);
-        *what = is_hard(run->model, j, now->contact[j]) ? FU_FREED : FU_BROKE_LOOSE;
+        *what = is_hard(run->model, j, now->contact[j]) ? "left the end" : "broke loose";
         release(run, j, pull);
         return FU_RUNNING;
     }
     if (now->mode[j] != FU_SLIDES || !run->model->slides[j].sticks) return FU_RUNNING;
     const int status = try_to_stick(run, j);
-    *what = now->mode[j] == FU_LOCKED ? FU_STUCK : FU_TURNED;
+    *what = now->mode[j] == FU_LOCKED ? "stuck" : "turned round";
     return status;
 }

@@ -104,7 +104,7 @@ static void discrete_gradient(const fu_model *model, const fu_coupling *coupling
     const fu_slide *slide = (const fu_slide *)coupling;
     const fu_state *now = step->now, *next = step->next;
     const int j = coupling->index;
-    const double start = fu_element_start(model, j, now->element[j]);
+    const double start = fu_element_start(model, j, now->piece[j]);
     slide->kernel->discrete_gradient(model->cables[slide->cable].length, now->s[j] - start, next->s[j] - start,
                                      now->q + first, next->q + first, rider_at(model, now, slide),
                                      rider_at(model, next, slide), G);
@@ -116,7 +116,7 @@ static void step_residual(const fu_model *model, const fu_coupling *coupling, co
     const fu_slide *slide = (const fu_slide *)coupling;
     const fu_state *next = step->next;
     const int j = coupling->index, s = slide->kernel->coordinates, n = s + 1;
-    const double start = fu_element_start(model, j, step->now->element[j]), *force = next->forces + coupling->force;
+    const double start = fu_element_start(model, j, step->now->piece[j]), *force = next->forces + coupling->force;
     double G[3 * FU_MAX_COORDINATES], phi[3], unused[FU_MAX_COORDINATES], along = 0.0;
     int at[FU_SLIDE_COORDINATES + 1];
     fu_slide_coordinates(model, next, j, at);
@@ -140,7 +140,7 @@ static void step_tangent(const fu_model *model, const fu_coupling *coupling, con
     const fu_body *rider = &model->bodies[slide->rider.body];
     const int j = coupling->index, s = slide->kernel->coordinates, n = s + 1, dim = slide->kernel->dim;
     const int turns = model->cables[slide->cable].coordinates;
-    const double start = fu_element_start(model, j, step->now->element[j]);
+    const double start = fu_element_start(model, j, step->now->piece[j]);
     double G[3 * FU_MAX_COORDINATES], J[3 * FU_MAX_COORDINATES], K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
     int at[FU_SLIDE_COORDINATES + 1];
     fu_slide_coordinates(model, next, j, at);
@@ -279,7 +279,7 @@ static int is_possible(const fu_model *model, const fu_coupling *coupling, const
 {
     const fu_slide *slide = (const fu_slide *)coupling;
     const int j = coupling->index;
-    return in_range(state->element[j], 0, model->cables[slide->cable].n_elements - 1) &&
+    return in_range(state->piece[j], 0, model->cables[slide->cable].n_elements - 1) &&
            is_possible_mode(slide, state->mode[j]) && in_range(state->slip_direction[j], -1, 1) &&
            in_range(state->contact[j], -1, 1);
 }
@@ -287,6 +287,7 @@ static int is_possible(const fu_model *model, const fu_coupling *coupling, const
 const fu_coupling_type fu_slide_type = {
     .name = "slide",
     .n_outputs = (int)(sizeof(fu_slide_output) / sizeof(double)),
+    .events = &fu_slide_events,
     .residual = residual,
     .tangent = tangent,
     .step_residual = step_residual,

@@ -20,9 +20,9 @@ static void look(const fu_model *model, const fu_state *state, int j, slide_view
 {
     const fu_slide *slide = &model->slides[j];
     const fu_cable *cable = &model->cables[slide->cable];
-    const int at = cable->first + state->element[j] * cable->per_node;
+    const int at = cable->first + state->piece[j] * cable->per_node;
     view->length = cable->length;
-    view->x = state->s[j] - fu_element_start(model, j, state->element[j]);
+    view->x = state->s[j] - fu_element_start(model, j, state->piece[j]);
     view->e = state->q + at;
     view->v = state->v + at;
     if (slide->rider_is_rigid) {
@@ -63,7 +63,7 @@ int fu_slide_coordinates(const fu_model *model, const fu_state *state, int j, in
     const fu_slide *slide = &model->slides[j];
     const fu_cable *cable = &model->cables[slide->cable];
     const int n = cable->coordinates;
-    for (int i = 0; i < n; ++i) at[i] = cable->first + state->element[j] * cable->per_node + i;
+    for (int i = 0; i < n; ++i) at[i] = cable->first + state->piece[j] * cable->per_node + i;
     const int all = n + fu_attachment_coordinates(model, &slide->rider, state, at + n);
     at[all] = fu_extra(model, slide->base.unknown);
     return all;
@@ -171,7 +171,7 @@ double fu_slide_step(const fu_model *model, const fu_state *state, int j, double
     double C[3], C_s[3], step;
     slide_view v;
     look(model, state, j, &v);
-    slide->kernel->constraint(v.length, s - fu_element_start(model, j, state->element[j]), v.e, v.b, v.u,
+    slide->kernel->constraint(v.length, s - fu_element_start(model, j, state->piece[j]), v.e, v.b, v.u,
                               state->director + 3 * j, C, C_s, &step, A_t);
     return step;
 }

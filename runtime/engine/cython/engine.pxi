@@ -36,9 +36,7 @@ cdef extern from "engine.h" nogil:
     int FU_MAX_COORDINATES, FU_MAX_PARAMETERS, FU_MAX_RATES, FU_ATTACHMENT_COORDINATES, FU_SLIDES, FU_LOCKED, FU_LEFT
     int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT, FU_UNSTABLE
     int FU_NO_FAILURE, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE, FU_JAM
-    int FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_RATE, FU_WATCH_TRACTION, FU_WATCH_CALL
-    int FU_WATCH_STICK, FU_WATCH_BUFFER
-    int FU_ACTED, FU_STUCK, FU_BROKE_LOOSE, FU_TURNED, FU_STRUCK, FU_FREED, FU_FLEW, FU_ENTERED, FU_CAME_OUT, FU_RESTS
+    int FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_RATE, FU_WATCH_OUTPUT, FU_WATCH_CALL, FU_ACTED
     int FU_END_IS_ERROR, FU_END_IS_OPEN, FU_END_IS_HARD, FU_END_IS_BUFFERED
     int FU_SIGNAL_TERMS, FU_BAND_GROUP
     long FU_BAND_BEYOND(int width)
@@ -107,7 +105,7 @@ cdef extern from "engine.h" nogil:
         const void *law
     ctypedef struct fu_coupling:
         const fu_coupling_type *type
-        int index, unknown, n_coordinates, coordinate, n_forces, force, n_multipliers, multiplier, row, output
+        int index, number, unknown, n_coordinates, coordinate, n_forces, force, n_multipliers, multiplier, row, output
         int reacts, is_damped, is_driven
         double scale[6]
     const fu_coupling_type *fu_coupling_type_of(const char *name)
@@ -237,12 +235,13 @@ cdef extern from "engine.h" nogil:
     ctypedef struct fu_joint_output:
         double residual
     ctypedef struct fu_watch:
-        int kind, index, direction
+        int kind, index, which, direction
         double value
     ctypedef struct fu_event:
         int kind, which, side
+        const char *what
     ctypedef struct fu_failure:
-        int cause, dof, slide
+        int cause, dof, coupling
     ctypedef struct fu_energy_balance:
         double exchanged, in_motion, grown, lost, rounding
     ctypedef struct fu_statistics:
@@ -306,6 +305,7 @@ cdef extern from "engine.h" nogil:
     void fu_spread(const fu_model *model, const double *x, double *dofs)
     void fu_prescribe(const fu_model *model, fu_state *state)
     void fu_number_couplings(fu_coupling *const *couplings, int n, fu_model *model)
+    int fu_coupling_watches(const fu_model *model, fu_watch *out)
     double fu_elastic_energy(const fu_model *model, const fu_state *state)
     void fu_touch(const fu_model *model, fu_state *state)
     int fu_moves(const fu_run *run)

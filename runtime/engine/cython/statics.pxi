@@ -73,7 +73,7 @@ cdef class Statics(Translation):
         fu_prescribe(&self.model, state)
         self._rest(state)
         self._view(state, "s")[:] = self._view(&self.run.now, "s") if s is None else s
-        arc_length, element = self._view(state, "s"), self._view(state, "element")
+        arc_length, element = self._view(state, "s"), self._view(state, "piece")
         for i in range(self.model.n_slides):
             n, length = self.cables[self.slides[i].cable].n_elements, self.cables[self.slides[i].cable].length
             if not length * element[i] <= arc_length[i] <= length * (element[i] + 1):

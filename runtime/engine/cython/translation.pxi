@@ -281,7 +281,7 @@ cdef class Translation(Arrays):
     cdef _state(self, fu_state *state, model):
         """Give a state its arrays (state.h), and in them the model as it is drawn."""
         drawn = {"q": model.q, "v": model.v, "s": [slide.s for slide in model.slides],
-                 "element": [slide.element for slide in model.slides],
+                 "piece": [slide.element for slide in model.slides],
                  "mode": [FU_LOCKED if slide.drive >= 0 else FU_SLIDES for slide in model.slides],
                  "director": np.ravel([slide.director for slide in model.slides])}
         cdef int k

@@ -9,6 +9,7 @@
 #define FU_MAX_FORCES 6 /* of one coupling */
 
 typedef struct fu_coupling_type fu_coupling_type;
+typedef struct fu_coupling_events fu_coupling_events;
 typedef struct fu_accelerator fu_accelerator;
 
 /* What each coupling begins with: fu_slide, fu_joint, fu_spring and fu_load have it as their first member, `base`.
@@ -18,6 +19,7 @@ typedef struct fu_accelerator fu_accelerator;
 typedef struct {
     const fu_coupling_type *type;
     int index;                     /* among the couplings of its structure */
+    int number;                    /* among all couplings of the model */
     int unknown;                   /* the first of its unknowns, counted beyond the dofs */
     int n_coordinates, coordinate; /* its own coordinates, and the first of them in state->s */
     int n_forces, force;           /* its own forces, and the first of them in state->forces */
@@ -58,6 +60,7 @@ struct fu_coupling_type {
     const char *name;
     int n_outputs;           /* numbers that it gives to a row of output */
     const fu_point_law *law; /* of a force between two points */
+    const fu_coupling_events *events; /* that it finds by itself; null: none (include/coupling_events.h) */
 
     /* Newton systems at an instant: residual and its derivative. */
     void (*residual)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own);

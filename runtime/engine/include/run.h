@@ -32,7 +32,7 @@ struct fu_run {
     const fu_watch *watches;
     double *watched;     /* per watch: its value at `now`, 0 where it has just passed */
     int *late;           /* per watch: the side to which it passed together with another event */
-    double *watch_work;  /* n_dof: accelerations that a watched traction is of */
+    double *watch_work;  /* n_dof + n_outputs: accelerations and a row of output that a watched number is of */
     double (*call)(void *context, int watch, const fu_state *state);
     void *context;
     fu_event event;      /* that the run has stopped at */
@@ -62,9 +62,9 @@ struct fu_run {
     double closed;  /* m: gaps at the start */
     double ceiling; /* s: that steps stay below, after one that failed */
     double newton_tolerance, round_off; /* of increments, m: where Newton may stop, and where it cannot go on */
-    double acted; /* s: when a slide has last stuck, broken loose, or come to an end of its cable */
+    double acted; /* s: when a coupling has last changed by itself */
     int factored, stopped_joint, turned, acts;
-    int keep_elements; /* slides keep their elements in a step, which ends where one of these does */
+    int keep_pieces; /* couplings keep their pieces in a step, which ends where one of them leaves its piece */
     int net_rejections; /* steps rejected of late, less those taken */
     fu_failure failure; /* of the last step that failed */
     fu_energy_balance balance;

@@ -5,6 +5,7 @@
 #include "attachments.h"
 #include "constraints.h"
 #include "coupling.h"
+#include "coupling_events.h"
 #include "end_stops.h"
 
 /* Mode of a slide: it slides; s is locked, at a signal or where it stands; the rider has left the cable. */
@@ -23,6 +24,7 @@ typedef struct {
     fu_end_stop stops[2];    /* at the start and at the end */
 } fu_slide;
 extern const fu_coupling_type fu_slide_type;
+extern const fu_coupling_events fu_slide_events;
 
 /* How a slide moves at a state (eq 20-37), and its resistance R there. */
 typedef struct {

@@ -11,7 +11,7 @@
     /* per slide: a unit vector across the tangent, carried along with the slide */                                      \
     ARRAY(double, director, FU_SPACE * (long)model->n_slides)                                                            \
     ARRAY(double, locked_s, model->n_slides)    /* per slide: s where it is locked, m */                                 \
-    ARRAY(int, element, model->n_slides)        /* per slide: the element on which it is */                              \
+    ARRAY(int, piece, model->n_coordinates)     /* per own coordinate: the piece of its path (coupling_events.h) */      \
     ARRAY(int, mode, model->n_slides)           /* per slide: FU_SLIDES and so on */                                     \
     /* per slide: 1 or -1 where friction is against that direction whatever the speed */                                 \
     ARRAY(int, slip_direction, model->n_slides)                                                                          \

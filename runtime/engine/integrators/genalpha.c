@@ -87,7 +87,7 @@ static double apply(fu_run *run, double h)
     const double per_psi = 1.0 / (scheme_of(run)->beta * h * h), size = fu_spread_size(run);
     for (int i = 0; i < run->model->n_dof; ++i) run->next.a[i] += per_psi * run->work[i];
     fu_add_solution(run, 1.0, sigma(scheme_of(run), h));
-    fu_seat_slides(run);
+    fu_choose_pieces(run);
     return size;
 }
 
@@ -97,7 +97,7 @@ static void predict(fu_run *run, double h)
     const double kept = 1.0 - 0.5 / scheme_of(run)->beta;
     for (int i = 0; i < run->model->n_dof; ++i) run->next.a[i] = kept * run->now.a[i];
     fu_predict_own(run, h);
-    fu_seat_slides(run);
+    fu_choose_pieces(run);
 }
 
 static void residual(fu_run *run, double h)

@@ -73,17 +73,17 @@ static int blame(fu_run *run)
     const fu_model *model = run->model;
     const double *own = fu_own(run);
     double largest = fu_size(model, run->work);
-    int slide = -1;
+    int coupling = -1;
     for (int k = 0; k < model->n_couplings; ++k) {
         const fu_coupling *c = model->couplings[k];
         for (int i = 0; c->n_coordinates && i < c->n_coordinates + c->n_forces; ++i) {
             const double size = fabs(own[c->unknown + i]);
             if (!(size > largest)) continue;
             largest = size;
-            slide = c->index;
+            coupling = c->number;
         }
     }
-    return fu_fail(run, FU_ITERATION, run->work, slide);
+    return fu_fail(run, FU_ITERATION, run->work, coupling);
 }
 
 /* Newton from the prediction with the matrix at hand; 0 when it converged */

@@ -12,7 +12,7 @@
 /* A failure where a coupling's own coordinates do not follow from the others. */
 static int lost(fu_run *run, const double *v, const fu_coupling *coupling)
 {
-    return fu_fail(run, FU_LOST_RIDER, v, coupling->index);
+    return fu_fail(run, FU_LOST_RIDER, v, coupling->number);
 }
 
 /* Own coordinates of `next` where the others have them, from what the last step's slope predicts; 0 when they were found */

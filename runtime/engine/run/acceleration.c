@@ -104,7 +104,7 @@ static double react(const fu_model *model, const fu_state *state, fu_accelerator
         const double size = c->type->react(model, c, state, lambda, work);
         if (size == 0.0 || size <= largest) continue;
         largest = size;
-        work->jammed = c->index;
+        work->jammed = c->number;
     }
     return largest;
 }

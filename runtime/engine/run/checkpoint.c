@@ -80,16 +80,6 @@ static int last_of(int n)
     return n > 0 ? n - 1 : 0;
 }
 
-static int slides_on_their_elements(const fu_model *model, const fu_state *state)
-{
-    for (int j = 0; j < model->n_slides; ++j) {
-        const double length = model->cables[model->slides[j].cable].length;
-        const double x = state->s[j] - fu_element_start(model, j, state->element[j]);
-        if (state->mode[j] != FU_LEFT && !(x >= -ASIDE * length && x <= (1.0 + ASIDE) * length)) return 0;
-    }
-    return 1;
-}
-
 static int finite_state(const fu_model *model, const fu_state *state)
 {
     for (int k = 0; k < FU_N_STATE_ARRAYS; ++k) {
@@ -119,13 +109,13 @@ static int possible_counts(const fu_run *run)
     return in_range(run->turned, 0, MOST_COUNT) && in_range(run->net_rejections, -MOST_COUNT, MOST_COUNT);
 }
 
-/* whether flags, and numbers of slides and dofs, can be: some lead to places in memory */
+/* whether flags, and numbers of couplings and dofs, can be: some lead to places in memory */
 static int possible_indices(const fu_run *run)
 {
-    const int last_slide = last_of(run->model->n_slides);
-    return in_range(run->stopped_joint, 0, last_slide) && in_range(run->keep_elements, 0, 1) &&
+    const int last = last_of(run->model->n_couplings);
+    return in_range(run->stopped_joint, 0, last) && in_range(run->keep_pieces, 0, 1) &&
            in_range(run->rest_start, 0, 1) && in_range(run->failure.cause, FU_NO_FAILURE, FU_JAM) &&
-           in_range(run->failure.dof, 0, last_of(run->model->n_dof)) && in_range(run->failure.slide, -1, last_slide);
+           in_range(run->failure.dof, 0, last_of(run->model->n_dof)) && in_range(run->failure.coupling, -1, last);
 }
 
 /* whether the numbers that lead the steps to come, and those that messages tell, can be */
@@ -154,6 +144,6 @@ int fu_restore(fu_run *run, const char *bytes, int rows)
     copy_all(&c, run);
     run->record.first = run->record.n;
     return !(is_paused(run, rows) && fu_is_possible(run->model, &run->now) && fu_is_possible(run->model, &run->next) &&
-             finite_state(run->model, &run->now) && slides_on_their_elements(run->model, &run->now) &&
+             finite_state(run->model, &run->now) && fu_are_on_pieces(run->model, &run->now, ASIDE) &&
              possible_counts(run) && possible_indices(run) && possible_numbers(run));
 }

@@ -1,4 +1,4 @@
-/* The time loop: steps that end on output times, error control, slides that cross element boundaries. */
+/* The time loop: steps that end on output times, error control, what follows from events. */
 #include "engine.h"
 
 #include <math.h>
@@ -7,14 +7,14 @@
 #define SMALLEST_STEP 1e-12 /* of the duration */
 #define AT_REST 1e-9        /* of the extent: a scene that moves less may be at rest */
 #define FIRST_MOTION 1e-3   /* of the duration: until then the motion is judged by the velocities at the start */
-#define BEYOND 0.1          /* of a step: how far it may go on after a slide should have reached its boundary */
+#define BEYOND 0.1          /* of a step: how far it may go on after a coupling should have reached its boundary */
 #define MOST_REJECTIONS 10000 /* steps rejected beyond those taken */
 #define AT_ONCE 1e-12       /* of the duration: instants that are no farther apart are one (knots.py) */
 #define BEFORE 1e-15        /* of a knot: a step ends so much before it, where the signal is still that of the step */
 #define ACCEPTED 2.0         /* of what is allowed: a step with a larger error is rejected */
 #define DIVISIONS 8         /* of a fixed step that do not count */
-#define MOST_ACTS 100       /* of slides at one instant: more is no motion */
-#define MOST_TURNS 2        /* of a slide on one boundary before a step is taken all the same: it rests there */
+#define MOST_ACTS 100       /* of couplings at one instant: more is no motion */
+#define MOST_TURNS 2        /* of a coupling on one boundary before a step is taken all the same: it rests there */
 
 int fu_all_finite(const double *numbers, long n)
 {
@@ -100,9 +100,9 @@ int fu_start(fu_run *run)
     if (fu_may_start_open(model, now) && fu_close(run)) return FU_SINGULAR;
     memcpy(run->first, now->q, sizeof(double) * (size_t)model->n_q);
     if (start_scheme(run, 1)) return FU_SINGULAR;
-    if (fu_has_stops(model)) {
+    if (fu_couplings_can_act(model)) {
         memcpy(run->psi, run->before, sizeof(double) * (size_t)model->n_dof); /* what the start asked for, for the caller */
-        if (fu_begin_stops(run) || start_scheme(run, 0)) return FU_SINGULAR;
+        if (fu_begin_couplings(run) || start_scheme(run, 0)) return FU_SINGULAR;
         memcpy(run->before, run->psi, sizeof(double) * (size_t)model->n_dof);
     }
     const int recorded = record_row(run);
@@ -119,7 +119,7 @@ int fu_start(fu_run *run)
         const double d = model->weight[i] * (fabs(now->v[i]) * t + 0.5 * fabs(now->acceleration[i]) * t * t);
         if (d > run->least_motion) run->least_motion = d;
     }
-    fu_watch_now(run, (fu_event){FU_NO_EVENT, 0, 0});
+    fu_watch_now(run, fu_no_event);
     fu_watch_anew(run, -1);
     return FU_RUNNING;
 }
@@ -145,57 +145,52 @@ static void accept(fu_run *run, double h, fu_event event)
     if (h > s->h_max) s->h_max = h;
 }
 
-/* A slide has done `what`: the scheme starts anew, and the caller is told. */
-static int acted(fu_run *run, int j, int what)
+/* A coupling has done `what`: the scheme starts anew, and the caller is told. */
+static int acted(fu_run *run, const fu_coupling *coupling, const char *what)
 {
     const int status = start_scheme(run, 1);
     run->acts = run->now.t - run->acted <= SMALLEST_STEP * run->duration ? run->acts + 1 : 0;
     run->acted = run->now.t;
     if (run->acts > MOST_ACTS) {
-        fu_fail(run, FU_JAM, run->now.v, j);
+        fu_fail(run, FU_JAM, run->now.v, coupling->number);
         return FU_NO_CONVERGENCE;
     }
-    fu_watch_anew(run, j);
-    run->event = (fu_event){FU_ACTED, j, what};
+    fu_watch_anew(run, coupling->number);
+    run->event = (fu_event){FU_ACTED, coupling->number, 0, what};
     return status ? status : FU_EVENT;
 }
 
-/* Put a slide that stands on a boundary into the neighbour. Accelerations and force jump with r_xx there: the scheme
- * starts anew. Were they carried over, the short steps around a boundary would raise what the constraints left in them
- * by the ratio of the steps, crossing by crossing, and a spectral radius of 1 never lets it decay. Returns
- * FU_END_OF_CABLE where there is no neighbour. */
-static int enter(fu_run *run, int j, int side)
+/* Puts a coupling that stands on a boundary on the next piece, or lets it reach the end of its path. Accelerations and force
+ * jump with r_xx there: the scheme starts anew. Were they carried over, the short steps around a boundary would raise what the
+ * constraints left in them by the ratio of the steps, crossing by crossing, and a spectral radius of 1 never lets it decay. */
+static int cross(fu_run *run, const fu_coupling *coupling, int side)
 {
-    const fu_model *model = run->model;
+    const fu_coupling_events *events = coupling->type->events;
     fu_state *now = &run->now;
-    const int element = now->element[j] + side;
-    if (element < 0 || element >= model->cables[model->slides[j].cable].n_elements) {
-        int what;
-        const int status = fu_reach_end(run, j, side, &what);
-        return status ? status : acted(run, j, what);
+    const int piece = now->piece[coupling->coordinate] + side;
+    if (piece < 0 || piece >= fu_path_of(run->model, coupling, now).n) {
+        const char *what = 0;
+        const int status = events->reach_end(run, coupling, side, &what);
+        return status ? status : acted(run, coupling, what);
     }
-    if (fu_ties_a_frame(model, j)) { /* what the step left goes first, lest it be taken for a loss */
-        if (fu_project_velocities(model, now, &run->accelerator, run->work)) return FU_SINGULAR;
-        for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->work[i];
-        now->element[j] = element;
-        if (fu_project_velocities(model, now, &run->accelerator, run->work)) return FU_SINGULAR;
-        fu_impact(run, run->work, 0.0);
-    }
-    now->element[j] = element;
+    const int status = events->enter ? events->enter(run, coupling, piece) : FU_RUNNING;
+    if (status) return status;
+    now->piece[coupling->coordinate] = piece;
     ++run->statistics.crossings;
-    fu_watch_now(run, (fu_event){FU_NO_EVENT, 0, 0});
+    fu_watch_now(run, fu_no_event);
     return start_scheme(run, !run->integrator->keeps_energy);
 }
 
 /* What follows from an event that `now` stands on. */
 static int happened(fu_run *run, fu_event event)
 {
-    if (event.kind == FU_CROSSING) return enter(run, event.which, event.side);
+    if (event.kind == FU_CROSSING) return cross(run, run->model->couplings[event.which], event.side);
     const fu_watch *watch = &run->watches[event.which];
-    if (watch->kind == FU_WATCH_STICK || watch->kind == FU_WATCH_BUFFER) {
-        int what;
-        const int status = fu_act(run, watch, event.side, &what);
-        return status || what == FU_NOTHING ? status : acted(run, watch->index, what);
+    if (watch->kind == FU_WATCH_COUPLING) {
+        const fu_coupling *coupling = run->model->couplings[watch->index];
+        const char *what = 0;
+        const int status = coupling->type->events->act(run, coupling, watch->which, event.side, &what);
+        return status || !what ? status : acted(run, coupling, what);
     }
     run->event = event;
     return FU_EVENT;
@@ -222,20 +217,17 @@ static double shortest(const fu_run *run)
 }
 
 /* A step that is tried: the size that is wanted and the one that is taken, s; its error, m, and that over what is allowed;
- * how many slides have left their elements in it; the event that it ends on. */
+ * how many boundaries couplings have passed in it; the event that it ends on. */
 typedef struct {
     double want, h, error, ratio;
     int changes;
     fu_event event;
 } trial;
 
-static const fu_event no_event = {FU_NO_EVENT, 0, 0};
-
-/* Whether slides must keep their elements in a step, which ends where one of them leaves its element. */
-static int must_keep_elements(const fu_run *run)
+/* Whether couplings must keep their pieces in a step, which ends where one of them leaves its piece. */
+static int must_keep_pieces(const fu_run *run)
 {
-    return !is_adaptive(run) || !run->integrator->crosses_boundaries || fu_has_stops(run->model) ||
-           fu_ties_a_frame(run->model, -1);
+    return !is_adaptive(run) || !run->integrator->crosses_boundaries || fu_stop_at_boundaries(run->model);
 }
 
 /* Chooses the size of the step; returns 0 where there is none that is large enough. */
@@ -243,7 +235,7 @@ static int choose_size(fu_run *run, trial *t, double remaining)
 {
     t->h = fu_fit_step(remaining, t->want);
     if ((t->h < shortest(run) && remaining > shortest(run)) || run->net_rejections > MOST_REJECTIONS) return 0;
-    if (run->keep_elements) t->h = fmin(t->h, fu_time_to_boundary(run) + BEYOND * t->h);
+    if (run->keep_pieces) t->h = fmin(t->h, fu_time_to_boundary(run) + BEYOND * t->h);
     return 1;
 }
 
@@ -271,17 +263,17 @@ static int attempt(fu_run *run, trial *t)
 /* Finds the event that the step leads to. Where accelerations jump by too much within it, it shall end at the boundary. */
 static void find_event(fu_run *run, trial *t)
 {
-    t->event = fu_find_event(run, no_event);
+    t->event = fu_find_event(run, fu_no_event);
     if (t->changes && (t->event.kind == FU_CROSSING || !(t->ratio <= 1.0))) {
-        fu_keep_elements(run);
-        t->event = fu_find_event(run, no_event);
+        fu_keep_pieces(run);
+        t->event = fu_find_event(run, fu_no_event);
     }
 }
 
 /* Shortens the step until it ends on the first of its events; returns 0 where that is not found. */
 static int end_on_event(fu_run *run, trial *t)
 {
-    for (int i = 0; i <= run->model->n_slides + run->n_watches; ++i) {
+    for (int i = 0; i <= run->model->n_coordinates + run->n_watches; ++i) {
         const fu_event earlier = i ? fu_find_event(run, t->event) : t->event;
         if (!earlier.kind) break;
         t->event = earlier;
@@ -314,23 +306,23 @@ static int take_step(fu_run *run, const trial *t)
     return refresh(run, t->h);
 }
 
-/* One accepted step towards `target`, or a change of a slide's element. */
+/* One accepted step towards `target`, or what follows from an event that `now` stands on. */
 static int step_towards(fu_run *run, double target)
 {
     const fu_event late = fu_late_event(run);
     trial t = {.want = is_adaptive(run) ? run->h : run->fixed_step};
     if (late.kind) return happened(run, late);
-    run->keep_elements = must_keep_elements(run);
+    run->keep_pieces = must_keep_pieces(run);
     for (;;) {
         if (!choose_size(run, &t, target - run->now.t)) return FU_NO_CONVERGENCE;
         if (!attempt(run, &t)) continue;
         find_event(run, &t);
-        const double turn = run->keep_elements ? fu_time_of_turn(run, t.h) : 0.0;
+        const double turn = run->keep_pieces ? fu_time_of_turn(run, t.h) : 0.0;
         if (turn > shortest(run) && run->turned < MOST_TURNS) {
             t.want = turn;
             continue;
         }
-        if (t.event.kind == FU_CROSSING && run->turned >= MOST_TURNS) t.event = no_event;
+        if (t.event.kind == FU_CROSSING && run->turned >= MOST_TURNS) t.event = fu_no_event;
         if (fu_stands_on_boundary(run, t.event)) {
             ++run->turned;
             return happened(run, t.event);
@@ -386,7 +378,7 @@ static int pass_knot(fu_run *run, const fu_knot *knot, int event)
         run->external += fu_kinetic_energy(model, now->q, now->v) - before;
     }
     fu_prescribe(model, now);
-    if (!event) fu_watch_now(run, (fu_event){FU_NO_EVENT, 0, 0});
+    if (!event) fu_watch_now(run, fu_no_event);
     return start_scheme(run, 0);
 }
 
