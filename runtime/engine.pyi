@@ -12,7 +12,6 @@ from .model.model import Model
 
 STATUS: dict[int, str]
 CAUSES: dict[int, str | None]
-ENDS: dict[str, int]
 SLIDE_OUTPUTS: dict[str, int]
 
 class Engine:

@@ -35,7 +35,6 @@ STATUS = {FU_DONE: "completed", FU_END_OF_CABLE: "end_of_cable", FU_NO_CONVERGEN
           FU_UNSTABLE: "unstable"}
 CAUSES = {FU_NO_FAILURE: None, FU_ITERATION: "iteration", FU_MATRIX: "matrix", FU_ERROR: "error",
           FU_LOST_RIDER: "lost_rider", FU_NOT_FINITE: "not_finite", FU_JAM: "jam"}
-ENDS = {"error": FU_END_IS_ERROR, "leave": FU_END_IS_OPEN, "hard": FU_END_IS_HARD, "buffer": FU_END_IS_BUFFERED}
 SLIDE_OUTPUTS = {"s_rate": 1, "s_acceleration": 1, "force": 3, "multiplier": 2, "traction": 1, "residual": 3}
 """Numbers of a slide in a row of output, and how many each has; see fu_slide_output."""
 cdef int TRACTION = sum([SLIDE_OUTPUTS[name] for name in ("s_rate", "s_acceleration", "force", "multiplier")])
@@ -139,8 +138,10 @@ cdef class Engine(Statics):
         for i, watch in enumerate(watches):
             w = &self.watches[i]
             w.kind, w.index, w.direction, w.value = kinds[watch.kind], watch.index, watch.direction, watch.value
-            if w.kind in (FU_WATCH_RATE, FU_WATCH_OUTPUT):
-                w.index, w.which = self.slides[watch.index].base.number, TRACTION
+            if w.kind == FU_WATCH_OUTPUT:
+                w.which = TRACTION
+            elif w.kind == FU_WATCH_S:
+                w.index = self.couplings[watch.index].coordinate
         fu_coupling_watches(&self.model, self.watches + n)
         run = &self.run
         run.n_watches, run.watches = n + own, self.watches
@@ -204,12 +205,12 @@ cdef class Engine(Statics):
 
     def _outputs(self, str kind, output):
         """The part of rows of output that couplings of a kind have: a view, (rows, couplings, numbers of one)."""
-        cdef int i, first = 0, width = 0
-        count = self._count(kind)
-        for i in range(self.model.n_couplings - 1, -1, -1):
-            if self._kind(self.couplings[i]) == kind:
-                first, width = self.couplings[i].output, self.couplings[i].type.n_outputs
-        return output[:, first:first + count * width].reshape(len(output), count, width)
+        numbers = self._of(kind)
+        if not numbers:
+            return output[:, :0].reshape(len(output), 0, 0)
+        c = self.couplings[<int>numbers[0]]
+        cdef int width = c.type.n_outputs
+        return output[:, c.output:c.output + len(numbers) * width].reshape(len(output), len(numbers), width)
 
     def advance(self, on_progress, int every=0, stream=None, double interval=0.05):
         """Run to the end; returns the status, "interrupted" after Ctrl-C.
@@ -299,11 +300,10 @@ cdef class Engine(Statics):
                            "output": s.time_output}}
 
     def costs(self):
-        """(slides + joints,): what each takes of a step, in seconds, timed by itself in less than 1 ms; see run/part_timing.c."""
+        """(couplings,): what each takes of a step, in seconds, timed by itself in less than 1 ms; see run/part_timing.c."""
         cdef double[::1] seconds = np.zeros(self.model.n_couplings + 1)
-        cdef int first = self._count("load"), n = self._count("slide") + self._count("joint")
         fu_part_timing(&self.run, &seconds[0])
-        return np.asarray(seconds)[first:first + n]
+        return np.asarray(seconds)[:self.model.n_couplings]
 
     @property
     def integrator(self):
@@ -374,8 +374,9 @@ cdef class Engine(Statics):
 
     def redundant_rows(self, rows):
         """Let no multiplier stand for these rows of joints, (link, row) each, which others imply."""
+        numbers = self._of("joint")
         for joint, row in rows:
-            self.joints[joint].redundant_rows |= 1 << row
+            (<fu_joint *>self.couplings[<int>numbers[joint]]).redundant_rows |= 1 << row
 
     def wander(self, along):
         """What is left of the joints' equations, (links, 6), after a small way `along` (n_dof,) the freedom that they
@@ -389,12 +390,14 @@ cdef class Engine(Statics):
 
     def held(self):
         """(joints, 7): force and moment of joints on their second ends, and residual, in the static state."""
-        cdef int k, n = self._count("joint")
-        out = np.zeros((n, fu_coupling_type_of(b"joint").n_outputs))
+        numbers = self._of("joint")
+        out = np.zeros((len(numbers), fu_coupling_type_of(b"joint").n_outputs))
         cdef double[:, ::1] view = out
-        for k in range(n):
-            fu_joint_outputs(&self.model, &self.joints[k], &self.run.next,
-                             self.run.next.forces + self.joints[k].base.force, <fu_joint_output *>&view[k, 0])
+        cdef int k, number
+        for k, number in enumerate(numbers):
+            c = self.couplings[number]
+            fu_joint_outputs(&self.model, <fu_joint *>c, &self.run.next, self.run.next.forces + c.force,
+                             <fu_joint_output *>&view[k, 0])
         return out
 
     @property

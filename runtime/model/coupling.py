@@ -1,25 +1,39 @@
-"""What all couplings have in common in a model: a name, and unknowns and multipliers of their own."""
+"""What all couplings have in common in a model: a type of the engine's, and unknowns and multipliers of their own."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+
+import numpy as np
 
 
 @dataclass(kw_only=True)
 class CouplingModel:
-    """Base of what acts between attachments.
+    """Base of what acts between attachments. The engine reads its attributes by the names of the fields of its type.
 
-    name: of the part that it is of. n_unknowns: of its own in a Newton system, coordinates and then forces.
-    n_multipliers: the most multipliers of eq 38 that it needs. unknown, multiplier: the first of each, of unknowns
-    beyond the dofs, as `number` counts them.
+    type: the engine's type of coupling. name: of the part that it is of. n_coordinates: of its own in a Newton system.
+    scale: what the equations of each of its own forces are multiplied by there, kg or kg m. n_multipliers: the most
+    multipliers of eq 38 that it needs. reacts, is_damped: a force of it depends on those multipliers, on velocities.
+    is_driven: a signal does work on it. unknown, multiplier: the first of each, of unknowns beyond the dofs, as `number`
+    counts them.
     """
 
+    type: str
     name: str = ""
-    n_unknowns: int = 0
+    n_coordinates: int = 0
+    scale: Sequence[float] | np.ndarray = ()
     n_multipliers: int = 0
+    reacts: bool = False
+    is_damped: bool = False
+    is_driven: bool = False
     unknown: int = -1
     multiplier: int = -1
+
+    @property
+    def n_forces(self) -> int:
+        """Return the number of its own forces in a Newton system."""
+        return len(self.scale)
 
 
 def number(couplings: Iterable[CouplingModel]) -> tuple[int, int]:
@@ -27,6 +41,6 @@ def number(couplings: Iterable[CouplingModel]) -> tuple[int, int]:
     n_unknowns = n_multipliers = 0
     for coupling in couplings:
         coupling.unknown, coupling.multiplier = n_unknowns, n_multipliers
-        n_unknowns += coupling.n_unknowns
+        n_unknowns += coupling.n_coordinates + coupling.n_forces
         n_multipliers += coupling.n_multipliers
     return n_unknowns, n_multipliers

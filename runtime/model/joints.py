@@ -30,7 +30,6 @@ class JointModel(CouplingModel):
     ends: tuple[AttachmentModel, AttachmentModel]
     signal: int
     base: float
-    scale: np.ndarray
     slide: str | None = None
     redundant_rows: set[int] = field(default_factory=set)
     reversed: bool = False
@@ -83,8 +82,8 @@ def frame_joint_model(attachments: AttachmentBuilder, slide: Slide, number: int)
 def _model(name: str, kind: str, dim: int, ends: list[AttachmentModel], signal: int, base: float) -> JointModel:
     kernel = f"joint_{'planar_' * (dim == 2)}{kind}"
     scale = _scales(kernel, dim, ends)
-    return JointModel(kernel, (ends[0], ends[1]), signal, base, scale, name=name, n_unknowns=len(scale),
-                      n_multipliers=len(scale))
+    return JointModel(kernel, (ends[0], ends[1]), signal, base, type="joint", name=name, scale=scale,
+                      n_multipliers=len(scale), is_driven=signal >= 0)
 
 
 def _scales(kernel: str, dim: int, ends: list[AttachmentModel]) -> np.ndarray:

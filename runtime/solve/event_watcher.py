@@ -18,7 +18,8 @@ from ..parts.scene_data import SceneData
 class Watch:
     """What the engine watches for an event: kind, entry, value, direction.
 
-    kind: "q" or "v", of which the index is an entry; "s", "s_rate", "traction", of which it is a slide; "function".
+    kind: "q" or "v", of which the index is an entry; "s", "s_rate", "traction", of which it is the number of a slide
+    among the couplings; "function".
     """
 
     def __init__(self, event: Event, scene: SceneData, model: Model):
@@ -29,7 +30,8 @@ class Watch:
             return
         name, what, *axis = _quantity(event).split(".")
         if name in scene.slides:
-            self.kind, self.index = what, list(scene.slides).index(name)
+            slide = model.slides[list(scene.slides).index(name)]
+            self.kind, self.index = what, [c is slide for c in model.couplings].index(True)
             return
         of = "configuration" if what == "position" else "dof"
         self.kind = "q" if what == "position" else "v"

@@ -29,7 +29,7 @@ int fu_find_arc_length(const fu_model *model, const fu_state *state, int j, doub
 void fu_carry_director(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     const int j = coupling->index;
-    double *d = state->director + 3 * j, i[3];
+    double *d = fu_slide_numbers_of(model, state, j)->director, i[3];
     if (!model->slides[j].carries_director) return;
     evaluate_constraint(model, state, j, state->s[j], i);
     double along = i[0] * d[0] + i[1] * d[1] + i[2] * d[2], square = 0.0;

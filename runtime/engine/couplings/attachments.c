@@ -38,7 +38,7 @@ static void vectors_of(const fu_model *model, const fu_attachment *on, const fu_
     if (on_slide)
         cable->kernel->slopes(cable->length, state->s[on->slide] - fu_element_start(model, on->slide, element), every);
     for (int k = 0; k < 2; ++k) {
-        const double *fixed = on->slopes[k] == FU_CARRIED ? state->director + 3 * on->slide : on->up;
+        const double *fixed = on->slopes[k] == FU_CARRIED ? fu_slide_numbers_of(model, state, on->slide)->director : on->up;
         for (int d = 0; d < dim; ++d) {
             w->value[k][d] = fixed[d];
             w->rate[k][d] = w->second[k][d] = 0.0;

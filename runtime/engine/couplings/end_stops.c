@@ -10,6 +10,8 @@
 #define AT_REST 1e-12 /* of the cable over the duration: speeds below are none */
 #define BOUNCE 1e-6   /* of the cable: what would come no farther back stays at the stop */
 
+const char *const fu_end_stop_kinds[] = {"error", "leave", "hard", "buffer", 0};
+
 static int is_hard(const fu_model *model, int j, int side)
 {
     return side && model->slides[j].stops[side > 0].kind == FU_END_IS_HARD;
@@ -36,7 +38,7 @@ static double excess(const fu_run *run, const fu_state *state, int j, double *pu
 {
     const fu_model *model = run->model;
     const fu_slide *slide = &model->slides[j];
-    const int dim = model->dim, side = state->contact[j];
+    const int dim = model->dim, side = fu_slide_flags_of(model, state, j)->contact;
     double f[3], square = 0.0, along = 0.0, normal = 0.0, traction = 0.0;
     const int by_eq38 = locked_force(run, state, j, f, &traction);
     fu_slide_state slide_state;
@@ -62,16 +64,17 @@ double fu_stick_margin(const fu_run *run, const fu_state *state, int j)
 {
     const fu_slide *slide = &run->model->slides[j];
     double pull;
-    if (state->mode[j] == FU_LEFT || slide->drive >= 0) return -1.0;
-    if (state->mode[j] == FU_LOCKED) return excess(run, state, j, &pull);
-    return slide->sticks ? -state->slip_direction[j] * fu_slide_rate(run->model, state, j) : -1.0;
+    const fu_slide_flags *flags = fu_slide_flags_of(run->model, state, j);
+    if (flags->mode == FU_LEFT || slide->drive >= 0) return -1.0;
+    if (flags->mode == FU_LOCKED) return excess(run, state, j, &pull);
+    return slide->sticks ? -flags->slip_direction * fu_slide_rate(run->model, state, j) : -1.0;
 }
 
 /* What is watched: positive where a slide is in a buffer that pushes. */
 double fu_buffer_margin(const fu_run *run, const fu_state *state, int j, int side)
 {
     const fu_end_stop *stop = &run->model->slides[j].stops[side > 0];
-    if (state->mode[j] == FU_LEFT) return -1.0;
+    if (fu_slide_flags_of(run->model, state, j)->mode == FU_LEFT) return -1.0;
     const double x = fu_compression(run->model, state, j, side);
     const double force = stop->stiffness * x + stop->damping * side * fu_slide_rate(run->model, state, j);
     return fmin(x, force);
@@ -80,11 +83,11 @@ double fu_buffer_margin(const fu_run *run, const fu_state *state, int j, int sid
 /* Unlock a slide, on which there was the force `pull` along the cable. */
 static void release(fu_run *run, int j, double pull)
 {
-    fu_state *now = &run->now;
-    const int side = now->contact[j], hard = is_hard(run->model, j, side);
-    now->mode[j] = FU_SLIDES;
-    now->slip_direction[j] = !run->model->slides[j].sticks ? 0 : hard ? -side : pull > 0.0 ? -1 : 1;
-    if (hard) now->contact[j] = 0;
+    fu_slide_flags *flags = fu_slide_flags_of(run->model, &run->now, j);
+    const int side = flags->contact, hard = is_hard(run->model, j, side);
+    flags->mode = FU_SLIDES;
+    flags->slip_direction = !run->model->slides[j].sticks ? 0 : hard ? -side : pull > 0.0 ? -1 : 1;
+    if (hard) flags->contact = 0;
 }
 
 /* Lock a slide that is at rest, if friction or its stop can take the force on it, else let it slide on; the status. */
@@ -92,8 +95,8 @@ static int try_to_stick(fu_run *run, int j)
 {
     fu_state *now = &run->now;
     double pull;
-    now->mode[j] = FU_LOCKED;
-    now->locked_s[j] = now->s[j];
+    fu_slide_flags_of(run->model, now, j)->mode = FU_LOCKED;
+    fu_slide_numbers_of(run->model, now, j)->locked_s = now->s[j];
     if (fu_project_velocities(run->model, now, &run->accelerator, run->work)) return FU_SINGULAR;
     fu_impact(run, run->work, 0.0);
     if (fu_complete(run, now)) return FU_SINGULAR;
@@ -110,9 +113,10 @@ static int is_at_rest(const fu_run *run, int j)
 void fu_find_slip_direction(fu_run *run, const fu_coupling *coupling)
 {
     const int j = coupling->index;
-    fu_state *now = &run->now;
-    const double rate = fu_slide_rate(run->model, now, j);
-    if (run->model->slides[j].sticks && now->mode[j] == FU_SLIDES && rate != 0.0) now->slip_direction[j] = rate > 0.0 ? 1 : -1;
+    const double rate = fu_slide_rate(run->model, &run->now, j);
+    fu_slide_flags *flags = fu_slide_flags_of(run->model, &run->now, j);
+    if (run->model->slides[j].sticks && flags->mode == FU_SLIDES && rate != 0.0)
+        flags->slip_direction = rate > 0.0 ? 1 : -1;
 }
 
 /* Finds in which buffer a slide is at the start, and whether it sticks; returns a status. */
@@ -123,7 +127,7 @@ int fu_begin_stops(fu_run *run, const fu_coupling *coupling)
     if (model->slides[j].drive >= 0) return FU_RUNNING;
     for (int side = -1; side <= 1; side += 2)
         if (model->slides[j].stops[side > 0].kind == FU_END_IS_BUFFERED && fu_buffer_margin(run, &run->now, j, side) > 0.0)
-            run->now.contact[j] = side;
+            fu_slide_flags_of(run->model, &run->now, j)->contact = side;
     return model->slides[j].sticks && is_at_rest(run, j) ? try_to_stick(run, j) : FU_RUNNING;
 }
 
@@ -134,10 +138,11 @@ static int strike(fu_run *run, int j, int side)
     fu_state *now = &run->now;
     fu_slide_state slide_state;
     fu_slide_output slide;
-    now->contact[j] = side;
+    fu_slide_flags *flags = fu_slide_flags_of(run->model, now, j);
+    flags->contact = side;
     if (side * fu_slide_rate(model, now, j) > 0.0) {
-        now->mode[j] = FU_LOCKED;
-        now->locked_s[j] = now->s[j];
+        flags->mode = FU_LOCKED;
+        fu_slide_numbers_of(run->model, now, j)->locked_s = now->s[j];
         const double restitution = model->slides[j].stops[side > 0].restitution;
         fu_slide_now(model, now, j, &slide_state);
         if (fu_strike(model, now, &run->accelerator, model->slides[j].base.row, model->dim - 1,
@@ -149,7 +154,7 @@ static int strike(fu_run *run, int j, int side)
     fu_slide_outputs(model, now, j, now->acceleration, &run->accelerator, &slide);
     const double back = -side * slide.s_rate, push = side * slide.s_acceleration;
     if (is_at_rest(run, j) || back * back <= 2.0 * push * BOUNCE * fu_length(model, j)) {
-        now->contact[j] = side;
+        flags->contact = side;
         if (try_to_stick(run, j)) return FU_SINGULAR;
     }
     fu_couplings_take_velocities(run);
@@ -161,10 +166,10 @@ int fu_reach_end(fu_run *run, const fu_coupling *coupling, int side, const char 
 {
     const fu_slide *slide = (const fu_slide *)coupling;
     const int j = coupling->index, kind = slide->stops[side > 0].kind;
-    fu_state *now = &run->now;
+    fu_slide_flags *flags = fu_slide_flags_of(run->model, &run->now, j);
     if (kind == FU_END_IS_OPEN) {
-        now->mode[j] = FU_LEFT;
-        now->slip_direction[j] = now->contact[j] = 0;
+        flags->mode = FU_LEFT;
+        flags->slip_direction = flags->contact = 0;
         *what = "left";
         return FU_RUNNING;
     }
@@ -173,14 +178,14 @@ int fu_reach_end(fu_run *run, const fu_coupling *coupling, int side, const char 
         return FU_END_OF_CABLE;
     }
     const int last = is_at_rest(run, j) || slide->stops[side > 0].restitution > 0.0, status = strike(run, j, side);
-    *what = last && now->mode[j] == FU_LOCKED ? "came to rest at the end" : "struck the end";
+    *what = last && flags->mode == FU_LOCKED ? "came to rest at the end" : "struck the end";
     return status;
 }
 
 /* Lets a slide enter the buffer of one end, or leave it. */
 void fu_pass_buffer(fu_run *run, const fu_coupling *coupling, int end, int enters, const char **what)
 {
-    run->now.contact[coupling->index] = enters ? end : 0;
+    fu_slide_flags_of(run->model, &run->now, coupling->index)->contact = enters ? end : 0;
     *what = enters ? "entered the buffer" : "left the buffer";
 }
 
@@ -188,17 +193,17 @@ void fu_pass_buffer(fu_run *run, const fu_coupling *coupling, int end, int enter
  * status. */
 int fu_release_or_stick(fu_run *run, const fu_coupling *coupling, const char **what)
 {
-    fu_state *now = &run->now;
     const int j = coupling->index;
-    if (now->mode[j] == FU_LOCKED) {
+    const fu_slide_flags *flags = fu_slide_flags_of(run->model, &run->now, j);
+    if (flags->mode == FU_LOCKED) {
         double pull;
-        excess(run, now, j, &pull);
-        *what = is_hard(run->model, j, now->contact[j]) ? "left the end" : "broke loose";
+        excess(run, &run->now, j, &pull);
+        *what = is_hard(run->model, j, flags->contact) ? "left the end" : "broke loose";
         release(run, j, pull);
         return FU_RUNNING;
     }
-    if (now->mode[j] != FU_SLIDES || !run->model->slides[j].sticks) return FU_RUNNING;
+    if (flags->mode != FU_SLIDES || !run->model->slides[j].sticks) return FU_RUNNING;
     const int status = try_to_stick(run, j);
-    *what = now->mode[j] == FU_LOCKED ? "stuck" : "turned round";
+    *what = flags->mode == FU_LOCKED ? "stuck" : "turned round";
     return status;
 }

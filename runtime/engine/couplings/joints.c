@@ -64,10 +64,12 @@ static int coordinates(const joint_view *view, int *at)
 }
 
 /* whether the slide that it is on has left its cable */
-static int is_inactive(const fu_joint *joint, const fu_state *state)
+static int is_inactive(const fu_model *model, const fu_joint *joint, const fu_state *state)
 {
-    for (int e = 0; e < 2; ++e)
-        if (joint->ends[e].slide >= 0 && state->mode[joint->ends[e].slide] == FU_LEFT) return 1;
+    for (int e = 0; e < 2; ++e) {
+        const int slide = joint->ends[e].slide;
+        if (slide >= 0 && fu_slide_flags_of(model, state, slide)->mode == FU_LEFT) return 1;
+    }
     return 0;
 }
 
@@ -161,7 +163,7 @@ static void replace_s(const fu_model *model, const fu_joint *joint, const joint_
         const int slide = joint->ends[e].slide;
         if (slide < 0) continue;
         const fu_rows *of = rows_of_slide(model, joint, e, work);
-        const fu_slide_state *slide_state = &work->slide_states[slide];
+        const fu_slide_state *slide_state = fu_slide_state_of(model, work, slide);
         const int s = (e ? view->n : view->at[0].n) - 1;
         rows->slide = slide;
         memcpy(rows->at + to, of->at, sizeof(int) * (size_t)of->n);
@@ -180,16 +182,18 @@ static void replace_s(const fu_model *model, const fu_joint *joint, const joint_
 static void constraint_rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work)
 {
     const fu_joint *joint = (const fu_joint *)coupling;
-    const fu_slide_state *slide_states = work->slide_states;
     fu_rows *rows = &work->rows[coupling->row];
     const int m = joint->kernel->rows, dim = model->dim;
     double by_moves[6 * MOVES], K[MOVES * MOVES], J[6 * 2 * FU_ATTACHMENT_COORDINATES], s_rate[2], gap_rate[3];
     joint_view view;
-    if (is_inactive(joint, state)) {
+    if (is_inactive(model, joint, state)) {
         rows->n = rows->rows = 0;
         return;
     }
-    for (int e = 0; e < 2; ++e) s_rate[e] = joint->ends[e].slide >= 0 ? slide_states[joint->ends[e].slide].s_rate : 0.0;
+    for (int e = 0; e < 2; ++e) {
+        const int slide = joint->ends[e].slide;
+        s_rate[e] = slide >= 0 ? fu_slide_state_of(model, work, slide)->s_rate : 0.0;
+    }
     look(model, joint, state, s_rate, &view);
     const fu_attachment_state *one = &view.at[0], *two = &view.at[1];
     joint->kernel->force(view.gap, one->A, two->A, view.c, state->forces + joint->base.force, rows->C,
@@ -219,12 +223,13 @@ static void constraint_rows(const fu_model *model, const fu_coupling *coupling, 
         }
 }
 
-/* Whether an unknown that the joint touches moves: all do but s of a slide that does not slide, whose row says so. */
-static int moves(const fu_model *model, const fu_joint *joint, const fu_state *state, int at)
+/* Returns whether an unknown that the joint touches moves: all do but s of a slide that does not slide, whose row says so. */
+int fu_joint_moves(const fu_model *model, const fu_joint *joint, const fu_state *state, int at)
 {
     for (int e = 0; e < 2 && at >= model->n_dof; ++e) {
         const int slide = joint->ends[e].slide;
-        if (slide >= 0 && fu_extra(model, model->slides[slide].base.unknown) == at) return state->mode[slide] == FU_SLIDES;
+        if (slide >= 0 && fu_extra(model, model->slides[slide].base.unknown) == at)
+            return fu_slide_flags_of(model, state, slide)->mode == FU_SLIDES;
     }
     return 1;
 }
@@ -237,7 +242,7 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
     const double *multipliers = next->forces + coupling->force, scale = equations->weights.stiffness;
     double phi[6], J[6 * 2 * FU_ATTACHMENT_COORDINATES];
     int at[2 * FU_ATTACHMENT_COORDINATES];
-    if (is_inactive(joint, next)) {
+    if (is_inactive(model, joint, next)) {
         for (int r = 0; r < joint->kernel->rows; ++r) own[coupling->unknown + r] = -scale * multipliers[r];
         return;
     }
@@ -248,7 +253,7 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
         for (int i = 0; i < n; ++i) {
             const double pull = J[r * n + i] * multipliers[r];
             if (at[i] < model->n_dof) f[at[i]] += pull;
-            else if (moves(model, joint, next, at[i])) own[at[i] - model->n_dof] -= scale * pull;
+            else if (fu_joint_moves(model, joint, next, at[i])) own[at[i] - model->n_dof] -= scale * pull;
         }
     }
 }
@@ -276,7 +281,7 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     const int rows = joint->kernel->rows, first = fu_extra(model, coupling->unknown);
     double J[6 * 2 * FU_ATTACHMENT_COORDINATES], K[4 * FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
     int at[2 * FU_ATTACHMENT_COORDINATES], unused[FU_ATTACHMENT_COORDINATES];
-    if (is_inactive(joint, next)) {
+    if (is_inactive(model, joint, next)) {
         unit_rows(model, joint, ~0, w.inertia, system);
         return;
     }
@@ -287,14 +292,14 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     unit_rows(model, joint, joint->redundant_rows, w.inertia, system);
     for (int r = 0; r < rows; ++r)
         for (int i = 0; i < n; ++i)
-            if (moves(model, joint, next, at[i]))
+            if (fu_joint_moves(model, joint, next, at[i]))
                 fu_add(model, system, at[i], first + r, fu_row_unit(w.inertia, coupling->scale[r]) * J[r * n + i]);
     turn_ends(model, joint, equations->psi, J, rows, n, n_first);
     turn_ends(model, joint, equations->psi, K, n, n, n_first);
     for (int i = 0; i < n; ++i) {
         for (int r = 0; r < rows; ++r)
             fu_add(model, system, first + r, at[i], fu_row_unit(w.inertia, coupling->scale[r]) * J[r * n + i]);
-        if (!moves(model, joint, next, at[i])) continue;
+        if (!fu_joint_moves(model, joint, next, at[i])) continue;
         for (int m = 0; m < n; ++m) {
             /* what is between two cables would widen the band: Newton converges without */
             if (K[i * n + m] == 0.0 || (fu_between_cables(joint) && (i < n_first) != (m < n_first))) continue;
@@ -310,9 +315,9 @@ static void gaps(const fu_model *model, const fu_coupling *coupling, const fu_st
     equations_of(model, (const fu_joint *)coupling, state, phi, at, J);
 }
 
-static int may_start_open(const fu_coupling *coupling, const fu_state *state)
+static int may_start_open(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
-    (void)coupling, (void)state;
+    (void)model, (void)coupling, (void)state;
     return 1;
 }
 
@@ -331,7 +336,7 @@ void fu_joint_outputs(const fu_model *model, const fu_joint *joint, const fu_sta
     double phi[6], by_moves[6 * MOVES], K[MOVES * MOVES];
     joint_view view;
     *out = (fu_joint_output){0};
-    if (is_inactive(joint, state)) return;
+    if (is_inactive(model, joint, state)) return;
     look(model, joint, state, 0, &view);
     joint->kernel->force(view.gap, view.at[0].A, view.at[1].A, view.c, multipliers, phi, by_moves, K);
     for (int r = 0; r < joint->kernel->rows; ++r) {
@@ -350,8 +355,18 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
                      (fu_joint_output *)out);
 }
 
+static const fu_field fields[] = {
+    FU_FIELD(fu_joint, kernel, FU_KERNELS, 0),
+    FU_FIELD_ARRAY(fu_joint, ends, FU_ATTACHMENT),
+    FU_FIELD(fu_joint, signal, FU_INTEGER, 0),
+    FU_FIELD_AS("base", fu_joint, c0, FU_REAL),
+    {0},
+};
+
 const fu_coupling_type fu_joint_type = {
     .name = "joint",
+    .size = sizeof(fu_joint),
+    .fields = fields,
     .n_outputs = (int)(sizeof(fu_joint_output) / sizeof(double)),
     .residual = residual,
     .tangent = tangent,

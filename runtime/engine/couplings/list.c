@@ -5,7 +5,8 @@
 
 extern const fu_coupling_type fu_spring_type;
 
-static const fu_coupling_type *const types[] = {&fu_load_type, &fu_slide_type, &fu_joint_type, &fu_spring_type};
+static const fu_coupling_type *const types[] = {&fu_dead_load_type, &fu_load_type, &fu_slide_type, &fu_joint_type,
+                                                &fu_spring_type};
 
 const fu_coupling_type *fu_coupling_type_of(const char *name)
 {

@@ -5,6 +5,14 @@
 
 #include <string.h>
 
+const fu_field fu_point_force_fields[] = {
+    FU_FIELD_AS("kernel", fu_point_force, kernels, FU_KERNELS),
+    FU_FIELD_ARRAY(fu_point_force, ends, FU_ATTACHMENT),
+    FU_FIELD(fu_point_force, dim, FU_INTEGER, 0),
+    FU_FIELD_ARRAY(fu_point_force, parameters, FU_REAL),
+    {0},
+};
+
 /* Position and velocity of an attachment's point, and how it moves with its coordinates; returns its first dof. */
 static int point(const fu_model *model, const fu_attachment *on, const double *q, const double *v, fu_attachment_state *at)
 {

@@ -15,7 +15,8 @@ static const fu_slide *slide_of(const fu_coupling *coupling)
 static fu_path path(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
     const fu_cable *cable = &model->cables[slide_of(coupling)->cable];
-    return (fu_path){state->mode[coupling->index] == FU_LEFT ? 0 : cable->n_elements, cable->length};
+    const int left = fu_slide_flags_of(model, state, coupling->index)->mode == FU_LEFT;
+    return (fu_path){left ? 0 : cable->n_elements, cable->length};
 }
 
 static double rate(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
@@ -70,9 +71,9 @@ static double watched(const fu_run *run, const fu_coupling *coupling, const fu_s
                              : fu_buffer_margin(run, state, coupling->index, which);
 }
 
-static int sign(const fu_coupling *coupling, const fu_state *state, int which)
+static int sign(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which)
 {
-    return which != STICKING && state->contact[coupling->index] == which ? 1 : -1;
+    return which != STICKING && fu_slide_flags_of(model, state, coupling->index)->contact == which ? 1 : -1;
 }
 
 static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)

@@ -38,6 +38,21 @@ static void look(const fu_model *model, const fu_state *state, int j, slide_view
     view->u = no_arm;
 }
 
+fu_slide_flags *fu_slide_flags_of(const fu_model *model, const fu_state *state, int j)
+{
+    return (fu_slide_flags *)(state->flags + model->slides[j].base.flags);
+}
+
+fu_slide_numbers *fu_slide_numbers_of(const fu_model *model, const fu_state *state, int j)
+{
+    return (fu_slide_numbers *)(state->numbers + model->slides[j].base.numbers);
+}
+
+fu_slide_state *fu_slide_state_of(const fu_model *model, const fu_accelerator *work, int j)
+{
+    return (fu_slide_state *)(work->scratch + model->slides[j].base.scratch);
+}
+
 /* Rows over (element, point, `more`) made rows over (element, rider, `more`), in place where there is room for them. */
 static void expand(const fu_slide *slide, const slide_view *view, int n_rows, int n_element, int more, const double *given,
                    double *rows)
@@ -117,15 +132,16 @@ void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows
     const int n_element = model->cables[slide->cable].coordinates, dim = slide->kernel->dim;
     double C_q[3 * FU_SLIDE_COORDINATES], C_s[3], Q_d[3], H[2 * FU_SLIDE_COORDINATES], G[FU_SLIDE_COORDINATES];
     slide_view v;
-    if (state->mode[j] == FU_LEFT) { /* far from the cable, nothing of it means anything */
+    const fu_slide_flags *flags = fu_slide_flags_of(model, state, j);
+    if (flags->mode == FU_LEFT) { /* far from the cable, nothing of it means anything */
         memset(slide_state, 0, sizeof *slide_state);
         rows->n = rows->rows = 0;
         return;
     }
     look(model, state, j, &v);
     const int n = fu_slide_coordinates(model, state, j, rows->at), across = dim - 1;
-    slide->kernel->terms(v.length, v.x, v.e, v.b, v.u, v.v, v.w, state->director + 3 * j, slide_state->C, C_q, C_s, G,
-                         &slide_state->s_rate, Q_d, H, rows->W, &slide_state->s_bias);
+    slide->kernel->terms(v.length, v.x, v.e, v.b, v.u, v.v, v.w, fu_slide_numbers_of(model, state, j)->director,
+                         slide_state->C, C_q, C_s, G, &slide_state->s_rate, Q_d, H, rows->W, &slide_state->s_bias);
     const int stride = slide->rider_is_rigid ? n : n_element + dim;
     for (int d = 0; d < dim; ++d) {
         for (int c = 0; c < across; ++c) slide_state->by_point[c * dim + d] = H[c * stride + n_element + d];
@@ -143,12 +159,12 @@ void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows
         }
     }
     rows->n = n;
-    rows->rows = state->mode[j] == FU_LOCKED ? dim : across;
+    rows->rows = flags->mode == FU_LOCKED ? dim : across;
     for (int c = 0; c < across; ++c) {
         rows->C[c] = slide_state->C[1 + c];
         rows->rate[c] = 0.0;
     }
-    if (state->mode[j] != FU_LOCKED) return;
+    if (flags->mode != FU_LOCKED) return;
     double rate, second;
     memcpy(rows->H + across * n, slide_state->G, sizeof(double) * (size_t)n);
     rows->C[across] = state->s[j] - fu_slide_locked_s(model, state, j, &rate, &second);
@@ -160,7 +176,7 @@ void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows
 double fu_slide_locked_s(const fu_model *model, const fu_state *state, int j, double *rate, double *second)
 {
     *rate = *second = 0.0;
-    if (model->slides[j].drive < 0) return state->locked_s[j];
+    if (model->slides[j].drive < 0) return fu_slide_numbers_of(model, state, j)->locked_s;
     return fu_signal_at(&model->signals[model->slides[j].drive], state->t, rate, second);
 }
 
@@ -172,6 +188,6 @@ double fu_slide_step(const fu_model *model, const fu_state *state, int j, double
     slide_view v;
     look(model, state, j, &v);
     slide->kernel->constraint(v.length, s - fu_element_start(model, j, state->piece[j]), v.e, v.b, v.u,
-                              state->director + 3 * j, C, C_s, &step, A_t);
+                              fu_slide_numbers_of(model, state, j)->director, C, C_s, &step, A_t);
     return step;
 }

@@ -12,6 +12,7 @@ double fu_time_of_turn(const fu_run *run, double h);
 void fu_choose_pieces(fu_run *run);
 int fu_count_changes(const fu_run *run);
 void fu_keep_pieces(fu_run *run);
+void fu_find_pieces(const fu_model *model, fu_state *state);
 int fu_stands_on_boundary(const fu_run *run, fu_event event);
 int fu_are_on_pieces(const fu_model *model, const fu_state *state, double aside);
 

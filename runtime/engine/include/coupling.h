@@ -3,6 +3,7 @@
 #define FUNICULAR_COUPLING_H
 
 #include "common.h"
+#include "fields.h"
 #include "linear.h"
 #include "state.h"
 
@@ -26,11 +27,15 @@ typedef struct {
     int n_multipliers, multiplier; /* multipliers of eq 38: the most that it needs, and the first of them */
     int row;                       /* its entry in fu_accelerator.rows, -1 where it has no constraints */
     int output;                    /* its first number in a row of output */
+    int numbers, flags;            /* its own part of a state: the first of them in state->numbers, state->flags */
+    int scratch;                   /* its own part of fu_accelerator.scratch: the first of it */
     int reacts;                    /* not zero where it has a force that depends on the multipliers of eq 38 */
     int is_damped;                 /* not zero where it has a force that depends on velocities */
     int is_driven;                 /* not zero where a signal does work on it */
     double scale[FU_MAX_FORCES];   /* kg or kg m: rows of constraints times it have the scale of the mass matrix */
 } fu_coupling;
+
+extern const fu_field fu_coupling_fields[]; /* of fu_coupling */
 
 /* Where a Newton method makes its equations: at `next`, or, in a method that conserves energy, over the step from `now` to
  * `next` with `middle` between them. Rows of equilibrium are multiplied by weights.stiffness, rows of constraints by
@@ -58,9 +63,16 @@ typedef struct {
  * left of the equations of motion; own: minus the scaled residual of the unknowns beyond the dofs. */
 struct fu_coupling_type {
     const char *name;
+    size_t size;             /* bytes of its structure */
+    const fu_field *fields;  /* what of it the model gives */
     int n_outputs;           /* numbers that it gives to a row of output */
+    int n_numbers, n_flags;  /* real and whole numbers that it keeps in a state */
+    int n_scratch;           /* doubles that it keeps from `rows` to `outputs` */
     const fu_point_law *law; /* of a force between two points */
     const fu_coupling_events *events; /* that it finds by itself; null: none (include/coupling_events.h) */
+
+    /* What of a coupling as the model gives it is more than the engine has room for, in words; null where nothing is. */
+    const char *(*excess)(const fu_coupling *coupling);
 
     /* Newton systems at an instant: residual and its derivative. */
     void (*residual)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f, double *own);
@@ -93,7 +105,7 @@ struct fu_coupling_type {
     /* What is left of the constraints, redundant ones among them: one number an own force. */
     void (*gaps)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *gaps);
     /* Rates of the own coordinates, after eq 38. */
-    void (*rates)(const fu_coupling *coupling, const fu_accelerator *work, double *rates);
+    void (*rates)(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, double *rates);
 
     /* Stored energy, J; power that goes to heat, W: by the state's own forces, or where work is not null by those of eq 38. */
     double (*energy)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
@@ -104,9 +116,11 @@ struct fu_coupling_type {
     double (*lost_in_step)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to);
 
     /* Whether a start may be off the constraints by a small gap. */
-    int (*may_start_open)(const fu_coupling *coupling, const fu_state *state);
+    int (*may_start_open)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
     /* Own coordinates that follow from the others: not zero where none is found. */
     int (*follow)(const fu_model *model, const fu_coupling *coupling, fu_state *state);
+    /* Own coordinates, pieces, numbers and flags of the state as it is drawn; those that it does not set are zero. */
+    void (*reset)(const fu_coupling *coupling, fu_state *state);
     /* State that goes along with an accepted step. */
     void (*carry)(const fu_model *model, const fu_coupling *coupling, fu_state *state);
     /* Statics: contact that follows from the positions. */

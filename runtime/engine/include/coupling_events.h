@@ -32,7 +32,7 @@ struct fu_coupling_events {
     int (*watches)(const fu_coupling *coupling, fu_watch *out);
     double (*watched)(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which);
     /* The sign that a watched number has from here on, after it has been zero and the coupling has changed: 1 or -1. */
-    int (*sign)(const fu_coupling *coupling, const fu_state *state, int which);
+    int (*sign)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which);
     /* Lets happen what follows where a watched number has passed zero to this side; returns a status. *what says in words
      * what has happened, and is null where nothing has. */
     int (*act)(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what);

@@ -12,6 +12,8 @@ typedef struct {
     double restitution, length, stiffness, damping;
 } fu_end_stop;
 
+extern const char *const fu_end_stop_kinds[]; /* the words for them */
+
 /* Slides that stick, break loose, and reach what is at the ends of their cables: parts of couplings/slide_events.c. */
 double fu_stick_margin(const fu_run *run, const fu_state *state, int slide);
 double fu_buffer_margin(const fu_run *run, const fu_state *state, int slide, int side);

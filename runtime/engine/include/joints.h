@@ -25,6 +25,7 @@ _Static_assert(sizeof(fu_joint_output) == 7 * sizeof(double), "rows of output ar
 int fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, int *at, double *J, double *K);
 void fu_joint_outputs(const fu_model *model, const fu_joint *joint, const fu_state *state, const double *multipliers,
                       fu_joint_output *out);
+int fu_joint_moves(const fu_model *model, const fu_joint *joint, const fu_state *state, int at);
 int fu_between_cables(const fu_joint *joint);
 int fu_ties_a_frame(const fu_model *model, int which);
 

@@ -5,7 +5,7 @@
 #include "attachments.h"
 #include "coupling.h"
 
-#define FU_MAX_PARAMETERS 8 /* of the law of one; cython/translation.pxi checks */
+#define FU_MAX_PARAMETERS 8 /* of the law of one */
 
 /* A force along the gap between the points of two attachments, by the law of its type and the parameters of that. */
 typedef struct {
@@ -15,6 +15,7 @@ typedef struct {
     int dim;
     double parameters[FU_MAX_PARAMETERS];
 } fu_point_force;
+extern const fu_field fu_point_force_fields[];
 
 void fu_point_force_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double *f,
                              double *own);
@@ -34,7 +35,7 @@ double fu_point_force_dissipation(const fu_model *model, const fu_coupling *coup
 
 /* The operations of a type whose law is a force between two points. */
 #define FU_POINT_FORCE_OPERATIONS                                                                              \
-    .n_outputs = 3, .residual = fu_point_force_residual, .tangent = fu_point_force_tangent,                    \
+    .size = sizeof(fu_point_force), .fields = fu_point_force_fields, .n_outputs = 3, .residual = fu_point_force_residual, .tangent = fu_point_force_tangent,                    \
     .step_residual = fu_point_force_step_residual, .step_tangent = fu_point_force_step_tangent,                \
     .step_dissipation = fu_point_force_step_dissipation, .force = fu_point_force_force,                        \
     .take_forces = fu_point_force_take, .outputs = fu_point_force_outputs, .energy = fu_point_force_energy,    \

@@ -196,7 +196,7 @@ static void account(fu_run *run, double h)
         if (c->type->step_dissipation) run->dissipated += c->type->step_dissipation(model, c, &at);
     }
     for (int i = 0; i < model->n_dof; ++i) m.force[i] = 0.0;
-    fu_loads(model, now->t + 0.5 * h, m.q, m.force);
+    fu_coupling_external_forces(model, now->t + 0.5 * h, m.q, m.force);
     for (int i = 0; i < model->n_dof; ++i) run->external -= m.force[i] * run->psi[i];
     if (!model->n_motions) return;
     /* of the motions: velocities there are given, so that their mean is not quite psi/h */

@@ -58,6 +58,20 @@ void fu_choose_pieces(fu_run *run)
     }
 }
 
+/* Puts the couplings of a state on the pieces that hold their coordinates, but those that are on one of these, at its ends too. */
+void fu_find_pieces(const fu_model *model, fu_state *state)
+{
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        const fu_path path = fu_path_of(model, c, state);
+        const double s = path.n ? coordinate_of(c, state) : 0.0;
+        int *piece = &state->piece[c->coordinate];
+        if (!path.n || (path.length * *piece <= s && s <= path.length * (*piece + 1))) continue;
+        const double holds = round((s - fmod(s, path.length)) / path.length); /* a quotient may be rounded up */
+        *piece = (int)fmin(fmax(holds, 0.0), path.n - 1.0);
+    }
+}
+
 /* Returns across how many boundaries the couplings are at `next`. */
 int fu_count_changes(const fu_run *run)
 {

@@ -30,9 +30,9 @@ double fu_external_power(fu_run *run, const fu_state *state, const double *react
 {
     const fu_model *model = run->model;
     double power = model->n_driven ? driving_power(run) : 0.0;
-    if (model->n_dead_loads || model->n_external) {
+    if (model->n_external) {
         for (int i = 0; i < model->n_dof; ++i) run->work[i] = 0.0;
-        fu_loads(model, state->t, state->q, run->work);
+        fu_coupling_external_forces(model, state->t, state->q, run->work);
         for (int i = 0; i < model->n_dof; ++i) power -= run->work[i] * state->v[i];
     }
     for (int k = 0; k < model->n_motions; ++k) {

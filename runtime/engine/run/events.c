@@ -217,7 +217,7 @@ void fu_watch_anew(fu_run *run, int coupling)
         if (watch->index == coupling) run->late[k] = 0;
         if (run->late[k]) continue;
         const fu_coupling *c = run->model->couplings[watch->index];
-        const int sign = c->type->events->sign(c, &run->now, watch->which);
+        const int sign = c->type->events->sign(run->model, c, &run->now, watch->which);
         run->watched[k] = sign * fmax(sign * watched(run, &run->now, k), SMALLEST);
     }
 }
