@@ -15,8 +15,8 @@ class CouplingModel:
     type: the engine's type of coupling. name: of the part that it is of. n_coordinates: of its own in a Newton system.
     scale: what the equations of each of its own forces are multiplied by there, kg or kg m. n_multipliers: the most
     multipliers of eq 38 that it needs. reacts, is_damped: a force of it depends on those multipliers, on velocities.
-    is_driven: a signal does work on it. unknown, multiplier: the first of each, of unknowns beyond the dofs, as `number`
-    counts them.
+    is_driven: a signal does work on it. unknown, multiplier: the first of each, of unknowns beyond the dofs, as
+    `number` counts them.
     """
 
     type: str
