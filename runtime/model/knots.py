@@ -24,7 +24,7 @@ ROUNDING = 1e-14
 TINY = 1e-300
 """Of no signal: what a constant is compared with."""
 ONE_INSTANT = 1e-12
-"""Of the duration: knots that are no farther apart are one (engine/run.c)."""
+"""Of the duration: knots that are no farther apart are one (engine/include/run.h)."""
 
 
 def knots(model: Model, duration: float, tol: float) -> tuple[np.ndarray, np.ndarray]:

@@ -15,10 +15,10 @@ FOLDED, STRETCHED = 0.8, 3.0
 """Elements shorter or longer than this part of their undeformed length are named."""
 
 ROUNDED = 4e-16
-"""Of the farthest coordinate: below this the error control does not go (engine/run/run.c)."""
+"""Of the farthest coordinate: below this the error control does not go (engine/run/step_control.c)."""
 
 LEAST_MOTION = 1e-9
-"""Of the farthest coordinate: what moves less may be at rest (engine/run/run.c)."""
+"""Of the farthest coordinate: what moves less may be at rest (engine/run/start.c)."""
 STEADY = 0.01
 """Of the kinetic energy: where less is exchanged, as where bodies turn freely, errors go by this part of it."""
 

@@ -1,5 +1,5 @@
 /* Events that a coupling finds by itself: a part of its table of operations (include/coupling.h). run/boundaries.c and
- * run/events.c find the instants at which they happen, run/run.c lets them happen; none of them knows a kind of coupling.
+ * run/events.c find the instants at which they happen, run/happenings.c lets them happen; none of them knows a kind of coupling.
  */
 #ifndef FUNICULAR_COUPLING_EVENTS_H
 #define FUNICULAR_COUPLING_EVENTS_H

@@ -1,4 +1,4 @@
-/* A run, and its time loop: run/run.c. */
+/* A run, and its time loop: run/. */
 #ifndef FUNICULAR_RUN_H
 #define FUNICULAR_RUN_H
 
@@ -83,11 +83,28 @@ void fu_adapt_step(fu_run *run, double h, double ratio);
 double fu_shrink_step(fu_run *run, double h, double ratio);
 double fu_retry_step(fu_run *run, double h);
 
-/* run/run.c: the time loop */
+/* run/record.c */
 int fu_all_finite(const double *numbers, long n);
+int fu_record_row(fu_run *run);
+int fu_stop(fu_run *run);
+
+/* run/start.c */
 int fu_prepare(fu_run *run);
 int fu_start(fu_run *run);
+int fu_start_scheme(fu_run *run, int project);
+
+/* run/happenings.c */
+int fu_let_happen(fu_run *run, fu_event event);
+
+/* run/knots.c */
+#define FU_AT_ONCE 1e-12 /* of the duration: instants that are no farther apart are one (model/knots.py) */
+const fu_knot *fu_next_knot(const fu_run *run, double latest);
+int fu_pass_knot(fu_run *run, const fu_knot *knot, int event);
+
+/* run/steps.c */
+int fu_step_towards(fu_run *run, double target);
+
+/* run/run.c: the time loop */
 int fu_advance(fu_run *run, double seconds);
-int fu_stop(fu_run *run);
 
 #endif
