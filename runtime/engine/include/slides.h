@@ -67,6 +67,11 @@ void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, const
 void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows *rows, fu_slide_state *slide_state);
 double fu_slide_step(const fu_model *model, const fu_state *state, int j, double s, double A_t[9]);
 
+/* couplings/slide_steps.c: residual and tangent over a step that conserves energy. */
+void fu_slide_over_step(const fu_model *model, const fu_coupling *coupling, const fu_equations *step, double *f, double *own);
+void fu_slide_over_step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *step,
+                                fu_system *system);
+
 /* couplings/arc_length.c: s where C_l = 0, eq 21, not zero where there is none; and the director that goes with it. */
 int fu_find_arc_length(const fu_model *model, const fu_state *state, int slide, double *s);
 void fu_carry_director(const fu_model *model, const fu_coupling *coupling, fu_state *state);
