@@ -59,7 +59,12 @@ typedef struct {
     double (*dissipation)(const fu_coupling *coupling, const double *gap, const double *rate);
 } fu_point_law;
 
-/* What a coupling can do. A null operation: it does nothing of that. f: generalised forces on the dofs, as they stand on the
+/* What a coupling can do. A null operation: it does nothing of that.
+ *
+ * There is no operation that lists the columns of a system that a coupling touches, its own unknowns among them: `tangent` and
+ * `rows` name each entry by its dof or unknown, and fu_add (include/unknowns.h) finds its place and notes which rows of the
+ * border count. A list beside it would say the same a second time, and would have to be kept in step with it.
+ * f: generalised forces on the dofs, as they stand on the
  * left of the equations of motion; own: minus the scaled residual of the unknowns beyond the dofs. */
 struct fu_coupling_type {
     const char *name;

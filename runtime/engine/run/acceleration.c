@@ -3,9 +3,10 @@
 
 #include <string.h>
 
-#define MOST_SWEEPS 100
-#define SETTLED 1e-15 /* change of R by a sweep, over the force */
-#define NEARLY 1e-7   /* the same where rounding may rule it */
+#define MOST_SWEEPS 100 /* over the couplings whose forces depend on multipliers, before there is no solution */
+#define SETTLED 1e-15   /* change of R by a sweep, over the force: one that is rounding */
+#define NEARLY 1e-7     /* the same, where it is enough if a sweep changes R no less than the one before */
+#define DIVERGED 1e30   /* the same, of a sweep that runs away */
 
 /* Constraint rows of all couplings. */
 static void evaluate(const fu_model *model, const fu_state *state, fu_accelerator *work)
@@ -133,7 +134,7 @@ static int solve_friction(const fu_model *model, const fu_state *state, fu_accel
         if (!model->n_reacting) return 0;
         const double change = react(model, state, work, lambda);
         if (change <= SETTLED || (change <= NEARLY && change >= last)) break;
-        if (!(change < 1e30) || sweep == MOST_SWEEPS) return 1;
+        if (!(change < DIVERGED) || sweep == MOST_SWEEPS) return 1;
         last = change;
     }
     work->jammed = -1;

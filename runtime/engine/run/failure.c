@@ -1,7 +1,8 @@
 /* Why a step failed, and where: what a message can name. */
 #include "engine.h"
 
-/* Remember the cause, the dof that moves farthest (or is no number), and the number of the coupling or -1; returns 1. */
+/* Notes why a step failed: the cause, the dof that moves farthest (or is not a number), and the number of the coupling or -1.
+ * Returns 1. */
 int fu_fail(fu_run *run, int cause, const double *dofs, int coupling)
 {
     const fu_model *model = run->model;
@@ -11,13 +12,13 @@ int fu_fail(fu_run *run, int cause, const double *dofs, int coupling)
         const double size = fabs(dofs[i]) * model->weight[i];
         if (size <= largest) continue;
         run->failure.dof = i;
-        if (size != size) break;
+        if (isnan(size)) break;
         largest = size;
     }
     return 1;
 }
 
-/* The same by the unknown at which a matrix is singular. */
+/* Does the same by the unknown at which a matrix is singular. */
 int fu_fail_at(fu_run *run, int cause, int unknown)
 {
     const fu_model *model = run->model;
@@ -30,7 +31,7 @@ int fu_fail_at(fu_run *run, int cause, int unknown)
     return 1;
 }
 
-/* The same where eq 38 has no solution: by friction that jams, or by its matrix. */
+/* Does the same where eq 38 has no solution: by friction that jams, or by its matrix. */
 int fu_fail_eq38(fu_run *run)
 {
     const int jammed = run->accelerator.jammed;

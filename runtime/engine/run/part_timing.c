@@ -7,6 +7,7 @@
 #define BUDGET 5e-4 /* s, for all that is timed */
 #define BATCHES 4   /* the fastest counts: the machine may be busy */
 #define MOST 100    /* calls in a batch */
+#define SHORTEST 1e-8 /* s: of a call, that a clock that stands still may not show */
 
 enum { RESIDUAL, TANGENT, ROWS, OWN_COORDINATES, WORKS };
 
@@ -32,7 +33,7 @@ static double timed(fu_run *run, const fu_coupling *c, int what, double budget)
     double begin = fu_clock();
     work_of(run, c, what);
     double fastest = fu_clock() - begin;
-    const double fit = budget / (BATCHES * fmax(fastest, 1e-8));
+    const double fit = budget / (BATCHES * fmax(fastest, SHORTEST));
     const int calls = fit > MOST ? MOST : (int)fit;
     for (int b = 0; b < BATCHES && calls; ++b) {
         begin = fu_clock();
