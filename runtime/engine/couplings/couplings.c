@@ -86,7 +86,6 @@ void fu_coupling_forces(const fu_model *model, const fu_state *state, double *f)
     }
 }
 
-/* f += forces from outside */
 void fu_coupling_external_forces(const fu_model *model, double t, const double *q, double *f)
 {
     for (int k = 0; k < model->n_couplings; ++k) {
@@ -182,7 +181,7 @@ void fu_touch(const fu_model *model, fu_state *state)
     }
 }
 
-/* Own coordinates where the others have them; null, or the first coupling of which none were found. */
+/* Finds own coordinates that follow from the others; returns null, or the first coupling of which none were found. */
 const fu_coupling *fu_follow(const fu_model *model, fu_state *state)
 {
     for (int k = 0; k < model->n_couplings; ++k) {

@@ -17,7 +17,7 @@ static int is_hard(const fu_model *model, int j, int side)
     return side && model->slides[j].stops[side > 0].kind == FU_END_IS_HARD;
 }
 
-/* The force on the rider of a slide that is locked: by eq 38, as a Newton method's has the rounding of positions over h^2.
+/* Finds the force on the rider of a slide that is locked, by eq 38, as a Newton method's has the rounding of positions over h^2.
  * Returns whether it is by eq 38: then `traction` is what of it is along the cable, without what moments put there. */
 static int locked_force(const fu_run *run, const fu_state *state, int j, double *f, double *traction)
 {
@@ -33,7 +33,7 @@ static int locked_force(const fu_run *run, const fu_state *state, int j, double 
     return 1;
 }
 
-/* Force along the cable on a locked slide, and how much of it neither friction nor a hard stop can take. */
+/* Finds the force along the cable on a locked slide, N; returns how much of it neither friction nor a hard stop can take, N. */
 static double excess(const fu_run *run, const fu_state *state, int j, double *pull)
 {
     const fu_model *model = run->model;
@@ -59,7 +59,7 @@ static double excess(const fu_run *run, const fu_state *state, int j, double *pu
     return (is_hard(model, j, side) ? side * along : fabs(along)) - most;
 }
 
-/* What is watched: negative as long as a slide stays locked, or slides on in its direction. */
+/* Returns a number that is negative as long as a slide stays locked, or slides on in its direction. */
 double fu_stick_margin(const fu_run *run, const fu_state *state, int j)
 {
     const fu_slide *slide = &run->model->slides[j];
@@ -70,7 +70,7 @@ double fu_stick_margin(const fu_run *run, const fu_state *state, int j)
     return slide->sticks ? -flags->slip_direction * fu_slide_rate(run->model, state, j) : -1.0;
 }
 
-/* What is watched: positive where a slide is in a buffer that pushes. */
+/* Returns a number that is positive where a slide is in a buffer that pushes. */
 double fu_buffer_margin(const fu_run *run, const fu_state *state, int j, int side)
 {
     const fu_end_stop *stop = &run->model->slides[j].stops[side > 0];
@@ -80,7 +80,7 @@ double fu_buffer_margin(const fu_run *run, const fu_state *state, int j, int sid
     return fmin(x, force);
 }
 
-/* Unlock a slide, on which there was the force `pull` along the cable. */
+/* Unlocks a slide, on which there was the force `pull` along the cable. */
 static void release(fu_run *run, int j, double pull)
 {
     fu_slide_flags *flags = fu_slide_flags_of(run->model, &run->now, j);
@@ -90,7 +90,7 @@ static void release(fu_run *run, int j, double pull)
     if (hard) flags->contact = 0;
 }
 
-/* Lock a slide that is at rest, if friction or its stop can take the force on it, else let it slide on; the status. */
+/* Locks a slide that is at rest, if friction or its stop can take the force on it, else lets it slide on; returns a status. */
 static int try_to_stick(fu_run *run, int j)
 {
     fu_state *now = &run->now;
@@ -104,6 +104,7 @@ static int try_to_stick(fu_run *run, int j)
     return FU_RUNNING;
 }
 
+/* Returns whether a slide is at rest. */
 static int is_at_rest(const fu_run *run, int j)
 {
     return fabs(fu_slide_rate(run->model, &run->now, j)) * run->duration <= AT_REST * fu_length(run->model, j);
@@ -131,7 +132,7 @@ int fu_begin_stops(fu_run *run, const fu_coupling *coupling)
     return model->slides[j].sticks && is_at_rest(run, j) ? try_to_stick(run, j) : FU_RUNNING;
 }
 
-/* A slide comes to its hard stop; it stays there where it would come back no farther than counts. */
+/* Lets a slide strike its hard stop, where it stays if it would come back by too little to count; returns a status. */
 static int strike(fu_run *run, int j, int side)
 {
     const fu_model *model = run->model;

@@ -27,7 +27,7 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
     }
 }
 
-/* Rows that are not in use: their multipliers are nil. */
+/* Adds unit rows where rows (bits of `which`) are not in use: their multipliers are nil. */
 static void unit_rows(const fu_model *model, const fu_joint *joint, int which, double inertia, fu_system *system)
 {
     const int first = fu_extra(model, joint->base.unknown);
@@ -35,7 +35,7 @@ static void unit_rows(const fu_model *model, const fu_joint *joint, int which, d
         if (which >> r & 1) fu_add(model, system, first + r, first + r, fu_row_unit(inertia, joint->base.scale[r]));
 }
 
-/* Derivatives by the coordinates of both attachments, made those by psi. */
+/* Makes derivatives by the coordinates of both attachments those by psi. */
 static void turn_ends(const fu_model *model, const fu_joint *joint, const double *psi, double *rows, int n_rows, int n,
                       int n_first)
 {

@@ -43,7 +43,7 @@ static void look(const fu_model *model, const fu_joint *joint, const fu_state *s
     }
 }
 
-/* J (rows x n) over coordinates from that over gap and turns */
+/* Makes J (rows x n) over coordinates from that over gap and turns. */
 static void over_coordinates(const joint_view *view, int rows, const double *by_moves, double *J)
 {
     const int n = view->n;
@@ -63,7 +63,7 @@ static int coordinates(const joint_view *view, int *at)
     return view->n;
 }
 
-/* whether the slide that it is on has left its cable */
+/* Returns whether the slide that a joint is on has left its cable. */
 int fu_joint_is_inactive(const fu_model *model, const fu_joint *joint, const fu_state *state)
 {
     for (int e = 0; e < 2; ++e) {
@@ -73,7 +73,7 @@ int fu_joint_is_inactive(const fu_model *model, const fu_joint *joint, const fu_
     return 0;
 }
 
-/* phi, its derivatives J over the joint's coordinates, and their numbers for fu_add; returns how many they are */
+/* Makes phi and its derivatives J over the joint's coordinates, with the numbers of these for fu_add; returns how many they are. */
 int fu_joint_equations(const fu_model *model, const fu_joint *joint, const fu_state *state, double *phi, int *at, double *J)
 {
     double by_moves[6 * MOVES], K[MOVES * MOVES];
@@ -85,8 +85,8 @@ int fu_joint_equations(const fu_model *model, const fu_joint *joint, const fu_st
     return coordinates(&view, at);
 }
 
-/* whether a slide, or any where `which` is -1, ties its rider's axes to the cable: their turn jumps where its curvature
- * does */
+/* Returns whether a slide, or any where `which` is -1, ties its rider's axes to the cable: their turn jumps where its curvature
+ * does. */
 int fu_ties_a_frame(const fu_model *model, int which)
 {
     for (int k = 0; k < model->n_couplings; ++k) {
@@ -100,12 +100,13 @@ int fu_ties_a_frame(const fu_model *model, int which)
     return 0;
 }
 
+/* Returns whether a joint is between two cables. */
 int fu_between_cables(const fu_joint *joint)
 {
     return joint->ends[0].cable >= 0 && joint->ends[1].cable >= 0;
 }
 
-/* the same with K, the derivative of J' multipliers */
+/* Makes J, and K, the derivative of J' multipliers, over the joint's coordinates, with their numbers; returns how many they are. */
 int fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, int *at, double *J, double *K)
 {
     const int rows = joint->kernel->rows, dim = model->dim, turns = dim == 3 ? 3 : 1;
@@ -142,7 +143,7 @@ static const fu_rows *rows_of_slide(const fu_model *model, const fu_joint *joint
     return &work->rows[model->slides[joint->ends[e].slide].base.row];
 }
 
-/* H and W over the joint's coordinates made those over the dofs: s of an attachment on a slide follows (eq 24, 31, 37). */
+/* Makes H and W over the joint's coordinates those over the dofs: s of an attachment on a slide follows (eq 24, 31, 37). */
 static void replace_s(const fu_model *model, const fu_joint *joint, const joint_view *view, const double *J,
                       const fu_accelerator *work, fu_rows *rows)
 {
@@ -177,7 +178,7 @@ static void replace_s(const fu_model *model, const fu_joint *joint, const joint_
     }
 }
 
-/* H q'' = W, what is left of phi, and its rate at rest; s of an attachment on a slide follows (eq 24, 31, 37):
+/* Makes H q'' = W, what is left of phi, and its rate at rest; s of an attachment on a slide follows (eq 24, 31, 37):
  * H = C_q + C_s G, W = -Q_d - C_s (s'' - G q''). The rows of that slide are there. */
 void fu_joint_rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work)
 {
@@ -234,7 +235,7 @@ int fu_joint_moves(const fu_model *model, const fu_joint *joint, const fu_state 
     return 1;
 }
 
-/* Force and moment of the joint on its second attachment by these multipliers. */
+/* Makes the force and moment of the joint on its second attachment by these multipliers. */
 void fu_joint_outputs(const fu_model *model, const fu_joint *joint, const fu_state *state, const double *multipliers,
                       fu_joint_output *out)
 {

@@ -3,12 +3,13 @@
 
 #include <string.h>
 
+/* Returns the value of a signal, 1 where there is none. */
 static double scale_at(const fu_model *model, int signal, double t)
 {
     return signal < 0 ? 1.0 : fu_signal_at(&model->signals[signal], t, 0, 0);
 }
 
-/* A load on a point of a modal body, as `generalised` below; what follows turns with the section there. */
+/* Does what `generalised` does, for a load c on a point of a modal body; what follows turns with the section there. */
 static int on_modes(const fu_model *model, const fu_load *load, const double *c, const double *q, double *g, double *K)
 {
     const fu_body *body = &model->bodies[load->on];
@@ -32,8 +33,8 @@ static int on_modes(const fu_model *model, const fu_load *load, const double *c,
     return n;
 }
 
-/* Generalised force g of a load at unit signal, its derivative K by the dofs (row by row); returns their number, and the
- * first dof. On a body: translation of the force c, rotation of its moment about the mass centre. */
+/* Makes the generalised force g of the part of a load that acts, at unit signal, and its derivative K by the dofs (row by row);
+ * returns their number, and the first dof. On a body: translation of the force c, rotation of its moment about the mass centre. */
 static int generalised(const fu_model *model, const fu_load *load, const double *q, double *g, double *K, int *first)
 {
     double c[3];
@@ -85,7 +86,7 @@ static void external_force(const fu_model *model, const fu_coupling *coupling, d
     for (int i = 0; i < n; ++i) f[first + i] -= scale * g[i];
 }
 
-/* system -= stiffness times the load's derivatives, by psi where that is given */
+/* Subtracts stiffness times the load's derivatives from a system, by psi where that is given. */
 static void matrix(const fu_model *model, const fu_load *load, double t, const double *q, const double *psi,
                    double stiffness, fu_system *system)
 {
@@ -128,7 +129,7 @@ static const fu_field fields[] = {
 const fu_coupling_type fu_load_type = {
     .name = "load", .size = sizeof(fu_load), .fields = fields, .external_force = external_force, .tangent = tangent, .step_tangent = step_tangent};
 
-/* f -= gravity and loads */
+/* Subtracts gravity and loads from f. */
 void fu_external_forces(const fu_model *model, double t, const double *q, double *f)
 {
     for (int i = 0; i < model->n_dof; ++i) f[i] -= model->gravity[i];

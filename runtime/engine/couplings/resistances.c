@@ -9,11 +9,11 @@
 
 #include <string.h>
 
-#define TRIAL 0.1          /* of the change that the law asks for: the first step, lest it turn the normal force round */
-#define STEEP 0.1          /* slopes below have no secant that is worth it */
+#define TRIAL 0.1          /* of the change that the law asks for: the first step of R, lest it turn the normal force round */
+#define STEEP 0.1          /* slope of the secant below which R takes the change that its law asks for */
 #define LEAST_NORMAL 1e-30 /* N: of a normal force of zero there is no direction */
 
-/* whether R acts on a slide as it is */
+/* Returns whether R acts on a slide as it is. */
 static int has_resistance(const fu_model *model, const fu_state *state, int j)
 {
     const fu_slide *slide = &model->slides[j];
@@ -21,7 +21,7 @@ static int has_resistance(const fu_model *model, const fu_state *state, int j)
     return slide->resistance && (flags->mode == FU_SLIDES || (flags->mode == FU_LOCKED && slide->drive >= 0));
 }
 
-/* direction that friction is against, 0 where it rises smoothly with the speed, and of a drive at rest */
+/* Returns the direction that friction is against, 0 where it rises smoothly with the speed, and of a drive at rest. */
 static double direction_of(const fu_model *model, const fu_state *state, int j)
 {
     double rate, second;
@@ -30,7 +30,7 @@ static double direction_of(const fu_model *model, const fu_state *state, int j)
     return model->slides[j].sticks ? (rate > 0.0) - (rate < 0.0) : 0.0;
 }
 
-/* how far a slide is in the buffer of one side, m; negative outside */
+/* Returns how far a slide is in the buffer of one side, m; negative outside. */
 double fu_compression(const fu_model *model, const fu_state *state, int j, int side)
 {
     const fu_slide *slide = &model->slides[j];
@@ -38,7 +38,7 @@ double fu_compression(const fu_model *model, const fu_state *state, int j, int s
     return side > 0 ? state->s[j] - (fu_length(model, j) - length) : length - state->s[j];
 }
 
-/* the buffer that a slide presses, null where it does not */
+/* Returns the buffer that a slide presses, null where there is none. */
 static const fu_end_stop *pressed(const fu_model *model, const fu_state *state, int j)
 {
     const fu_slide_flags *flags = fu_slide_flags_of(model, state, j);
@@ -62,7 +62,7 @@ void fu_resistance_at(const fu_model *model, const fu_state *state, int j, const
     resistance->by_s = side * by_x;
 }
 
-/* W that go to heat: all of R but the buffer's spring, which keeps what it takes */
+/* Returns the power that goes to heat, W: that of all of R but the buffer's spring, which keeps what it takes. */
 static double power_of(const fu_model *model, const fu_state *state, int j, const double *t, const double *u,
                        const double *f)
 {
@@ -79,7 +79,7 @@ static double power_of(const fu_model *model, const fu_state *state, int j, cons
     return -(resistance.R - spring) * along / square;
 }
 
-/* J in the springs of the buffers that a slide is in; those that do not touch it alone, or all */
+/* Returns the energy in the springs of the buffers that a slide is in, J: of those alone that it does not touch, or of all. */
 static double energy_in_buffers(const fu_model *model, const fu_state *state, int j, int all)
 {
     double energy = 0.0;
@@ -116,7 +116,7 @@ void fu_touch_buffers(const fu_model *model, const fu_coupling *coupling, fu_sta
             flags->contact = side;
 }
 
-/* t and u from the derivatives of phi = r - p by the slide's coordinates and s */
+/* Makes t and u from the derivatives of phi = r - p by the slide's coordinates and s. */
 void fu_slide_motion(const fu_model *model, const fu_state *state, int j, const double *J, double *t, double *u)
 {
     int at[FU_SLIDE_COORDINATES + 1];
@@ -128,7 +128,7 @@ void fu_slide_motion(const fu_model *model, const fu_state *state, int j, const 
     }
 }
 
-/* Derivatives of R by the slide's coordinates and s, and by the rates of the former, at a fixed force: those of t and u are
+/* Makes the derivatives of R by the slide's coordinates and s, and by the rates of the former, at a fixed force: those of t and u are
  * second derivatives of phi, of which fu_slide_tangent has those along a vector. */
 void fu_resistance_rows(const fu_model *model, const fu_state *state, int j, const double *J, const fu_resistance *resistance,
                    double *by_place, double *by_rate)
@@ -148,9 +148,7 @@ void fu_resistance_rows(const fu_model *model, const fu_state *state, int j, con
     by_rate[s] = 0.0;
 }
 
-/* In eq 38 */
-
-/* r_x, and the velocity along it, of a slide on its cable */
+/* Makes t = r_x, and u, the velocity along it, of a slide in eq 38. */
 static void along(const fu_model *model, const fu_slide_state *slide_state, double *t, double *u)
 {
     const int dim = model->dim;
@@ -163,7 +161,7 @@ static void along(const fu_model *model, const fu_slide_state *slide_state, doub
     }
 }
 
-/* By how much R should change where its law asks for `change`: by the secant of the last sweep, as what friction presses on
+/* Returns by how much R should change where its law asks for `change`: by the secant of the last sweep, as what friction presses on
  * the cable or takes off it depends on R almost linearly. */
 static double secant_step(fu_slide_state *last, double change)
 {
@@ -199,7 +197,7 @@ double fu_resistance_react(const fu_model *model, const fu_coupling *coupling, c
     return change != 0.0 ? fabs(change) / size : 0.0;
 }
 
-/* Of a slide that is driven: of the force along the cable, the part that its drive does not give; and what it takes. */
+/* Finds, of a slide that is driven, the part of the force along the cable that its drive does not give, and what it takes. */
 void fu_resistance_reacted(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
                            fu_accelerator *work)
 {

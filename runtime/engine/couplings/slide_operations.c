@@ -7,7 +7,8 @@
 
 #include <string.h>
 
-/* t = r_x and u, as resistances.c has them, from the derivatives J of phi by the coordinates and s; and R by the own force. */
+/* Makes t = r_x and u, as resistances.c has them, from the derivatives J of phi by the coordinates and s, and R by the own
+ * force. */
 static void resistance_of(const fu_model *model, const fu_state *state, int j, const double *J, fu_resistance *resistance)
 {
     double t[3], u[3];
@@ -15,7 +16,7 @@ static void resistance_of(const fu_model *model, const fu_state *state, int j, c
     fu_resistance_at(model, state, j, t, u, state->forces + model->slides[j].base.force, resistance);
 }
 
-/* R of a slide in a Newton system */
+/* Returns R of a slide in a Newton system. */
 static double resisted(const fu_model *model, const fu_state *state, int j)
 {
     double J[3 * (FU_SLIDE_COORDINATES + 1)], K[(FU_SLIDE_COORDINATES + 1) * (FU_SLIDE_COORDINATES + 1)];
@@ -45,7 +46,7 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
         own[1 + d] = mode == FU_LEFT ? -scale * next->forces[coupling->force + d] : -unit * phi[d];
 }
 
-/* What R adds to the row of s; J: derivatives of phi by the coordinates themselves. */
+/* Adds what R adds to the row of s; J: derivatives of phi by the coordinates themselves. */
 static void resistance_matrix(const fu_model *model, int j, const fu_equations *equations, const double *J, fu_system *system)
 {
     const fu_slide *slide = &model->slides[j];
@@ -107,7 +108,7 @@ void fu_slide_now(const fu_model *model, const fu_state *state, int j, fu_slide_
     fu_slide_terms(model, state, j, &unused, slide_state);
 }
 
-/* zero where s is locked for good */
+/* Returns ds/dt, m/s, zero where s is locked where it stands. */
 double fu_slide_rate(const fu_model *model, const fu_state *state, int j)
 {
     fu_slide_state slide_state;
@@ -133,8 +134,8 @@ void fu_slide_force(const fu_model *model, const fu_accelerator *work, int j, co
     }
 }
 
-/* The force along the cable on a slide's rider that comes of joints whose frame goes with the slide, added: what their
- * moments put on s, which stands in their rows as G. */
+/* Adds the force along the cable on a slide's rider that comes of joints whose frame goes with the slide: what their moments put
+ * on s, which stands in their rows as G. */
 static void add_force_of_frame(const fu_model *model, const fu_accelerator *work, int j, const double *lambda, double *f)
 {
     const int dim = model->dim;
@@ -191,7 +192,7 @@ static int may_start_open(const fu_model *model, const fu_coupling *coupling, co
     return locked || !((const fu_slide *)coupling)->rider_is_rigid;
 }
 
-/* s where C_l = 0, eq 21 */
+/* Finds s where C_l = 0, eq 21. */
 static int follow(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     const int j = coupling->index;
@@ -215,7 +216,7 @@ static int in_range(int value, int least, int most)
     return value >= least && value <= most;
 }
 
-/* Whether a slide can be in its mode: only then is there a multiplier that locks it. */
+/* Returns whether a slide can be in its mode: only then is there a multiplier that locks it. */
 static int is_possible_mode(const fu_slide *slide, int mode)
 {
     const int kinds[2] = {slide->stops[0].kind, slide->stops[1].kind};

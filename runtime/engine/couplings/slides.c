@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-/* a slide where its state stands, as the kernels take it */
+/* A slide at a state, as the kernels take it. */
 typedef struct {
     double length, x;
     const double *e, *v, *b, *u, *w;
@@ -53,7 +53,7 @@ fu_slide_state *fu_slide_state_of(const fu_model *model, const fu_accelerator *w
     return (fu_slide_state *)(work->scratch + model->slides[j].base.scratch);
 }
 
-/* Rows over (element, point, `more`) made rows over (element, rider, `more`), in place where there is room for them. */
+/* Makes rows over (element, point, `more`) rows over (element, rider, `more`). */
 static void expand(const fu_slide *slide, const slide_view *view, int n_rows, int n_element, int more, const double *given,
                    double *rows)
 {
@@ -72,7 +72,8 @@ static void expand(const fu_slide *slide, const slide_view *view, int n_rows, in
     }
 }
 
-/* Numbers for fu_add of a slide's coordinates, and after them of s; the force follows s. Returns how many stand before. */
+/* Finds the numbers for fu_add of a slide's coordinates, and after them of s; the force follows s. Returns how many stand before
+ * s. */
 int fu_slide_coordinates(const fu_model *model, const fu_state *state, int j, int *at)
 {
     const fu_slide *slide = &model->slides[j];
@@ -84,7 +85,7 @@ int fu_slide_coordinates(const fu_model *model, const fu_state *state, int j, in
     return all;
 }
 
-/* phi and the gradient of f . phi over the slide's coordinates and s */
+/* Makes phi and the gradient of f . phi over the slide's coordinates and s. */
 void fu_slide_residual(const fu_model *model, const fu_state *state, int j, double *phi, double *g)
 {
     const fu_slide *slide = &model->slides[j];
@@ -95,7 +96,7 @@ void fu_slide_residual(const fu_model *model, const fu_state *state, int j, doub
     if (!slide->rider_is_rigid) expand(slide, &v, 1, model->cables[slide->cable].coordinates, 1, of_point, g);
 }
 
-/* derivatives of both over the same, at a force f */
+/* Makes the derivatives of both over the same, at a force f. */
 void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, const double *f, double *J, double *K)
 {
     const fu_slide *slide = &model->slides[j];
@@ -125,7 +126,7 @@ void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, const
         for (int k = 0; k < n_rider; ++k) K[(n_element + i) * n + n_element + k] = part[i * n_rider + k];
 }
 
-/* Eq 20-37 over the slide's coordinates: H and W of the constraints that stay, and how s follows. */
+/* Makes eq 20-37 over the slide's coordinates: H and W of the constraints that stay, and how s follows. */
 void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows *rows, fu_slide_state *slide_state)
 {
     const fu_slide *slide = &model->slides[j];
@@ -172,7 +173,7 @@ void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows
     rows->W[across] = second - slide_state->s_bias;
 }
 
-/* s of a slide that is locked, its rate and its second rate */
+/* Returns s of a slide that is locked, m, with its rate and its second rate. */
 double fu_slide_locked_s(const fu_model *model, const fu_state *state, int j, double *rate, double *second)
 {
     *rate = *second = 0.0;
@@ -180,7 +181,7 @@ double fu_slide_locked_s(const fu_model *model, const fu_state *state, int j, do
     return fu_signal_at(&model->signals[model->slides[j].drive], state->t, rate, second);
 }
 
-/* C, C_s, the Newton step for s, and the tangent frame, with this s */
+/* Returns the Newton step for s from this s, m, and makes the tangent frame there. */
 double fu_slide_step(const fu_model *model, const fu_state *state, int j, double s, double A_t[9])
 {
     const fu_slide *slide = &model->slides[j];

@@ -1,12 +1,12 @@
 /* The local error of Radau IIA. */
 #include "radau.h"
 
-#define VIBRATION 2.0     /* of the estimate for vibrations: what counts, as sensitive motions let errors grow */
-#define EMBEDDED 0.1      /* the same of the embedded estimate, of too low an order */
-#define KINK 0.2          /* of tol: the error that one kink of friction may make */
+#define VIBRATION 2.0 /* times the estimate for vibrations is what counts, as sensitive motions let errors grow */
+#define EMBEDDED 0.1  /* times the embedded estimate is what counts, as its order is too low */
+#define KINK 0.2      /* of tol: the error that one kink of friction may make */
 
-/* Kinks of forces within a step are single events, so that one may cost a part of tol, however short its step. Returns the
- * largest error that one may make as a part of what is allowed, m. */
+/* Returns the largest error that a kink of a force within the step may make, as a part of what is allowed, m. Kinks are single
+ * events, so that one may cost a part of tol, however short its step. */
 static double kink(fu_run *run, fu_radau_workspace *w, double h)
 {
     const fu_model *model = run->model;
@@ -25,7 +25,7 @@ static double kink(fu_run *run, fu_radau_workspace *w, double h)
     return worst * run->allowed / (KINK * run->tol * fmax(run->motion, run->least_motion));
 }
 
-/* run->work = (M + (h/L) D + (h/L)^2 K)^-1 M r on the joints, for the real L; returns its size as a length. */
+/* Makes run->work = (M + (h/L) D + (h/L)^2 K)^-1 M r on the joints, for the real L; returns its size as a length. */
 static double filtered(fu_run *run, fu_radau_workspace *w, const double *r)
 {
     const fu_model *model = run->model;
@@ -35,7 +35,7 @@ static double filtered(fu_run *run, fu_radau_workspace *w, const double *r)
     return fu_spread_size(run);
 }
 
-/* Local error of positions, m. The embedded estimate E, (L/h - J)^-1 of the rate at the start and what the stages say of
+/* Returns the local error of positions, m. The embedded estimate E, (L/h - J)^-1 of the rate at the start and what the stages say of
  * it for the real L, is of order 3: for a vibration with h omega = z it is z^-2 times the error of the method. What the same
  * filter, applied to E, takes away has the right order, and is 0.55 to 2.5 times the error for every z. A part of E counts
  * beside it, for what the matrix has nothing of: loads that change in time, bodies that turn.

@@ -3,9 +3,9 @@
 
 #include <string.h>
 
-#define SWEEPS 4          /* of the attitudes' quadrature for each iteration */
+#define SWEEPS 4 /* of the attitudes' quadrature for each iteration of Newton's, which goes on with those at hand */
 
-/* Entries of the stages' q that have n dofs for rates, moved by the quadrature of velocities. */
+/* Moves the entries of the stages' q that have n dofs for rates by the quadrature of velocities. */
 static void integrate(fu_run *run, fu_radau_workspace *w, double h, int at, int dof, int n)
 {
     const fu_model *model = run->model;
@@ -20,7 +20,7 @@ static void integrate(fu_run *run, fu_radau_workspace *w, double h, int at, int 
     }
 }
 
-/* A stage's dofs, moved by the quadrature of velocities; attitudes by sweeps over those at hand. */
+/* Moves the stages' dofs by the quadrature of velocities, attitudes by sweeps over those at hand. */
 void fu_radau_configure(fu_run *run, fu_radau_workspace *w, double h)
 {
     const fu_model *model = run->model;
@@ -52,7 +52,7 @@ void fu_radau_configure(fu_run *run, fu_radau_workspace *w, double h)
         }
 }
 
-/* `next` at stage k, without accelerations; 0 when its slides were found */
+/* Makes `next` stage k, without accelerations; returns 0 where its slides were found. */
 int fu_radau_place_stage(fu_run *run, fu_radau_workspace *w, int k, double h)
 {
     const fu_model *model = run->model;
@@ -64,14 +64,14 @@ int fu_radau_place_stage(fu_run *run, fu_radau_workspace *w, int k, double h)
     return fu_find_own(run);
 }
 
-/* The multipliers of the state that accelerations have just been found of, as those of stage k. */
+/* Keeps the multipliers of the state that accelerations have just been found of, as those of stage k. */
 void fu_radau_keep_multipliers(fu_run *run, fu_radau_workspace *w, int k)
 {
     const long n = run->model->n_multipliers;
     if (run->model->n_reacting) memcpy(w->multipliers + k * n, run->accelerator.multipliers, sizeof(double) * (size_t)n);
 }
 
-/* accelerations of all stages; 0 when they were found */
+/* Finds the accelerations of all stages; returns 0 where they were found. */
 int fu_radau_evaluate(fu_run *run, fu_radau_workspace *w, double h)
 {
     const double begin = fu_clock();
@@ -92,7 +92,7 @@ int fu_radau_evaluate(fu_run *run, fu_radau_workspace *w, double h)
     return 0;
 }
 
-/* Stages from the last step's polynomial, else from the acceleration at hand. */
+/* Predicts the stages from the last step's polynomial, else from the acceleration at hand. */
 void fu_radau_predict(fu_run *run, fu_radau_workspace *w, double h)
 {
     const fu_model *model = run->model;
@@ -115,7 +115,7 @@ void fu_radau_predict(fu_run *run, fu_radau_workspace *w, double h)
     }
 }
 
-/* Powers by the stages' weights, the last row of A; and the stages, for the next prediction. */
+/* Adds the stages' powers by their weights, the last row of A, and keeps the stages for the next prediction. */
 void fu_radau_account(fu_run *run, double h)
 {
     fu_radau_workspace *w = fu_radau_space(run);

@@ -2,8 +2,8 @@
  * meet, are the border. A column of it has a solution in the chains that it touches and nowhere else. */
 #include "engine.h"
 
-#define SYMMETRIC 1e-10 /* of the diagonals: what rounding leaves between two halves */
-#define FADED 1e-32     /* of a column's largest entry: what adds nothing to a solution */
+#define SYMMETRIC 1e-10 /* of the diagonals: more than rounding leaves between the two halves of a symmetric matrix */
+#define FADED 1e-32     /* of a column's largest entry: smaller ones add nothing to a solution */
 
 void fu_system_clear(fu_system *s)
 {
@@ -36,13 +36,13 @@ static int size_of(const fu_system *s, int chain)
     return s->chains[chain + 1] - s->chains[chain];
 }
 
-/* a chain's columns of L */
+/* Returns a chain's columns of L. */
 static double *factor_of(const fu_system *s, int chain)
 {
     return s->L + (s->width + 1) * ((long)s->chains[chain] + FU_BAND_GROUP * chain);
 }
 
-/* The lower half of a chain's K as band.c wants it; zero where K is not symmetric or its diagonal not positive. */
+/* Makes the lower half of a chain's K as band.c wants it; returns zero where K is not symmetric or its diagonal not positive. */
 static int pack(fu_system *s, int chain)
 {
     const int n = size_of(s, chain), width = s->width, rows = FU_BAND_ROWS(width), stride = width + 1;
@@ -76,7 +76,7 @@ int fu_system_factor_band(fu_system *s, const fu_lapack *lapack)
     return 0;
 }
 
-/* x <- K^-1 x in a chain, where x is zero before the row `first` */
+/* Makes x = K^-1 x in a chain, where x is zero before the row `first` */
 static void solve_chain(const fu_system *s, const fu_lapack *lapack, int chain, int first, double *x)
 {
     int n = size_of(s, chain), start = s->chains[chain], width = s->width, rows = FU_BAND_ROWS(width), one = 1, info;
@@ -86,7 +86,7 @@ static void solve_chain(const fu_system *s, const fu_lapack *lapack, int chain, 
                        x + start, &n, &info);
 }
 
-/* piece of a row of C, times the rows `of` a column */
+/* Returns a piece of a row of C times the rows `of` a column. */
 static double times(const fu_system *s, const fu_piece *p, fu_span of, const double *x)
 {
     const double *row = s->C + (long)p->k * s->n;
@@ -96,8 +96,8 @@ static double times(const fu_system *s, const fu_piece *p, fu_span of, const dou
     return sum;
 }
 
-/* The rows that count of column k of X in a chain, by halves: it fades away from what it touches, in the end to numbers
- * so small that the processor is slow with them. Returns how many pieces that is. */
+/* Finds the rows that count of column k of X in a chain, by halves; returns how many pieces they are. The column decays away from
+ * what it touches, in the end to numbers so small that the processor is slow with them. */
 int fu_pieces(const fu_system *s, int k, int chain, const double *x, fu_piece *pieces)
 {
     const int begin = s->chains[chain], end = s->chains[chain + 1], middle = (begin + end) / 2;
@@ -114,7 +114,7 @@ int fu_pieces(const fu_system *s, int k, int chain, const double *x, fu_piece *p
     return n;
 }
 
-/* column k of X = K^-1 B in a chain */
+/* Makes column k of X = K^-1 B in a chain. */
 static void solve_column(fu_system *s, const fu_lapack *lapack, int k, int chain)
 {
     const int begin = s->chains[chain], end = s->chains[chain + 1];
@@ -128,7 +128,7 @@ static void solve_column(fu_system *s, const fu_lapack *lapack, int k, int chain
     s->n_columns += fu_pieces(s, k, chain, x, s->columns + s->n_columns);
 }
 
-/* Columns of X and pieces of C, but those that stay. */
+/* Makes the columns of X and the pieces of C, but those that stay. */
 static void couple(fu_system *s, const fu_lapack *lapack)
 {
     s->n_columns = s->constant_columns;
@@ -142,7 +142,7 @@ static void couple(fu_system *s, const fu_lapack *lapack)
         }
 }
 
-/* Let the first columns and rows of the border stay as they are, beside the band, which is factored. */
+/* Lets the first columns and rows of the border stay as they are, beside the band, which is factored. */
 void fu_system_keep_border(fu_system *s, const fu_lapack *lapack, int columns)
 {
     couple(s, lapack);
@@ -151,7 +151,7 @@ void fu_system_keep_border(fu_system *s, const fu_lapack *lapack, int columns)
     s->constant_rows = s->n_rows;
 }
 
-/* Schur complement of the factored band: D <- D - C K^-1 B, factored. */
+/* Makes and factors the Schur complement of the factored band, D - C K^-1 B, in place of D; returns LAPACK's info. */
 int fu_system_factor_border(fu_system *s, const fu_lapack *lapack)
 {
     int m = s->m, info = 0;
@@ -164,7 +164,7 @@ int fu_system_factor_border(fu_system *s, const fu_lapack *lapack)
     return info;
 }
 
-/* In place: right-hand side to solution; x goes on FU_BAND_BEYOND beyond the unknowns. These are made zero here: a step
+/* Solves in place: x is the right side, then the solution, and goes on FU_BAND_BEYOND beyond the unknowns. These are made zero here: a step
  * that has overflowed leaves no numbers in them, and no later step would have any. */
 void fu_system_solve(const fu_system *s, const fu_lapack *lapack, double *x)
 {

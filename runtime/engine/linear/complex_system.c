@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-/* Rows of the band's storage, as LAPACK wants it for a factorisation with pivots. */
+/* Returns the rows of the band's storage. */
 static long storage_rows(const fu_system *s)
 {
     return FU_BAND_ROWS((long)s->width);

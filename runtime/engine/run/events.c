@@ -76,7 +76,7 @@ fu_event fu_find_event(const fu_run *run, fu_event but)
     return found;
 }
 
-/* The fraction of a step at which g = g_low + rate x + ... reaches zero on its way to g_high: that of the parabola. */
+/* Returns the part of a step at which g = g_low + rate x + ... reaches zero on its way to g_high: that of the parabola. */
 static double root_of_parabola(double g_low, double g_high, double rate)
 {
     const double bend = g_high - g_low - rate, square = rate * rate - 4.0 * bend * g_low;
@@ -129,7 +129,7 @@ static void narrow(bracket *b, double middle, double g)
     b->last = side;
 }
 
-/* For an event that has just happened, and whose value leaves its zero anew: moves the low end to where it is off that zero
+/* Moves, for an event that has just happened, and whose value leaves its zero anew, the low end to where it is off that zero
  * again. Returns 1 where it is found, 0 where there is none, -1 where a step fails. */
 static int leave_zero(fu_run *run, fu_event event, bracket *b, double least, double close)
 {
@@ -159,7 +159,7 @@ static double search(fu_run *run, fu_event event, bracket b, double middle, doub
     return 0.0;
 }
 
-/* The same from the step h, which leads beyond the event. */
+/* Does the same from the step h, which leads beyond the event. */
 static double locate(fu_run *run, fu_event event, double h)
 {
     bracket b = {0.0, h, 0.0, value(run, &run->next, event), 0};
@@ -193,7 +193,7 @@ double fu_locate(fu_run *run, fu_event event, double h)
     return found;
 }
 
-/* Values of the user's events at `now`; none of those that have just passed, or rounding would let them pass again.
+/* Takes the values of what is watched at `now`, but not of those that have just passed, or rounding would let them pass again.
  * `late` tells which did together with the one that the step was for. */
 void fu_watch_now(fu_run *run, fu_event event)
 {
@@ -222,7 +222,7 @@ void fu_watch_anew(fu_run *run, int coupling)
     }
 }
 
-/* An event of the user's that passed together with another one. */
+/* Returns an event that passed together with another one, and is still to happen; none where there is none. */
 fu_event fu_late_event(fu_run *run)
 {
     for (int k = 0; k < run->n_watches; ++k)
