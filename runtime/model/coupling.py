@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -15,8 +15,10 @@ class CouplingModel:
     type: the engine's type of coupling. name: of the part that it is of. n_coordinates: of its own in a Newton system.
     scale: what the equations of each of its own forces are multiplied by there, kg or kg m. n_multipliers: the most
     multipliers of eq 38 that it needs. reacts, is_damped: a force of it depends on those multipliers, on velocities.
-    is_driven: a signal does work on it. unknown, multiplier: the first of each, of unknowns beyond the dofs, as
-    `number` counts them.
+    drive: the number of a signal that prescribes a motion of it, or -1. follows_law: its own forces are given by a law,
+    and else by constraints. redundant_rows: those of its constraints that others imply, whose forces are nil
+    (model/redundant_constraints.py). unknown, multiplier: the first of each, of unknowns beyond the dofs, as `number`
+    counts them.
     """
 
     type: str
@@ -26,9 +28,27 @@ class CouplingModel:
     n_multipliers: int = 0
     reacts: bool = False
     is_damped: bool = False
-    is_driven: bool = False
+    drive: int = -1
+    follows_law: bool = False
+    redundant_rows: set[int] = field(default_factory=set)
     unknown: int = -1
     multiplier: int = -1
+
+    @property
+    def is_driven(self) -> bool:
+        """Return whether a signal does work on it."""
+        return self.drive >= 0
+
+    @property
+    def free_coordinates(self) -> list[int]:
+        """Return the unknowns that are its own coordinates, as far as equilibrium determines them."""
+        return [] if self.is_driven else [self.unknown + k for k in range(self.n_coordinates)]
+
+    @property
+    def force_unknowns(self) -> list[int]:
+        """Return the unknowns that are its own forces, but for redundant rows."""
+        first = self.unknown + self.n_coordinates
+        return [first + k for k in range(self.n_forces) if k not in self.redundant_rows]
 
     @property
     def n_forces(self) -> int:

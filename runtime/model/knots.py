@@ -46,8 +46,7 @@ def knots(model: Model, duration: float, tol: float) -> tuple[np.ndarray, np.nda
 
 def driving_signals(model: Model) -> set[int]:
     """Return the numbers of the signals that prescribe a motion; the others scale loads."""
-    return ({motion.signal for motion in model.motions} | {slide.drive for slide in model.slides}
-            | {joint.signal for joint in model.joints})
+    return {motion.signal for motion in model.motions} | {coupling.drive for coupling in model.couplings}
 
 
 def _of_signal(signal: SignalModel, drives: bool, tol: float) -> list[tuple[float, int]]:

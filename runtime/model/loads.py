@@ -157,4 +157,4 @@ class LoadBuilder:
         ends = [self.attachments.model(part.a), self.attachments.model(part.b)]
         dim = self.scene.dim
         return PointForceModel(part.kernel(dim), ends, dim, part.parameters, type=part.kind, name=part.name or "",
-                               scale=[max(end.mass for end in ends)] * dim, is_damped=part.is_damped)
+                               scale=[max(end.mass for end in ends)] * dim, is_damped=part.is_damped, follows_law=True)

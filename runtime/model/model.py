@@ -103,7 +103,7 @@ class BodyModel:
 class SlideModel(CouplingModel):
     """One slide: kernels, its cable and its rider, what drives it, and where it starts; its first unknown is s.
 
-    rider_is_rigid: the kernels take the rider's own configuration; drive: a signal, or -1; resistance: kernels of
+    rider_is_rigid: the kernels take the rider's own configuration; resistance: kernels of
     friction and buffers, or none; sticks, friction, static_friction, viscous (N s/m), velocity (m/s): of friction, as
     `parts.friction` has them. What waits at the start and at the end of the cable: stop_kinds, as `parts.end_stops` has
     them, restitutions of hard stops, lengths (m), stiffnesses (N/m) and dampings (N s/m) of buffers.
@@ -113,7 +113,6 @@ class SlideModel(CouplingModel):
     cable: int
     rider: AttachmentModel
     rider_is_rigid: bool
-    drive: int
     carries_director: bool
     s: float
     element: int

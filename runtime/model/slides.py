@@ -45,7 +45,6 @@ def slide_model(slide: Slide, scene: SceneData, attachments: AttachmentBuilder,
         attachments.cable_index[slide.along],
         rider,
         rider_is_rigid,
-        -1 if slide.prescribed is None else signal(slide.prescribed),
         dim == 3 and not along.kind_of_element.director,
         slide.s,
         int(np.clip(np.floor(at), 0, along.elements - 1)),
@@ -60,7 +59,7 @@ def slide_model(slide: Slide, scene: SceneData, attachments: AttachmentBuilder,
         n_multipliers=dim - 1 + may_be_locked,
         reacts=resists,
         is_damped=resists,
-        is_driven=driven,
+        drive=-1 if slide.prescribed is None else signal(slide.prescribed),
     )
 
 

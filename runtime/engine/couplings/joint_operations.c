@@ -108,7 +108,7 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
 static const fu_field fields[] = {
     FU_FIELD(fu_joint, kernel, FU_KERNELS, 0),
     FU_FIELD_ARRAY(fu_joint, ends, FU_ATTACHMENT),
-    FU_FIELD(fu_joint, signal, FU_INTEGER, 0),
+    FU_FIELD_AS("drive", fu_joint, signal, FU_INTEGER),
     FU_FIELD_AS("base", fu_joint, c0, FU_REAL),
     {0},
 };
