@@ -60,12 +60,12 @@ typedef struct {
 } fu_point_law;
 
 /* What a coupling can do. A null operation: it does nothing of that.
+ * f: generalised forces on the dofs, as they stand on the left of the equations of motion; own: minus the scaled residual of the
+ * unknowns beyond the dofs.
  *
  * There is no operation that lists the columns of a system that a coupling touches, its own unknowns among them: `tangent` and
  * `rows` name each entry by its dof or unknown, and fu_add (include/unknowns.h) finds its place and notes which rows of the
- * border count. A list beside it would say the same a second time, and would have to be kept in step with it.
- * f: generalised forces on the dofs, as they stand on the
- * left of the equations of motion; own: minus the scaled residual of the unknowns beyond the dofs. */
+ * border count. A list beside it would say the same a second time, and would have to be kept in step with it. */
 struct fu_coupling_type {
     const char *name;
     size_t size;             /* bytes of its structure */
@@ -87,50 +87,50 @@ struct fu_coupling_type {
     void (*step_tangent)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, fu_system *system);
     double (*step_dissipation)(const fu_model *model, const fu_coupling *coupling, const fu_equations *at);
 
-    /* Accelerations (eq 38): constraint rows, H and W among them, into work->rows[coupling->row]. */
+    /* Makes the constraint rows of accelerations (eq 38), H and W among them, in work->rows[coupling->row]. */
     void (*rows)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work);
-    /* f += the coupling's own force; f += a force from outside, whose work the energy balance counts as external. */
+    /* Adds the coupling's own force to f; adds a force from outside, whose work the energy balance counts as external. */
     void (*force)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *f);
     void (*external_force)(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f);
-    /* Forces that depend on the multipliers lambda (null: those of the state) into work->work; returns the largest change
+    /* Adds forces that depend on the multipliers lambda (null: those of the state) to work->work; returns the largest change
      * since the last call over the force. Afterwards `reacted` takes what follows from the final multipliers. */
     double (*react)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
                     fu_accelerator *work);
     void (*reacted)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
                     fu_accelerator *work);
-    /* Error that a kink of the force within a step may make, m: from n states of it, their weights in the mean, and the
+    /* Returns the error that a kink of the force within a step may make, m: from n states of it, their weights in the mean, and the
      * multipliers there (n x model->n_multipliers); square: the step times the time that is left, s^2. */
     double (*kink)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int n, const double *weights,
                    const double *multipliers, double square);
-    /* After eq 38: the state's own forces; numbers of a row of output. */
+    /* Make, after eq 38, the state's own forces; the numbers of a row of output. */
     void (*take_forces)(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state);
     void (*outputs)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
                     const fu_accelerator *work, double *out);
 
-    /* What is left of the constraints, redundant ones among them: one number an own force. */
+    /* Makes what is left of the constraints, redundant ones among them: one number an own force. */
     void (*gaps)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *gaps);
-    /* Rates of the own coordinates, after eq 38. */
+    /* Makes the rates of the own coordinates, after eq 38. */
     void (*rates)(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, double *rates);
 
-    /* Stored energy, J; power that goes to heat, W: by the state's own forces, or where work is not null by those of eq 38. */
+    /* Return the stored energy, J; the power that goes to heat, W, by the state's own forces, or where work is not null by those of eq 38. */
     double (*energy)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
     double (*dissipation)(const fu_model *model, const fu_coupling *coupling, const fu_state *state,
                           const fu_accelerator *work);
 
-    /* Energy that a step from one state to another dissipates beside that power, J. */
+    /* Returns the energy that a step from one state to another dissipates beside that power, J. */
     double (*lost_in_step)(const fu_model *model, const fu_coupling *coupling, const fu_state *from, const fu_state *to);
 
-    /* Whether a start may be off the constraints by a small gap. */
+    /* Returns whether a start may be off the constraints by a small gap. */
     int (*may_start_open)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
-    /* Own coordinates that follow from the others: not zero where none is found. */
+    /* Finds own coordinates that follow from the others; returns not zero where there are none. */
     int (*follow)(const fu_model *model, const fu_coupling *coupling, fu_state *state);
-    /* Own coordinates, pieces, numbers and flags of the state as it is drawn; those that it does not set are zero. */
+    /* Sets own coordinates, pieces, numbers and flags of the state as it is drawn; those that it does not set are zero. */
     void (*reset)(const fu_coupling *coupling, fu_state *state);
-    /* State that goes along with an accepted step. */
+    /* Changes what of the state goes along with an accepted step. */
     void (*carry)(const fu_model *model, const fu_coupling *coupling, fu_state *state);
-    /* Statics: contact that follows from the positions. */
+    /* Finds contact that follows from the positions, in statics. */
     void (*touch)(const fu_model *model, const fu_coupling *coupling, fu_state *state);
-    /* Whether a state that was read from a file can be. */
+    /* Returns whether a state that was read from a file is possible. */
     int (*is_possible)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
 };
 
