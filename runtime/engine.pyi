@@ -12,9 +12,7 @@ from .model.model import Model
 
 STATUS: dict[int, str]
 CAUSES: dict[int, str | None]
-ACTIONS: dict[int, str]
-ENDS: dict[str, int]
-SLIDE_OUTPUTS: tuple[str, ...]
+SLIDE_OUTPUTS: dict[str, int]
 
 class Engine:
     arrays: dict[str, np.ndarray]

@@ -35,11 +35,9 @@ STATUS = {FU_DONE: "completed", FU_END_OF_CABLE: "end_of_cable", FU_NO_CONVERGEN
           FU_UNSTABLE: "unstable"}
 CAUSES = {FU_NO_FAILURE: None, FU_ITERATION: "iteration", FU_MATRIX: "matrix", FU_ERROR: "error",
           FU_LOST_RIDER: "lost_rider", FU_NOT_FINITE: "not_finite", FU_JAM: "jam"}
-ACTIONS = {FU_STUCK: "stuck", FU_BROKE_LOOSE: "broke loose", FU_TURNED: "turned round", FU_STRUCK: "struck the end",
-           FU_RESTS: "came to rest at the end", FU_FREED: "left the end", FU_FLEW: "left", FU_ENTERED: "entered the buffer",
-           FU_CAME_OUT: "left the buffer"}
-ENDS = {"error": FU_END_IS_ERROR, "leave": FU_END_IS_OPEN, "hard": FU_END_IS_HARD, "buffer": FU_END_IS_BUFFERED}
-SLIDE_OUTPUTS = ("s_rate", "s_acceleration", "force", "multiplier", "traction", "residual")
+SLIDE_OUTPUTS = {"s_rate": 1, "s_acceleration": 1, "force": 3, "multiplier": 2, "traction": 1, "residual": 3}
+"""Numbers of a slide in a row of output, and how many each has; see fu_slide_output."""
+cdef int TRACTION = sum([SLIDE_OUTPUTS[name] for name in ("s_rate", "s_acceleration", "force", "multiplier")])
 
 
 cdef const void *_found(list tables, str role, str name) except NULL:
@@ -67,9 +65,10 @@ cdef double _call(void *context, int which, const fu_state *state) noexcept with
 include "engine/cython/arrays.pxi"
 include "engine/cython/translation.pxi"
 include "engine/cython/statics.pxi"
+include "engine/cython/report.pxi"
 
 
-cdef class Engine(Statics):
+cdef class Engine(Report):
     """One run of a model (see model/build.py for the fields that it reads).
 
     blocks: take kernels of several elements at once where there are.
@@ -98,19 +97,6 @@ cdef class Engine(Statics):
                     self._attach(&run.next, k)
         run.scratch = self._zeros(run.integrator.n_scratch(run))
 
-    def relaxed_strains(self):
-        """Return, for each cable, (elements, rates + 1): g and the energy of r of algorithmic dissipation, as in
-        engine/integrators/algorithmic_dissipation.c.
-        """
-        numbers, ends = self._view(&self.run.now, "dissipation_state").copy(), np.cumsum([self.cables[i].n_elements * (self.cables[i].law.rates + 1)
-                                                     for i in range(self.model.n_cables)])
-        return [part.reshape(self.cables[i].n_elements, -1)
-                for i, part in enumerate(np.split(numbers, ends[:-1]))]
-
-    def without_algorithmic_force(self):
-        """Numbers of the cables whose law has no kernel for algorithmic dissipation."""
-        return [i for i in range(self.model.n_cables) if self.cables[i].law.algorithmic_force == NULL]
-
     def use_threads(self, int threads):
         """Let so many threads share the elements; whether that is possible: OpenMP was there when this was built."""
         cdef int i
@@ -129,29 +115,26 @@ cdef class Engine(Statics):
         self.run.call, self.run.context = &_call, <void *>self
 
     def _watch(self, watches):
-        """Watch for these, and after them for what the slides do."""
+        """Watch for these, and after them for what couplings do by themselves."""
         kinds = {"q": FU_WATCH_Q, "v": FU_WATCH_V, "s": FU_WATCH_S, "s_rate": FU_WATCH_RATE,
-                 "traction": FU_WATCH_TRACTION, "function": FU_WATCH_CALL}
-        numbers = [(kinds[watch.kind], watch.index, watch.direction, watch.value) for watch in watches]
-        cdef int i, k, side
-        for i in range(self.model.n_slides):
-            j = &self.slides[i]
-            if j.drive < 0 and (j.sticks or FU_END_IS_HARD in (j.stops[0].kind, j.stops[1].kind)):
-                numbers.append((FU_WATCH_STICK, i, 1, 0.0))
-            for k, side in enumerate((-1, 1)):
-                if j.drive < 0 and j.stops[k].kind == FU_END_IS_BUFFERED:
-                    numbers.append((FU_WATCH_BUFFER, i, 0, side))
+                 "traction": FU_WATCH_OUTPUT, "function": FU_WATCH_CALL}
+        cdef int i, n = len(watches), own = fu_coupling_watches(&self.model, NULL)
         PyMem_Free(self.watches)
-        self.watches = <fu_watch *>PyMem_Calloc(len(numbers) + 1, sizeof(fu_watch))
+        self.watches = <fu_watch *>PyMem_Calloc(n + own + 1, sizeof(fu_watch))
         if not self.watches:
             raise MemoryError
-        for i, (kind, index, direction, value) in enumerate(numbers):
+        for i, watch in enumerate(watches):
             w = &self.watches[i]
-            w.kind, w.index, w.direction, w.value = kind, index, direction, value
+            w.kind, w.index, w.direction, w.value = kinds[watch.kind], watch.index, watch.direction, watch.value
+            if w.kind == FU_WATCH_OUTPUT:
+                w.which = TRACTION
+            elif w.kind == FU_WATCH_S:
+                w.index = self.couplings[watch.index].coordinate
+        fu_coupling_watches(&self.model, self.watches + n)
         run = &self.run
-        run.n_watches, run.watches = len(numbers), self.watches
+        run.n_watches, run.watches = n + own, self.watches
         run.watched, run.late = self._doubles(np.zeros(run.n_watches)), self._ints(np.zeros(run.n_watches))
-        run.watch_work = self._doubles(np.zeros(self.model.n_dof))
+        run.watch_work = self._doubles(np.zeros(self.model.n_dof + self.model.n_outputs))
 
     def _knots(self, times, jumps):
         """Let steps end at these instants."""
@@ -162,23 +145,6 @@ cdef class Engine(Statics):
         for i, (time, jump) in enumerate(zip(times, jumps, strict=True)):
             self.knots[i].t, self.knots[i].jumps = time, jump
         self.run.n_knots, self.run.knots = len(times), self.knots
-
-    @property
-    def knots_passed(self):
-        """Return at how many knots of signals steps have ended."""
-        cdef int k, passed = 0
-        for k in range(self.run.n_knots):
-            passed += self.run.knots[k].t <= self.run.now.t
-        return passed
-
-    @property
-    def row_bytes(self):
-        """Bytes of a row of output."""
-        return 8 * sum([fu_record_array(&self.model, &self.run.record, k).items for k in range(FU_N_RECORD_ARRAYS)])
-
-    cdef _snapshot(self, const fu_state *state):
-        """t, q, v, s of a state."""
-        return state.t, *(self._view(state, name).copy() for name in ("q", "v", "s"))
 
     def start(self, *, duration, output_step, tol, step, method, first_step, knots=((), ()), capacity=None,
               rest_start=False):
@@ -210,12 +176,12 @@ cdef class Engine(Statics):
 
     def _outputs(self, str kind, output):
         """The part of rows of output that couplings of a kind have: a view, (rows, couplings, numbers of one)."""
-        cdef int i, first = 0, width = 0
-        count = self._count(kind)
-        for i in range(self.model.n_couplings - 1, -1, -1):
-            if self._kind(self.couplings[i]) == kind:
-                first, width = self.couplings[i].output, self.couplings[i].type.n_outputs
-        return output[:, first:first + count * width].reshape(len(output), count, width)
+        numbers = self._of(kind)
+        if not numbers:
+            return output[:, :0].reshape(len(output), 0, 0)
+        c = self.couplings[<int>numbers[0]]
+        cdef int width = c.type.n_outputs
+        return output[:, c.output:c.output + len(numbers) * width].reshape(len(output), len(numbers), width)
 
     def advance(self, on_progress, int every=0, stream=None, double interval=0.05):
         """Run to the end; returns the status, "interrupted" after Ctrl-C.
@@ -241,8 +207,9 @@ cdef class Engine(Statics):
                 PyErr_CheckSignals()
                 if status == FU_EVENT and run.event.kind == FU_ACTED:
                     if self.watcher is not None:
-                        self.watcher.acts(run.event.which, ACTIONS[run.event.side], run.now.t,
-                                          self._view(&run.now, "s")[run.event.which])
+                        c = self.couplings[run.event.which]
+                        self.watcher.acts(c.number, run.event.what.decode(), run.now.t,
+                                          self._view(&run.now, "s")[c.coordinate])
                     status = FU_RUNNING
                 if status == FU_EVENT:
                     if not self.watcher.happens(run.event.which, *self._snapshot(&run.now)):
@@ -279,93 +246,6 @@ cdef class Engine(Statics):
         if fu_restore(&self.run, checkpoint, rows):
             raise ValueError("the checkpoint is of no state that a run can pause in")
 
-    @property
-    def n_rows(self):
-        """Number of output rows since the start."""
-        return self.run.record.n
-
-    def slide_row(self, slides):
-        """Split slides' numbers (..., numbers of a slide) by name; see fu_slide_output."""
-        sizes = (1, 1, 3, 2, 1, 3)
-        ends = np.cumsum(sizes)
-        if slides.shape[-1] != ends[-1]:
-            raise ValueError(f"a slide has {slides.shape[-1]} numbers, not {ends[-1]}")
-        return {name: slides[..., end - size:end] if size > 1 else slides[..., end - 1]
-                for name, size, end in zip(SLIDE_OUTPUTS, sizes, ends)}
-
-    @property
-    def statistics(self):
-        """Counts, step sizes, error estimate and seconds by part."""
-        s = self.run.statistics
-        return {"steps": s.steps, "rejected_steps": s.rejected, "newton_iterations": s.newton_iterations,
-                "factorisations": s.factorisations, "newton_failures": s.newton_failures, "evaluations": s.evaluations,
-                "element_crossings": s.crossings, "smallest_step_s": s.h_min, "largest_step_s": s.h_max,
-                "sum_of_local_error_estimates_m": s.error_sum, "largest_motion_m": self.run.motion,
-                "time_s": {"residual": s.time_residual, "factorisation": s.time_factor, "solve": s.time_solve,
-                           "output": s.time_output}}
-
-    def costs(self):
-        """(slides + joints,): what each takes of a step, in seconds, timed by itself in less than 1 ms; see run/part_timing.c."""
-        cdef double[::1] seconds = np.zeros(self.model.n_couplings + 1)
-        cdef int first = self._count("load"), n = self._count("slide") + self._count("joint")
-        fu_part_timing(&self.run, &seconds[0])
-        return np.asarray(seconds)[first:first + n]
-
-    @property
-    def integrator(self):
-        """Name of the integrator."""
-        return self.run.integrator.name.decode()
-
-    @property
-    def unknowns(self):
-        """Number of unknowns of a Newton system."""
-        return self.run.newton.n + self.run.newton.m
-
-    @property
-    def in_blocks(self):
-        """Whether cables have kernels for several elements at once."""
-        return [self.cables[i].blocks != NULL for i in range(self.model.n_cables)]
-
-    @property
-    def band(self):
-        """Unknowns in the band of a Newton system, its half width, and unknowns in its border."""
-        return self.run.newton.n, self.run.newton.width, self.run.newton.m
-
-    @property
-    def memory(self):
-        """Bytes of the engine's arrays; recorded rows count only after `start`."""
-        return sum(array.nbytes for array in self.kept)
-
-    @property
-    def time(self):
-        """Time reached, s."""
-        return self.run.now.t
-
-    @property
-    def failure(self):
-        """Of the last step that failed: why (see CAUSES), and the dof and slide (or None) where that shows most.
-
-        Why is None where energy grew, and where no step was tried that failed.
-        """
-        f = self.run.failure
-        return CAUSES[f.cause], f.dof, f.slide if f.cause != FU_NO_FAILURE and f.slide >= 0 else None
-
-    @property
-    def jammed(self):
-        """Index of the slide whose friction has no solution, -1."""
-        return self.run.accelerator.jammed
-
-    @property
-    def balance(self):
-        """Energy that has come from nowhere, that went there, was exchanged, in motion, and what rounding makes, J."""
-        b = self.run.balance
-        return b.grown, b.lost, b.exchanged, b.in_motion, b.rounding
-
-    @property
-    def moves(self):
-        """Whether anything has moved beyond rounding."""
-        return bool(fu_moves(&self.run))
-
     def compliance(self):
         """(multipliers, multipliers): H M^-1 H' at the time reached, singular where joints hold the same."""
         cdef int n = self.model.n_multipliers
@@ -380,8 +260,9 @@ cdef class Engine(Statics):
 
     def redundant_rows(self, rows):
         """Let no multiplier stand for these rows of joints, (link, row) each, which others imply."""
+        numbers = self._of("joint")
         for joint, row in rows:
-            self.joints[joint].redundant_rows |= 1 << row
+            (<fu_joint *>self.couplings[<int>numbers[joint]]).redundant_rows |= 1 << row
 
     def wander(self, along):
         """What is left of the joints' equations, (links, 6), after a small way `along` (n_dof,) the freedom that they
@@ -395,34 +276,12 @@ cdef class Engine(Statics):
 
     def held(self):
         """(joints, 7): force and moment of joints on their second ends, and residual, in the static state."""
-        cdef int k, n = self._count("joint")
-        out = np.zeros((n, fu_coupling_type_of(b"joint").n_outputs))
+        numbers = self._of("joint")
+        out = np.zeros((len(numbers), fu_coupling_type_of(b"joint").n_outputs))
         cdef double[:, ::1] view = out
-        for k in range(n):
-            fu_joint_outputs(&self.model, &self.joints[k], &self.run.next,
-                             self.run.next.forces + self.joints[k].base.force, <fu_joint_output *>&view[k, 0])
+        cdef int k, number
+        for k, number in enumerate(numbers):
+            c = self.couplings[number]
+            fu_joint_outputs(&self.model, <fu_joint *>c, &self.run.next, self.run.next.forces + c.force,
+                             <fu_joint_output *>&view[k, 0])
         return out
-
-    @property
-    def extent(self):
-        """Largest size of what coordinates are, m."""
-        return self.run.extent
-
-    @property
-    def closed(self):
-        """How far, in m, things moved at the start to close the gaps of joints."""
-        return self.run.closed
-
-    def now(self):
-        """t, q, v, s at the time reached."""
-        return self._snapshot(&self.run.now)
-
-    @property
-    def stopped_joint(self):
-        """Index of the slide that ran off its cable."""
-        return self.run.stopped_joint
-
-    @property
-    def stopped_s(self):
-        """Arc-length of that slide, m."""
-        return self._view(&self.run.now, "s")[self.run.stopped_joint]

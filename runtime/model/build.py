@@ -42,13 +42,13 @@ def build(scene: SceneData) -> Model:
               if slide.frame != "point"]
     joints += [joint_model(attachments, joint, loads.signal) for joint in scene.joints.values()]
     point_forces = [loads.point_force(force) for force in scene.springs.values()]
-    n_extra, n_multipliers = number([*slides, *joints, *point_forces])
+    n_extra, n_multipliers = number([*loads.dead, *loads.turning, *slides, *joints, *point_forces])
     n_of_bodies = sum(dofs_of(body, dim) for body in bodies)
     numbering = reduction.numbering
     return Model(
         dim, cables, bodies, slides, joints, point_forces, loads.signals,
         [MotionModel(dof, p.signal, p.base, p.linear, p.cosine, p.sine) for dof, p in reduction.prescribed],
-        loads.dead, loads.turning,
+        [*loads.dead, *loads.turning],
         q=_joined(*(vectors.ravel() for vectors in nodal), *(configuration_of(body, dim) for body in described)),
         v=_joined(cable_rates(scene, reduction), *(velocity_of(body, dim) for body in described)),
         weight=_joined(*map(cable_weights, drawn), *(body_weights(body, dim) for body in described)),

@@ -1,23 +1,59 @@
-"""What slides, joints and forces between points have in common in a model: unknowns and multipliers of their own."""
+"""What all couplings have in common in a model: a type of the engine's, and unknowns and multipliers of their own."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
 
 
 @dataclass(kw_only=True)
 class CouplingModel:
-    """Base of what acts between attachments.
+    """Base of what acts between attachments. The engine reads its attributes by the names of the fields of its type.
 
-    n_unknowns: of its own in a Newton system, coordinates and then forces; n_multipliers: the most multipliers of eq 38
-    that it needs; unknown, multiplier: the first of each, of unknowns beyond the dofs, as `number` counts them.
+    type: the engine's type of coupling. name: of the part that it is of. n_coordinates: of its own in a Newton system.
+    scale: what the equations of each of its own forces are multiplied by there, kg or kg m. n_multipliers: the most
+    multipliers of eq 38 that it needs. reacts, is_damped: a force of it depends on those multipliers, on velocities.
+    drive: the number of a signal that prescribes a motion of it, or -1. follows_law: its own forces are given by a law,
+    and else by constraints. redundant_rows: those of its constraints that others imply, whose forces are nil
+    (model/redundant_constraints.py). unknown, multiplier: the first of each, of unknowns beyond the dofs, as `number`
+    counts them.
     """
 
-    n_unknowns: int
+    type: str
+    name: str = ""
+    n_coordinates: int = 0
+    scale: Sequence[float] | np.ndarray = ()
     n_multipliers: int = 0
+    reacts: bool = False
+    is_damped: bool = False
+    drive: int = -1
+    follows_law: bool = False
+    redundant_rows: set[int] = field(default_factory=set)
     unknown: int = -1
     multiplier: int = -1
+
+    @property
+    def is_driven(self) -> bool:
+        """Return whether a signal does work on it."""
+        return self.drive >= 0
+
+    @property
+    def free_coordinates(self) -> list[int]:
+        """Return the unknowns that are its own coordinates, as far as equilibrium determines them."""
+        return [] if self.is_driven else [self.unknown + k for k in range(self.n_coordinates)]
+
+    @property
+    def force_unknowns(self) -> list[int]:
+        """Return the unknowns that are its own forces, but for redundant rows."""
+        first = self.unknown + self.n_coordinates
+        return [first + k for k in range(self.n_forces) if k not in self.redundant_rows]
+
+    @property
+    def n_forces(self) -> int:
+        """Return the number of its own forces in a Newton system."""
+        return len(self.scale)
 
 
 def number(couplings: Iterable[CouplingModel]) -> tuple[int, int]:
@@ -25,6 +61,6 @@ def number(couplings: Iterable[CouplingModel]) -> tuple[int, int]:
     n_unknowns = n_multipliers = 0
     for coupling in couplings:
         coupling.unknown, coupling.multiplier = n_unknowns, n_multipliers
-        n_unknowns += coupling.n_unknowns
+        n_unknowns += coupling.n_coordinates + coupling.n_forces
         n_multipliers += coupling.n_multipliers
     return n_unknowns, n_multipliers

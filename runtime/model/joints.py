@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,21 +19,15 @@ from .coupling import CouplingModel
 
 @dataclass
 class JointModel(CouplingModel):
-    """A joint between two ends; signal: that drives it, or -1.
+    """A joint between two ends; base: its distance or angle without the signal that drives it, m or rad.
 
-    slide: the one beside which it ties a rider's axes to the cable; redundant_rows: those that other joints imply
-    (model/redundant_constraints.py);
-    reversed: the first end is the joint's b.
+    slide: the one beside which it ties a rider's axes to the cable; reversed: the first end is the joint's b.
     """
 
-    name: str
     kernel: str
     ends: tuple[AttachmentModel, AttachmentModel]
-    signal: int
     base: float
-    scale: np.ndarray
     slide: str | None = None
-    redundant_rows: set[int] = field(default_factory=set)
     reversed: bool = False
 
     @property
@@ -81,11 +75,11 @@ def frame_joint_model(attachments: AttachmentBuilder, slide: Slide, number: int)
     return model
 
 
-def _model(name: str, kind: str, dim: int, ends: list[AttachmentModel], signal: int, base: float) -> JointModel:
+def _model(name: str, kind: str, dim: int, ends: list[AttachmentModel], drive: int, base: float) -> JointModel:
     kernel = f"joint_{'planar_' * (dim == 2)}{kind}"
     scale = _scales(kernel, dim, ends)
-    return JointModel(name, kernel, (ends[0], ends[1]), signal, base, scale, n_unknowns=len(scale),
-                      n_multipliers=len(scale))
+    return JointModel(kernel, (ends[0], ends[1]), base, type="joint", name=name, scale=scale,
+                      n_multipliers=len(scale), drive=drive)
 
 
 def _scales(kernel: str, dim: int, ends: list[AttachmentModel]) -> np.ndarray:

@@ -24,7 +24,7 @@ ROUNDING = 1e-14
 TINY = 1e-300
 """Of no signal: what a constant is compared with."""
 ONE_INSTANT = 1e-12
-"""Of the duration: knots that are no farther apart are one (engine/run.c)."""
+"""Of the duration: knots that are no farther apart are one (engine/include/run.h)."""
 
 
 def knots(model: Model, duration: float, tol: float, turns: bool = True) -> tuple[np.ndarray, np.ndarray]:
@@ -50,8 +50,7 @@ def knots(model: Model, duration: float, tol: float, turns: bool = True) -> tupl
 
 def driving_signals(model: Model) -> set[int]:
     """Return the numbers of the signals that prescribe a motion; the others scale loads."""
-    return ({motion.signal for motion in model.motions} | {slide.drive for slide in model.slides}
-            | {joint.signal for joint in model.joints})
+    return {motion.signal for motion in model.motions} | {coupling.drive for coupling in model.couplings}
 
 
 def of_pieces(breaks: np.ndarray, coefficients: np.ndarray, drives: bool, tol: float) -> list[tuple[float, int]]:

@@ -16,9 +16,6 @@ from ..parts.signal import Constant, value_at
 from .attachments import AttachmentBuilder, AttachmentModel
 from .coupling import CouplingModel
 
-CABLE_FOLLOWER, CABLE_MOMENT, BODY_FORCE, BODY_FOLLOWER, BODY_MOMENT = range(5)
-"""Kinds of loads, in the order of engine.h."""
-
 GAUSS = np.polynomial.legendre.leggauss(4)
 """Points along an element of a distributed force: exact to degree 7."""
 
@@ -39,19 +36,28 @@ class SignalModel:
 
 
 @dataclass
-class DeadLoad:
-    """A constant direction in the dofs, times a signal (number, -1: one)."""
+class DeadLoadModel(CouplingModel):
+    """A force of constant direction in the dofs, times a signal (number, -1: one)."""
 
     signal: int
     dofs: list[int]
     values: list[float]
 
+    @property
+    def n(self) -> int:
+        """Return the number of dofs that it acts on."""
+        return len(self.dofs)
+
 
 @dataclass
-class LoadModel:
-    """A load that turns with what it acts on; spot: of a modal body, as of an `AttachmentModel`."""
+class LoadModel(CouplingModel):
+    """A load that turns with what it acts on, or whose lever does.
 
-    kind: int
+    kind: cable_follower, cable_moment, body_force, body_follower or body_moment; spot: of a modal body, as of an
+    `AttachmentModel`.
+    """
+
+    kind: str
     signal: int
     on: int
     element: int
@@ -65,17 +71,13 @@ class LoadModel:
 class PointForceModel(CouplingModel):
     """A force between two points, whose unknowns are its components.
 
-    law: the name of its kernels; parameters: of the law, in the order in which the kernels take them; is_damped:
-    whether the force depends on velocities; mass: scale of its equations, kg.
+    law: the name of its kernels; parameters: of the law, in the order in which the kernels take them.
     """
 
     law: str
-    name: str
     ends: list[AttachmentModel]
     dim: int
     parameters: tuple[float, ...]
-    is_damped: bool
-    mass: float
 
 
 class LoadBuilder:
@@ -85,7 +87,7 @@ class LoadBuilder:
         self.scene, self.attachments, self.cables = scene, attachments, attachments.cables
         self.cable_index, self.body_index = attachments.cable_index, attachments.body_index
         self.signals: list[SignalModel] = []
-        self.dead: list[DeadLoad] = []
+        self.dead: list[DeadLoadModel] = []
         self.turning: list[LoadModel] = []
 
     def signal(self, signal) -> int:
@@ -109,14 +111,15 @@ class LoadBuilder:
             assert load.s is not None, f"{load.where} is not complete"
             points = [(*self.attachments.element(load.on, load.s), 1.0)]
             if isinstance(load, Moment):
-                self._turning(CABLE_MOMENT, number, load.on, points, value)
+                self._turning("cable_moment", number, load.on, points, value)
             else:
                 self._along_cable(load.on, number, points, value, load.follower)
         else:
-            kind = BODY_MOMENT if isinstance(load, Moment) else BODY_FOLLOWER if load.follower else BODY_FORCE
+            kind = "body_moment" if isinstance(load, Moment) else "body_follower" if load.follower else "body_force"
             attachment = Attachment(on=load.on, s=load.s, at=getattr(load, "at", None))
             on = self.attachments.model(placed_attachment(self.scene, attachment, load.where))
-            self.turning.append(LoadModel(kind, number, on.body, 0, 0.0, on.u, (value[0], value[1], value[2]), on.spot))
+            self.turning.append(LoadModel(kind, number, on.body, 0, 0.0, on.u, (value[0], value[1], value[2]), on.spot,
+                                          type="load"))
 
     def _distributed(self, load: DistributedForce, number: int, value: np.ndarray) -> None:
         model = self.cables[self.cable_index[load.cable]]
@@ -132,7 +135,7 @@ class LoadBuilder:
     def _along_cable(self, cable: str, number: int, points, value: np.ndarray, follower: bool) -> None:
         """Forces value times weight at points (element, x, weight)."""
         if follower:
-            self._turning(CABLE_FOLLOWER, number, cable, points, value)
+            self._turning("cable_follower", number, cable, points, value)
             return
         model = self.cables[self.cable_index[cable]]
         dim = model.shape[2]
@@ -142,12 +145,12 @@ class LoadBuilder:
             N = model.kernel("on_axis")(model.length, x)[0]
             total[at : at + len(N) * dim] += weight * np.outer(N, value[:dim]).ravel()
         used = np.flatnonzero(total)
-        self.dead.append(DeadLoad(number, list(model.first + used), list(total[used])))
+        self.dead.append(DeadLoadModel(number, list(model.first + used), list(total[used]), type="dead load"))
 
-    def _turning(self, kind: int, number: int, cable: str, points, value: np.ndarray) -> None:
-        c = np.array([value[2], 0.0, 0.0]) if kind == CABLE_MOMENT and self.scene.dim == 2 else value
+    def _turning(self, kind: str, number: int, cable: str, points, value: np.ndarray) -> None:
+        c = np.array([value[2], 0.0, 0.0]) if kind == "cable_moment" and self.scene.dim == 2 else value
         self.turning += [LoadModel(kind, number, self.cable_index[cable], element, x, (0.0, 0.0, 0.0),
-                                   tuple(weight * c)) for element, x, weight in points]
+                                   tuple(weight * c), type="load") for element, x, weight in points]
 
     def point_force(self, part: PointForce) -> PointForceModel:
         """Return the model of a force between two points."""
@@ -156,5 +159,6 @@ class LoadBuilder:
         kernels = ("planar_" if dim == 2 else "") + part.law
         law = point_law(kernels)
         parameters = {name: float(getattr(part, name)) for name in law.parameters}
-        return PointForceModel(kernels, part.name or "", ends, dim, tuple(parameters.values()),
-                               parameters.get(law.damping, 0.0) != 0, max(end.mass for end in ends), n_unknowns=dim)
+        return PointForceModel(kernels, ends, dim, tuple(parameters.values()), type="point_force",
+                               name=part.name or "", scale=[max(end.mass for end in ends)] * dim,
+                               is_damped=parameters.get(law.damping, 0.0) != 0, follows_law=True)

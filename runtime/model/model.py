@@ -13,12 +13,10 @@ from scipy.sparse import csr_array
 
 from ..kernels.libraries import kernels_of
 from ..parts.body_shape import Shape
-from ..parts.end_stops import Stop
-from ..parts.friction import Friction
 from .attachments import AttachmentModel
 from .coupling import CouplingModel
 from .joints import JointModel
-from .loads import DeadLoad, LoadModel, PointForceModel, SignalModel
+from .loads import DeadLoadModel, LoadModel, PointForceModel, SignalModel
 from .unknowns import Node
 
 
@@ -105,24 +103,31 @@ class BodyModel:
 class SlideModel(CouplingModel):
     """One slide: kernels, its cable and its rider, what drives it, and where it starts; its first unknown is s.
 
-    rider_is_rigid: the kernels take the rider's own configuration; drive: a signal, or -1;
-    resistance: kernels of friction and buffers, or none; ends: what waits at the start and at the end of the cable.
+    rider_is_rigid: the kernels take the rider's own configuration; resistance: kernels of
+    friction and buffers, or none; sticks, friction, static_friction, viscous (N s/m), velocity (m/s): of friction, as
+    `parts.friction` has them. What waits at the start and at the end of the cable: stop_kinds, as `parts.end_stops` has
+    them, restitutions of hard stops, lengths (m), stiffnesses (N/m) and dampings (N s/m) of buffers.
     """
 
-    name: str
     kernel: str
     cable: int
     rider: AttachmentModel
     rider_is_rigid: bool
-    drive: int
     carries_director: bool
-    mass: float
     s: float
     element: int
     director: np.ndarray
-    resistance: str = ""
-    friction: Friction | None = None
-    ends: tuple[str | Stop, str | Stop] = ("error", "error")
+    resistance: str
+    sticks: bool
+    friction: float
+    static_friction: float
+    viscous: float
+    velocity: float
+    stop_kinds: list[str]
+    restitutions: list[float]
+    buffer_lengths: list[float]
+    buffer_stiffnesses: list[float]
+    buffer_dampings: list[float]
 
     def place_at(self, s: float, cable: CableModel) -> None:
         """Put the slide at arc-length s (m) of its cable, on the element there; at a node the one that it is on."""
@@ -155,8 +160,7 @@ class Model:
     point_forces: list[PointForceModel]
     signals: list[SignalModel]
     motions: list[MotionModel]
-    dead_loads: list[DeadLoad]
-    loads: list[LoadModel]
+    loads: list[DeadLoadModel | LoadModel]
     q: np.ndarray
     v: np.ndarray
     weight: np.ndarray
@@ -171,6 +175,11 @@ class Model:
     chains: np.ndarray
     nodes: dict[str, list[Node]]
     tables: list[int] = field(default_factory=list)
+
+    @property
+    def couplings(self) -> list[CouplingModel]:
+        """Return all couplings in the engine's order, which adds up what they give in it."""
+        return [*self.loads, *self.slides, *self.joints, *self.point_forces]
 
     @property
     def n_q(self) -> int:

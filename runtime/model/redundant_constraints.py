@@ -158,7 +158,7 @@ def _spare(model: Model) -> set[int]:
 def _driven(model: Model) -> set[int]:
     """Return the multipliers of what signals drive: the last of each joint's."""
     return ({slide.multiplier + slide.n_multipliers - 1 for slide in model.slides if slide.drive >= 0}
-            | {joint.multiplier + joint.rows - 1 for joint in model.joints if joint.signal >= 0})
+            | {joint.multiplier + joint.rows - 1 for joint in model.joints if joint.is_driven})
 
 
 def _listed(names: list[str]) -> str:

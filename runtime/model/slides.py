@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
 from ..parts.attachment import Attachment
-from ..parts.end_stops import Buffer, HardStop
+from ..parts.end_stops import Buffer, HardStop, Stop
+from ..parts.friction import Friction
 from ..parts.rigid_body import RigidBody
 from ..parts.scene_data import SceneData
 from ..parts.signal import Signal
@@ -38,22 +40,42 @@ def slide_model(slide: Slide, scene: SceneData, attachments: AttachmentBuilder,
     driven, ends, friction = slide.prescribed is not None, (slide.at_start, slide.at_end), slide.friction
     may_be_locked = (driven or (friction is not None and friction.sticks)
                      or any(isinstance(end, HardStop) for end in ends))
-    resistances = friction is not None or any(isinstance(end, Buffer) for end in ends)
+    mass = rider.mass or attachments.model(Attachment(on=slide.along, s=slide.s)).mass  # the ground has none
+    resists = friction is not None or any(isinstance(end, Buffer) for end in ends)
     return SlideModel(
-        slide.name,
         f"slide_{along.element}_{BODIES[dim][0] if rider_is_rigid else RIDERS[dim]}",
         attachments.cable_index[slide.along],
         rider,
         rider_is_rigid,
-        -1 if slide.prescribed is None else signal(slide.prescribed),
         dim == 3 and not along.kind_of_element.director,
-        rider.mass or attachments.model(Attachment(on=slide.along, s=slide.s)).mass,  # the ground has none
         slide.s,
         int(np.clip(np.floor(at), 0, along.elements - 1)),
         axes[1],
-        RESISTANCES[dim] * resistances,
-        friction if resistances else None,
-        ends,
-        n_unknowns=1 + dim,
+        RESISTANCES[dim] * resists,
+        **_friction(friction),
+        **_stops(ends),
+        type="slide",
+        name=slide.name,
+        n_coordinates=1,
+        scale=[mass] * dim,
         n_multipliers=dim - 1 + may_be_locked,
+        reacts=resists,
+        is_damped=resists,
+        drive=-1 if slide.prescribed is None else signal(slide.prescribed),
     )
+
+
+def _friction(friction: Friction | None) -> dict[str, Any]:
+    """Return the numbers of friction; the speed at which there is none is not zero, as the kernels divide by it."""
+    if friction is None:
+        return {"sticks": False, "friction": 0.0, "static_friction": 0.0, "viscous": 0.0, "velocity": 1.0}
+    return {"sticks": friction.sticks, "friction": friction.sliding, "static_friction": friction.static_friction,
+            "viscous": friction.viscous, "velocity": friction.velocity}
+
+
+def _stops(ends: Sequence[str | Stop]) -> dict[str, Any]:
+    """Return what waits at the ends of the cable, a list for both of each number."""
+    return {"stop_kinds": [end if isinstance(end, str) else end.stop for end in ends],
+            "restitutions": [end.restitution if isinstance(end, HardStop) else 0.0 for end in ends],
+            **{f"buffer_{plural}": [getattr(end, each) if isinstance(end, Buffer) else 0.0 for end in ends]
+               for each, plural in (("length", "lengths"), ("stiffness", "stiffnesses"), ("damping", "dampings"))}}

@@ -11,7 +11,7 @@ from ..integrators import AUTO, INTEGRATORS, stable_at
 from .validation import Count, Flag, Part, one_of, positive, within
 
 SMALLEST_STEP = 1e-12
-"""Of the duration, as in engine/run/run.c."""
+"""Of the duration, as in engine/run/steps.c."""
 
 Duration = Annotated[float, positive("s")]
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..model.model import Model
+from ..model.joints import JointModel
+from ..model.model import Model, SlideModel
 from ..model.states import (
     body_rates,
     body_state,
@@ -130,9 +131,9 @@ def _costs(model: Model, engine) -> dict[str, float]:
     """µs of a step that each slide and joint takes by itself; a slide that ties its rider's axes has both its parts."""
     found: dict[str, float] = {}
     if model.slides or model.joints:
-        names = [*(slide.name for slide in model.slides), *(joint.name for joint in model.joints)]
-        for name, seconds in zip(names, engine.costs(), strict=True):
-            found[name] = found.get(name, 0.0) + 1e6 * float(seconds)
+        for coupling, seconds in zip(model.couplings, engine.costs(), strict=True):
+            if isinstance(coupling, SlideModel | JointModel):
+                found[coupling.name] = found.get(coupling.name, 0.0) + 1e6 * float(seconds)
     return found
 
 

@@ -16,17 +16,14 @@ def fastest(K: csc_array, M: csc_array, unknowns=slice(None)) -> float:
 
 
 def condensed(full: csc_array, model: Model) -> tuple[csc_array, csc_array]:
-    """Stiffness over coordinates and free arc-lengths, forces between points eliminated; the constraints on them."""
+    """Stiffness over all coordinates, with forces that a law gives eliminated; and the constraints on them."""
     n = model.n_band + model.n_border_dof
-    dim = model.dim
-    arc = np.array([n + slide.unknown for slide in model.slides if slide.drive < 0], dtype=int)
-    forces = [n + slide.unknown + 1 + d for slide in model.slides for d in range(dim)]
-    forces += [n + joint.unknown + r for joint in model.joints for r in range(joint.rows)
-               if r not in joint.redundant_rows]
-    between = np.array([n + force.unknown + d for force in model.point_forces for d in range(dim)], dtype=int)
-    kept = np.concatenate([np.arange(n), arc])
+    own = [n + k for coupling in model.couplings for k in coupling.free_coordinates]
+    forces = [n + k for coupling in model.couplings if not coupling.follows_law for k in coupling.force_unknowns]
+    between = [n + k for coupling in model.couplings if coupling.follows_law for k in coupling.force_unknowns]
+    kept = np.concatenate([np.arange(n), np.array(own, dtype=int)])
     full = full.tocsr()
     K = full[kept][:, kept]
-    if len(between):  # their rows are F - law(q): F = -C q
+    if between:  # their rows are F - law(q): F = -C q
         K = K - full[kept][:, between] @ full[between][:, kept]
     return K.tocsc(), full[np.array(forces, dtype=int)][:, kept].tocsc()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..integrators import INTEGRATORS, stable_at
-from ..model.model import CableModel, Model
+from ..model.model import CableModel, Model, SlideModel
 from ..model.redundant_constraints import redundant
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
@@ -16,10 +16,10 @@ FOLDED, STRETCHED = 0.8, 3.0
 """Elements shorter or longer than this part of their undeformed length are named."""
 
 ROUNDED = 4e-16
-"""Of the farthest coordinate: below this the error control does not go (engine/run/run.c)."""
+"""Of the farthest coordinate: below this the error control does not go (engine/run/step_control.c)."""
 
 LEAST_MOTION = 1e-9
-"""Of the farthest coordinate: what moves less may be at rest (engine/run/run.c)."""
+"""Of the farthest coordinate: what moves less may be at rest (engine/run/start.c)."""
 STEADY = 0.01
 """Of the kinetic energy: where less is exchanged, as where bodies turn freely, errors go by this part of it."""
 
@@ -36,10 +36,10 @@ these are reported; the last is for loose tolerances, where energy may be off by
 def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
     """Return the message of a run that found no acceptable step, lost a joint or whose energy grew."""
     when = f"t = {engine.time:.6g} s of {settings.duration:.6g} s"
-    cause, dof, joint = engine.failure
+    cause, dof, coupling = engine.failure
     _, q, v, _ = engine.now()
-    where, (state, folded) = place(model, dof, joint), condition(model, dof, q, v)
-    of_a_body = joint is None and _node(model, dof) is None
+    where, (state, folded) = place(model, dof, coupling), condition(model, dof, q, v)
+    of_a_body = coupling is None and _node(model, dof) is None
     if status == "unstable":
         grown, _, exchanged, in_motion, _ = engine.balance
         exchanged = max(exchanged, in_motion)
@@ -72,7 +72,7 @@ def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
         remedy = f"The cable folds up there: take more elements{damping(model, dof)}"
     else:
         remedy = ("Look at loads, masses and stiffnesses there; else try a smaller "
-                  f"{'tol' if settings.step is None else 'step'}{damping(model, dof, joint)}")
+                  f"{'tol' if settings.step is None else 'step'}{damping(model, dof, coupling)}")
     return f"no step converged at {when}{gone}: {what} ({state}); {KEPT}. {remedy}"
 
 
@@ -88,20 +88,22 @@ def _too_large(engine, settings: RunSettings) -> str:
     return f'The {size} is too large for integrator "{engine.integrator}": take a smaller one{others}{stable}'
 
 
-def place(model: Model, dof: int, joint: int | None = None) -> str:
-    """Return what a dof, or a joint, is of."""
-    if joint is not None:
-        return f'slide "{model.slides[joint].name}" on cable "{model.cables[model.slides[joint].cable].name}"'
+def place(model: Model, dof: int, coupling: int | None = None) -> str:
+    """Return what a dof is of, or what a coupling of this number is."""
+    if coupling is not None:
+        failed = model.couplings[coupling]
+        assert isinstance(failed, SlideModel), "slides alone have coordinates of their own"
+        return f'slide "{failed.name}" on cable "{model.cables[failed.cable].name}"'
     if (found := _node(model, dof)) is not None:
         cable, node = found
         return f'cable "{cable.name}" at s = {node * cable.length:.6g} m'
     return [f'body "{body.name}"' for body in model.bodies if body.dof <= dof][-1]
 
 
-def damping(model: Model, dof: int, joint: int | None = None) -> str:
+def damping(model: Model, dof: int, coupling: int | None = None) -> str:
     """Return how to damp what a dof is of, or the cable of a slide: the end of a remedy; empty for a rigid body."""
-    found = _node(model, dof)
-    cable = model.cables[model.slides[joint].cable] if joint is not None else found and found[0]
+    found, failed = _node(model, dof), None if coupling is None else model.couplings[coupling]
+    cable = model.cables[failed.cable] if isinstance(failed, SlideModel) else found and found[0]
     if cable:
         return f", or {'a larger ' if cable.tau else ''}damping_time in the material"
     bodies = [body for body in model.bodies if body.dof <= dof]

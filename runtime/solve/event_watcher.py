@@ -18,7 +18,8 @@ from ..parts.scene_data import SceneData
 class Watch:
     """What the engine watches for an event: kind, entry, value, direction.
 
-    kind: "q" or "v", of which the index is an entry; "s", "s_rate", "traction", of which it is a slide; "function".
+    kind: "q" or "v", of which the index is an entry; "s", "s_rate", "traction", of which it is the number of a slide
+    among the couplings; "function".
     """
 
     def __init__(self, event: Event, scene: SceneData, model: Model):
@@ -29,7 +30,8 @@ class Watch:
             return
         name, what, *axis = _quantity(event).split(".")
         if name in scene.slides:
-            self.kind, self.index = what, list(scene.slides).index(name)
+            slide = model.slides[list(scene.slides).index(name)]
+            self.kind, self.index = what, [c is slide for c in model.couplings].index(True)
             return
         of = "configuration" if what == "position" else "dof"
         self.kind = "q" if what == "position" else "v"
@@ -115,8 +117,8 @@ class EventWatcher:
         return lambda time, state: np.asarray(state[name])[AXES.index(axis)] - event.value
 
     def acts(self, which: int, what: str, time: float, s: float) -> None:
-        """Note what a slide has done of itself: stuck, struck the end, and so on."""
-        self.happened.append({"name": self.model.slides[which].name, "time": time, "what": what, "s": s})
+        """Note what a coupling of this number has done by itself: stuck, struck the end, and so on."""
+        self.happened.append({"name": self.model.couplings[which].name, "time": time, "what": what, "s": s})
 
     def happens(self, which: int, time: float, q: np.ndarray, v: np.ndarray, s: np.ndarray) -> bool:
         """Note an event; whether the run goes on."""

@@ -89,9 +89,9 @@ class LongRun:
         if events > OFTEN * counts["steps"]:
             return (f"there were {events} events and crossings of elements in {counts['steps']} steps, and a step ends "
                     "at each. Look at the slides that stick, strike or cross nodes")
-        _, dof, joint = engine.failure  # of the last step that was rejected
-        where = f", most of all at {place(self._model, dof, joint)}" if counts["rejected_steps"] else ""
-        damped = damping(self._model, max(dof, 0), joint)
+        _, dof, coupling = engine.failure  # of the last step that was rejected
+        where = f", most of all at {place(self._model, dof, coupling)}" if counts["rejected_steps"] else ""
+        damped = damping(self._model, max(dof, 0), coupling)
         if counts["rejected_steps"] > REJECTED * counts["steps"]:
             return (f"{counts['rejected_steps']} steps were rejected beside {counts['steps']} taken{where}: forces "
                     f"change within a step, as at contacts and kinks of friction. Take a larger tol{damped}")

@@ -158,7 +158,7 @@ def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine
         capacity=capacity,
     )
     if status == "singular" and engine.jammed >= 0:
-        slide = list(scene.slides.values())[engine.jammed]
+        slide = scene.slides[model.couplings[engine.jammed].name]
         raise SceneError(slide.where, "friction jams it at the start: the more it holds, the more it presses it on the "
                          "cable", "take a smaller coefficient, or the rider's point nearer to its centre of mass")
     if status == "singular":

@@ -49,8 +49,8 @@ class StaticProblem:
         stiffness, _ = condensed(self.engine.matrix(0.0, 0.0, 1.0), self.model)
         self.fastest = max(fastest(stiffness, self.mass, points), self._falls(drawn, points))
         n = self.model.n_band + self.model.n_border_dof
-        arcs = [n + slide.unknown for slide in self.model.slides if slide.drive < 0]
-        self.coordinates = np.append(np.arange(n), np.array(arcs, dtype=int))
+        own = [n + k for coupling in self.model.couplings for k in coupling.free_coordinates]
+        self.coordinates = np.append(np.arange(n), np.array(own, dtype=int))
         self.places = _places(self.model)
         self.iterations = 0
         self.pushed = False  # off an unstable branch, in a direction that nothing prefers

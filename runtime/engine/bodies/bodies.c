@@ -1,20 +1,18 @@
 /* Bodies with a frame, whatever they are made of: sums over them, and what a rigid one is. */
 #include "engine.h"
 
-#define RIGID_DOFS 6
-
 static void of_rigid_mass_times(const fu_body *body, const double *b, const double *a, double *f)
 {
-    const double rest[RIGID_DOFS] = {0};
+    const double rest[FU_FRAME_DOFS] = {0};
     (void)b;
     body->kernel->inertia_force(body->mass, body->J, rest, a, f);
 }
 
-/* the gyroscopic moment */
+/* Adds the gyroscopic moment. */
 static void of_rigid_forces(const fu_body *body, const double *b, const double *w, double *f)
 {
-    const double none[RIGID_DOFS] = {0};
-    double part[RIGID_DOFS];
+    const double none[FU_FRAME_DOFS] = {0};
+    double part[FU_FRAME_DOFS];
     (void)b;
     body->kernel->inertia_force(body->mass, body->J, w, none, part);
     for (int i = body->kernel->dim; i < body->kernel->velocity; ++i) f[i] += part[i];
@@ -22,15 +20,15 @@ static void of_rigid_forces(const fu_body *body, const double *b, const double *
 
 static void of_rigid_mass(const fu_body *body, const double *b, double *M)
 {
-    const double rest[RIGID_DOFS] = {0};
-    double unused[RIGID_DOFS * RIGID_DOFS];
+    const double rest[FU_FRAME_DOFS] = {0};
+    double unused[FU_FRAME_DOFS * FU_FRAME_DOFS];
     (void)b;
     body->kernel->inertia_tangent(body->mass, body->J, rest, M, unused);
 }
 
 static void of_rigid_tangent(const fu_body *body, const fu_instant *at, double *D, double *K)
 {
-    double unused[RIGID_DOFS * RIGID_DOFS];
+    double unused[FU_FRAME_DOFS * FU_FRAME_DOFS];
     (void)K; /* none: in body axes it does not depend on the attitude */
     body->kernel->inertia_tangent(body->mass, body->J, at->w, unused, D);
 }
@@ -58,12 +56,13 @@ static double none_along(const fu_body *body, const double *b, const double *w)
 const fu_matter fu_rigid_matter = {1,       of_rigid_mass_times,     of_rigid_forces, of_rigid_mass, of_rigid_tangent,
                                    of_rigid_kinetic_energy, none_at, none_at,         none_along};
 
+/* Returns the number of a body's dofs: its frame's, and its modes'. */
 int fu_body_dofs(const fu_body *body)
 {
     return body->kernel->velocity + body->modes;
 }
 
-/* f = M a, on the bodies' dofs */
+/* Makes f = M a, on the bodies' dofs. */
 void fu_bodies_mass_times(const fu_model *model, const double *q, const double *a, double *f)
 {
     for (int k = 0; k < model->n_bodies; ++k) {
@@ -72,7 +71,7 @@ void fu_bodies_mass_times(const fu_model *model, const double *q, const double *
     }
 }
 
-/* f += what stands on the left of the equations of motion at zero accelerations */
+/* Adds what stands on the left of the equations of motion at zero accelerations. */
 void fu_bodies_forces(const fu_model *model, const double *q, const double *v, double *f)
 {
     for (int k = 0; k < model->n_bodies; ++k) {
@@ -81,12 +80,12 @@ void fu_bodies_forces(const fu_model *model, const double *q, const double *v, d
     }
 }
 
-/* system += weights.inertia M + weights.stiffness (K + weights.rate D) of a body at a state; psi: what moved it there, or
- * null. Without acceleration K is that of rest. */
+/* Adds weights.inertia M + weights.stiffness (K + weights.rate D) of a body at a state to a system; psi: what moved it there,
+ * or null. Without acceleration K is that of rest. */
 static void add_body(const fu_model *model, const fu_body *body, const fu_state *at, const double *psi, fu_weights weights,
                      fu_system *system)
 {
-    double few[3 * RIGID_DOFS * RIGID_DOFS];
+    double few[3 * FU_FRAME_DOFS * FU_FRAME_DOFS]; /* M, D, K of a rigid body */
     const int n = fu_body_dofs(body), turns = !body->matter->constant && weights.stiffness != 0.0;
     double *M = body->modes ? body->shape->matrices : few, *D = M + n * n, *K = D + n * n;
     const double *a = at->acceleration ? at->acceleration : model->zero;
@@ -109,7 +108,7 @@ void fu_bodies_matrix(const fu_model *model, const fu_state *at, const double *p
     for (int k = 0; k < model->n_bodies; ++k) add_body(model, &model->bodies[k], at, psi, weights, system);
 }
 
-/* system += M of the bodies in which it is constant, or of the others */
+/* Adds M of the bodies in which it is constant, or of the others. */
 void fu_bodies_mass(const fu_model *model, const double *q, int constant, fu_system *system)
 {
     const fu_state at = {.q = (double *)q, .v = (double *)model->zero};
@@ -136,7 +135,7 @@ double fu_bodies_elastic_energy(const fu_model *model, const double *q)
     return total;
 }
 
-/* of gravity: what model->gravity says, and what depends on the attitude */
+/* Returns the energy of gravity, J: what model->gravity says, and what depends on the attitude. */
 double fu_bodies_potential_energy(const fu_model *model, const double *q)
 {
     double total = 0.0;

@@ -3,11 +3,11 @@
 
 #include <string.h>
 
-enum { RATES = 3, MOST = 9 }; /* u, u', u''; entries of a matrix in space */
+enum { RATES = 3 }; /* u, u', u'' */
 
 /* Moments of the fields u, u', u''; Y[r] + k dim^2: of mode k with them, k = 0 the undeformed place */
 typedef struct {
-    double S[RATES][3], X[RATES][MOST], *Y[RATES];
+    double S[RATES][FU_SPACE], X[RATES][FU_MATRIX_ENTRIES], *Y[RATES];
 } moments;
 
 /* Sums over the coefficients c = (1, eta), c' = (0, eta'), c'' = (0, eta''); null: zero. */
@@ -46,7 +46,7 @@ static const double *rate_of(const fu_body *body, const double *w)
     return w + body->kernel->velocity;
 }
 
-/* f += stiffness eta + damping eta', on the modes */
+/* Adds stiffness eta + damping eta' to the forces on the modes. */
 static void add_elasticity(const fu_body *body, const double *eta, const double *rate, double *f)
 {
     const int n = body->modes;
@@ -55,14 +55,14 @@ static void add_elasticity(const fu_body *body, const double *eta, const double 
             f[k] += body->shape->stiffness[k * n + l] * eta[l] + body->shape->damping[k * n + l] * rate[l];
 }
 
-/* f += inertia without accelerations, less weight */
+/* Adds the forces of inertia without accelerations, less the weight. */
 static void add_inertia(const fu_body *body, const double *b, const double *w, double *f)
 {
     const fu_modal_kernels *kernel = body->shape->kernel;
     const int dim = body->kernel->dim, frame = body->kernel->velocity;
     const moments m = sum_of(body, eta_of(body, b), rate_of(body, w), 0);
     const double *a = body->shape->zero, *g = body->shape->g;
-    double part[6];
+    double part[FU_FRAME_DOFS];
     kernel->inertia_force(b, w, a, g, body->mass, m.S[0], m.S[1], m.S[2], m.X[0], m.X[1], m.X[2], part);
     for (int i = 0; i < frame; ++i) f[i] += part[i];
     for (int k = 1; k <= body->modes; ++k) {
@@ -72,13 +72,13 @@ static void add_inertia(const fu_body *body, const double *b, const double *w, d
     }
 }
 
-/* M of eq 12 */
+/* Makes M of eq 12. */
 static void mass(const fu_body *body, const double *b, double *M)
 {
     const fu_shape *shape = body->shape;
     const int dim = body->kernel->dim, frame = body->kernel->velocity, modes = body->modes, n = frame + modes;
     const moments m = sum_of(body, eta_of(body, b), 0, 0);
-    double of_frame[36], column[6];
+    double of_frame[FU_FRAME_DOFS * FU_FRAME_DOFS], column[FU_FRAME_DOFS];
     shape->kernel->mass_matrix(b, body->mass, m.S[0], m.X[0], of_frame);
     for (int i = 0; i < frame; ++i)
         for (int j = 0; j < frame; ++j) M[i * n + j] = of_frame[i * frame + j];
@@ -113,7 +113,7 @@ static void tangent(const fu_body *body, const fu_instant *at, double *D, double
     const int dim = body->kernel->dim, square = dim * dim, frame = body->kernel->velocity;
     const int modes = body->modes, n = frame + modes;
     const moments m = sum_of(body, eta_of(body, at->b), rate_of(body, at->w), rate_of(body, at->a));
-    double D_frame[36], K_frame[36], D_of[6], K_of[6], D_by[6], K_by[6];
+    double D_frame[FU_FRAME_DOFS * FU_FRAME_DOFS], K_frame[FU_FRAME_DOFS * FU_FRAME_DOFS], D_of[FU_FRAME_DOFS], K_of[FU_FRAME_DOFS], D_by[FU_FRAME_DOFS], K_by[FU_FRAME_DOFS];
     kernel->inertia_tangent(at->b, at->w, at->a, shape->g, body->mass, m.S[0], m.S[1], m.S[2], m.X[0], m.X[1], m.X[2],
                             D_frame, K_frame);
     for (int i = 0; i < frame; ++i)
@@ -166,7 +166,7 @@ static double potential_energy(const fu_body *body, const double *b)
 {
     const int dim = body->kernel->dim;
     const double *eta = eta_of(body, b);
-    double S[3] = {0}, energy;
+    double S[FU_SPACE] = {0}, energy;
     for (int k = 0; k <= body->modes; ++k)
         for (int d = 0; d < dim; ++d) S[d] += (k ? eta[k - 1] : 1.0) * body->shape->S[k * dim + d];
     body->shape->kernel->potential_energy(b, body->shape->g, body->mass, S, &energy);
@@ -186,8 +186,8 @@ static double dissipation(const fu_body *body, const double *b, const double *w)
 const fu_matter fu_modal_matter = {0,       mass_times,     forces,         mass,             tangent,
                                    kinetic_energy, elastic_energy, potential_energy, dissipation};
 
-/* Place, turn and their rates of a point, from its modes. */
-static void point_of(const fu_body *body, const fu_modal_attachment *spot, const double *c, int is_rate, double u[3], double theta[3])
+/* Makes displacement and turn of a point from its modes, or their rates. */
+static void point_of(const fu_body *body, const fu_modal_attachment *spot, const double *c, int is_rate, double u[FU_SPACE], double theta[FU_SPACE])
 {
     const int dim = body->kernel->dim, turns = body->kernel->velocity - dim;
     for (int d = 0; d < dim; ++d) u[d] = is_rate ? 0.0 : spot->x[d];
@@ -204,7 +204,7 @@ void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *s
 {
     const fu_modal_kernels *kernel = body->shape->kernel;
     const int dim = body->kernel->dim, frame = body->kernel->velocity, turns = frame - dim, n = fu_body_dofs(body);
-    double u[3], u1[3], theta[3], theta1[3], frame_P[18], frame_T[18], column[3], turn[3];
+    double u[FU_SPACE], u1[3], theta[FU_SPACE], theta1[3], frame_P[18], frame_T[18], column[3], turn[3];
     point_of(body, spot, eta_of(body, b), 0, u, theta);
     point_of(body, spot, rate_of(body, w), 1, u1, theta1);
     kernel->attachment(b, u, theta, w, u1, theta1, out->p, out->axes, frame_P, frame_T, out->velocity, out->omega, out->bias,
@@ -226,7 +226,7 @@ void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *s
 {
     const fu_modal_kernels *kernel = body->shape->kernel;
     const int dim = body->kernel->dim, frame = body->kernel->velocity, turns = frame - dim, n = fu_body_dofs(body);
-    double u[3], theta[3], of_frame[36], row[6], column[6];
+    double u[FU_SPACE], theta[FU_SPACE], of_frame[FU_FRAME_DOFS * FU_FRAME_DOFS], row[FU_FRAME_DOFS], column[FU_FRAME_DOFS];
     point_of(body, spot, eta_of(body, b), 0, u, theta);
     kernel->attachment_force(b, u, theta, f, m, of_frame);
     for (int i = 0; i < frame; ++i)
@@ -251,7 +251,7 @@ void fu_modal_attachment_follower(const fu_body *body, const fu_modal_attachment
 {
     const fu_modal_kernels *kernel = body->shape->kernel;
     const int dim = body->kernel->dim, frame = body->kernel->velocity, turns = frame - dim, n = fu_body_dofs(body);
-    double u[3], theta[3], of_frame[36], column[6];
+    double u[FU_SPACE], theta[FU_SPACE], of_frame[FU_FRAME_DOFS * FU_FRAME_DOFS], column[FU_FRAME_DOFS];
     point_of(body, spot, eta_of(body, b), 0, u, theta);
     kernel->attachment_follower(b, u, theta, c, g, of_frame);
     for (int i = 0; i < frame; ++i)

@@ -1,7 +1,12 @@
 /* Where a slide is on its cable: s by C_l = 0, eq 21, and the director that goes with the tangent there. */
 #include "engine.h"
 
-/* Newton step for s of a slide, and the unit tangent there */
+#define MOST_ITERATIONS 50 /* of Newton's method: it converges quadratically, or there is no such point of the cable near */
+#define ROUNDING 1e-15     /* of an element and of s: a correction that is rounding ends the iteration */
+#define CLOSE 1e-12        /* of an element: a correction that is as good as rounding where rounding keeps it from shrinking */
+#define ALONG 0.99         /* cosine of the angle between tangent and director from which on another axis takes over: 8 degrees */
+
+/* Returns the Newton step for s of a slide, m, and the unit tangent there. */
 static double evaluate_constraint(const fu_model *model, const fu_state *state, int j, double s, double i[3])
 {
     const int dim = model->dim;
@@ -11,29 +16,29 @@ static double evaluate_constraint(const fu_model *model, const fu_state *state, 
     return step;
 }
 
-/* Newton for C_l(s) = 0, eq 21 on the curve of the element that holds s; 0 when it converged. */
+/* Finds s by Newton's method for C_l(s) = 0, eq 21 on the curve of the element that holds s; returns 0 where it converged. */
 int fu_find_arc_length(const fu_model *model, const fu_state *state, int j, double *s)
 {
     const double length = model->cables[model->slides[j].cable].length;
     double step = 0.0, tangent[3];
-    for (int i = 0; i < 50; ++i) {
+    for (int i = 0; i < MOST_ITERATIONS; ++i) {
         step = evaluate_constraint(model, state, j, *s, tangent);
         *s += step;
-        if (fabs(step) <= 1e-15 * (length + fabs(*s))) return 0;
+        if (fabs(step) <= ROUNDING * (length + fabs(*s))) return 0;
     }
-    return fabs(step) <= 1e-12 * length ? 0 : 1;
+    return fabs(step) <= CLOSE * length ? 0 : 1;
 }
 
-/* Turn the director that no element gives with the tangent: the part of it across the tangent, of unit length. Where the
+/* Turns the director that no element gives with the tangent: it becomes its part across the tangent, of unit length. Where the
  * tangent has swung onto it, the axis least along the tangent takes over. */
 void fu_carry_director(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     const int j = coupling->index;
-    double *d = state->director + 3 * j, i[3];
+    double *d = fu_slide_numbers_of(model, state, j)->director, i[3];
     if (!model->slides[j].carries_director) return;
     evaluate_constraint(model, state, j, state->s[j], i);
     double along = i[0] * d[0] + i[1] * d[1] + i[2] * d[2], square = 0.0;
-    if (!(fabs(along) < 0.99)) {
+    if (!(fabs(along) < ALONG)) {
         const double x = fabs(i[0]), y = fabs(i[1]), z = fabs(i[2]);
         const int least = x <= y && x <= z ? 0 : y <= z ? 1 : 2;
         for (int k = 0; k < 3; ++k) d[k] = k == least;

@@ -7,7 +7,7 @@
 
 static const double unit_axes[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
 
-/* C (n x m) = A (n x k) B (k x m) */
+/* Makes C (n x m) = A (n x k) B (k x m). */
 static void multiply(int n, int k, int m, const double *A, const double *B, double *C)
 {
     for (int i = 0; i < n; ++i)
@@ -18,7 +18,7 @@ static void multiply(int n, int k, int m, const double *A, const double *B, doub
         }
 }
 
-/* The two vectors of a cable's frame: `rows` holds their derivatives by the element's coordinates and, on a slide, by s. */
+/* Makes the two vectors of a cable's frame; `rows` then holds their derivatives by the element's coordinates and, on a slide, by s. */
 typedef struct {
     double value[2][3], rate[2][3], second[2][3], rows[6 * FU_ATTACHMENT_COORDINATES];
     double S[2][3 * FU_MAX_COORDINATES]; /* shape functions of each: themselves, their first and second derivative by x */
@@ -30,7 +30,7 @@ static void vectors_of(const fu_model *model, const fu_attachment *on, const fu_
     const int on_slide = on->slide >= 0;
     const fu_cable *cable = &model->cables[on->cable];
     const int dim = cable->kernel->dim, n = cable->coordinates / dim;
-    const int element = on_slide ? state->element[on->slide] : on->element;
+    const int element = on_slide ? state->piece[on->slide] : on->element;
     const double *e = state->q + cable->first + element * cable->per_node;
     const double *v = state->v + cable->first + element * cable->per_node;
     double every[9 * FU_MAX_COORDINATES];
@@ -38,7 +38,7 @@ static void vectors_of(const fu_model *model, const fu_attachment *on, const fu_
     if (on_slide)
         cable->kernel->slopes(cable->length, state->s[on->slide] - fu_element_start(model, on->slide, element), every);
     for (int k = 0; k < 2; ++k) {
-        const double *fixed = on->slopes[k] == FU_CARRIED ? state->director + 3 * on->slide : on->up;
+        const double *fixed = on->slopes[k] == FU_CARRIED ? fu_slide_numbers_of(model, state, on->slide)->director : on->up;
         for (int d = 0; d < dim; ++d) {
             w->value[k][d] = fixed[d];
             w->rate[k][d] = w->second[k][d] = 0.0;
@@ -73,7 +73,7 @@ static void vectors_of(const fu_model *model, const fu_attachment *on, const fu_
     }
 }
 
-/* number of the attachment's coordinates, and their numbers for fu_add; on a slide the last is s */
+/* Returns how many coordinates an attachment has, and their numbers for fu_add; on a slide the last of them is s. */
 int fu_attachment_coordinates(const fu_model *model, const fu_attachment *on, const fu_state *state, int *at)
 {
     if (on->body >= 0) {
@@ -84,7 +84,7 @@ int fu_attachment_coordinates(const fu_model *model, const fu_attachment *on, co
     }
     if (on->cable < 0) return 0;
     const fu_cable *cable = &model->cables[on->cable];
-    const int element = on->slide >= 0 ? state->element[on->slide] : on->element, n = cable->coordinates;
+    const int element = on->slide >= 0 ? state->piece[on->slide] : on->element, n = cable->coordinates;
     for (int i = 0; i < n; ++i) at[i] = cable->first + element * cable->per_node + i;
     if (on->slide < 0) return n;
     at[n] = fu_extra(model, model->slides[on->slide].base.unknown);
@@ -143,7 +143,7 @@ static void axes_of(const fu_model *model, const fu_attachment *on, const fu_sta
     multiply(dim, dim, dim, A, on->axes, out->A);
 }
 
-/* A node of a modal body: its point and its axes together. */
+/* Makes the state of a node of a modal body: of its point and its axes together. */
 static void of_modes(const fu_model *model, const fu_attachment *on, const fu_state *state, fu_attachment_state *out)
 {
     const fu_body *body = &model->bodies[on->body];
@@ -161,7 +161,7 @@ static void of_modes(const fu_model *model, const fu_attachment *on, const fu_st
     multiply(dim, dim, dim, at.axes, on->axes, out->A);
 }
 
-/* The state of an attachment: of its point, its axes, or both; s_rate: of its slide, where velocities count. */
+/* Makes the state of an attachment: of its point, its axes, or both; s_rate: of its slide, where velocities count. */
 void fu_attachment_at(const fu_model *model, const fu_attachment *on, const fu_state *state, double s_rate, int what,
                   fu_attachment_state *out)
 {
@@ -174,7 +174,7 @@ void fu_attachment_at(const fu_model *model, const fu_attachment *on, const fu_s
     if (what & FU_AXES) axes_of(model, on, state, s_rate, out);
 }
 
-/* Of an attachment to a body: as fu_geometric_stiffness. */
+/* Does what fu_geometric_stiffness does, for an attachment to a body. */
 static void add_stiffness_of_body(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *f,
                                   const double *m, int n, double *K)
 {
@@ -196,13 +196,13 @@ static void add_stiffness_of_body(const fu_model *model, const fu_attachment *on
     }
 }
 
-/* What depends on s of the frame where a slide is; g: derivatives of the moment's work by the frame's two vectors. */
+/* Adds what depends on s of the frame where a slide is; g: derivatives of the moment's work by the frame's two vectors. */
 static void add_stiffness_of_s(const fu_model *model, const fu_attachment *on, const fu_state *state,
                                const frame_vectors *w, const double *g, int n, double *K)
 {
     const fu_cable *cable = &model->cables[on->cable];
     const int dim = model->dim, vectors = cable->coordinates / dim, s = n - 1;
-    const double *e = state->q + cable->first + state->element[on->slide] * cable->per_node;
+    const double *e = state->q + cable->first + state->piece[on->slide] * cable->per_node;
     for (int k = 0; k < 2; ++k)
         for (int d = 0; d < dim; ++d) {
             const double pull = g[k * dim + d], *S_x = w->S[k] + vectors, *S_xx = w->S[k] + 2 * vectors;
@@ -214,8 +214,8 @@ static void add_stiffness_of_s(const fu_model *model, const fu_attachment *on, c
         }
 }
 
-/* K (n x n) += derivative by the attachment's coordinates of P' f + T' m at a fixed force f and moment m; either may be
- * null */
+/* Adds to K (n x n) the derivative by the attachment's coordinates of P' f + T' m at a fixed force f and moment m, either of which
+ * may be null. */
 void fu_geometric_stiffness(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *f,
                             const double *m, int n, double *K)
 {

@@ -1,21 +1,44 @@
 /* Loops over the couplings of a model, in the order of its list: each calls the one operation that it is about. */
 #include "engine.h"
 
+const fu_field fu_coupling_fields[] = {
+    FU_FIELD(fu_coupling, unknown, FU_INTEGER, 0),
+    FU_FIELD(fu_coupling, n_coordinates, FU_INTEGER, 0),
+    FU_FIELD(fu_coupling, n_forces, FU_INTEGER, 0),
+    FU_FIELD(fu_coupling, n_multipliers, FU_INTEGER, 0),
+    FU_FIELD(fu_coupling, multiplier, FU_INTEGER, 0),
+    FU_FIELD(fu_coupling, reacts, FU_INTEGER, 0),
+    FU_FIELD(fu_coupling, is_damped, FU_INTEGER, 0),
+    FU_FIELD(fu_coupling, is_driven, FU_INTEGER, 0),
+    FU_FIELD_ARRAY(fu_coupling, scale, FU_REAL),
+    {0},
+};
+
 void fu_number_couplings(fu_coupling *const *couplings, int n, fu_model *model)
 {
     model->couplings = (const fu_coupling *const *)couplings;
     model->n_couplings = n;
+    model->slides = 0;
     model->n_coordinates = model->n_forces = model->n_rows = model->n_outputs = 0;
+    model->n_numbers = model->n_flags = model->n_scratch = 0;
     model->n_reacting = model->n_external = model->n_driven = model->n_damped = 0;
     for (int k = 0; k < n; ++k) {
         fu_coupling *c = couplings[k];
+        c->number = k;
+        if (c->type == &fu_slide_type && !model->slides) model->slides = (const fu_slide *)c; /* attachments are on them */
         c->coordinate = model->n_coordinates;
         c->force = model->n_forces;
         c->output = model->n_outputs;
+        c->numbers = model->n_numbers;
+        c->flags = model->n_flags;
+        c->scratch = model->n_scratch;
         c->row = c->type->rows ? model->n_rows++ : -1;
         model->n_coordinates += c->n_coordinates;
         model->n_forces += c->n_forces;
         model->n_outputs += c->type->n_outputs;
+        model->n_numbers += c->type->n_numbers;
+        model->n_flags += c->type->n_flags;
+        model->n_scratch += c->type->n_scratch;
         model->n_reacting += c->reacts;
         model->n_external += c->type->external_force != 0;
         model->n_driven += c->is_driven;
@@ -63,7 +86,6 @@ void fu_coupling_forces(const fu_model *model, const fu_state *state, double *f)
     }
 }
 
-/* f += forces from outside */
 void fu_coupling_external_forces(const fu_model *model, double t, const double *q, double *f)
 {
     for (int k = 0; k < model->n_couplings; ++k) {
@@ -131,7 +153,15 @@ void fu_coordinate_rates(const fu_model *model, const fu_accelerator *work, doub
 {
     for (int k = 0; k < model->n_couplings; ++k) {
         const fu_coupling *c = model->couplings[k];
-        if (c->type->rates) c->type->rates(c, work, rates + c->coordinate);
+        if (c->type->rates) c->type->rates(model, c, work, rates + c->coordinate);
+    }
+}
+
+void fu_reset(const fu_model *model, fu_state *state)
+{
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->type->reset) c->type->reset(c, state);
     }
 }
 
@@ -151,7 +181,7 @@ void fu_touch(const fu_model *model, fu_state *state)
     }
 }
 
-/* Own coordinates where the others have them; null, or the first coupling of which none were found. */
+/* Finds own coordinates that follow from the others; returns null, or the first coupling of which none were found. */
 const fu_coupling *fu_follow(const fu_model *model, fu_state *state)
 {
     for (int k = 0; k < model->n_couplings; ++k) {
@@ -166,7 +196,7 @@ int fu_may_start_open(const fu_model *model, const fu_state *state)
     int open = 0;
     for (int k = 0; k < model->n_couplings; ++k) {
         const fu_coupling *c = model->couplings[k];
-        if (c->type->may_start_open) open |= c->type->may_start_open(c, state);
+        if (c->type->may_start_open) open |= c->type->may_start_open(model, c, state);
     }
     return open;
 }

@@ -10,22 +10,14 @@
 #define AT_REST 1e-12 /* of the cable over the duration: speeds below are none */
 #define BOUNCE 1e-6   /* of the cable: what would come no farther back stays at the stop */
 
+const char *const fu_end_stop_kinds[] = {"error", "leave", "hard", "buffer", 0};
+
 static int is_hard(const fu_model *model, int j, int side)
 {
     return side && model->slides[j].stops[side > 0].kind == FU_END_IS_HARD;
 }
 
-/* whether such events can happen: steps then end where a slide passes a boundary, so that none is passed unseen */
-int fu_has_stops(const fu_model *model)
-{
-    for (int j = 0; j < model->n_slides; ++j) {
-        const fu_slide *slide = &model->slides[j];
-        if (slide->resistance || slide->stops[0].kind || slide->stops[1].kind) return 1;
-    }
-    return 0;
-}
-
-/* The force on the rider of a slide that is locked: by eq 38, as a Newton method's has the rounding of positions over h^2.
+/* Finds the force on the rider of a slide that is locked, by eq 38, as a Newton method's has the rounding of positions over h^2.
  * Returns whether it is by eq 38: then `traction` is what of it is along the cable, without what moments put there. */
 static int locked_force(const fu_run *run, const fu_state *state, int j, double *f, double *traction)
 {
@@ -41,12 +33,12 @@ static int locked_force(const fu_run *run, const fu_state *state, int j, double 
     return 1;
 }
 
-/* Force along the cable on a locked slide, and how much of it neither friction nor a hard stop can take. */
+/* Finds the force along the cable on a locked slide, N; returns how much of it neither friction nor a hard stop can take, N. */
 static double excess(const fu_run *run, const fu_state *state, int j, double *pull)
 {
     const fu_model *model = run->model;
     const fu_slide *slide = &model->slides[j];
-    const int dim = model->dim, side = state->contact[j];
+    const int dim = model->dim, side = fu_slide_flags_of(model, state, j)->contact;
     double f[3], square = 0.0, along = 0.0, normal = 0.0, traction = 0.0;
     const int by_eq38 = locked_force(run, state, j, f, &traction);
     fu_slide_state slide_state;
@@ -67,43 +59,44 @@ static double excess(const fu_run *run, const fu_state *state, int j, double *pu
     return (is_hard(model, j, side) ? side * along : fabs(along)) - most;
 }
 
-/* What is watched: negative as long as a slide stays locked, or slides on in its direction. */
+/* Returns a number that is negative as long as a slide stays locked, or slides on in its direction. */
 double fu_stick_margin(const fu_run *run, const fu_state *state, int j)
 {
     const fu_slide *slide = &run->model->slides[j];
     double pull;
-    if (state->mode[j] == FU_LEFT || slide->drive >= 0) return -1.0;
-    if (state->mode[j] == FU_LOCKED) return excess(run, state, j, &pull);
-    return slide->sticks ? -state->slip_direction[j] * fu_slide_rate(run->model, state, j) : -1.0;
+    const fu_slide_flags *flags = fu_slide_flags_of(run->model, state, j);
+    if (flags->mode == FU_LEFT || slide->drive >= 0) return -1.0;
+    if (flags->mode == FU_LOCKED) return excess(run, state, j, &pull);
+    return slide->sticks ? -flags->slip_direction * fu_slide_rate(run->model, state, j) : -1.0;
 }
 
-/* What is watched: positive where a slide is in a buffer that pushes. */
+/* Returns a number that is positive where a slide is in a buffer that pushes. */
 double fu_buffer_margin(const fu_run *run, const fu_state *state, int j, int side)
 {
     const fu_end_stop *stop = &run->model->slides[j].stops[side > 0];
-    if (state->mode[j] == FU_LEFT) return -1.0;
+    if (fu_slide_flags_of(run->model, state, j)->mode == FU_LEFT) return -1.0;
     const double x = fu_compression(run->model, state, j, side);
     const double force = stop->stiffness * x + stop->damping * side * fu_slide_rate(run->model, state, j);
     return fmin(x, force);
 }
 
-/* Unlock a slide, on which there was the force `pull` along the cable. */
+/* Unlocks a slide, on which there was the force `pull` along the cable. */
 static void release(fu_run *run, int j, double pull)
 {
-    fu_state *now = &run->now;
-    const int side = now->contact[j], hard = is_hard(run->model, j, side);
-    now->mode[j] = FU_SLIDES;
-    now->slip_direction[j] = !run->model->slides[j].sticks ? 0 : hard ? -side : pull > 0.0 ? -1 : 1;
-    if (hard) now->contact[j] = 0;
+    fu_slide_flags *flags = fu_slide_flags_of(run->model, &run->now, j);
+    const int side = flags->contact, hard = is_hard(run->model, j, side);
+    flags->mode = FU_SLIDES;
+    flags->slip_direction = !run->model->slides[j].sticks ? 0 : hard ? -side : pull > 0.0 ? -1 : 1;
+    if (hard) flags->contact = 0;
 }
 
-/* Lock a slide that is at rest, if friction or its stop can take the force on it, else let it slide on; the status. */
+/* Locks a slide that is at rest, if friction or its stop can take the force on it, else lets it slide on; returns a status. */
 static int try_to_stick(fu_run *run, int j)
 {
     fu_state *now = &run->now;
     double pull;
-    now->mode[j] = FU_LOCKED;
-    now->locked_s[j] = now->s[j];
+    fu_slide_flags_of(run->model, now, j)->mode = FU_LOCKED;
+    fu_slide_numbers_of(run->model, now, j)->locked_s = now->s[j];
     if (fu_project_velocities(run->model, now, &run->accelerator, run->work)) return FU_SINGULAR;
     fu_impact(run, run->work, 0.0);
     if (fu_complete(run, now)) return FU_SINGULAR;
@@ -111,49 +104,46 @@ static int try_to_stick(fu_run *run, int j)
     return FU_RUNNING;
 }
 
+/* Returns whether a slide is at rest. */
 static int is_at_rest(const fu_run *run, int j)
 {
     return fabs(fu_slide_rate(run->model, &run->now, j)) * run->duration <= AT_REST * fu_length(run->model, j);
 }
 
-/* the direction of sliding of each slide whose friction needs it */
-static void find_slip_directions(fu_run *run)
+/* Gives a slide whose friction needs it its direction of sliding. */
+void fu_find_slip_direction(fu_run *run, const fu_coupling *coupling)
 {
-    fu_state *now = &run->now;
-    for (int j = 0; j < run->model->n_slides; ++j) {
-        const double rate = fu_slide_rate(run->model, now, j);
-        if (run->model->slides[j].sticks && now->mode[j] == FU_SLIDES && rate != 0.0)
-            now->slip_direction[j] = rate > 0.0 ? 1 : -1;
-    }
+    const int j = coupling->index;
+    const double rate = fu_slide_rate(run->model, &run->now, j);
+    fu_slide_flags *flags = fu_slide_flags_of(run->model, &run->now, j);
+    if (run->model->slides[j].sticks && flags->mode == FU_SLIDES && rate != 0.0)
+        flags->slip_direction = rate > 0.0 ? 1 : -1;
 }
 
-/* At the start: which slides are in a buffer, and which stick. */
-int fu_begin_stops(fu_run *run)
+/* Finds in which buffer a slide is at the start, and whether it sticks; returns a status. */
+int fu_begin_stops(fu_run *run, const fu_coupling *coupling)
 {
     const fu_model *model = run->model;
-    find_slip_directions(run);
-    for (int j = 0; j < model->n_slides; ++j) {
-        if (model->slides[j].drive >= 0) continue;
-        for (int side = -1; side <= 1; side += 2)
-            if (model->slides[j].stops[side > 0].kind == FU_END_IS_BUFFERED &&
-                fu_buffer_margin(run, &run->now, j, side) > 0.0)
-                run->now.contact[j] = side;
-        if (model->slides[j].sticks && is_at_rest(run, j) && try_to_stick(run, j)) return FU_SINGULAR;
-    }
-    return FU_RUNNING;
+    const int j = coupling->index;
+    if (model->slides[j].drive >= 0) return FU_RUNNING;
+    for (int side = -1; side <= 1; side += 2)
+        if (model->slides[j].stops[side > 0].kind == FU_END_IS_BUFFERED && fu_buffer_margin(run, &run->now, j, side) > 0.0)
+            fu_slide_flags_of(run->model, &run->now, j)->contact = side;
+    return model->slides[j].sticks && is_at_rest(run, j) ? try_to_stick(run, j) : FU_RUNNING;
 }
 
-/* A slide comes to its hard stop; it stays there where it would come back no farther than counts. */
+/* Lets a slide strike its hard stop, where it stays if it would come back by too little to count; returns a status. */
 static int strike(fu_run *run, int j, int side)
 {
     const fu_model *model = run->model;
     fu_state *now = &run->now;
     fu_slide_state slide_state;
     fu_slide_output slide;
-    now->contact[j] = side;
+    fu_slide_flags *flags = fu_slide_flags_of(run->model, now, j);
+    flags->contact = side;
     if (side * fu_slide_rate(model, now, j) > 0.0) {
-        now->mode[j] = FU_LOCKED;
-        now->locked_s[j] = now->s[j];
+        flags->mode = FU_LOCKED;
+        fu_slide_numbers_of(run->model, now, j)->locked_s = now->s[j];
         const double restitution = model->slides[j].stops[side > 0].restitution;
         fu_slide_now(model, now, j, &slide_state);
         if (fu_strike(model, now, &run->accelerator, model->slides[j].base.row, model->dim - 1,
@@ -165,23 +155,23 @@ static int strike(fu_run *run, int j, int side)
     fu_slide_outputs(model, now, j, now->acceleration, &run->accelerator, &slide);
     const double back = -side * slide.s_rate, push = side * slide.s_acceleration;
     if (is_at_rest(run, j) || back * back <= 2.0 * push * BOUNCE * fu_length(model, j)) {
-        now->contact[j] = side;
+        flags->contact = side;
         if (try_to_stick(run, j)) return FU_SINGULAR;
     }
-    find_slip_directions(run);
+    fu_couplings_take_velocities(run);
     return FU_RUNNING;
 }
 
-/* A slide that stands at an end of its cable goes on outwards; *what it does there. */
-int fu_reach_end(fu_run *run, int j, int side, int *what)
+/* Lets happen what follows where a slide that stands at an end of its cable goes on outwards; returns a status. */
+int fu_reach_end(fu_run *run, const fu_coupling *coupling, int side, const char **what)
 {
-    const fu_slide *slide = &run->model->slides[j];
-    fu_state *now = &run->now;
-    const int kind = slide->stops[side > 0].kind;
+    const fu_slide *slide = (const fu_slide *)coupling;
+    const int j = coupling->index, kind = slide->stops[side > 0].kind;
+    fu_slide_flags *flags = fu_slide_flags_of(run->model, &run->now, j);
     if (kind == FU_END_IS_OPEN) {
-        now->mode[j] = FU_LEFT;
-        now->slip_direction[j] = now->contact[j] = 0;
-        *what = FU_FLEW;
+        flags->mode = FU_LEFT;
+        flags->slip_direction = flags->contact = 0;
+        *what = "left";
         return FU_RUNNING;
     }
     if (kind != FU_END_IS_HARD || slide->drive >= 0) {
@@ -189,30 +179,32 @@ int fu_reach_end(fu_run *run, int j, int side, int *what)
         return FU_END_OF_CABLE;
     }
     const int last = is_at_rest(run, j) || slide->stops[side > 0].restitution > 0.0, status = strike(run, j, side);
-    *what = last && now->mode[j] == FU_LOCKED ? FU_RESTS : FU_STRUCK;
+    *what = last && flags->mode == FU_LOCKED ? "came to rest at the end" : "struck the end";
     return status;
 }
 
-/* What follows from a watch's passing to a side, and *what it is. */
-int fu_act(fu_run *run, const fu_watch *watch, int side, int *what)
+/* Lets a slide enter the buffer of one end, or leave it. */
+void fu_pass_buffer(fu_run *run, const fu_coupling *coupling, int end, int enters, const char **what)
 {
-    fu_state *now = &run->now;
-    const int j = watch->index;
-    *what = FU_NOTHING;
-    if (watch->kind == FU_WATCH_BUFFER) {
-        now->contact[j] = side > 0 ? (int)watch->value : 0;
-        *what = side > 0 ? FU_ENTERED : FU_CAME_OUT;
-        return FU_RUNNING;
-    }
-    if (now->mode[j] == FU_LOCKED) {
+    fu_slide_flags_of(run->model, &run->now, coupling->index)->contact = enters ? end : 0;
+    *what = enters ? "entered the buffer" : "left the buffer";
+}
+
+/* Lets a slide go that is locked by more than friction or its stop can take, or stick where it has come to rest; returns a
+ * status. */
+int fu_release_or_stick(fu_run *run, const fu_coupling *coupling, const char **what)
+{
+    const int j = coupling->index;
+    const fu_slide_flags *flags = fu_slide_flags_of(run->model, &run->now, j);
+    if (flags->mode == FU_LOCKED) {
         double pull;
-        excess(run, now, j, &pull);
-        *what = is_hard(run->model, j, now->contact[j]) ? FU_FREED : FU_BROKE_LOOSE;
+        excess(run, &run->now, j, &pull);
+        *what = is_hard(run->model, j, flags->contact) ? "left the end" : "broke loose";
         release(run, j, pull);
         return FU_RUNNING;
     }
-    if (now->mode[j] != FU_SLIDES || !run->model->slides[j].sticks) return FU_RUNNING;
+    if (flags->mode != FU_SLIDES || !run->model->slides[j].sticks) return FU_RUNNING;
     const int status = try_to_stick(run, j);
-    *what = now->mode[j] == FU_LOCKED ? FU_STUCK : FU_TURNED;
+    *what = flags->mode == FU_LOCKED ? "stuck" : "turned round";
     return status;
 }

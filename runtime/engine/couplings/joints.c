@@ -43,7 +43,7 @@ static void look(const fu_model *model, const fu_joint *joint, const fu_state *s
     }
 }
 
-/* J (rows x n) over coordinates from that over gap and turns */
+/* Makes J (rows x n) over coordinates from that over gap and turns. */
 static void over_coordinates(const joint_view *view, int rows, const double *by_moves, double *J)
 {
     const int n = view->n;
@@ -63,16 +63,18 @@ static int coordinates(const joint_view *view, int *at)
     return view->n;
 }
 
-/* whether the slide that it is on has left its cable */
-static int is_inactive(const fu_joint *joint, const fu_state *state)
+/* Returns whether the slide that a joint is on has left its cable. */
+int fu_joint_is_inactive(const fu_model *model, const fu_joint *joint, const fu_state *state)
 {
-    for (int e = 0; e < 2; ++e)
-        if (joint->ends[e].slide >= 0 && state->mode[joint->ends[e].slide] == FU_LEFT) return 1;
+    for (int e = 0; e < 2; ++e) {
+        const int slide = joint->ends[e].slide;
+        if (slide >= 0 && fu_slide_flags_of(model, state, slide)->mode == FU_LEFT) return 1;
+    }
     return 0;
 }
 
-/* phi, its derivatives J over the joint's coordinates, and their numbers for fu_add; returns how many they are */
-static int equations_of(const fu_model *model, const fu_joint *joint, const fu_state *state, double *phi, int *at, double *J)
+/* Makes phi and its derivatives J over the joint's coordinates, with the numbers of these for fu_add; returns how many they are. */
+int fu_joint_equations(const fu_model *model, const fu_joint *joint, const fu_state *state, double *phi, int *at, double *J)
 {
     double by_moves[6 * MOVES], K[MOVES * MOVES];
     const double *multipliers = state->forces + joint->base.force;
@@ -83,8 +85,8 @@ static int equations_of(const fu_model *model, const fu_joint *joint, const fu_s
     return coordinates(&view, at);
 }
 
-/* whether a slide, or any where `which` is -1, ties its rider's axes to the cable: their turn jumps where its curvature
- * does */
+/* Returns whether a slide, or any where `which` is -1, ties its rider's axes to the cable: their turn jumps where its curvature
+ * does. */
 int fu_ties_a_frame(const fu_model *model, int which)
 {
     for (int k = 0; k < model->n_couplings; ++k) {
@@ -98,12 +100,13 @@ int fu_ties_a_frame(const fu_model *model, int which)
     return 0;
 }
 
+/* Returns whether a joint is between two cables. */
 int fu_between_cables(const fu_joint *joint)
 {
     return joint->ends[0].cable >= 0 && joint->ends[1].cable >= 0;
 }
 
-/* the same with K, the derivative of J' multipliers */
+/* Makes J, and K, the derivative of J' multipliers, over the joint's coordinates, with their numbers; returns how many they are. */
 int fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, int *at, double *J, double *K)
 {
     const int rows = joint->kernel->rows, dim = model->dim, turns = dim == 3 ? 3 : 1;
@@ -140,7 +143,7 @@ static const fu_rows *rows_of_slide(const fu_model *model, const fu_joint *joint
     return &work->rows[model->slides[joint->ends[e].slide].base.row];
 }
 
-/* H and W over the joint's coordinates made those over the dofs: s of an attachment on a slide follows (eq 24, 31, 37). */
+/* Makes H and W over the joint's coordinates those over the dofs: s of an attachment on a slide follows (eq 24, 31, 37). */
 static void replace_s(const fu_model *model, const fu_joint *joint, const joint_view *view, const double *J,
                       const fu_accelerator *work, fu_rows *rows)
 {
@@ -161,7 +164,7 @@ static void replace_s(const fu_model *model, const fu_joint *joint, const joint_
         const int slide = joint->ends[e].slide;
         if (slide < 0) continue;
         const fu_rows *of = rows_of_slide(model, joint, e, work);
-        const fu_slide_state *slide_state = &work->slide_states[slide];
+        const fu_slide_state *slide_state = fu_slide_state_of(model, work, slide);
         const int s = (e ? view->n : view->at[0].n) - 1;
         rows->slide = slide;
         memcpy(rows->at + to, of->at, sizeof(int) * (size_t)of->n);
@@ -175,21 +178,23 @@ static void replace_s(const fu_model *model, const fu_joint *joint, const joint_
     }
 }
 
-/* H q'' = W, what is left of phi, and its rate at rest; s of an attachment on a slide follows (eq 24, 31, 37):
+/* Makes H q'' = W, what is left of phi, and its rate at rest; s of an attachment on a slide follows (eq 24, 31, 37):
  * H = C_q + C_s G, W = -Q_d - C_s (s'' - G q''). The rows of that slide are there. */
-static void constraint_rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work)
+void fu_joint_rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work)
 {
     const fu_joint *joint = (const fu_joint *)coupling;
-    const fu_slide_state *slide_states = work->slide_states;
     fu_rows *rows = &work->rows[coupling->row];
     const int m = joint->kernel->rows, dim = model->dim;
     double by_moves[6 * MOVES], K[MOVES * MOVES], J[6 * 2 * FU_ATTACHMENT_COORDINATES], s_rate[2], gap_rate[3];
     joint_view view;
-    if (is_inactive(joint, state)) {
+    if (fu_joint_is_inactive(model, joint, state)) {
         rows->n = rows->rows = 0;
         return;
     }
-    for (int e = 0; e < 2; ++e) s_rate[e] = joint->ends[e].slide >= 0 ? slide_states[joint->ends[e].slide].s_rate : 0.0;
+    for (int e = 0; e < 2; ++e) {
+        const int slide = joint->ends[e].slide;
+        s_rate[e] = slide >= 0 ? fu_slide_state_of(model, work, slide)->s_rate : 0.0;
+    }
     look(model, joint, state, s_rate, &view);
     const fu_attachment_state *one = &view.at[0], *two = &view.at[1];
     joint->kernel->force(view.gap, one->A, two->A, view.c, state->forces + joint->base.force, rows->C,
@@ -219,111 +224,18 @@ static void constraint_rows(const fu_model *model, const fu_coupling *coupling, 
         }
 }
 
-/* Whether an unknown that the joint touches moves: all do but s of a slide that does not slide, whose row says so. */
-static int moves(const fu_model *model, const fu_joint *joint, const fu_state *state, int at)
+/* Returns whether an unknown that the joint touches moves: all do but s of a slide that does not slide, whose row says so. */
+int fu_joint_moves(const fu_model *model, const fu_joint *joint, const fu_state *state, int at)
 {
     for (int e = 0; e < 2 && at >= model->n_dof; ++e) {
         const int slide = joint->ends[e].slide;
-        if (slide >= 0 && fu_extra(model, model->slides[slide].base.unknown) == at) return state->mode[slide] == FU_SLIDES;
+        if (slide >= 0 && fu_extra(model, model->slides[slide].base.unknown) == at)
+            return fu_slide_flags_of(model, state, slide)->mode == FU_SLIDES;
     }
     return 1;
 }
 
-static void residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, double *f,
-                     double *own)
-{
-    const fu_joint *joint = (const fu_joint *)coupling;
-    const fu_state *next = equations->next;
-    const double *multipliers = next->forces + coupling->force, scale = equations->weights.stiffness;
-    double phi[6], J[6 * 2 * FU_ATTACHMENT_COORDINATES];
-    int at[2 * FU_ATTACHMENT_COORDINATES];
-    if (is_inactive(joint, next)) {
-        for (int r = 0; r < joint->kernel->rows; ++r) own[coupling->unknown + r] = -scale * multipliers[r];
-        return;
-    }
-    const int n = equations_of(model, joint, next, phi, at, J);
-    for (int r = 0; r < joint->kernel->rows; ++r) {
-        if (joint->redundant_rows >> r & 1) phi[r] = 0.0;
-        own[coupling->unknown + r] = -fu_row_unit(equations->weights.inertia, coupling->scale[r]) * phi[r];
-        for (int i = 0; i < n; ++i) {
-            const double pull = J[r * n + i] * multipliers[r];
-            if (at[i] < model->n_dof) f[at[i]] += pull;
-            else if (moves(model, joint, next, at[i])) own[at[i] - model->n_dof] -= scale * pull;
-        }
-    }
-}
-
-/* Rows that are not in use: their multipliers are nil. */
-static void unit_rows(const fu_model *model, const fu_joint *joint, int which, double inertia, fu_system *system)
-{
-    const int first = fu_extra(model, joint->base.unknown);
-    for (int r = 0; r < joint->kernel->rows; ++r)
-        if (which >> r & 1) fu_add(model, system, first + r, first + r, fu_row_unit(inertia, joint->base.scale[r]));
-}
-
-/* Derivatives by the coordinates of both attachments, made those by psi. */
-static void turn_ends(const fu_model *model, const fu_joint *joint, const double *psi, double *rows, int n_rows, int n,
-                      int n_first)
-{
-    for (int e = 0; e < 2; ++e) fu_turn_attachment(model, &joint->ends[e], psi, rows, n_rows, n, e ? n_first : 0);
-}
-
-static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, fu_system *system)
-{
-    const fu_joint *joint = (const fu_joint *)coupling;
-    const fu_state *next = equations->next;
-    const fu_weights w = equations->weights;
-    const int rows = joint->kernel->rows, first = fu_extra(model, coupling->unknown);
-    double J[6 * 2 * FU_ATTACHMENT_COORDINATES], K[4 * FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
-    int at[2 * FU_ATTACHMENT_COORDINATES], unused[FU_ATTACHMENT_COORDINATES];
-    if (is_inactive(joint, next)) {
-        unit_rows(model, joint, ~0, w.inertia, system);
-        return;
-    }
-    const int n = fu_joint_tangent(model, joint, next, at, J, K);
-    const int n_first = fu_attachment_coordinates(model, &joint->ends[0], next, unused);
-    for (int r = 0; r < rows; ++r)
-        if (joint->redundant_rows >> r & 1) memset(J + r * n, 0, sizeof(double) * (size_t)n);
-    unit_rows(model, joint, joint->redundant_rows, w.inertia, system);
-    for (int r = 0; r < rows; ++r)
-        for (int i = 0; i < n; ++i)
-            if (moves(model, joint, next, at[i]))
-                fu_add(model, system, at[i], first + r, fu_row_unit(w.inertia, coupling->scale[r]) * J[r * n + i]);
-    turn_ends(model, joint, equations->psi, J, rows, n, n_first);
-    turn_ends(model, joint, equations->psi, K, n, n, n_first);
-    for (int i = 0; i < n; ++i) {
-        for (int r = 0; r < rows; ++r)
-            fu_add(model, system, first + r, at[i], fu_row_unit(w.inertia, coupling->scale[r]) * J[r * n + i]);
-        if (!moves(model, joint, next, at[i])) continue;
-        for (int m = 0; m < n; ++m) {
-            /* what is between two cables would widen the band: Newton converges without */
-            if (K[i * n + m] == 0.0 || (fu_between_cables(joint) && (i < n_first) != (m < n_first))) continue;
-            fu_add(model, system, at[i], at[m], w.stiffness * K[i * n + m]);
-        }
-    }
-}
-
-static void gaps(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double *phi)
-{
-    double J[6 * 2 * FU_ATTACHMENT_COORDINATES];
-    int at[2 * FU_ATTACHMENT_COORDINATES];
-    equations_of(model, (const fu_joint *)coupling, state, phi, at, J);
-}
-
-static int may_start_open(const fu_coupling *coupling, const fu_state *state)
-{
-    (void)coupling, (void)state;
-    return 1;
-}
-
-static void take_forces(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, fu_state *state)
-{
-    (void)model;
-    memcpy(state->forces + coupling->force, work->multipliers + coupling->multiplier,
-           sizeof(double) * (size_t)coupling->n_forces);
-}
-
-/* Force and moment of the joint on its second attachment by these multipliers. */
+/* Makes the force and moment of the joint on its second attachment by these multipliers. */
 void fu_joint_outputs(const fu_model *model, const fu_joint *joint, const fu_state *state, const double *multipliers,
                       fu_joint_output *out)
 {
@@ -331,7 +243,7 @@ void fu_joint_outputs(const fu_model *model, const fu_joint *joint, const fu_sta
     double phi[6], by_moves[6 * MOVES], K[MOVES * MOVES];
     joint_view view;
     *out = (fu_joint_output){0};
-    if (is_inactive(joint, state)) return;
+    if (fu_joint_is_inactive(model, joint, state)) return;
     look(model, joint, state, 0, &view);
     joint->kernel->force(view.gap, view.at[0].A, view.at[1].A, view.c, multipliers, phi, by_moves, K);
     for (int r = 0; r < joint->kernel->rows; ++r) {
@@ -341,23 +253,3 @@ void fu_joint_outputs(const fu_model *model, const fu_joint *joint, const fu_sta
         for (int d = 0; d < turns; ++d) out->moment[3 - turns + d] -= J[dim + turns + d] * multipliers[r];
     }
 }
-
-static void outputs(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *acceleration,
-                    const fu_accelerator *work, double *out)
-{
-    (void)acceleration;
-    fu_joint_outputs(model, (const fu_joint *)coupling, state, work->multipliers + coupling->multiplier,
-                     (fu_joint_output *)out);
-}
-
-const fu_coupling_type fu_joint_type = {
-    .name = "joint",
-    .n_outputs = (int)(sizeof(fu_joint_output) / sizeof(double)),
-    .residual = residual,
-    .tangent = tangent,
-    .rows = constraint_rows,
-    .take_forces = take_forces,
-    .outputs = outputs,
-    .gaps = gaps,
-    .may_start_open = may_start_open,
-};

@@ -3,7 +3,8 @@
 
 #include <string.h>
 
-static const fu_coupling_type *const types[] = {&fu_load_type, &fu_slide_type, &fu_joint_type, &fu_point_force_type};
+static const fu_coupling_type *const types[] = {&fu_dead_load_type, &fu_load_type, &fu_slide_type, &fu_joint_type,
+                                                &fu_point_force_type};
 
 const fu_coupling_type *fu_coupling_type_of(const char *name)
 {

@@ -3,17 +3,18 @@
 
 #include <string.h>
 
+/* Returns the value of a signal, 1 where there is none. */
 static double scale_at(const fu_model *model, int signal, double t)
 {
     return signal < 0 ? 1.0 : fu_signal_at(&model->signals[signal], t, 0, 0);
 }
 
-/* A load on a point of a modal body, as `generalised` below; what follows turns with the section there. */
-static int on_modes(const fu_model *model, const fu_load *load, const double *q, double *g, double *K)
+/* Does what `generalised` does, for a load c on a point of a modal body; what follows turns with the section there. */
+static int on_modes(const fu_model *model, const fu_load *load, const double *c, const double *q, double *g, double *K)
 {
     const fu_body *body = &model->bodies[load->on];
     const int dim = model->dim, turns = dim == 3 ? 3 : 1, n = fu_body_dofs(body);
-    const double *b = q + body->configuration, *c = load->c;
+    const double *b = q + body->configuration;
     double P[3 * FU_ATTACHMENT_COORDINATES], T[3 * FU_ATTACHMENT_COORDINATES], f[3] = {0.0}, m[3] = {0.0};
     fu_modal_point at;
     if (load->kind == FU_BODY_FOLLOWER) {
@@ -32,27 +33,48 @@ static int on_modes(const fu_model *model, const fu_load *load, const double *q,
     return n;
 }
 
-/* Generalised force g of a load at unit signal, its derivative K by the dofs (row by row); returns their number, and the
- * first dof. On a body: translation of the force c, rotation of its moment about the mass centre. */
+/* Makes the generalised force g of the part of a load that acts, at unit signal, and its derivative K by the dofs (row by row);
+ * returns their number, and the first dof. On a body: translation of the force c, rotation of its moment about the mass centre. */
 static int generalised(const fu_model *model, const fu_load *load, const double *q, double *g, double *K, int *first)
 {
+    double c[3];
+    for (int d = 0; d < 3; ++d) c[d] = model->load_fraction * load->c[d];
     if (load->kind == FU_CABLE_FOLLOWER || load->kind == FU_CABLE_MOMENT) {
         const fu_cable *cable = &model->cables[load->on];
         *first = cable->first + load->element * cable->per_node;
         (load->kind == FU_CABLE_MOMENT ? cable->kernel->moment : cable->kernel->follower_force)(
-            cable->length, load->x, q + *first, load->c, g, K);
+            cable->length, load->x, q + *first, c, g, K);
         return cable->coordinates;
     }
     const fu_body *body = &model->bodies[load->on];
     const fu_body_kernels *kernel = body->kernel;
-    const double *b = q + body->configuration, *c = load->c;
+    const double *b = q + body->configuration;
     *first = body->dof;
-    if (body->modes) return on_modes(model, load, q, g, K);
+    if (body->modes) return on_modes(model, load, c, q, g, K);
     if (load->kind == FU_BODY_FORCE) kernel->force(b, load->u, c, g, K);
     else if (load->kind == FU_BODY_FOLLOWER) kernel->follower_force(b, load->u, c, g, K);
     else kernel->moment(b, c + (kernel->dim == 2 ? 2 : 0), g, K);
     return kernel->velocity;
 }
+
+static void dead_force(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f)
+{
+    const fu_dead_load *load = (const fu_dead_load *)coupling;
+    const double scale = scale_at(model, load->signal, t);
+    (void)q;
+    for (int i = 0; i < load->n; ++i) f[load->dofs[i]] -= scale * (model->load_fraction * load->values[i]);
+}
+
+static const fu_field dead_fields[] = {
+    FU_FIELD(fu_dead_load, signal, FU_INTEGER, 0),
+    FU_FIELD(fu_dead_load, n, FU_INTEGER, 0),
+    FU_FIELD(fu_dead_load, dofs, FU_INTEGERS, 0),
+    FU_FIELD(fu_dead_load, values, FU_REALS, 0),
+    {0},
+};
+
+const fu_coupling_type fu_dead_load_type = {
+    .name = "dead load", .size = sizeof(fu_dead_load), .fields = dead_fields, .external_force = dead_force};
 
 static void external_force(const fu_model *model, const fu_coupling *coupling, double t, const double *q, double *f)
 {
@@ -64,7 +86,7 @@ static void external_force(const fu_model *model, const fu_coupling *coupling, d
     for (int i = 0; i < n; ++i) f[first + i] -= scale * g[i];
 }
 
-/* system -= stiffness times the load's derivatives, by psi where that is given */
+/* Subtracts stiffness times the load's derivatives from a system, by psi where that is given. */
 static void matrix(const fu_model *model, const fu_load *load, double t, const double *q, const double *psi,
                    double stiffness, fu_system *system)
 {
@@ -90,23 +112,26 @@ static void step_tangent(const fu_model *model, const fu_coupling *coupling, con
     matrix(model, (const fu_load *)coupling, at->middle->t, at->middle->q, 0, at->weights.stiffness, system);
 }
 
+static const char *const kinds[] = {"cable_follower", "cable_moment", "body_force", "body_follower", "body_moment", 0};
+
+static const fu_field fields[] = {
+    FU_FIELD(fu_load, kind, FU_WORD, kinds),
+    FU_FIELD(fu_load, signal, FU_INTEGER, 0),
+    FU_FIELD(fu_load, on, FU_INTEGER, 0),
+    FU_FIELD(fu_load, element, FU_INTEGER, 0),
+    FU_FIELD(fu_load, x, FU_REAL, 0),
+    FU_FIELD_ARRAY(fu_load, u, FU_REAL),
+    FU_FIELD_ARRAY(fu_load, c, FU_REAL),
+    FU_FIELD(fu_load, spot, FU_MODAL_POINT, 0),
+    {0},
+};
+
 const fu_coupling_type fu_load_type = {
-    .name = "load", .external_force = external_force, .tangent = tangent, .step_tangent = step_tangent};
+    .name = "load", .size = sizeof(fu_load), .fields = fields, .external_force = external_force, .tangent = tangent, .step_tangent = step_tangent};
 
-/* f -= loads other than gravity */
-void fu_loads(const fu_model *model, double t, const double *q, double *f)
-{
-    for (int k = 0; k < model->n_dead_loads; ++k) {
-        const fu_dead_load *load = &model->dead_loads[k];
-        const double scale = scale_at(model, load->signal, t);
-        for (int i = load->first; i < load->first + load->n; ++i) f[model->dead_dof[i]] -= scale * model->dead_value[i];
-    }
-    fu_coupling_external_forces(model, t, q, f);
-}
-
-/* f -= gravity and loads */
+/* Subtracts gravity and loads from f. */
 void fu_external_forces(const fu_model *model, double t, const double *q, double *f)
 {
     for (int i = 0; i < model->n_dof; ++i) f[i] -= model->gravity[i];
-    fu_loads(model, t, q, f);
+    fu_coupling_external_forces(model, t, q, f);
 }

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-/* Position and velocity of an attachment's point, and how it moves with its coordinates; returns its first dof. */
+/* Makes position and velocity of an attachment's point, and how it moves with its coordinates; returns its first dof. */
 static int point(const fu_model *model, const fu_attachment *on, const double *q, const double *v, fu_attachment_state *at)
 {
     const fu_state state = {.q = (double *)q, .v = (double *)v};
@@ -13,7 +13,7 @@ static int point(const fu_model *model, const fu_attachment *on, const double *q
     return at->n ? at->at[0] : 0;
 }
 
-/* The gap between the points, and its rate. */
+/* Makes the gap between the points, and its rate. */
 static void gap_of(const fu_model *model, const fu_point_force *between, const double *q, const double *v, double gap[3],
                    double rate[3])
 {
@@ -25,7 +25,7 @@ static void gap_of(const fu_model *model, const fu_point_force *between, const d
     }
 }
 
-/* The force on the first point by the law. */
+/* Makes the force on the first point by the law. */
 static void force_at(const fu_model *model, const fu_coupling *coupling, const fu_state *state, double force[3])
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
@@ -34,7 +34,7 @@ static void force_at(const fu_model *model, const fu_coupling *coupling, const f
     between->law->force(between->parameters, gap, rate, force);
 }
 
-/* The force over a step, and the power that it dissipates. */
+/* Makes the force over a step; returns the power that it dissipates, W. */
 static double step_force(const fu_model *model, const fu_coupling *coupling, const fu_equations *at, double force[3])
 {
     const fu_point_force *between = (const fu_point_force *)coupling;
@@ -45,14 +45,14 @@ static double step_force(const fu_model *model, const fu_coupling *coupling, con
     return power;
 }
 
-/* f += P' force of one end */
+/* Adds P' force of one attachment to f. */
 static void add_force(int dim, int first, int e, const fu_attachment_state *at, const double *force, double *f)
 {
     for (int d = 0; d < dim; ++d)
         for (int i = 0; i < at->n; ++i) f[first + i] += (e ? 1.0 : -1.0) * at->P[d * at->n + i] * force[d];
 }
 
-/* f += what a force on the first point, and its opposite on the second, puts on the left of the equations of motion */
+/* Adds what a force on the first point, and its opposite on the second, puts on the left of the equations of motion. */
 static void add_forces(const fu_model *model, const fu_point_force *between, const double *q, const double *force, double *f)
 {
     for (int e = 0; e < 2; ++e) {
@@ -62,7 +62,7 @@ static void add_forces(const fu_model *model, const fu_point_force *between, con
     }
 }
 
-/* The same over a step: what the force does is its work on the gap's change. */
+/* Does the same over a step: what the force does is its work on the gap's change. */
 static void add_step_forces(const fu_model *model, const fu_point_force *between, const fu_equations *step,
                             const double *force, double *f)
 {
@@ -79,7 +79,7 @@ static void add_step_forces(const fu_model *model, const fu_point_force *between
     }
 }
 
-/* own of the rows: the unknown forces less those of the law */
+/* Writes minus the residuals of the own unknowns: the forces less those of the law. */
 static void own_rows(const fu_coupling *coupling, const fu_equations *at, const double *force, double *own)
 {
     const double *unknown = at->next->forces + coupling->force;
@@ -105,8 +105,8 @@ static void step_residual(const fu_model *model, const fu_coupling *coupling, co
     own_rows(coupling, at, force, own);
 }
 
-/* On a body the point's derivatives P change with its coordinates. `turned` = P by the unknowns; `by_place`: derivatives of
- * the point's velocity by them, at fixed rates; K: of P' own. */
+/* Makes, for an attachment to a body, whose point's derivatives P change with its coordinates: `turned`, P by the unknowns;
+ * `by_place`, the derivatives of the point's velocity by them at fixed rates; K, those of P' own. */
 static void turning(const fu_model *model, const fu_attachment *on, const fu_state *state, const double *own,
                     const double *psi, const fu_attachment_state *at, double *turned, double *by_place, double *K)
 {
@@ -128,7 +128,7 @@ static void turning(const fu_model *model, const fu_attachment *on, const fu_sta
     fu_turn_columns(body->kernel, K, n, n, 0, turn);
 }
 
-/* Derivatives of the equations at a state; own: the forces; psi as in fu_equations. */
+/* Adds the derivatives of the equations at a state to a system; own: the forces; psi as in fu_equations. */
 static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *own,
                    const double *psi, fu_weights weights, fu_system *system)
 {
@@ -222,7 +222,16 @@ static double dissipation(const fu_model *model, const fu_coupling *coupling, co
     return power;
 }
 
+static const char *const role[] = {"point_law", 0};
+static const fu_field fields[] = {
+    FU_FIELD(fu_point_force, law, FU_KERNELS, role),
+    FU_FIELD(fu_point_force, parameters, FU_REALS, 0),
+    FU_FIELD_ARRAY(fu_point_force, ends, FU_ATTACHMENT),
+    FU_FIELD(fu_point_force, dim, FU_INTEGER, 0),
+    {0},
+};
+
 const fu_coupling_type fu_point_force_type = {
-    .name = "point_force", .n_outputs = 3, .residual = residual, .tangent = tangent, .step_residual = step_residual,
+    .name = "point_force", .size = sizeof(fu_point_force), .fields = fields, .n_outputs = 3, .residual = residual, .tangent = tangent, .step_residual = step_residual,
     .step_tangent = step_tangent, .step_dissipation = step_dissipation, .force = own_force, .take_forces = take_forces,
     .outputs = outputs, .energy = energy, .dissipation = dissipation};

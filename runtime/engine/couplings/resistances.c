@@ -9,27 +9,28 @@
 
 #include <string.h>
 
-#define TRIAL 0.1          /* of the change that the law asks for: the first step, lest it turn the normal force round */
-#define STEEP 0.1          /* slopes below have no secant that is worth it */
+#define TRIAL 0.1          /* of the change that the law asks for: the first step of R, lest it turn the normal force round */
+#define STEEP 0.1          /* slope of the secant below which R takes the change that its law asks for */
 #define LEAST_NORMAL 1e-30 /* N: of a normal force of zero there is no direction */
 
-/* whether R acts on a slide as it is */
+/* Returns whether R acts on a slide as it is. */
 static int has_resistance(const fu_model *model, const fu_state *state, int j)
 {
     const fu_slide *slide = &model->slides[j];
-    return slide->resistance && (state->mode[j] == FU_SLIDES || (state->mode[j] == FU_LOCKED && slide->drive >= 0));
+    const fu_slide_flags *flags = fu_slide_flags_of(model, state, j);
+    return slide->resistance && (flags->mode == FU_SLIDES || (flags->mode == FU_LOCKED && slide->drive >= 0));
 }
 
-/* direction that friction is against, 0 where it rises smoothly with the speed, and of a drive at rest */
+/* Returns the direction that friction is against, 0 where it rises smoothly with the speed, and of a drive at rest. */
 static double direction_of(const fu_model *model, const fu_state *state, int j)
 {
     double rate, second;
-    if (model->slides[j].drive < 0) return state->slip_direction[j];
+    if (model->slides[j].drive < 0) return fu_slide_flags_of(model, state, j)->slip_direction;
     fu_slide_locked_s(model, state, j, &rate, &second);
     return model->slides[j].sticks ? (rate > 0.0) - (rate < 0.0) : 0.0;
 }
 
-/* how far a slide is in the buffer of one side, m; negative outside */
+/* Returns how far a slide is in the buffer of one side, m; negative outside. */
 double fu_compression(const fu_model *model, const fu_state *state, int j, int side)
 {
     const fu_slide *slide = &model->slides[j];
@@ -37,11 +38,12 @@ double fu_compression(const fu_model *model, const fu_state *state, int j, int s
     return side > 0 ? state->s[j] - (fu_length(model, j) - length) : length - state->s[j];
 }
 
-/* the buffer that a slide presses, null where it does not */
+/* Returns the buffer that a slide presses, null where there is none. */
 static const fu_end_stop *pressed(const fu_model *model, const fu_state *state, int j)
 {
-    const fu_end_stop *stop = &model->slides[j].stops[state->contact[j] > 0];
-    return state->contact[j] && stop->kind == FU_END_IS_BUFFERED ? stop : 0;
+    const fu_slide_flags *flags = fu_slide_flags_of(model, state, j);
+    const fu_end_stop *stop = &model->slides[j].stops[flags->contact > 0];
+    return flags->contact && stop->kind == FU_END_IS_BUFFERED ? stop : 0;
 }
 
 void fu_resistance_at(const fu_model *model, const fu_state *state, int j, const double *t, const double *u, const double *f,
@@ -49,7 +51,7 @@ void fu_resistance_at(const fu_model *model, const fu_state *state, int j, const
 {
     const fu_slide *slide = &model->slides[j];
     const fu_end_stop *stop = pressed(model, state, j);
-    const int side = state->contact[j];
+    const int side = fu_slide_flags_of(model, state, j)->contact;
     const double friction[5] = {slide->friction, slide->viscous, slide->velocity, direction_of(model, state, j),
                                 LEAST_NORMAL};
     const double buffer[4] = {stop ? stop->stiffness : 0.0, stop ? stop->damping : 0.0,
@@ -60,12 +62,12 @@ void fu_resistance_at(const fu_model *model, const fu_state *state, int j, const
     resistance->by_s = side * by_x;
 }
 
-/* W that go to heat: all of R but the buffer's spring, which keeps what it takes */
+/* Returns the power that goes to heat, W: that of all of R but the buffer's spring, which keeps what it takes. */
 static double power_of(const fu_model *model, const fu_state *state, int j, const double *t, const double *u,
                        const double *f)
 {
     const fu_end_stop *stop = pressed(model, state, j);
-    const int side = state->contact[j];
+    const int side = fu_slide_flags_of(model, state, j)->contact;
     const double spring = stop ? -side * stop->stiffness * fu_compression(model, state, j, side) : 0.0;
     double along = 0.0, square = 0.0;
     fu_resistance resistance;
@@ -77,14 +79,15 @@ static double power_of(const fu_model *model, const fu_state *state, int j, cons
     return -(resistance.R - spring) * along / square;
 }
 
-/* J in the springs of the buffers that a slide is in; those that do not touch it alone, or all */
+/* Returns the energy in the springs of the buffers that a slide is in, J: of those alone that it does not touch, or of all. */
 static double energy_in_buffers(const fu_model *model, const fu_state *state, int j, int all)
 {
     double energy = 0.0;
-    for (int side = -1; side <= 1 && state->mode[j] != FU_LEFT; side += 2) {
+    const fu_slide_flags *flags = fu_slide_flags_of(model, state, j);
+    for (int side = -1; side <= 1 && flags->mode != FU_LEFT; side += 2) {
         const fu_end_stop *stop = &model->slides[j].stops[side > 0];
         const double x = fu_compression(model, state, j, side);
-        if (stop->kind == FU_END_IS_BUFFERED && x > 0.0 && (all || state->contact[j] != side))
+        if (stop->kind == FU_END_IS_BUFFERED && x > 0.0 && (all || flags->contact != side))
             energy += 0.5 * stop->stiffness * x * x;
     }
     return energy;
@@ -106,13 +109,14 @@ void fu_touch_buffers(const fu_model *model, const fu_coupling *coupling, fu_sta
 {
     const int j = coupling->index;
     if (!model->slides[j].resistance) return;
-    state->contact[j] = 0;
+    fu_slide_flags *flags = fu_slide_flags_of(model, state, j);
+    flags->contact = 0;
     for (int side = -1; side <= 1; side += 2)
         if (model->slides[j].stops[side > 0].kind == FU_END_IS_BUFFERED && fu_compression(model, state, j, side) > 0.0)
-            state->contact[j] = side;
+            flags->contact = side;
 }
 
-/* t and u from the derivatives of phi = r - p by the slide's coordinates and s */
+/* Makes t and u from the derivatives of phi = r - p by the slide's coordinates and s. */
 void fu_slide_motion(const fu_model *model, const fu_state *state, int j, const double *J, double *t, double *u)
 {
     int at[FU_SLIDE_COORDINATES + 1];
@@ -124,7 +128,7 @@ void fu_slide_motion(const fu_model *model, const fu_state *state, int j, const 
     }
 }
 
-/* Derivatives of R by the slide's coordinates and s, and by the rates of the former, at a fixed force: those of t and u are
+/* Makes the derivatives of R by the slide's coordinates and s, and by the rates of the former, at a fixed force: those of t and u are
  * second derivatives of phi, of which fu_slide_tangent has those along a vector. */
 void fu_resistance_rows(const fu_model *model, const fu_state *state, int j, const double *J, const fu_resistance *resistance,
                    double *by_place, double *by_rate)
@@ -144,9 +148,7 @@ void fu_resistance_rows(const fu_model *model, const fu_state *state, int j, con
     by_rate[s] = 0.0;
 }
 
-/* In eq 38 */
-
-/* r_x, and the velocity along it, of a slide on its cable */
+/* Makes t = r_x, and u, the velocity along it, of a slide in eq 38. */
 static void along(const fu_model *model, const fu_slide_state *slide_state, double *t, double *u)
 {
     const int dim = model->dim;
@@ -159,7 +161,7 @@ static void along(const fu_model *model, const fu_slide_state *slide_state, doub
     }
 }
 
-/* By how much R should change where its law asks for `change`: by the secant of the last sweep, as what friction presses on
+/* Returns by how much R should change where its law asks for `change`: by the secant of the last sweep, as what friction presses on
  * the cable or takes off it depends on R almost linearly. */
 static double secant_step(fu_slide_state *last, double change)
 {
@@ -173,13 +175,13 @@ double fu_resistance_react(const fu_model *model, const fu_coupling *coupling, c
                            fu_accelerator *work)
 {
     const int j = coupling->index, dim = model->dim;
-    fu_slide_state *slide_state = &work->slide_states[j];
+    fu_slide_state *slide_state = fu_slide_state_of(model, work, j);
     fu_rows *rows = &work->rows[coupling->row];
     double t[3], u[3], f[3], size = 0.0;
     fu_resistance resistance;
     slide_state->power = 0.0;
     if (!lambda) slide_state->R = slide_state->step = 0.0;
-    if (!model->slides[j].resistance || state->mode[j] != FU_SLIDES) return 0.0;
+    if (!model->slides[j].resistance || fu_slide_flags_of(model, state, j)->mode != FU_SLIDES) return 0.0;
     along(model, slide_state, t, u);
     if (lambda) fu_slide_force(model, work, j, lambda, f);
     else memcpy(f, state->forces + coupling->force, sizeof(double) * (size_t)dim);
@@ -195,12 +197,12 @@ double fu_resistance_react(const fu_model *model, const fu_coupling *coupling, c
     return change != 0.0 ? fabs(change) / size : 0.0;
 }
 
-/* Of a slide that is driven: of the force along the cable, the part that its drive does not give; and what it takes. */
+/* Finds, of a slide that is driven, the part of the force along the cable that its drive does not give, and what it takes. */
 void fu_resistance_reacted(const fu_model *model, const fu_coupling *coupling, const fu_state *state, const double *lambda,
                            fu_accelerator *work)
 {
     const int j = coupling->index;
-    fu_slide_state *slide_state = &work->slide_states[j];
+    fu_slide_state *slide_state = fu_slide_state_of(model, work, j);
     double t[3], u[3], f[3];
     fu_resistance resistance;
     slide_state->driven_R = 0.0;
@@ -220,7 +222,7 @@ double fu_resistance_dissipation(const fu_model *model, const fu_coupling *coupl
     const double *f = state->forces + coupling->force;
     double J[3 * (FU_SLIDE_COORDINATES + 1)], K[(FU_SLIDE_COORDINATES + 1) * (FU_SLIDE_COORDINATES + 1)], t[3], u[3];
     if (!model->slides[j].resistance) return 0.0;
-    if (work) return work->slide_states[j].power;
+    if (work) return fu_slide_state_of(model, work, j)->power;
     if (!has_resistance(model, state, j)) return 0.0;
     fu_slide_tangent(model, state, j, f, J, K);
     fu_slide_motion(model, state, j, J, t, u);
@@ -235,7 +237,7 @@ double fu_resistance_kink(const fu_model *model, const fu_coupling *coupling, co
 {
     const fu_slide *slide = (const fu_slide *)coupling;
     double mean[2] = {0.0, 0.0}, all = 0.0;
-    if (!slide->resistance || state->mode[coupling->index] != FU_SLIDES) return 0.0;
+    if (!slide->resistance || fu_slide_flags_of(model, state, coupling->index)->mode != FU_SLIDES) return 0.0;
     for (int k = 0; k < n; ++k) {
         const double *N = multipliers + (long)k * model->n_multipliers + coupling->multiplier;
         const double normal[2] = {N[0], model->dim == 3 ? N[1] : 0.0};

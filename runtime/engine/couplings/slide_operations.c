@@ -3,9 +3,12 @@
  */
 #include "engine.h"
 
+#include "workspace.h"
+
 #include <string.h>
 
-/* t = r_x and u, as resistances.c has them, from the derivatives J of phi by the coordinates and s; and R by the own force. */
+/* Makes t = r_x and u, as resistances.c has them, from the derivatives J of phi by the coordinates and s, and R by the own
+ * force. */
 static void resistance_of(const fu_model *model, const fu_state *state, int j, const double *J, fu_resistance *resistance)
 {
     double t[3], u[3];
@@ -13,7 +16,7 @@ static void resistance_of(const fu_model *model, const fu_state *state, int j, c
     fu_resistance_at(model, state, j, t, u, state->forces + model->slides[j].base.force, resistance);
 }
 
-/* R of a slide in a Newton system */
+/* Returns R of a slide in a Newton system. */
 static double resisted(const fu_model *model, const fu_state *state, int j)
 {
     double J[3 * (FU_SLIDE_COORDINATES + 1)], K[(FU_SLIDE_COORDINATES + 1) * (FU_SLIDE_COORDINATES + 1)];
@@ -28,7 +31,7 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
 {
     const fu_slide *slide = (const fu_slide *)coupling;
     const fu_state *next = equations->next;
-    const int j = coupling->index, mode = next->mode[j];
+    const int j = coupling->index, mode = fu_slide_flags_of(model, next, j)->mode;
     const double scale = equations->weights.stiffness, unit = fu_row_unit(equations->weights.inertia, slide->base.scale[0]);
     double phi[3], g[FU_SLIDE_COORDINATES + 1], rate, second;
     int at[FU_SLIDE_COORDINATES + 1];
@@ -43,7 +46,7 @@ static void residual(const fu_model *model, const fu_coupling *coupling, const f
         own[1 + d] = mode == FU_LEFT ? -scale * next->forces[coupling->force + d] : -unit * phi[d];
 }
 
-/* What R adds to the row of s; J: derivatives of phi by the coordinates themselves. */
+/* Adds what R adds to the row of s; J: derivatives of phi by the coordinates themselves. */
 static void resistance_matrix(const fu_model *model, int j, const fu_equations *equations, const double *J, fu_system *system)
 {
     const fu_slide *slide = &model->slides[j];
@@ -66,7 +69,9 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     const fu_slide *slide = (const fu_slide *)coupling;
     const fu_state *next = equations->next;
     const fu_weights w = equations->weights;
-    const int j = coupling->index, slides = next->mode[j] == FU_SLIDES, element = model->cables[slide->cable].coordinates;
+    const int j = coupling->index, element = model->cables[slide->cable].coordinates;
+    const fu_slide_flags *flags = fu_slide_flags_of(model, next, j);
+    const int slides = flags->mode == FU_SLIDES;
     const double mass = fu_row_unit(w.inertia, slide->base.scale[0]);
     double J[3 * (FU_SLIDE_COORDINATES + 1)], K[(FU_SLIDE_COORDINATES + 1) * (FU_SLIDE_COORDINATES + 1)];
     int at[FU_SLIDE_COORDINATES + 1];
@@ -82,7 +87,7 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     if (!slides) fu_add(model, system, row, row, mass);
     for (int i = 0; i < n; ++i) {
         for (int d = 0; d < dim; ++d) {
-            if (next->mode[j] != FU_LEFT) fu_add(model, system, force + d, at[i], mass * J[d * n + i]);
+            if (flags->mode != FU_LEFT) fu_add(model, system, force + d, at[i], mass * J[d * n + i]);
             else if (i == 0) fu_add(model, system, force + d, force + d, mass);
         }
         if (i == s && !slides) continue;
@@ -91,77 +96,10 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
     }
 }
 
-/* Over a step: the constraint at its end, and its discrete gradient G with G psi = phi_next - phi_now. */
-
-static const double *rider_at(const fu_model *model, const fu_state *state, const fu_slide *slide)
-{
-    return state->q + model->bodies[slide->rider.body].configuration;
-}
-
-static void discrete_gradient(const fu_model *model, const fu_coupling *coupling, const fu_equations *step, int first,
-                              double *G)
-{
-    const fu_slide *slide = (const fu_slide *)coupling;
-    const fu_state *now = step->now, *next = step->next;
-    const int j = coupling->index;
-    const double start = fu_element_start(model, j, now->element[j]);
-    slide->kernel->discrete_gradient(model->cables[slide->cable].length, now->s[j] - start, next->s[j] - start,
-                                     now->q + first, next->q + first, rider_at(model, now, slide),
-                                     rider_at(model, next, slide), G);
-}
-
-static void step_residual(const fu_model *model, const fu_coupling *coupling, const fu_equations *step, double *f,
-                          double *own)
-{
-    const fu_slide *slide = (const fu_slide *)coupling;
-    const fu_state *next = step->next;
-    const int j = coupling->index, s = slide->kernel->coordinates, n = s + 1;
-    const double start = fu_element_start(model, j, step->now->element[j]), *force = next->forces + coupling->force;
-    double G[3 * FU_MAX_COORDINATES], phi[3], unused[FU_MAX_COORDINATES], along = 0.0;
-    int at[FU_SLIDE_COORDINATES + 1];
-    fu_slide_coordinates(model, next, j, at);
-    discrete_gradient(model, coupling, step, at[0], G);
-    slide->kernel->residual(model->cables[slide->cable].length, next->s[j] - start, next->q + at[0],
-                            rider_at(model, next, slide), slide->rider.u, force, phi, unused);
-    own += coupling->unknown;
-    for (int d = 0; d < slide->kernel->dim; ++d) {
-        for (int i = 0; i < s; ++i) f[at[i]] += force[d] * G[d * n + i];
-        along += force[d] * G[d * n + s];
-        own[1 + d] = -slide->base.scale[0] * phi[d];
-    }
-    own[0] = -step->weights.stiffness * along;
-}
-
-/* Rows and columns: the constraint at the end of the step, its discrete gradient, half the derivative of the force there. */
-static void step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *step, fu_system *system)
-{
-    const fu_slide *slide = (const fu_slide *)coupling;
-    const fu_state *next = step->next;
-    const fu_body *rider = &model->bodies[slide->rider.body];
-    const int j = coupling->index, s = slide->kernel->coordinates, n = s + 1, dim = slide->kernel->dim;
-    const int turns = model->cables[slide->cable].coordinates;
-    const double start = fu_element_start(model, j, step->now->element[j]);
-    double G[3 * FU_MAX_COORDINATES], J[3 * FU_MAX_COORDINATES], K[FU_MAX_COORDINATES * FU_MAX_COORDINATES];
-    int at[FU_SLIDE_COORDINATES + 1];
-    fu_slide_coordinates(model, next, j, at);
-    discrete_gradient(model, coupling, step, at[0], G);
-    slide->kernel->tangent(model->cables[slide->cable].length, next->s[j] - start, next->q + at[0],
-                           rider_at(model, next, slide), slide->rider.u, next->forces + coupling->force, J, K);
-    fu_cayley_columns(rider->kernel, J, dim, n, turns, step->psi + rider->dof);
-    fu_cayley_columns(rider->kernel, K, n, n, turns, step->psi + rider->dof);
-    for (int i = 0; i < n; ++i) {
-        for (int d = 0; d < dim; ++d) {
-            fu_add(model, system, at[i], at[s] + 1 + d, slide->base.scale[0] * G[d * n + i]);
-            fu_add(model, system, at[s] + 1 + d, at[i], slide->base.scale[0] * J[d * n + i]);
-        }
-        for (int k = 0; k < n; ++k)
-            if (K[i * n + k] != 0.0) fu_add(model, system, at[i], at[k], step->weights.stiffness * K[i * n + k]);
-    }
-}
-
 static void rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work)
 {
-    fu_slide_terms(model, state, coupling->index, &work->rows[coupling->row], &work->slide_states[coupling->index]);
+    const int j = coupling->index;
+    fu_slide_terms(model, state, j, &work->rows[coupling->row], fu_slide_state_of(model, work, j));
 }
 
 void fu_slide_now(const fu_model *model, const fu_state *state, int j, fu_slide_state *slide_state)
@@ -170,23 +108,23 @@ void fu_slide_now(const fu_model *model, const fu_state *state, int j, fu_slide_
     fu_slide_terms(model, state, j, &unused, slide_state);
 }
 
-/* zero where s is locked for good */
+/* Returns ds/dt, m/s, zero where s is locked where it stands. */
 double fu_slide_rate(const fu_model *model, const fu_state *state, int j)
 {
     fu_slide_state slide_state;
-    if (state->mode[j] == FU_LOCKED && model->slides[j].drive < 0) return 0.0;
+    if (fu_slide_flags_of(model, state, j)->mode == FU_LOCKED && model->slides[j].drive < 0) return 0.0;
     fu_slide_now(model, state, j, &slide_state);
     return slide_state.s_rate;
 }
 
-static void rates(const fu_coupling *coupling, const fu_accelerator *work, double *rate)
+static void rates(const fu_model *model, const fu_coupling *coupling, const fu_accelerator *work, double *rate)
 {
-    *rate = work->slide_states[coupling->index].s_rate;
+    *rate = fu_slide_state_of(model, work, coupling->index)->s_rate;
 }
 
 void fu_slide_force(const fu_model *model, const fu_accelerator *work, int j, const double *lambda, double *f)
 {
-    const fu_slide_state *slide_state = &work->slide_states[j];
+    const fu_slide_state *slide_state = fu_slide_state_of(model, work, j);
     const fu_rows *rows = &work->rows[model->slides[j].base.row];
     const int dim = model->dim;
     for (int d = 0; d < dim; ++d) {
@@ -196,12 +134,12 @@ void fu_slide_force(const fu_model *model, const fu_accelerator *work, int j, co
     }
 }
 
-/* The force along the cable on a slide's rider that comes of joints whose frame goes with the slide, added: what their
- * moments put on s, which stands in their rows as G. */
+/* Adds the force along the cable on a slide's rider that comes of joints whose frame goes with the slide: what their moments put
+ * on s, which stands in their rows as G. */
 static void add_force_of_frame(const fu_model *model, const fu_accelerator *work, int j, const double *lambda, double *f)
 {
     const int dim = model->dim;
-    const double *G = work->slide_states[j].by_point + (dim - 1) * dim;
+    const double *G = fu_slide_state_of(model, work, j)->by_point + (dim - 1) * dim;
     for (const fu_rows *rows = work->rows; rows < work->rows + model->n_rows; ++rows)
         for (int c = 0; c < rows->rows && rows->slide == j; ++c)
             for (int d = 0; d < dim; ++d) f[d] -= G[d] * rows->by_s[c] * lambda[rows->first + c];
@@ -219,7 +157,7 @@ void fu_slide_outputs(const fu_model *model, const fu_state *state, int j, const
 {
     const fu_slide *slide = &model->slides[j];
     const fu_rows *rows = &work->rows[slide->base.row];
-    const fu_slide_state *slide_state = &work->slide_states[j];
+    const fu_slide_state *slide_state = fu_slide_state_of(model, work, j);
     const double *lambda = work->multipliers;
     const int dim = model->dim;
     double pull = 0.0, square = 0.0;
@@ -236,7 +174,7 @@ void fu_slide_outputs(const fu_model *model, const fu_state *state, int j, const
         square += G * G;
     }
     if (square > 0.0) out->traction = pull / sqrt(square);
-    if (slide->drive >= 0 && state->mode[j] == FU_LOCKED)
+    if (slide->drive >= 0 && fu_slide_flags_of(model, state, j)->mode == FU_LOCKED)
         out->traction = -lambda[rows->first + dim - 1] - slide_state->driven_R;
     add_force_of_frame(model, work, j, lambda, out->force);
 }
@@ -248,16 +186,29 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
 }
 
 /* A rigid body is put on its cable when it is drawn; s of one that is not locked follows. */
-static int may_start_open(const fu_coupling *coupling, const fu_state *state)
+static int may_start_open(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
 {
-    return state->mode[coupling->index] == FU_LOCKED || !((const fu_slide *)coupling)->rider_is_rigid;
+    const int locked = fu_slide_flags_of(model, state, coupling->index)->mode == FU_LOCKED;
+    return locked || !((const fu_slide *)coupling)->rider_is_rigid;
 }
 
-/* s where C_l = 0, eq 21 */
+/* Finds s where C_l = 0, eq 21. */
 static int follow(const fu_model *model, const fu_coupling *coupling, fu_state *state)
 {
     const int j = coupling->index;
-    return state->mode[j] != FU_LEFT && fu_find_arc_length(model, state, j, &state->s[j]);
+    return fu_slide_flags_of(model, state, j)->mode != FU_LEFT && fu_find_arc_length(model, state, j, &state->s[j]);
+}
+
+static void reset(const fu_coupling *coupling, fu_state *state)
+{
+    const fu_slide *slide = (const fu_slide *)coupling;
+    fu_slide_numbers *numbers = (fu_slide_numbers *)(state->numbers + coupling->numbers);
+    fu_slide_flags *flags = (fu_slide_flags *)(state->flags + coupling->flags);
+    *flags = (fu_slide_flags){.mode = slide->drive >= 0 ? FU_LOCKED : FU_SLIDES};
+    *numbers = (fu_slide_numbers){0};
+    memcpy(numbers->director, slide->director, sizeof numbers->director);
+    state->s[coupling->coordinate] = slide->start_s;
+    state->piece[coupling->coordinate] = slide->start_piece;
 }
 
 static int in_range(int value, int least, int most)
@@ -265,7 +216,7 @@ static int in_range(int value, int least, int most)
     return value >= least && value <= most;
 }
 
-/* Whether a slide can be in its mode: only then is there a multiplier that locks it. */
+/* Returns whether a slide can be in its mode: only then is there a multiplier that locks it. */
 static int is_possible_mode(const fu_slide *slide, int mode)
 {
     const int kinds[2] = {slide->stops[0].kind, slide->stops[1].kind};
@@ -279,18 +230,61 @@ static int is_possible(const fu_model *model, const fu_coupling *coupling, const
 {
     const fu_slide *slide = (const fu_slide *)coupling;
     const int j = coupling->index;
-    return in_range(state->element[j], 0, model->cables[slide->cable].n_elements - 1) &&
-           is_possible_mode(slide, state->mode[j]) && in_range(state->slip_direction[j], -1, 1) &&
-           in_range(state->contact[j], -1, 1);
+    const fu_slide_flags *flags = fu_slide_flags_of(model, state, j);
+    return in_range(state->piece[j], 0, model->cables[slide->cable].n_elements - 1) &&
+           is_possible_mode(slide, flags->mode) && in_range(flags->slip_direction, -1, 1) &&
+           in_range(flags->contact, -1, 1);
 }
+
+static const char *excess(const fu_coupling *coupling)
+{
+    return ((const fu_slide *)coupling)->kernel->coordinates >= FU_MAX_COORDINATES ? "coordinates of its kernels" : 0;
+}
+
+static const char *const role[] = {"slide", 0}, *const resistance_role[] = {"resistance", 0};
+
+#define OF_STOPS(name, member, kind, words) \
+    {name, kind, offsetof(fu_slide, stops[0].member), 2, sizeof(fu_end_stop), words}
+
+static const fu_field fields[] = {
+    FU_FIELD(fu_slide, kernel, FU_KERNELS, role),
+    FU_FIELD(fu_slide, cable, FU_INTEGER, 0),
+    FU_FIELD(fu_slide, rider, FU_ATTACHMENT, 0),
+    FU_FIELD(fu_slide, rider_is_rigid, FU_INTEGER, 0),
+    FU_FIELD(fu_slide, drive, FU_INTEGER, 0),
+    FU_FIELD(fu_slide, carries_director, FU_INTEGER, 0),
+    FU_FIELD(fu_slide, resistance, FU_KERNELS, resistance_role),
+    FU_FIELD(fu_slide, sticks, FU_INTEGER, 0),
+    FU_FIELD(fu_slide, friction, FU_REAL, 0),
+    FU_FIELD(fu_slide, static_friction, FU_REAL, 0),
+    FU_FIELD(fu_slide, viscous, FU_REAL, 0),
+    FU_FIELD(fu_slide, velocity, FU_REAL, 0),
+    OF_STOPS("stop_kinds", kind, FU_WORD, fu_end_stop_kinds),
+    OF_STOPS("restitutions", restitution, FU_REAL, 0),
+    OF_STOPS("buffer_lengths", length, FU_REAL, 0),
+    OF_STOPS("buffer_stiffnesses", stiffness, FU_REAL, 0),
+    OF_STOPS("buffer_dampings", damping, FU_REAL, 0),
+    FU_FIELD_AS("s", fu_slide, start_s, FU_REAL),
+    FU_FIELD_ARRAY(fu_slide, director, FU_REAL),
+    FU_FIELD_AS("element", fu_slide, start_piece, FU_INTEGER),
+    {0},
+};
 
 const fu_coupling_type fu_slide_type = {
     .name = "slide",
+    .size = sizeof(fu_slide),
+    .fields = fields,
+    .excess = excess,
     .n_outputs = (int)(sizeof(fu_slide_output) / sizeof(double)),
+    .n_numbers = (int)(sizeof(fu_slide_numbers) / sizeof(double)),
+    .n_flags = (int)(sizeof(fu_slide_flags) / sizeof(int)),
+    .n_scratch = (int)FU_DOUBLES(1, fu_slide_state),
+    .events = &fu_slide_events,
+    .reset = reset,
     .residual = residual,
     .tangent = tangent,
-    .step_residual = step_residual,
-    .step_tangent = step_tangent,
+    .step_residual = fu_slide_over_step,
+    .step_tangent = fu_slide_over_step_tangent,
     .rows = rows,
     .react = fu_resistance_react,
     .kink = fu_resistance_kink,

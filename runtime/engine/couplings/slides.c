@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-/* a slide where its state stands, as the kernels take it */
+/* A slide at a state, as the kernels take it. */
 typedef struct {
     double length, x;
     const double *e, *v, *b, *u, *w;
@@ -20,9 +20,9 @@ static void look(const fu_model *model, const fu_state *state, int j, slide_view
 {
     const fu_slide *slide = &model->slides[j];
     const fu_cable *cable = &model->cables[slide->cable];
-    const int at = cable->first + state->element[j] * cable->per_node;
+    const int at = cable->first + state->piece[j] * cable->per_node;
     view->length = cable->length;
-    view->x = state->s[j] - fu_element_start(model, j, state->element[j]);
+    view->x = state->s[j] - fu_element_start(model, j, state->piece[j]);
     view->e = state->q + at;
     view->v = state->v + at;
     if (slide->rider_is_rigid) {
@@ -38,7 +38,22 @@ static void look(const fu_model *model, const fu_state *state, int j, slide_view
     view->u = no_arm;
 }
 
-/* Rows over (element, point, `more`) made rows over (element, rider, `more`), in place where there is room for them. */
+fu_slide_flags *fu_slide_flags_of(const fu_model *model, const fu_state *state, int j)
+{
+    return (fu_slide_flags *)(state->flags + model->slides[j].base.flags);
+}
+
+fu_slide_numbers *fu_slide_numbers_of(const fu_model *model, const fu_state *state, int j)
+{
+    return (fu_slide_numbers *)(state->numbers + model->slides[j].base.numbers);
+}
+
+fu_slide_state *fu_slide_state_of(const fu_model *model, const fu_accelerator *work, int j)
+{
+    return (fu_slide_state *)(work->scratch + model->slides[j].base.scratch);
+}
+
+/* Makes rows over (element, point, `more`) rows over (element, rider, `more`). */
 static void expand(const fu_slide *slide, const slide_view *view, int n_rows, int n_element, int more, const double *given,
                    double *rows)
 {
@@ -57,19 +72,20 @@ static void expand(const fu_slide *slide, const slide_view *view, int n_rows, in
     }
 }
 
-/* Numbers for fu_add of a slide's coordinates, and after them of s; the force follows s. Returns how many stand before. */
+/* Finds the numbers for fu_add of a slide's coordinates, and after them of s; the force follows s. Returns how many stand before
+ * s. */
 int fu_slide_coordinates(const fu_model *model, const fu_state *state, int j, int *at)
 {
     const fu_slide *slide = &model->slides[j];
     const fu_cable *cable = &model->cables[slide->cable];
     const int n = cable->coordinates;
-    for (int i = 0; i < n; ++i) at[i] = cable->first + state->element[j] * cable->per_node + i;
+    for (int i = 0; i < n; ++i) at[i] = cable->first + state->piece[j] * cable->per_node + i;
     const int all = n + fu_attachment_coordinates(model, &slide->rider, state, at + n);
     at[all] = fu_extra(model, slide->base.unknown);
     return all;
 }
 
-/* phi and the gradient of f . phi over the slide's coordinates and s */
+/* Makes phi and the gradient of f . phi over the slide's coordinates and s. */
 void fu_slide_residual(const fu_model *model, const fu_state *state, int j, double *phi, double *g)
 {
     const fu_slide *slide = &model->slides[j];
@@ -80,7 +96,7 @@ void fu_slide_residual(const fu_model *model, const fu_state *state, int j, doub
     if (!slide->rider_is_rigid) expand(slide, &v, 1, model->cables[slide->cable].coordinates, 1, of_point, g);
 }
 
-/* derivatives of both over the same, at a force f */
+/* Makes the derivatives of both over the same, at a force f. */
 void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, const double *f, double *J, double *K)
 {
     const fu_slide *slide = &model->slides[j];
@@ -110,22 +126,23 @@ void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, const
         for (int k = 0; k < n_rider; ++k) K[(n_element + i) * n + n_element + k] = part[i * n_rider + k];
 }
 
-/* Eq 20-37 over the slide's coordinates: H and W of the constraints that stay, and how s follows. */
+/* Makes eq 20-37 over the slide's coordinates: H and W of the constraints that stay, and how s follows. */
 void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows *rows, fu_slide_state *slide_state)
 {
     const fu_slide *slide = &model->slides[j];
     const int n_element = model->cables[slide->cable].coordinates, dim = slide->kernel->dim;
     double C_q[3 * FU_SLIDE_COORDINATES], C_s[3], Q_d[3], H[2 * FU_SLIDE_COORDINATES], G[FU_SLIDE_COORDINATES];
     slide_view v;
-    if (state->mode[j] == FU_LEFT) { /* far from the cable, nothing of it means anything */
+    const fu_slide_flags *flags = fu_slide_flags_of(model, state, j);
+    if (flags->mode == FU_LEFT) { /* far from the cable, nothing of it means anything */
         memset(slide_state, 0, sizeof *slide_state);
         rows->n = rows->rows = 0;
         return;
     }
     look(model, state, j, &v);
     const int n = fu_slide_coordinates(model, state, j, rows->at), across = dim - 1;
-    slide->kernel->terms(v.length, v.x, v.e, v.b, v.u, v.v, v.w, state->director + 3 * j, slide_state->C, C_q, C_s, G,
-                         &slide_state->s_rate, Q_d, H, rows->W, &slide_state->s_bias);
+    slide->kernel->terms(v.length, v.x, v.e, v.b, v.u, v.v, v.w, fu_slide_numbers_of(model, state, j)->director,
+                         slide_state->C, C_q, C_s, G, &slide_state->s_rate, Q_d, H, rows->W, &slide_state->s_bias);
     const int stride = slide->rider_is_rigid ? n : n_element + dim;
     for (int d = 0; d < dim; ++d) {
         for (int c = 0; c < across; ++c) slide_state->by_point[c * dim + d] = H[c * stride + n_element + d];
@@ -143,12 +160,12 @@ void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows
         }
     }
     rows->n = n;
-    rows->rows = state->mode[j] == FU_LOCKED ? dim : across;
+    rows->rows = flags->mode == FU_LOCKED ? dim : across;
     for (int c = 0; c < across; ++c) {
         rows->C[c] = slide_state->C[1 + c];
         rows->rate[c] = 0.0;
     }
-    if (state->mode[j] != FU_LOCKED) return;
+    if (flags->mode != FU_LOCKED) return;
     double rate, second;
     memcpy(rows->H + across * n, slide_state->G, sizeof(double) * (size_t)n);
     rows->C[across] = state->s[j] - fu_slide_locked_s(model, state, j, &rate, &second);
@@ -156,22 +173,22 @@ void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows
     rows->W[across] = second - slide_state->s_bias;
 }
 
-/* s of a slide that is locked, its rate and its second rate */
+/* Returns s of a slide that is locked, m, with its rate and its second rate. */
 double fu_slide_locked_s(const fu_model *model, const fu_state *state, int j, double *rate, double *second)
 {
     *rate = *second = 0.0;
-    if (model->slides[j].drive < 0) return state->locked_s[j];
+    if (model->slides[j].drive < 0) return fu_slide_numbers_of(model, state, j)->locked_s;
     return fu_signal_at(&model->signals[model->slides[j].drive], state->t, rate, second);
 }
 
-/* C, C_s, the Newton step for s, and the tangent frame, with this s */
+/* Returns the Newton step for s from this s, m, and makes the tangent frame there. */
 double fu_slide_step(const fu_model *model, const fu_state *state, int j, double s, double A_t[9])
 {
     const fu_slide *slide = &model->slides[j];
     double C[3], C_s[3], step;
     slide_view v;
     look(model, state, j, &v);
-    slide->kernel->constraint(v.length, s - fu_element_start(model, j, state->element[j]), v.e, v.b, v.u,
-                              state->director + 3 * j, C, C_s, &step, A_t);
+    slide->kernel->constraint(v.length, s - fu_element_start(model, j, state->piece[j]), v.e, v.b, v.u,
+                              fu_slide_numbers_of(model, state, j)->director, C, C_s, &step, A_t);
     return step;
 }

@@ -21,8 +21,6 @@ cdef extern from "kernels.h" nogil:
     ctypedef struct fu_joint_kernels:
         const char *name
         int rows
-    ctypedef struct fu_point_law_kernels:
-        const char *name
     ctypedef struct fu_resistance_kernels:
         const char *name
     ctypedef struct fu_tables:
@@ -35,13 +33,11 @@ cdef extern from "blocks.h" nogil:
     const fu_law_blocks *fu_blocks_of(const char *law)
 
 cdef extern from "engine.h" nogil:
-    int FU_MAX_COORDINATES, FU_MAX_RATES, FU_ATTACHMENT_COORDINATES, FU_SLIDES, FU_LOCKED, FU_LEFT
+    int FU_MAX_COORDINATES, FU_MAX_RATES, FU_ATTACHMENT_COORDINATES
     int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT, FU_UNSTABLE
     int FU_NO_FAILURE, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE, FU_JAM
-    int FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_RATE, FU_WATCH_TRACTION, FU_WATCH_CALL
-    int FU_WATCH_STICK, FU_WATCH_BUFFER
-    int FU_ACTED, FU_STUCK, FU_BROKE_LOOSE, FU_TURNED, FU_STRUCK, FU_FREED, FU_FLEW, FU_ENTERED, FU_CAME_OUT, FU_RESTS
-    int FU_END_IS_ERROR, FU_END_IS_OPEN, FU_END_IS_HARD, FU_END_IS_BUFFERED
+    int FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_RATE, FU_WATCH_OUTPUT, FU_WATCH_CALL, FU_ACTED
+    int FU_INTEGER, FU_REAL, FU_WORD, FU_KERNELS, FU_ATTACHMENT, FU_MODAL_POINT, FU_INTEGERS, FU_REALS
     int FU_SIGNAL_TERMS, FU_BAND_GROUP
     long FU_BAND_BEYOND(int width)
     long FU_BAND_LENGTH(int n, int width)
@@ -100,33 +96,26 @@ cdef extern from "engine.h" nogil:
                          fu_modal_point *out, double *P, double *T)
     void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *spot, const double *b, const double *f,
                                const double *m, double *K)
-    ctypedef struct fu_end_stop:
-        int kind
-        double restitution, length, stiffness, damping
+    ctypedef struct fu_field:
+        const char *name
+        int kind, most
+        size_t offset, stride
+        const char *const *words
+    const fu_field *fu_coupling_fields
     ctypedef struct fu_coupling_type:
         const char *name
+        size_t size
+        const fu_field *fields
         int n_outputs
+        const char *(*excess)(const fu_coupling *coupling)
     ctypedef struct fu_coupling:
         const fu_coupling_type *type
-        int index, unknown, n_coordinates, coordinate, n_forces, force, n_multipliers, multiplier, row, output
-        int reacts, is_damped, is_driven
-        double scale[6]
+        int index, number, unknown, n_coordinates, coordinate, n_forces, force, n_multipliers, multiplier, row, output
     const fu_coupling_type *fu_coupling_type_of(const char *name)
-    ctypedef struct fu_slide:
-        fu_coupling base
-        const fu_slide_kernels *kernel
-        int cable, rider_is_rigid, drive, carries_director
-        fu_attachment rider
-        const fu_resistance_kernels *resistance
-        int sticks
-        double friction, static_friction, viscous, velocity
-        fu_end_stop stops[2]
     ctypedef struct fu_joint:
         fu_coupling base
-        const fu_joint_kernels *kernel
         fu_attachment ends[2]
-        int signal, redundant_rows
-        double c0
+        int redundant_rows
     ctypedef struct fu_signal:
         int n
         const double *breaks
@@ -138,21 +127,6 @@ cdef extern from "engine.h" nogil:
     ctypedef struct fu_motion:
         int dof, signal, first
         double base, linear, cosine, sine
-    ctypedef struct fu_dead_load:
-        int signal, first, n
-    ctypedef struct fu_load:
-        fu_coupling base
-        int kind, signal, on, element
-        double x
-        double u[3]
-        double c[3]
-        fu_modal_attachment spot
-    ctypedef struct fu_point_force:
-        fu_coupling base
-        const fu_point_law_kernels *law
-        const double *parameters
-        fu_attachment ends[2]
-        int dim
     ctypedef struct fu_lapack:
         void *dgbtrf
         void *dgbtrs
@@ -185,16 +159,14 @@ cdef extern from "engine.h" nogil:
         int *pivot_band
         int *pivot_border
     ctypedef struct fu_model:
-        int dim, n_cables, n_bodies, n_slides, n_couplings, n_motions, n_dead_loads
+        int dim, n_cables, n_bodies, n_couplings, n_motions
         const fu_cable *cables
         const fu_body *bodies
-        const fu_slide *slides
         const fu_coupling *const *couplings
         const fu_motion *motions
-        const fu_dead_load *dead_loads
         const fu_signal *signals
         int n_q, n_dof, n_band, n_border_dof, n_dissipation_state, n_extra, n_multipliers
-        int n_coordinates, n_forces, n_rows, n_outputs
+        int n_coordinates, n_forces, n_rows, n_outputs, n_scratch
         const int *place
         const int *combination_start
         const int *combination_place
@@ -202,8 +174,7 @@ cdef extern from "engine.h" nogil:
         const double *weight
         const double *gravity
         const double *zero
-        const int *dead_dof
-        const double *dead_value
+        double load_fraction
         const fu_lapack *lapack
         int threads
         double *parts
@@ -221,14 +192,12 @@ cdef extern from "engine.h" nogil:
     void fu_state_attach(fu_state *state, int k, void *data)
     ctypedef struct fu_rows:
         int rows
-    ctypedef struct fu_slide_state:
-        double s_rate
     ctypedef struct fu_accelerator:
         fu_system mass
         double *corner
         double *rhs
         fu_rows *rows
-        fu_slide_state *slide_states
+        double *scratch
         double *force
         double *work
         double *prescribed
@@ -238,12 +207,13 @@ cdef extern from "engine.h" nogil:
     ctypedef struct fu_joint_output:
         double residual
     ctypedef struct fu_watch:
-        int kind, index, direction
+        int kind, index, which, direction
         double value
     ctypedef struct fu_event:
         int kind, which, side
+        const char *what
     ctypedef struct fu_failure:
-        int cause, dof, slide
+        int cause, dof, coupling
     ctypedef struct fu_energy_balance:
         double exchanged, in_motion, grown, lost, rounding
     ctypedef struct fu_statistics:
@@ -307,7 +277,10 @@ cdef extern from "engine.h" nogil:
     void fu_spread(const fu_model *model, const double *x, double *dofs)
     void fu_prescribe(const fu_model *model, fu_state *state)
     void fu_number_couplings(fu_coupling *const *couplings, int n, fu_model *model)
+    int fu_coupling_watches(const fu_model *model, fu_watch *out)
     double fu_elastic_energy(const fu_model *model, const fu_state *state)
+    void fu_reset(const fu_model *model, fu_state *state)
+    void fu_find_pieces(const fu_model *model, fu_state *state)
     void fu_touch(const fu_model *model, fu_state *state)
     int fu_moves(const fu_run *run)
     int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S)
@@ -315,6 +288,7 @@ cdef extern from "engine.h" nogil:
     int fu_probe_mechanism(fu_run *run, const double *along, double *left)
     void fu_joint_outputs(const fu_model *model, const fu_joint *joint, const fu_state *state, const double *multipliers,
                           fu_joint_output *out)
+    int fu_joint_moves(const fu_model *model, const fu_joint *joint, const fu_state *state, int at)
     int fu_between_cables(const fu_joint *joint)
     int fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, int *at, double *J, double *K)
     int fu_attachment_coordinates(const fu_model *model, const fu_attachment *end, const fu_state *state, int *at)

@@ -4,7 +4,7 @@ cdef class Statics(Translation):
     """Residual and matrix of a state."""
 
     cdef object spreads
-    cdef dict full  # the loads as the model has them
+    cdef dict weight  # gravity's forces as the model has them
 
     cdef _matrix(self):
         """The unfactored Newton matrix, (unknowns, unknowns) sparse."""
@@ -73,11 +73,7 @@ cdef class Statics(Translation):
         fu_prescribe(&self.model, state)
         self._rest(state)
         self._view(state, "s")[:] = self._view(&self.run.now, "s") if s is None else s
-        arc_length, element = self._view(state, "s"), self._view(state, "element")
-        for i in range(self.model.n_slides):
-            n, length = self.cables[self.slides[i].cable].n_elements, self.cables[self.slides[i].cable].length
-            if not length * element[i] <= arc_length[i] <= length * (element[i] + 1):
-                element[i] = min(max(int(arc_length[i] // length), 0), n - 1)
+        fu_find_pieces(&self.model, state)
         fu_touch(&self.model, state)
         forces = self._view(state, "forces")
         given = {"slide": force, "joint": multipliers, "point_force": point_force}
@@ -103,20 +99,10 @@ cdef class Statics(Translation):
         """(couplings of a kind, width): entries of `forces`, zeros after those that one has."""
         cdef int i, k
         found = []
-        for i in range(self.model.n_couplings):
+        for i in self._of(kind):
             c = self.couplings[i]
-            if self._kind(c) == kind:
-                found.append([forces[c.force + k] if k < c.n_forces else 0.0 for k in range(width)])
+            found.append([forces[c.force + k] if k < c.n_forces else 0.0 for k in range(width)])
         return np.array(found).reshape(-1, width)
-
-    cdef str _kind(self, const fu_coupling *coupling):
-        """Return the name of a coupling's type: "load", "slide", "joint" or "point_force"."""
-        return coupling.type.name.decode()
-
-    cdef int _count(self, str kind):
-        """Number of couplings of a kind."""
-        cdef int i
-        return sum([self._kind(self.couplings[i]) == kind for i in range(self.model.n_couplings)])
 
     def load(self, double fraction, gravity=True):
         """Apply this fraction of all loads at `place`d states; gravity: of the weight, too, which else stays whole.
@@ -126,22 +112,16 @@ cdef class Statics(Translation):
         cdef fu_model *m = &self.model
         cdef double weight = fraction if gravity else 1.0
         cdef int i, k
-        if self.full is None:
-            self.full = {"gravity": [m.gravity[i] for i in range(m.n_dof)],
-                         "of shapes": [[self.shapes[i].g[k] for k in range(3)] for i in range(m.n_bodies)],
-                         "fixed": [m.dead_value[i] for i in range(self._fixed_values())],
-                         "turning": [[self.loads[i].c[k] for k in range(3)] for i in range(self._count("load"))]}
+        if self.weight is None:
+            self.weight = {"dofs": [m.gravity[i] for i in range(m.n_dof)],
+                           "shapes": [[self.shapes[i].g[k] for k in range(3)] for i in range(m.n_bodies)]}
+        m.load_fraction = fraction
         cdef double *own_weight = <double *>m.gravity
-        cdef double *fixed = <double *>m.dead_value
-        for i, value in enumerate(self.full["gravity"]):
+        for i, value in enumerate(self.weight["dofs"]):
             own_weight[i] = weight * value
-        for i, value in enumerate(self.full["fixed"]):
-            fixed[i] = fraction * value
-        for k in range(3):
-            for i in range(m.n_bodies):
-                self.shapes[i].g[k] = weight * self.full["of shapes"][i][k]
-            for i in range(self._count("load")):
-                self.loads[i].c[k] = fraction * self.full["turning"][i][k]
+        for i in range(m.n_bodies):
+            for k in range(3):
+                self.shapes[i].g[k] = weight * self.weight["shapes"][i][k]
 
     def stiffen(self, int cable, A):
         """Give a cable other constants of its law: A (1 or elements, constants), as in the model."""
@@ -151,9 +131,6 @@ cdef class Statics(Translation):
         cdef int i
         for i in range(given.shape[0]):
             own[i] = given[i]
-
-    def _fixed_values(self):
-        return sum([self.dead_loads[i].n for i in range(self.model.n_dead_loads)])
 
     def move(self, change):
         """Move the static state by unknowns (n,): coordinates and rotations, s, forces."""
@@ -178,7 +155,7 @@ cdef class Statics(Translation):
         cdef fu_weights weights
         weights.inertia, weights.rate, weights.stiffness = inertia, rate, stiffness
         fu_matrix_of_weights(&self.run, weights)
-        return self._matrix() + stiffness * self._between_cables() if stiffness and self._count("joint") else self._matrix()
+        return self._matrix() + stiffness * self._between_cables() if stiffness and self._of("joint") else self._matrix()
 
     def _between_cables(self):
         """(n, n) sparse: what joints between two cables add to the stiffness and Newton in time does without."""
@@ -186,19 +163,21 @@ cdef class Statics(Translation):
 
         cdef int[::1] at = np.zeros(2 * FU_ATTACHMENT_COORDINATES, dtype=np.intc)
         cdef double[::1] J = np.zeros(6 * 2 * FU_ATTACHMENT_COORDINATES), K = np.zeros(4 * FU_ATTACHMENT_COORDINATES ** 2)
+        cdef fu_joint *joint
         cdef int k, i, n, first, n_dof = self.model.n_dof, total = self.run.newton.n + self.run.newton.m
         whole = n_dof + self.model.n_extra
         stiffness = csr_array((whole, whole))
-        for k in range(self._count("joint")):
-            if not fu_between_cables(&self.joints[k]):
+        for k in self._of("joint"):
+            joint = <fu_joint *>self.couplings[k]
+            if not fu_between_cables(joint):
                 continue
-            first = fu_attachment_coordinates(&self.model, &self.joints[k].ends[0], &self.run.next, &at[0])
-            n = fu_joint_tangent(&self.model, &self.joints[k], &self.run.next, &at[0], &J[0], &K[0])
+            first = fu_attachment_coordinates(&self.model, &joint.ends[0], &self.run.next, &at[0])
+            n = fu_joint_tangent(&self.model, joint, &self.run.next, &at[0], &J[0], &K[0])
             block = np.array(K[:n * n]).reshape(n, n)
             block[:first, :first] = block[first:, first:] = 0
             places = np.array([at[i] for i in range(n)])
             for i in range(n):  # an s that is held has no equilibrium of its own
-                if places[i] >= n_dof and self._is_held(places[i] - n_dof):
+                if not fu_joint_moves(&self.model, joint, &self.run.next, places[i]):
                     block[i] = block[:, i] = 0
             rows, columns = np.repeat(places, n), np.tile(places, n)
             stiffness = stiffness + coo_array((block.ravel(), (rows, columns)), shape=(whole, whole)).tocsr()
@@ -210,11 +189,6 @@ cdef class Statics(Translation):
             self.spreads = csr_array(np.block([[dofs, np.zeros((n_dof, self.model.n_extra))],
                                                [np.zeros((self.model.n_extra, dofs.shape[1])), np.eye(self.model.n_extra)]]))
         return self.spreads.T @ stiffness @ self.spreads
-
-    def _is_held(self, int extra):
-        mode = self._view(&self.run.next, "mode")
-        return any([self.slides[j].base.unknown == extra and mode[j] != FU_SLIDES
-                    for j in range(self.model.n_slides)])
 
     def elastic_energy(self):
         """J, of the static state."""

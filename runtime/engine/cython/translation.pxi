@@ -1,20 +1,24 @@
 # A model as the engine's C structures.
 
+cdef const fu_coupling_type *_type_of(coupling) except NULL:
+    """Return the engine's type of a coupling of a model."""
+    type = fu_coupling_type_of(coupling.type.encode())
+    if type == NULL:
+        raise ValueError(f"the engine has no coupling {coupling.type!r}")
+    return type
+
+
 cdef class Translation(Arrays):
     """Bodies, cables, slides, joints, springs, loads and motions of a model, and the work space of a run of it."""
 
     cdef fu_cable *cables
     cdef fu_body *bodies
     cdef fu_shape *shapes
-    cdef fu_slide *slides
-    cdef fu_joint *joints
-    cdef fu_point_force *point_forces
     cdef fu_motion *motions
-    cdef fu_dead_load *dead_loads
-    cdef fu_load *loads
     cdef fu_signal *signals
     cdef fu_knot *knots
-    cdef fu_coupling **couplings
+    cdef fu_coupling **couplings  # in the order in which the engine adds up what they give
+    cdef char *coupling_memory  # their structures, one behind the other
     cdef fu_watch *watches
     cdef fu_model model
     cdef fu_run run
@@ -23,24 +27,18 @@ cdef class Translation(Arrays):
         self.cables = <fu_cable *>PyMem_Calloc(len(model.cables) + 1, sizeof(fu_cable))
         self.bodies = <fu_body *>PyMem_Calloc(len(model.bodies) + 1, sizeof(fu_body))
         self.shapes = <fu_shape *>PyMem_Calloc(len(model.bodies) + 1, sizeof(fu_shape))
-        self.slides = <fu_slide *>PyMem_Calloc(len(model.slides) + 1, sizeof(fu_slide))
-        self.joints = <fu_joint *>PyMem_Calloc(len(model.joints) + 1, sizeof(fu_joint))
-        self.point_forces = <fu_point_force *>PyMem_Calloc(len(model.point_forces) + 1, sizeof(fu_point_force))
         self.motions = <fu_motion *>PyMem_Calloc(len(model.motions) + 1, sizeof(fu_motion))
-        self.dead_loads = <fu_dead_load *>PyMem_Calloc(len(model.dead_loads) + 1, sizeof(fu_dead_load))
-        self.loads = <fu_load *>PyMem_Calloc(len(model.loads) + 1, sizeof(fu_load))
         self.signals = <fu_signal *>PyMem_Calloc(len(model.signals) + 1, sizeof(fu_signal))
-        n_couplings = len(model.loads) + len(model.slides) + len(model.joints) + len(model.point_forces)
-        self.couplings = <fu_coupling **>PyMem_Calloc(n_couplings + 1, sizeof(fu_coupling *))
-        if not (self.cables and self.bodies and self.shapes and self.slides and self.joints and self.point_forces
-                and self.motions and self.dead_loads and self.loads and self.signals and self.couplings):
+        self.couplings = <fu_coupling **>PyMem_Calloc(len(model.couplings) + 1, sizeof(fu_coupling *))
+        self.coupling_memory = <char *>PyMem_Calloc(1, 1 + sum([_type_of(c).size for c in model.couplings]))
+        if not (self.cables and self.bodies and self.shapes and self.motions and self.signals and self.couplings
+                and self.coupling_memory):
             raise MemoryError
 
     def __dealloc__(self):
-        for pointer in (<size_t>self.cables, <size_t>self.bodies, <size_t>self.shapes, <size_t>self.slides,
-                        <size_t>self.joints, <size_t>self.point_forces, <size_t>self.motions, <size_t>self.dead_loads,
-                        <size_t>self.loads, <size_t>self.signals, <size_t>self.knots, <size_t>self.couplings,
-                        <size_t>self.watches):
+        for pointer in (<size_t>self.cables, <size_t>self.bodies, <size_t>self.shapes, <size_t>self.motions,
+                        <size_t>self.signals, <size_t>self.knots, <size_t>self.couplings,
+                        <size_t>self.coupling_memory, <size_t>self.watches):
             PyMem_Free(<void *><size_t>pointer)
 
     def __init__(self, model, blocks=True):
@@ -48,9 +46,8 @@ cdef class Translation(Arrays):
         self._bodies_and_cables(model, tables, blocks)
         m = &self.model
         m.dim, m.n_q, m.n_dof = model.dim, model.n_q, model.n_dof
-        self._slides_joints_and_point_forces(model, tables)
-        self._loads_and_motions(model)
-        self._list_couplings(model)
+        self._signals_and_motions(model)
+        self._couplings(model, tables)
         m.n_band, m.n_border_dof = model.n_band, model.n_border_dof
         m.n_extra, m.n_multipliers = model.n_extra, model.n_multipliers
         m.place, m.weight, m.lapack = self._ints(model.place), self._doubles(model.weight), &LAPACK
@@ -125,9 +122,9 @@ cdef class Translation(Arrays):
                 "velocity": np.array(out.velocity)[:dim], "omega": np.array(out.omega)[:turns],
                 "bias": np.array(out.bias)[:dim], "omega_bias": np.array(out.omega_bias)[:turns]}
 
-    cdef int _spot(self, fu_modal_attachment *to, int body, spot) except -1:
+    cdef int _spot(self, fu_modal_attachment *to, spot) except -1:
         to.x, to.phi, to.psi = self._doubles(spot[0]), self._doubles(spot[1]), self._doubles(spot[2])
-        if fu_body_dofs(&self.bodies[body]) > FU_ATTACHMENT_COORDINATES:
+        if len(spot[1]) + (6 if self.model.dim == 3 else 3) > FU_ATTACHMENT_COORDINATES:
             raise ValueError(f"more modes than the engine's {FU_ATTACHMENT_COORDINATES - 6}")
         return 0
 
@@ -140,7 +137,7 @@ cdef class Translation(Arrays):
         for k in range(len(end.N)):
             to.N[k] = end.N[k]
         if end.spot is not None:
-            self._spot(&to.spot, end.body, end.spot)
+            self._spot(&to.spot, end.spot)
         if end.axes is None:
             return 0
         if end.frame:
@@ -155,78 +152,79 @@ cdef class Translation(Arrays):
             to.axes[k] = end.axes.flat[k]
         return 0
 
-    cdef int _coupling(self, fu_coupling *base, str type, int index, int unknown, scale) except -1:
-        """Fill in what all couplings have; own forces are one a row of `scale`."""
-        cdef int k
-        base.type = fu_coupling_type_of(type.encode())
-        if base.type == NULL:
-            raise ValueError(f"the engine has no coupling {type!r}")
-        base.index, base.unknown, base.n_forces = index, unknown, len(scale)
-        for k in range(len(scale)):
-            base.scale[k] = scale[k]
-        return 0
-
-    def _list_couplings(self, model):
-        """The list that the engine loops over: contributions are added up in its order."""
-        cdef int i, n = 0
-        for i in range(len(model.loads)):
-            self.couplings[n], n = &self.loads[i].base, n + 1
-        for i in range(len(model.slides)):
-            self.couplings[n], n = &self.slides[i].base, n + 1
-        for i in range(len(model.joints)):
-            self.couplings[n], n = &self.joints[i].base, n + 1
-        for i in range(len(model.point_forces)):
-            self.couplings[n], n = &self.point_forces[i].base, n + 1
+    def _couplings(self, model, list tables):
+        """Fill in the structures of all couplings by the fields that their types describe, and number them."""
+        cdef size_t at = 0
+        cdef fu_coupling *coupling
+        cdef int n = len(model.couplings)
+        counts = {}
+        for k, given in enumerate(model.couplings):
+            coupling = self.couplings[k] = <fu_coupling *>(self.coupling_memory + at)
+            coupling.type = _type_of(given)
+            kind = self._kind(coupling)
+            coupling.index = counts.setdefault(kind, 0)
+            counts[kind] += 1
+            self._fields(<char *>coupling, fu_coupling_fields, given, tables)
+            self._fields(<char *>coupling, coupling.type.fields, given, tables)
+            if coupling.type.excess != NULL and coupling.type.excess(coupling) != NULL:
+                raise ValueError(f"{given.type} {given.name!r}: more {coupling.type.excess(coupling).decode()} than the "
+                                 "engine has room for")
+            at += coupling.type.size
         fu_number_couplings(self.couplings, n, &self.model)
 
-    def _slides_joints_and_point_forces(self, model, list tables):
-        cdef int i, k
-        for i, slide in enumerate(model.slides):
-            j = &self.slides[i]
-            j.kernel = <const fu_slide_kernels *>_found(tables, "slide", slide.kernel)
-            if j.kernel.coordinates + 1 > FU_MAX_COORDINATES:
-                raise ValueError(f"{slide.kernel}: more coordinates than the engine's {FU_MAX_COORDINATES}")
-            self._coupling(&j.base, "slide", i, slide.unknown, [slide.mass] * model.dim)
-            j.base.n_coordinates, j.base.multiplier, j.base.n_multipliers = 1, slide.multiplier, slide.n_multipliers
-            for k in range(model.dim, slide.n_multipliers):
-                j.base.scale[k] = slide.mass
-            j.cable, j.rider_is_rigid, j.drive = slide.cable, slide.rider_is_rigid, slide.drive
-            j.carries_director = slide.carries_director
-            self._end(&j.rider, slide.rider, tables)
-            j.resistance = <const fu_resistance_kernels *>_found(tables, "resistance", slide.resistance) if slide.resistance else NULL
-            j.base.reacts = j.base.is_damped = bool(slide.resistance)
-            j.base.is_driven = slide.drive >= 0
-            j.velocity = 1.0  # of no friction
-            if slide.friction is not None:
-                j.sticks, j.viscous, j.velocity = slide.friction.sticks, slide.friction.viscous, slide.friction.velocity
-                j.friction, j.static_friction = slide.friction.sliding, slide.friction.static_friction
-            for k, end in enumerate(slide.ends):
-                e = &j.stops[k]
-                e.kind = ENDS[end if isinstance(end, str) else end.stop]
-                if e.kind == FU_END_IS_HARD:
-                    e.restitution = end.restitution
-                if e.kind == FU_END_IS_BUFFERED:
-                    e.length, e.stiffness, e.damping = end.length, end.stiffness, end.damping
-        for i, joint in enumerate(model.joints):
-            l = &self.joints[i]
-            l.kernel = <const fu_joint_kernels *>_found(tables, "joint", joint.kernel)
-            self._coupling(&l.base, "joint", i, joint.unknown, joint.scale)
-            l.base.multiplier, l.base.n_multipliers, l.base.is_driven = joint.multiplier, joint.rows, joint.signal >= 0
-            l.signal, l.c0 = joint.signal, joint.base
-            for k in range(2):
-                self._end(&l.ends[k], joint.ends[k], tables)
-        for i, force in enumerate(model.point_forces):
-            p = &self.point_forces[i]
-            self._coupling(&p.base, "point_force", i, force.unknown, [force.mass] * force.dim)
-            p.law = <const fu_point_law_kernels *>_found(tables, "point_law", force.law)
-            p.parameters = self._doubles(force.parameters)
-            p.base.is_damped, p.dim = force.is_damped, force.dim
-            for k in range(2):
-                self._end(&p.ends[k], force.ends[k], tables)
-        self.model.n_slides, self.model.slides = len(model.slides), self.slides
+    cdef str _kind(self, const fu_coupling *coupling):
+        """Return the name of a coupling's type, such as "load", "slide", "joint" or "point_force"."""
+        return coupling.type.name.decode()
 
-    def _loads_and_motions(self, model):
-        cdef int i, k, at = 0
+    cdef list _of(self, str kind):
+        """Return the numbers of the couplings of a kind."""
+        cdef int i
+        return [i for i in range(self.model.n_couplings) if self._kind(self.couplings[i]) == kind]
+
+    cdef int _fields(self, char *structure, const fu_field *field, given, list tables) except -1:
+        """Fill in the fields of a list, which ends with one without a name, from the attributes of these names."""
+        while field.name != NULL:
+            value = getattr(given, field.name.decode())
+            if field.stride:
+                if len(value) > field.most:
+                    raise ValueError(f"{given.type}: {len(value)} {field.name.decode()}, the engine has {field.most}")
+                for k, item in enumerate(value):
+                    self._field(structure + field.offset + <size_t>k * field.stride, field, item, given.type, tables)
+            else:
+                self._field(structure + field.offset, field, value, given.type, tables)
+            field += 1
+        return 0
+
+    cdef int _field(self, char *to, const fu_field *field, value, str type, list tables) except -1:
+        """Fill in one item of a field (include/fields.h)."""
+        cdef int k
+        if field.kind == FU_INTEGER:
+            (<int *>to)[0] = value
+        elif field.kind == FU_REAL:
+            (<double *>to)[0] = value
+        elif field.kind == FU_INTEGERS:
+            (<const int **>to)[0] = self._ints(value)
+        elif field.kind == FU_REALS:
+            (<const double **>to)[0] = self._doubles(value)
+        elif field.kind == FU_ATTACHMENT:
+            self._end(<fu_attachment *>to, value, tables)
+        elif field.kind == FU_MODAL_POINT:
+            if value is not None:
+                self._spot(<fu_modal_attachment *>to, value)
+        elif field.kind == FU_KERNELS:
+            role = type if field.words == NULL else field.words[0].decode()
+            (<const void **>to)[0] = _found(tables, role, value) if value else NULL
+        elif field.kind == FU_WORD:
+            k = 0
+            while field.words[k] != NULL and field.words[k] != <bytes>value.encode():
+                k += 1
+            if field.words[k] == NULL:
+                raise ValueError(f"{type}: {field.name.decode()} {value!r} is not known")
+            (<int *>to)[0] = k
+        return 0
+
+    def _signals_and_motions(self, model):
+        cdef int i
         for i, signal in enumerate(model.signals):
             g = &self.signals[i]
             g.n = len(signal.coefficients)
@@ -240,25 +238,8 @@ cdef class Translation(Arrays):
             o.dof, o.signal, o.base, o.linear = motion.dof, motion.signal, motion.base, motion.linear
             o.cosine, o.sine, o.first = motion.cosine, motion.sine, motion.dof not in moved
             moved.add(motion.dof)
-        dofs, values = [], []
-        for i, load in enumerate(model.dead_loads):
-            d = &self.dead_loads[i]
-            d.signal, d.first, d.n = load.signal, at, len(load.dofs)
-            at += d.n
-            dofs.extend(load.dofs)
-            values.extend(load.values)
-        self.model.dead_dof, self.model.dead_value = self._ints(dofs), self._doubles(values)
-        for i, load in enumerate(model.loads):
-            n = &self.loads[i]
-            self._coupling(&n.base, "load", i, 0, ())
-            n.kind, n.signal, n.on, n.element, n.x = load.kind, load.signal, load.on, load.element, load.x
-            for k in range(3):
-                n.u[k], n.c[k] = load.u[k], load.c[k]
-            if load.spot is not None:
-                self._spot(&n.spot, load.on, load.spot)
         m = &self.model
-        m.n_motions, m.n_dead_loads = len(model.motions), len(model.dead_loads)
-        m.motions, m.dead_loads, m.signals = self.motions, self.dead_loads, self.signals
+        m.n_motions, m.motions, m.signals, m.load_fraction = len(model.motions), self.motions, self.signals, 1.0
 
     cdef void _system(self, fu_system *system, model, int width, int m):
         cdef int n = model.n_band, chains = len(model.chains) - 1
@@ -277,15 +258,11 @@ cdef class Translation(Arrays):
 
     cdef _state(self, fu_state *state, model):
         """Give a state its arrays (state.h), and in them the model as it is drawn."""
-        drawn = {"q": model.q, "v": model.v, "s": [slide.s for slide in model.slides],
-                 "element": [slide.element for slide in model.slides],
-                 "mode": [FU_LOCKED if slide.drive >= 0 else FU_SLIDES for slide in model.slides],
-                 "director": np.ravel([slide.director for slide in model.slides])}
         cdef int k
         for k in range(FU_N_STATE_ARRAYS):
             self._attach(state, k)
-        for name, values in drawn.items():
-            self._view(state, name)[:] = values
+        self._view(state, "q")[:], self._view(state, "v")[:] = model.q, model.v
+        fu_reset(&self.model, state)
 
     cdef int _attach(self, fu_state *state, int k) except -1:
         """Give a state its k-th array, of zeros."""
@@ -311,7 +288,7 @@ cdef class Translation(Arrays):
         raise KeyError(name)
 
     def _work_space(self, model):
-        n_slides, n_dof = len(model.slides), model.n_dof
+        n_dof = model.n_dof
         unknowns = model.n_band + model.n_border_dof
         run = &self.run
         run.model = &self.model
@@ -326,7 +303,7 @@ cdef class Translation(Arrays):
         a.corner = self._zeros(<double>a.mass.m * a.mass.m)
         a.rhs = self._zeros(unknowns + model.n_multipliers + FU_BAND_BEYOND(width))
         a.rows = <fu_rows *>self._zeros(self.model.n_rows * sizeof(fu_rows) // sizeof(double) + 1)
-        a.slide_states = <fu_slide_state *>self._zeros(n_slides * sizeof(fu_slide_state) // sizeof(double) + 1)
+        a.scratch = self._zeros(self.model.n_scratch)
         a.multipliers = self._zeros(model.n_multipliers)
         a.jammed = -1
         a.force, a.work = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))

@@ -4,7 +4,7 @@
 
 #include "constraints.h"
 #include "linear.h"
-#include "slides.h"
+#include "coupling.h"
 
 /* Eq 38 and what comes out of it */
 struct fu_accelerator {
@@ -12,10 +12,10 @@ struct fu_accelerator {
     double *corner;   /* m x m: D of M, before constraints are added and it is factored */
     double *rhs;      /* unknowns, and FU_BAND_BEYOND */
     fu_rows *rows;    /* of the couplings that have constraints */
-    fu_slide_state *slide_states;
+    double *scratch;  /* of couplings, from `scratch` of each on: what its type keeps from rows to outputs */
     double *force, *work, *prescribed; /* n_dof */
     double *multipliers; /* as eq 38 gives them */
-    int jammed;       /* coupling whose reaction to the multipliers was not found, by its index in its type; -1 */
+    int jammed;       /* coupling whose reaction to the multipliers was not found, by its number; -1 */
     long evaluated;   /* how often it was */
 };
 int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work);

@@ -14,7 +14,10 @@
 #define FU_MAX_RATES 128 /* of strain, of one element; engine.pyx checks */
 #define FU_SIGNAL_TERMS 7 /* coefficients of a piece of a signal */
 
-#define FU_SPACE 3 /* components of a vector, in the plane too */
+#define FU_SPACE 3         /* components of a vector, in the plane too, and turns of a frame in space */
+#define FU_MATRIX_ENTRIES 9 /* of a matrix in space, or of a change of axes */
+#define FU_FRAME_DOFS 6    /* of a body's frame in space: three translations, three turns */
+#define FU_FRAME_ENTRIES 7 /* of its configuration: position, and a unit quaternion */
 
 /* An array of a state or of a row of output: its name, how many items it has of which size, whether they are real numbers
  * (else whole ones), and how many axes it has in output, rows being the first. */

@@ -28,6 +28,7 @@ void fu_gaps(const fu_model *model, const fu_state *state, double *gaps);
 void fu_coordinate_rates(const fu_model *model, const fu_accelerator *work, double *rates);
 int fu_may_start_open(const fu_model *model, const fu_state *state);
 const fu_coupling *fu_follow(const fu_model *model, fu_state *state);
+void fu_reset(const fu_model *model, fu_state *state);
 void fu_carry(const fu_model *model, fu_state *state);
 void fu_touch(const fu_model *model, fu_state *state);
 int fu_is_possible(const fu_model *model, const fu_state *state);

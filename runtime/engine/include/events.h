@@ -4,33 +4,36 @@
 
 #include "common.h"
 
-/* What the user watches: an entry of the state less a value, a slide's rate or traction less a value, or a function of
- * his; what couplings/end_stops.c watches on a slide: whether it stays as it is, and its buffer at the end that `value` is the side of.
- * A traction is of the accelerations, which eq 38 gives anew at each state that is looked at. */
-enum { FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_RATE, FU_WATCH_TRACTION, FU_WATCH_CALL, FU_WATCH_STICK,
-       FU_WATCH_BUFFER };
+/* What is watched. `index` is an entry of the state's q, v or s, less a value; or a coupling, of which `which` tells a number
+ * of its row of output, less a value, or one of its own watches; or nothing, for a function of the user's.
+ * A number of a row of output is of the accelerations, which eq 38 gives anew at each state that is looked at. */
+enum { FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_RATE, FU_WATCH_OUTPUT, FU_WATCH_CALL, FU_WATCH_COUPLING };
 typedef struct {
-    int kind, index, direction; /* direction: 1 rising, -1 falling, 0 both */
+    int kind, index, which, direction; /* direction: 1 rising, -1 falling, 0 both */
     double value;
 } fu_watch;
 
-/* FU_ACTED: a slide, `which`, has done what `side` says: engine.pyx has words for it */
+/* An event. FU_CROSSING: a coupling, `which`, passes a boundary of its path to a side. FU_WATCHED: the watch `which` passes
+ * zero to a side. FU_ACTED: a coupling, `which`, has changed by itself, as `what` says in words. */
 enum { FU_NO_EVENT = 0, FU_CROSSING, FU_WATCHED, FU_ACTED };
-enum { FU_NOTHING, FU_STUCK, FU_BROKE_LOOSE, FU_TURNED, FU_STRUCK, FU_FREED, FU_FLEW, FU_ENTERED, FU_CAME_OUT, FU_RESTS };
 typedef struct {
     int kind, which, side;
+    const char *what;
 } fu_event;
+extern const fu_event fu_no_event;
 
 fu_event fu_find_event(const fu_run *run, fu_event but);
 fu_event fu_late_event(fu_run *run);
-double fu_time_to_boundary(fu_run *run);
-double fu_time_of_turn(fu_run *run, double h);
-void fu_seat_slides(fu_run *run);
-int fu_count_changes(const fu_run *run);
-void fu_keep_elements(fu_run *run);
-int fu_stands_on_boundary(const fu_run *run, fu_event event);
 double fu_locate(fu_run *run, fu_event event, double h);
 void fu_watch_now(fu_run *run, fu_event event);
-void fu_watch_anew(fu_run *run, int slide);
+void fu_watch_anew(fu_run *run, int coupling);
+
+/* Loops over the couplings: couplings/coupling_events.c. */
+int fu_coupling_watches(const fu_model *model, fu_watch *out);
+/* Whether couplings can change by themselves; how they do at the start, a status; what follows from velocities that have
+ * jumped; what follows where `now` stands at an end of a path, and where a coupling's watch has passed zero. */
+int fu_couplings_can_act(const fu_model *model);
+int fu_begin_couplings(fu_run *run);
+void fu_couplings_take_velocities(fu_run *run);
 
 #endif

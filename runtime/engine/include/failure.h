@@ -4,13 +4,13 @@
 
 #include "common.h"
 
-/* Why a step failed, and where that shows most: a dof, and a joint or -1. */
+/* Why a step failed, and where that shows most: a dof, and the number of a coupling or -1. */
 enum { FU_NO_FAILURE = 0, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE, FU_JAM };
 typedef struct {
-    int cause, dof, slide;
+    int cause, dof, coupling;
 } fu_failure;
 
-int fu_fail(fu_run *run, int cause, const double *dofs, int slide);
+int fu_fail(fu_run *run, int cause, const double *dofs, int coupling);
 int fu_fail_at(fu_run *run, int cause, int unknown);
 int fu_fail_eq38(fu_run *run);
 

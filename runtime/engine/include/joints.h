@@ -1,4 +1,4 @@
-/* Joints between two attachments: couplings/joints.c. */
+/* Joints between two attachments: couplings/joints.c has their equations, couplings/joint_operations.c what couplings do. */
 #ifndef FUNICULAR_JOINTS_H
 #define FUNICULAR_JOINTS_H
 
@@ -22,9 +22,13 @@ typedef struct {
 } fu_joint_output;
 _Static_assert(sizeof(fu_joint_output) == 7 * sizeof(double), "rows of output are arrays of doubles");
 
+int fu_joint_is_inactive(const fu_model *model, const fu_joint *joint, const fu_state *state);
+int fu_joint_equations(const fu_model *model, const fu_joint *joint, const fu_state *state, double *phi, int *at, double *J);
+void fu_joint_rows(const fu_model *model, const fu_coupling *coupling, const fu_state *state, fu_accelerator *work);
 int fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_state *state, int *at, double *J, double *K);
 void fu_joint_outputs(const fu_model *model, const fu_joint *joint, const fu_state *state, const double *multipliers,
                       fu_joint_output *out);
+int fu_joint_moves(const fu_model *model, const fu_joint *joint, const fu_state *state, int at);
 int fu_between_cables(const fu_joint *joint);
 int fu_ties_a_frame(const fu_model *model, int which);
 

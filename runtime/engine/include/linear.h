@@ -23,18 +23,26 @@ typedef struct {
 #define FU_BAND_BEYOND(width) ((width) + FU_BAND_GROUP)
 #define FU_BAND_LENGTH(n, width) ((long)(n) + FU_BAND_BEYOND(width))
 
-/* rows [first, end) of a column */
+/* LAPACK's band storage for a factorisation with pivots: rows of it, and the row of the diagonal. Above the 2 width + 1 rows of
+ * the band there are width more, which pivots fill. */
+#define FU_BAND_ROWS(width) (3 * (width) + 1)
+#define FU_BAND_DIAGONAL(width) (2 * (width))
+
+/* Parts of a chain whose rows are counted apart: what closes a loop touches both ends, and not what is between them. */
+enum { FU_HALVES = 2 };
+
+/* Rows [first, end) of a column; end is 0 where there are none. */
 typedef struct {
     int first, end;
 } fu_span;
 
-/* What column k of X, or row k of C, has in half a chain: of what closes a ring, both ends count and not the middle. */
+/* What column k of X, or row k of C, has in half a chain. */
 typedef struct {
     int k;
     fu_span rows;
 } fu_piece;
 
-/* A banded matrix with a border: [K B; C D]. Only K is large. It falls into chains, which the border alone ties. */
+/* A banded matrix with a border: [K B; C D]. Only K is large. It consists of chains, which the border alone connects. */
 typedef struct {
     int n, width;      /* band part: size, half bandwidth */
     int m;             /* border */
@@ -44,7 +52,7 @@ typedef struct {
     int n_columns, n_rows; /* pieces */
     const int *chains; /* n_chains + 1: the first row of each, and n */
     const int *half;   /* of each row of the band: 2 chain, and 1 more from the middle on */
-    double *K;         /* LAPACK band storage, (3 width + 1) x n; of all systems of a run the same */
+    double *K;         /* LAPACK's band storage, FU_BAND_ROWS x n; of all systems of a run the same */
     double *L;         /* (width + 1) x n, and a group more for each chain */
     double *B;         /* n x m, column by column */
     double *C;         /* the border's rows, transposed: n x m */

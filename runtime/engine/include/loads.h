@@ -5,12 +5,17 @@
 #include "bodies.h"
 #include "coupling.h"
 
-/* Constant direction in the dofs: value[first ... first + n) on dof[first ...), times a signal */
+/* A force of constant direction in the dofs: values on n dofs, times a signal (-1: one). */
 typedef struct {
-    int signal, first, n;
+    fu_coupling base;
+    int signal, n;
+    const int *dofs;
+    const double *values;
 } fu_dead_load;
+extern const fu_coupling_type fu_dead_load_type;
 
-/* A load that turns with what it acts on: at x of a cable's element, at the point u of a body, at that of a modal one. */
+/* A load that turns with what it acts on, or whose lever does: at x of a cable's element, at the point u of a body, at that of
+ * a modal one. */
 enum { FU_CABLE_FOLLOWER, FU_CABLE_MOMENT, FU_BODY_FORCE, FU_BODY_FOLLOWER, FU_BODY_MOMENT };
 typedef struct {
     fu_coupling base;
@@ -22,6 +27,5 @@ typedef struct {
 extern const fu_coupling_type fu_load_type;
 
 void fu_external_forces(const fu_model *model, double t, const double *q, double *f);
-void fu_loads(const fu_model *model, double t, const double *q, double *f);
 
 #endif

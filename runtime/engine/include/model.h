@@ -11,18 +11,18 @@
 #include "slides.h"
 
 struct fu_model {
-    int dim, n_cables, n_bodies, n_slides, n_couplings, n_motions, n_dead_loads;
+    int dim, n_cables, n_bodies, n_couplings, n_motions;
     const fu_cable *cables;
     const fu_body *bodies;
-    const fu_slide *slides;
+    const fu_slide *slides; /* those of the couplings, one behind the other; null where there are none */
     const fu_coupling *const *couplings; /* all of them: loads, slides, joints, springs */
     const fu_motion *motions;
-    const fu_dead_load *dead_loads;
     const fu_signal *signals;
     int n_q, n_dof, n_band, n_border_dof;
-    /* Sums over the couplings: own coordinates, own forces, sets of constraint rows, numbers in a row of output; how many
+    /* Sums over the couplings: own coordinates, own forces, sets of constraint rows, numbers in a row of output, own
+     * numbers and flags in a state, own work space; how many
      * react, act from outside, are driven, are damped. */
-    int n_coordinates, n_forces, n_rows, n_outputs, n_reacting, n_external, n_driven, n_damped;
+    int n_coordinates, n_forces, n_rows, n_outputs, n_numbers, n_flags, n_scratch, n_reacting, n_external, n_driven, n_damped;
     int n_dissipation_state; /* zero without algorithmic dissipation */
     int n_extra, n_multipliers; /* unknowns of couplings in a Newton system, and in eq 38 */
     const int *place;
@@ -31,8 +31,7 @@ struct fu_model {
     const double *weight;  /* length that a unit of each dof moves a point by: makes norms of increments metres */
     const double *gravity; /* generalised force on each dof */
     const double *zero;    /* n_dof zeros: a velocity at rest */
-    const int *dead_dof;
-    const double *dead_value;
+    double load_fraction;  /* of all loads but gravity that acts: 1, or less on a path of loads of statics */
     const fu_lapack *lapack;
     int threads;   /* over elements */
     double *parts; /* what a cable's elements give, with more than one: forces or tangents */

@@ -1,4 +1,4 @@
-/* A run, and its time loop: run/run.c. */
+/* A run, and its time loop: run/. */
 #ifndef FUNICULAR_RUN_H
 #define FUNICULAR_RUN_H
 
@@ -32,7 +32,7 @@ struct fu_run {
     const fu_watch *watches;
     double *watched;     /* per watch: its value at `now`, 0 where it has just passed */
     int *late;           /* per watch: the side to which it passed together with another event */
-    double *watch_work;  /* n_dof: accelerations that a watched traction is of */
+    double *watch_work;  /* n_dof + n_outputs: accelerations and a row of output that a watched number is of */
     double (*call)(void *context, int watch, const fu_state *state);
     void *context;
     fu_event event;      /* that the run has stopped at */
@@ -62,9 +62,9 @@ struct fu_run {
     double closed;  /* m: gaps at the start */
     double ceiling; /* s: that steps stay below, after one that failed */
     double newton_tolerance, round_off; /* of increments, m: where Newton may stop, and where it cannot go on */
-    double acted; /* s: when a slide has last stuck, broken loose, or come to an end of its cable */
+    double acted; /* s: when a coupling has last changed by itself */
     int factored, stopped_joint, turned, acts;
-    int keep_elements; /* slides keep their elements in a step, which ends where one of these does */
+    int keep_pieces; /* couplings keep their pieces in a step, which ends where one of them leaves its piece */
     int net_rejections; /* steps rejected of late, less those taken */
     fu_failure failure; /* of the last step that failed */
     fu_energy_balance balance;
@@ -83,11 +83,28 @@ void fu_adapt_step(fu_run *run, double h, double ratio);
 double fu_shrink_step(fu_run *run, double h, double ratio);
 double fu_retry_step(fu_run *run, double h);
 
-/* run/run.c: the time loop */
+/* run/record.c */
 int fu_all_finite(const double *numbers, long n);
+int fu_record_row(fu_run *run);
+int fu_stop(fu_run *run);
+
+/* run/start.c */
 int fu_prepare(fu_run *run);
 int fu_start(fu_run *run);
+int fu_start_scheme(fu_run *run, int project);
+
+/* run/happenings.c */
+int fu_let_happen(fu_run *run, fu_event event);
+
+/* run/knots.c */
+#define FU_AT_ONCE 1e-12 /* of the duration: instants that are no farther apart are one (model/knots.py) */
+const fu_knot *fu_next_knot(const fu_run *run, double latest);
+int fu_pass_knot(fu_run *run, const fu_knot *knot, int event);
+
+/* run/steps.c */
+int fu_step_towards(fu_run *run, double target);
+
+/* run/run.c: the time loop */
 int fu_advance(fu_run *run, double seconds);
-int fu_stop(fu_run *run);
 
 #endif

@@ -5,10 +5,22 @@
 #include "attachments.h"
 #include "constraints.h"
 #include "coupling.h"
+#include "coupling_events.h"
 #include "end_stops.h"
 
-/* Mode of a slide: it slides; s is locked, at a signal or where it stands; the rider has left the cable. */
+/* A slide's own part of a state: its flags, and its numbers.
+ *
+ * mode: it slides; s is locked, at a signal or where it stands; the rider has left the cable. slip_direction: 1 or -1 where
+ * friction is against that direction whatever the speed. contact: 1 or -1 where it lies against what is at the end or at the
+ * start. locked_s: s where it is locked, m. director: a unit vector across the tangent, carried along with the slide. */
 enum { FU_SLIDES, FU_LOCKED, FU_LEFT };
+typedef struct {
+    int mode, slip_direction, contact;
+} fu_slide_flags;
+typedef struct {
+    double locked_s, director[FU_SPACE];
+} fu_slide_numbers;
+
 typedef struct {
     fu_coupling base;        /* one coordinate, s; as many forces as dimensions, on the rider */
     const fu_slide_kernels *kernel;
@@ -21,8 +33,11 @@ typedef struct {
     int sticks;              /* friction holds it at rest, else it rises with the speed */
     double friction, static_friction, viscous, velocity; /* coefficients sliding and at rest; N s/m; m/s */
     fu_end_stop stops[2];    /* at the start and at the end */
+    double start_s, director[FU_SPACE]; /* of the state as it is drawn, as is the next */
+    int start_piece;
 } fu_slide;
 extern const fu_coupling_type fu_slide_type;
+extern const fu_coupling_events fu_slide_events;
 
 /* How a slide moves at a state (eq 20-37), and its resistance R there. */
 typedef struct {
@@ -40,12 +55,22 @@ typedef struct {
 } fu_slide_output;
 _Static_assert(sizeof(fu_slide_output) == 11 * sizeof(double), "rows of output are arrays of doubles");
 
+/* Those parts of a state, and of the work space of eq 38, that belong to slide number j. */
+fu_slide_flags *fu_slide_flags_of(const fu_model *model, const fu_state *state, int j);
+fu_slide_numbers *fu_slide_numbers_of(const fu_model *model, const fu_state *state, int j);
+fu_slide_state *fu_slide_state_of(const fu_model *model, const fu_accelerator *work, int j);
+
 int fu_slide_coordinates(const fu_model *model, const fu_state *state, int j, int *at);
 double fu_slide_locked_s(const fu_model *model, const fu_state *state, int j, double *rate, double *second);
 void fu_slide_residual(const fu_model *model, const fu_state *state, int j, double *phi, double *g);
 void fu_slide_tangent(const fu_model *model, const fu_state *state, int j, const double *f, double *J, double *K);
 void fu_slide_terms(const fu_model *model, const fu_state *state, int j, fu_rows *rows, fu_slide_state *slide_state);
 double fu_slide_step(const fu_model *model, const fu_state *state, int j, double s, double A_t[9]);
+
+/* couplings/slide_steps.c: residual and tangent over a step that conserves energy. */
+void fu_slide_over_step(const fu_model *model, const fu_coupling *coupling, const fu_equations *step, double *f, double *own);
+void fu_slide_over_step_tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *step,
+                                fu_system *system);
 
 /* couplings/arc_length.c: s where C_l = 0, eq 21, not zero where there is none; and the director that goes with it. */
 int fu_find_arc_length(const fu_model *model, const fu_state *state, int slide, double *s);

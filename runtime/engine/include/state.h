@@ -8,15 +8,10 @@
 #define FU_STATE_OF_COUPLINGS(ARRAY)                                                                                     \
     /* couplings' own forces: on the rider of a slide, multipliers of a joint, on a spring's first end */               \
     ARRAY(double, forces, model->n_forces)                                                                               \
-    /* per slide: a unit vector across the tangent, carried along with the slide */                                      \
-    ARRAY(double, director, FU_SPACE * (long)model->n_slides)                                                            \
-    ARRAY(double, locked_s, model->n_slides)    /* per slide: s where it is locked, m */                                 \
-    ARRAY(int, element, model->n_slides)        /* per slide: the element on which it is */                              \
-    ARRAY(int, mode, model->n_slides)           /* per slide: FU_SLIDES and so on */                                     \
-    /* per slide: 1 or -1 where friction is against that direction whatever the speed */                                 \
-    ARRAY(int, slip_direction, model->n_slides)                                                                          \
-    /* per slide: 1 or -1 where it lies against what is at the end or at the start */                                    \
-    ARRAY(int, contact, model->n_slides)
+    ARRAY(int, piece, model->n_coordinates)     /* per own coordinate: the piece of its path (coupling_events.h) */      \
+    /* what a coupling's type alone knows the meaning of, n_numbers and n_flags of it */                                 \
+    ARRAY(double, numbers, model->n_numbers)                                                                             \
+    ARRAY(int, flags, model->n_flags)
 
 /* All arrays of a state. */
 #define FU_STATE_ARRAYS(ARRAY)                                                                                           \

@@ -4,6 +4,10 @@
 
 #include "linear.h"
 
+/* Entries of model->place: the place of the unknown that a dof is; that it is fixed; from FU_COMBINED on downwards, the number of
+ * the combination of unknowns that it is. */
+enum { FU_FIXED = -1, FU_COMBINED = -2 };
+
 void fu_gather(const fu_model *model, const double *force, double *x);
 void fu_spread(const fu_model *model, const double *x, double *dofs);
 void fu_add(const fu_model *model, fu_system *system, int i, int j, double value);

@@ -27,7 +27,7 @@
 
 #include <string.h>
 
-#define LEAST_PIVOT 1e-14 /* of the largest: a turn that bends nothing */
+#define LEAST_PIVOT 1e-14 /* of the largest pivot: a smaller one is of a turn that bends nothing */
 
 static const double none[FU_MAX_RATES];
 
@@ -43,7 +43,7 @@ const fu_algorithmic *fu_algorithmic_of(const fu_run *run)
     return (const fu_algorithmic *)run->parameters;
 }
 
-/* Numbers of an element: g, and the energy of r. */
+/* Returns how many numbers an element has: g, and the energy of r. */
 static long numbers_of(const fu_cable *cable)
 {
     return cable->law->rates + 1;
@@ -58,13 +58,13 @@ long fu_algorithmic_state(const fu_run *run)
     return numbers;
 }
 
-/* Numbers of a cable's k-th element in an array of those of all. */
+/* Returns the numbers of a cable's k-th element in an array of those of all. */
 static double *state_of(const fu_cable *cable, double *numbers, int k)
 {
     return numbers + cable->dissipation_state + k * numbers_of(cable);
 }
 
-/* Like a state's numbers: r, what the velocities at the start of the step would change, and its energy; at the head of
+/* Returns the head of the work space, laid out as a state's numbers: r, what the velocities at the start of the step would change, and its energy; at the head of
  * the scratch. */
 static double *expected_of(const fu_run *run)
 {
@@ -76,7 +76,7 @@ static int entry_of(const fu_cable *cable, int k)
     return cable->first + k * cable->per_node;
 }
 
-/* turned += omega x r over an element's vectors, r from the cable's first node */
+/* Adds omega x r over an element's vectors, r from the cable's first node. */
 static void turn(const moving *m, int k, const double omega[3], double *turned)
 {
     const fu_cable *cable = m->cable;
@@ -96,7 +96,7 @@ static double dot(int n, const double *a, const double *b)
     return sum;
 }
 
-/* f of D (weight dE - relaxed), and dE; returns the work of the one with the other */
+/* Makes f of D (weight dE - relaxed), and dE; returns the work of the one with the other. */
 static double element_force(const moving *m, int k, const double *relaxed, double *f, double *dE)
 {
     const fu_cable *cable = m->cable;
@@ -109,7 +109,7 @@ static double element_force(const moving *m, int k, const double *relaxed, doubl
     return dot(cable->coordinates, f, v);
 }
 
-/* N x = b, N symmetric and not negative; x is zero where N is */
+/* Solves N x = b, N symmetric and not negative; x is zero where N is. */
 static void solve(double N[9], double b[3], double x[3])
 {
     const double least = LEAST_PIVOT * fmax(N[0], fmax(N[4], N[8]));
@@ -184,7 +184,7 @@ static moving without_turn(const fu_run *run, const fu_cable *cable, const doubl
     return m;
 }
 
-/* r_0 of a step of h from `now` */
+/* Makes r_0 of a step of h from `now`. */
 void fu_algorithmic_start(fu_run *run, double h)
 {
     const fu_algorithmic *a = fu_algorithmic_of(run);
@@ -203,7 +203,7 @@ void fu_algorithmic_start(fu_run *run, double h)
     }
 }
 
-/* force += those of the step from `now` by psi, q its middle */
+/* Adds the forces of the step from `now` by psi, q its middle. */
 void fu_algorithmic_forces(fu_run *run, const double *q, double *force)
 {
     const double weight = fu_algorithmic_of(run)->weight;
@@ -219,7 +219,7 @@ void fu_algorithmic_forces(fu_run *run, const double *q, double *force)
     }
 }
 
-/* The step is taken: fills the dissipation state at its end. Returns the work of the stresses, J. */
+/* Fills the dissipation state at the end of a step that is taken; returns the work of the stresses, J. */
 double fu_algorithmic_account(fu_run *run, const double *q)
 {
     const fu_algorithmic *a = fu_algorithmic_of(run);

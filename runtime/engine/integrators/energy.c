@@ -21,9 +21,9 @@
 
 #include <string.h>
 
-#define LEFT_BY_NEWTON 1e-17 /* of the way of a step */
+#define LEFT_BY_NEWTON 1e-17 /* of the way of a step: what Newton may leave, which is as little as it can */
 
-/* In the scratch, behind what algorithmic dissipation keeps there: the middle of the step, and forces. */
+/* Part of the work space, behind what algorithmic dissipation keeps there: the middle of the step, and forces. */
 typedef struct {
     double *q, *v, *force;
 } middle_view;
@@ -45,7 +45,7 @@ static long n_scratch(const fu_run *run)
     return run->model->n_dissipation_state + (long)run->model->n_q + 2L * run->model->n_dof;
 }
 
-/* The same as a state; its couplings' unknowns are those of `next`. */
+/* Returns the same as a state; its couplings' unknowns are those of `next`. */
 static fu_state middle_of(const fu_run *run, double h)
 {
     const middle_view m = middle(run);
@@ -64,7 +64,7 @@ static void predict(fu_run *run, double h)
     fu_predict_own(run, h);
 }
 
-/* next.q, v, and the mean acceleration of the step, from psi; the middle */
+/* Makes q, v and the mean acceleration of `next` from psi, and the middle of the step. */
 static void kinematics(fu_run *run, double h)
 {
     const fu_model *model = run->model;
@@ -86,7 +86,7 @@ static void kinematics(fu_run *run, double h)
     fu_between(model, now->q, next->q, m.q);
 }
 
-/* The equations over a step. */
+/* Returns the equations over a step. */
 static fu_equations equations(const fu_run *run, const fu_state *middle_state, double h)
 {
     return (fu_equations){&run->now, &run->next, middle_state, run->psi, h, {1.0, 2.0 / h, sigma(h)}};
@@ -110,7 +110,8 @@ static void residual(fu_run *run, double h)
     run->statistics.time_residual += fu_clock() - begin;
 }
 
-/* Elasticity half-way knows the stress of the mean vectors: a turn over the step shortens these, the mean stress not. */
+/* Adds the stiffness of the mean stress. Elasticity half-way has the stress of the mean vectors, which a turn over the step
+ * shortens; the mean stress it does not change. */
 static void mean_stress(fu_run *run, double stiffness)
 {
     const fu_model *model = run->model;
@@ -169,7 +170,7 @@ static int step(fu_run *run, double h)
     return fu_newton_step(run, &newton, h);
 }
 
-/* Local error of positions, m: h^3/12 times the rate of acceleration, from the means of this step and the one before. */
+/* Returns the local error of positions, m: h^3/12 times the rate of acceleration, from the means of this step and the one before. */
 static double error(fu_run *run, double h)
 {
     const double factor = h * h * h / 12.0 / (0.5 * h + run->since);
@@ -178,7 +179,7 @@ static double error(fu_run *run, double h)
     return fu_filtered_size(run);
 }
 
-/* Work of the forces that are not conserved, as the step has it: energy balances to rounding. */
+/* Adds the work of the forces that are not conserved, as the step has it: energy balances to rounding. */
 static void account(fu_run *run, double h)
 {
     const fu_model *model = run->model;
@@ -196,7 +197,7 @@ static void account(fu_run *run, double h)
         if (c->type->step_dissipation) run->dissipated += c->type->step_dissipation(model, c, &at);
     }
     for (int i = 0; i < model->n_dof; ++i) m.force[i] = 0.0;
-    fu_loads(model, now->t + 0.5 * h, m.q, m.force);
+    fu_coupling_external_forces(model, now->t + 0.5 * h, m.q, m.force);
     for (int i = 0; i < model->n_dof; ++i) run->external -= m.force[i] * run->psi[i];
     if (!model->n_motions) return;
     /* of the motions: velocities there are given, so that their mean is not quite psi/h */

@@ -45,7 +45,7 @@ static double sigma(const parameters *g, double h)
     return g->beta * h * h * (1.0 - g->alpha_f) / (1.0 - g->alpha_m);
 }
 
-/* next.q, v, q'' from next.a */
+/* Makes q, v and q'' of `next` from its a. */
 static void kinematics(fu_run *run, double h)
 {
     const fu_model *model = run->model;
@@ -68,7 +68,7 @@ static void kinematics(fu_run *run, double h)
     if (model->n_motions) fu_prescribe(model, next);
 }
 
-/* The equations at the end of a step. */
+/* Returns the equations at the end of a step. */
 static fu_equations equations(const fu_run *run, double h)
 {
     const parameters *g = scheme_of(run);
@@ -81,23 +81,23 @@ static void matrix(fu_run *run, double h)
     fu_matrix(run, &at);
 }
 
-/* the solution in run->rhs, applied to `next`; returns its size as a length */
+/* Applies the solution in run->rhs to `next`; returns its size as a length. */
 static double apply(fu_run *run, double h)
 {
     const double per_psi = 1.0 / (scheme_of(run)->beta * h * h), size = fu_spread_size(run);
     for (int i = 0; i < run->model->n_dof; ++i) run->next.a[i] += per_psi * run->work[i];
     fu_add_solution(run, 1.0, sigma(scheme_of(run), h));
-    fu_seat_slides(run);
+    fu_choose_pieces(run);
     return size;
 }
 
-/* psi = h v: accelerations are those of vibrations that the step does not resolve, and do not predict where they lead. */
+/* Predicts psi = h v: accelerations are those of vibrations that the step does not resolve, and do not predict where they lead. */
 static void predict(fu_run *run, double h)
 {
     const double kept = 1.0 - 0.5 / scheme_of(run)->beta;
     for (int i = 0; i < run->model->n_dof; ++i) run->next.a[i] = kept * run->now.a[i];
     fu_predict_own(run, h);
-    fu_seat_slides(run);
+    fu_choose_pieces(run);
 }
 
 static void residual(fu_run *run, double h)
@@ -113,7 +113,7 @@ static int step(fu_run *run, double h)
     return fu_is_short(run, h) ? fu_coast(run, h) : fu_newton_step(run, &newton, h);
 }
 
-/* Local error of positions, m: h^2 |beta + (alpha_m - alpha_f)/2 - 1/6| (q''_n+1 - q''_n). Where a slide has changed its
+/* Returns the local error of positions, m: h^2 |beta + (alpha_m - alpha_f)/2 - 1/6| (q''_n+1 - q''_n). Where a slide has changed its
  * element the accelerations have jumped at some instant of the step, and velocities are wrong by the part of h that lies
  * between it and the middle, times the jump. That counts as over one step: what is allowed is h/t of the whole. */
 static double error(fu_run *run, double h)

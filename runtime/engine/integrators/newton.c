@@ -5,12 +5,12 @@
 #include <string.h>
 #include <time.h>
 
-#define STAGNANT 0.3 /* increments that shrink less than to this, at the size of rounding, are rounding */
-#define FIRST_CONTRACTION 0.5 /* before there are two increments: not small enough to stop after one iteration */
-#define SLOWEST 0.9          /* contraction by which the rest of the error is estimated, at most */
-#define BEYOND_ROUNDING 100.0 /* times the rounding of positions: an increment that is no rounding */
-#define MANY 4               /* a step of more than this part of the most iterations has its matrix made anew next */
-#define QUICK 0.03   /* contraction that is believed in: the first iterations mend what is linear, the next are slower */
+#define STAGNANT 0.3          /* increments that shrink less than to this, at the size of rounding, are rounding */
+#define FIRST_CONTRACTION 0.5 /* assumed before there are two increments: too large to stop after one iteration */
+#define SLOWEST 0.9           /* largest contraction by which the rest of the error is estimated */
+#define QUICK 0.03            /* least contraction by which it is: the first iterations mend what is linear, the next are slower */
+#define BEYOND_ROUNDING 100.0 /* times the rounding of positions: an increment that is not rounding */
+#define MANY 4                /* a step of more than a fourth of the most iterations has its matrix made anew for the next */
 
 double fu_clock(void)
 {
@@ -40,7 +40,7 @@ static int factor(fu_run *run, const fu_newton *method, double h)
     return info;
 }
 
-/* largest of the unknowns in run->rhs, as a length; the dofs' part of them is left in run->work */
+/* Returns the largest of the unknowns in run->rhs, as a length; the dofs' part of them is left in run->work. */
 double fu_spread_size(fu_run *run)
 {
     const fu_model *model = run->model;
@@ -52,13 +52,13 @@ double fu_spread_size(fu_run *run)
     return largest;
 }
 
-/* the solution in run->rhs, added to the couplings' own coordinates and forces */
+/* Adds the solution in run->rhs to the couplings' own coordinates and forces. */
 void fu_add_solution(fu_run *run, double inertia, double scale)
 {
     fu_add_own(run->model, &run->next, fu_own(run), inertia, scale);
 }
 
-/* What an integrator does not predict otherwise: time, and the couplings' part of `next`. */
+/* Predicts what an integrator does not predict otherwise: time, and the couplings' part of `next`. */
 void fu_predict_own(fu_run *run, double h)
 {
     const fu_model *model = run->model;
@@ -67,26 +67,26 @@ void fu_predict_own(fu_run *run, double h)
     for (int i = 0; i < model->n_coordinates; ++i) run->next.s[i] = run->now.s[i] + h * run->s_slope[i];
 }
 
-/* The iteration has failed where its last correction, in run->rhs and run->work, is largest; returns 1. */
+/* Notes that the iteration has failed where its last correction, in run->rhs and run->work, is largest; returns 1. */
 static int blame(fu_run *run)
 {
     const fu_model *model = run->model;
     const double *own = fu_own(run);
     double largest = fu_size(model, run->work);
-    int slide = -1;
+    int coupling = -1;
     for (int k = 0; k < model->n_couplings; ++k) {
         const fu_coupling *c = model->couplings[k];
         for (int i = 0; c->n_coordinates && i < c->n_coordinates + c->n_forces; ++i) {
             const double size = fabs(own[c->unknown + i]);
             if (!(size > largest)) continue;
             largest = size;
-            slide = c->index;
+            coupling = c->number;
         }
     }
-    return fu_fail(run, FU_ITERATION, run->work, slide);
+    return fu_fail(run, FU_ITERATION, run->work, coupling);
 }
 
-/* Newton from the prediction with the matrix at hand; 0 when it converged */
+/* Iterates from the prediction with the matrix at hand; returns 0 where that converged. */
 static int iterate(fu_run *run, const fu_newton *method, double h)
 {
     double last = 0.0, ratio = 0.0;
@@ -122,7 +122,7 @@ static int iterate(fu_run *run, const fu_newton *method, double h)
     return 0;
 }
 
-/* One step of size h from `now` to `next`; 0 when the Newton iteration converged. */
+/* Makes one step of size h from `now` to `next`; returns 0 where the Newton iteration converged. */
 int fu_newton_step(fu_run *run, const fu_newton *method, double h)
 {
     if (fabs(h - run->h_factored) > FU_SAME_STEP * h) run->factored = 0;
@@ -139,7 +139,7 @@ int fu_newton_step(fu_run *run, const fu_newton *method, double h)
     return 1;
 }
 
-/* Size of an error of positions in run->work, passed through (M + sigma K)^-1 M on the constraints' tangent space so that
+/* Returns the size of an error of positions in run->work, passed through (M + sigma K)^-1 M on the constraints' tangent space so that
  * vibrations that the step does not resolve count by their amplitude and not by their acceleration. */
 double fu_filtered_size(fu_run *run)
 {
@@ -154,8 +154,8 @@ double fu_filtered_size(fu_run *run)
     return fu_spread_size(run);
 }
 
-/* For tests of the matrix: the residual after moving the predicted step by `change` (unknowns), in run->rhs with
- * its sign turned, and the unfactored matrix there in run->newton. */
+/* Makes, for tests of the matrix, the residual after moving the predicted step by `change` (unknowns), in run->rhs with its sign
+ * turned, and the unfactored matrix there in run->newton. */
 void fu_linearise(fu_run *run, double h, const double *change)
 {
     const fu_newton *method = run->integrator->newton;

@@ -2,12 +2,12 @@
  * meet, are the border. A column of it has a solution in the chains that it touches and nowhere else. */
 #include "engine.h"
 
-#define SYMMETRIC 1e-10 /* of the diagonals: what rounding leaves between two halves */
-#define FADED 1e-32     /* of a column's largest entry: what adds nothing to a solution */
+#define SYMMETRIC 1e-10 /* of the diagonals: more than rounding leaves between the two halves of a symmetric matrix */
+#define FADED 1e-32     /* of a column's largest entry: smaller ones add nothing to a solution */
 
 void fu_system_clear(fu_system *s)
 {
-    const int rows = 3 * s->width + 1;
+    const int rows = FU_BAND_ROWS(s->width);
     for (long i = 0; i < (long)rows * s->n; ++i) s->K[i] = 0.0;
     fu_system_clear_border(s);
 }
@@ -15,8 +15,8 @@ void fu_system_clear(fu_system *s)
 void fu_system_clear_border(fu_system *s)
 {
     for (int k = s->constant; k < s->m; ++k)
-        for (int half = 0; half < 2 * s->n_chains; ++half) {
-            fu_span *of[2] = {&s->span_B[k * 2 * s->n_chains + half], &s->span_C[k * 2 * s->n_chains + half]};
+        for (int half = 0; half < FU_HALVES * s->n_chains; ++half) {
+            fu_span *of[2] = {&s->span_B[k * FU_HALVES * s->n_chains + half], &s->span_C[k * FU_HALVES * s->n_chains + half]};
             double *column[2] = {s->B + (long)k * s->n, s->C + (long)k * s->n};
             for (int side = 0; side < 2; ++side) {
                 for (int i = of[side]->first; i < of[side]->end; ++i) column[side][i] = 0.0;
@@ -36,18 +36,18 @@ static int size_of(const fu_system *s, int chain)
     return s->chains[chain + 1] - s->chains[chain];
 }
 
-/* a chain's columns of L */
+/* Returns a chain's columns of L. */
 static double *factor_of(const fu_system *s, int chain)
 {
     return s->L + (s->width + 1) * ((long)s->chains[chain] + FU_BAND_GROUP * chain);
 }
 
-/* The lower half of a chain's K as band.c wants it; zero where K is not symmetric or its diagonal not positive. */
+/* Makes the lower half of a chain's K as band.c wants it; returns zero where K is not symmetric or its diagonal not positive. */
 static int pack(fu_system *s, int chain)
 {
-    const int n = size_of(s, chain), width = s->width, rows = 3 * width + 1, stride = width + 1;
+    const int n = size_of(s, chain), width = s->width, rows = FU_BAND_ROWS(width), stride = width + 1;
     for (int j = 0; j < n; ++j) {
-        const double *below = s->K + (long)(s->chains[chain] + j) * rows + 2 * width, diagonal = below[0];
+        const double *below = s->K + (long)(s->chains[chain] + j) * rows + FU_BAND_DIAGONAL(width), diagonal = below[0];
         const int most = n - 1 - j < width ? n - 1 - j : width;
         double *column = factor_of(s, chain) + (long)j * stride;
         column[0] = diagonal;
@@ -64,7 +64,7 @@ static int pack(fu_system *s, int chain)
 
 int fu_system_factor_band(fu_system *s, const fu_lapack *lapack)
 {
-    int width = s->width, rows = 3 * width + 1, info = 0;
+    int width = s->width, rows = FU_BAND_ROWS(width), info = 0;
     s->definite = 1;
     for (int c = 0; c < s->n_chains && s->definite; ++c)
         s->definite = pack(s, c) && !fu_band_factor(lapack, size_of(s, c), width, factor_of(s, c));
@@ -76,17 +76,17 @@ int fu_system_factor_band(fu_system *s, const fu_lapack *lapack)
     return 0;
 }
 
-/* x <- K^-1 x in a chain, where x is zero before the row `first` */
+/* Makes x = K^-1 x in a chain, where x is zero before the row `first` */
 static void solve_chain(const fu_system *s, const fu_lapack *lapack, int chain, int first, double *x)
 {
-    int n = size_of(s, chain), start = s->chains[chain], width = s->width, rows = 3 * width + 1, one = 1, info;
+    int n = size_of(s, chain), start = s->chains[chain], width = s->width, rows = FU_BAND_ROWS(width), one = 1, info;
     if (s->definite) fu_band_solve(n, width, factor_of(s, chain), first - start, x + start);
     else
         lapack->dgbtrs("N", &n, &width, &width, &one, s->K + (long)start * rows, &rows, s->pivot_band + start,
                        x + start, &n, &info);
 }
 
-/* piece of a row of C, times the rows `of` a column */
+/* Returns a piece of a row of C times the rows `of` a column. */
 static double times(const fu_system *s, const fu_piece *p, fu_span of, const double *x)
 {
     const double *row = s->C + (long)p->k * s->n;
@@ -96,16 +96,16 @@ static double times(const fu_system *s, const fu_piece *p, fu_span of, const dou
     return sum;
 }
 
-/* The rows that count of column k of X in a chain, by halves: it fades away from what it touches, in the end to numbers
- * so small that the processor is slow with them. Returns how many pieces that is. */
+/* Finds the rows that count of column k of X in a chain, by halves; returns how many pieces they are. The column decays away from
+ * what it touches, in the end to numbers so small that the processor is slow with them. */
 int fu_pieces(const fu_system *s, int k, int chain, const double *x, fu_piece *pieces)
 {
     const int begin = s->chains[chain], end = s->chains[chain + 1], middle = (begin + end) / 2;
-    const fu_span halves[2] = {{begin, middle}, {middle, end}};
+    const fu_span halves[FU_HALVES] = {{begin, middle}, {middle, end}};
     double largest = 0.0;
     int n = 0;
     for (int i = begin; i < end; ++i) largest = fabs(x[i]) > largest ? fabs(x[i]) : largest;
-    for (int half = 0; half < 2; ++half) {
+    for (int half = 0; half < FU_HALVES; ++half) {
         fu_span rows = halves[half];
         while (rows.first < rows.end && fabs(x[rows.first]) <= FADED * largest) ++rows.first;
         while (rows.first < rows.end && fabs(x[rows.end - 1]) <= FADED * largest) --rows.end;
@@ -114,35 +114,35 @@ int fu_pieces(const fu_system *s, int k, int chain, const double *x, fu_piece *p
     return n;
 }
 
-/* column k of X = K^-1 B in a chain */
+/* Makes column k of X = K^-1 B in a chain. */
 static void solve_column(fu_system *s, const fu_lapack *lapack, int k, int chain)
 {
     const int begin = s->chains[chain], end = s->chains[chain + 1];
-    const fu_span *of = s->span_B + 2 * (k * s->n_chains + chain);
+    const fu_span *of = s->span_B + FU_HALVES * (k * s->n_chains + chain);
     double *x = s->X + FU_BAND_LENGTH(s->n, s->width) * k;
     if (!of[0].end && !of[1].end) return;
     for (int i = begin; i < end + FU_BAND_BEYOND(s->width); ++i) x[i] = 0.0;
-    for (int half = 0; half < 2; ++half)
+    for (int half = 0; half < FU_HALVES; ++half)
         for (int i = of[half].first; i < of[half].end; ++i) x[i] = s->B[(long)k * s->n + i];
     solve_chain(s, lapack, chain, of[of[0].end == 0].first, x);
     s->n_columns += fu_pieces(s, k, chain, x, s->columns + s->n_columns);
 }
 
-/* Columns of X and pieces of C, but those that stay. */
+/* Makes the columns of X and the pieces of C, but those that stay. */
 static void couple(fu_system *s, const fu_lapack *lapack)
 {
     s->n_columns = s->constant_columns;
     s->n_rows = s->constant_rows;
     for (int k = s->constant; k < s->m; ++k)
         for (int c = 0; c < s->n_chains; ++c) {
-            const fu_span *of = s->span_C + 2 * (k * s->n_chains + c);
-            for (int half = 0; half < 2; ++half)
+            const fu_span *of = s->span_C + FU_HALVES * (k * s->n_chains + c);
+            for (int half = 0; half < FU_HALVES; ++half)
                 if (of[half].end) s->rows[s->n_rows++] = (fu_piece){k, of[half]};
             solve_column(s, lapack, k, c);
         }
 }
 
-/* Let the first columns and rows of the border stay as they are, beside the band, which is factored. */
+/* Lets the first columns and rows of the border stay as they are, beside the band, which is factored. */
 void fu_system_keep_border(fu_system *s, const fu_lapack *lapack, int columns)
 {
     couple(s, lapack);
@@ -151,7 +151,7 @@ void fu_system_keep_border(fu_system *s, const fu_lapack *lapack, int columns)
     s->constant_rows = s->n_rows;
 }
 
-/* Schur complement of the factored band: D <- D - C K^-1 B, factored. */
+/* Makes and factors the Schur complement of the factored band, D - C K^-1 B, in place of D; returns LAPACK's info. */
 int fu_system_factor_border(fu_system *s, const fu_lapack *lapack)
 {
     int m = s->m, info = 0;
@@ -164,7 +164,7 @@ int fu_system_factor_border(fu_system *s, const fu_lapack *lapack)
     return info;
 }
 
-/* In place: right-hand side to solution; x goes on FU_BAND_BEYOND beyond the unknowns. These are made zero here: a step
+/* Solves in place: x is the right side, then the solution, and goes on FU_BAND_BEYOND beyond the unknowns. These are made zero here: a step
  * that has overflowed leaves no numbers in them, and no later step would have any. */
 void fu_system_solve(const fu_system *s, const fu_lapack *lapack, double *x)
 {

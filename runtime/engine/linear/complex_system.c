@@ -5,10 +5,10 @@
 
 #include <string.h>
 
-/* Rows of the band's storage, as LAPACK wants it for a factorisation with pivots. */
+/* Returns the rows of the band's storage. */
 static long storage_rows(const fu_system *s)
 {
-    return 3L * s->width + 1;
+    return FU_BAND_ROWS((long)s->width);
 }
 
 static fu_complex *take(double *scratch, long *taken, long n)
@@ -19,7 +19,7 @@ static fu_complex *take(double *scratch, long *taken, long n)
 /* Takes the arrays of a system as large as the real one from a work space (fu_take). */
 void fu_complex_system_take(fu_complex_system *c, const fu_system *s, double *scratch, long *taken)
 {
-    const long n = s->n, m = s->m, pieces = 2 * m * s->n_chains;
+    const long n = s->n, m = s->m, pieces = FU_HALVES * m * s->n_chains;
     c->K = take(scratch, taken, storage_rows(s) * n);
     c->B = take(scratch, taken, n * m);
     c->C = take(scratch, taken, n * m);
@@ -44,11 +44,11 @@ void fu_complex_system_clear(fu_complex_system *c, const fu_system *s)
 /* Adds the real matrix times a factor. */
 void fu_complex_system_accumulate(fu_complex_system *c, const fu_system *s, fu_complex factor)
 {
-    const long band = (long)(3 * s->width + 1) * s->n, corner = (long)s->m * s->m;
+    const long band = (long)FU_BAND_ROWS(s->width) * s->n, corner = (long)s->m * s->m;
     for (long i = 0; i < band; ++i) fu_complex_add(&c->K[i], factor, s->K[i]);
     for (int k = 0; k < s->m; ++k)
-        for (int half = 0; half < 2 * s->n_chains; ++half) {
-            const fu_span right = s->span_B[k * 2 * s->n_chains + half], below = s->span_C[k * 2 * s->n_chains + half];
+        for (int half = 0; half < FU_HALVES * s->n_chains; ++half) {
+            const fu_span right = s->span_B[k * FU_HALVES * s->n_chains + half], below = s->span_C[k * FU_HALVES * s->n_chains + half];
             fu_complex *B = c->B + (long)k * s->n, *C = c->C + (long)k * s->n;
             for (int i = right.first; i < right.end; ++i) fu_complex_add(&B[i], factor, s->B[(long)k * s->n + i]);
             for (int i = below.first; i < below.end; ++i) fu_complex_add(&C[i], factor, s->C[(long)k * s->n + i]);
@@ -59,9 +59,9 @@ void fu_complex_system_accumulate(fu_complex_system *c, const fu_system *s, fu_c
 /* Solves for column k of X and finds the rows of it that count, unless B has none; size: work space of the band's size. */
 static void solve_column(fu_complex_system *c, const fu_system *s, const fu_lapack *lapack, int k, double *size)
 {
-    int n = s->n, width = s->width, rows = 3 * width + 1, one = 1, touched = 0, info;
+    int n = s->n, width = s->width, rows = FU_BAND_ROWS(width), one = 1, touched = 0, info;
     fu_complex *x = c->X + (long)k * n;
-    for (int half = 0; half < 2 * s->n_chains; ++half) touched |= s->span_B[k * 2 * s->n_chains + half].end;
+    for (int half = 0; half < FU_HALVES * s->n_chains; ++half) touched |= s->span_B[k * FU_HALVES * s->n_chains + half].end;
     if (!touched) return;
     memcpy(x, c->B + (long)k * n, sizeof(fu_complex) * (size_t)n);
     lapack->zgbtrs("N", &n, &width, &width, &one, c->K, &rows, c->pivot_band, x, &n, &info);
@@ -74,7 +74,7 @@ static void solve_column(fu_complex_system *c, const fu_system *s, const fu_lapa
  * doubles as the band has columns. Returns 0, or not 0 where it is singular. */
 int fu_complex_system_factor(fu_complex_system *c, const fu_system *s, const fu_lapack *lapack, double *size)
 {
-    int n = s->n, m = s->m, width = s->width, rows = 3 * width + 1, info = 0;
+    int n = s->n, m = s->m, width = s->width, rows = FU_BAND_ROWS(width), info = 0;
     fu_complex *C = c->C, *D = c->D, *X = c->X;
     if (n) lapack->zgbtrf(&n, &n, &width, &width, c->K, &rows, c->pivot_band, &info);
     if (info || !m) return info;
@@ -93,7 +93,7 @@ int fu_complex_system_factor(fu_complex_system *c, const fu_system *s, const fu_
 /* Solves for the right side in x, in place. */
 void fu_complex_system_solve(const fu_complex_system *c, const fu_system *s, const fu_lapack *lapack)
 {
-    int n = s->n, m = s->m, width = s->width, rows = 3 * width + 1, one = 1, info;
+    int n = s->n, m = s->m, width = s->width, rows = FU_BAND_ROWS(width), one = 1, info;
     fu_complex *x = c->x, *y = x + n, *C = c->C, *X = c->X;
     if (n) lapack->zgbtrs("N", &n, &width, &width, &one, c->K, &rows, c->pivot_band, x, &n, &info);
     if (!m) return;

@@ -1,85 +1,91 @@
-/* Dofs and unknowns: dofs = T unknowns, each row of T empty, a single one, or a combination. */
+/* Dofs and unknowns: dofs = T unknowns, where each row of T is empty, a single one, or a combination. */
 #include "engine.h"
 
+enum { MAXIMA = 4 }; /* of dofs, found side by side: a processor does not wait for one before it begins the next */
+
+/* A row of T: the places of n unknowns, and their values. */
 typedef struct {
     int n;
     const int *place;
     const double *value;
 } row;
 
+/* Returns the row of T of a dof with this entry of model->place. */
 static row row_of(const fu_model *model, const int *place)
 {
     static const double one = 1.0;
     if (*place >= 0) return (row){1, place, &one};
-    if (*place == -1) return (row){0, 0, 0};
-    const int *start = model->combination_start - 2 - *place;
+    if (*place == FU_FIXED) return (row){0, 0, 0};
+    const int *start = model->combination_start + FU_COMBINED - *place;
     return (row){start[1] - start[0], model->combination_place + start[0], model->combination_value + start[0]};
 }
 
-/* x = T' force, over the band and the border's dofs */
+/* Makes x = T' force, over the band and the border's dofs. */
 void fu_gather(const fu_model *model, const double *force, double *x)
 {
     for (int i = 0; i < model->n_band + model->n_border_dof; ++i) x[i] = 0.0;
     for (int i = 0; i < model->n_dof; ++i) {
         const int place = model->place[i];
         if (place >= 0) x[place] += force[i];
-        else if (place < -1) {
+        else if (place <= FU_COMBINED) {
             const row r = row_of(model, &place);
             for (int k = 0; k < r.n; ++k) x[r.place[k]] += r.value[k] * force[i];
         }
     }
 }
 
-/* dofs = T x */
+/* Makes dofs = T x. */
 void fu_spread(const fu_model *model, const double *x, double *dofs)
 {
     for (int i = 0; i < model->n_dof; ++i) {
         const int place = model->place[i];
         dofs[i] = place >= 0 ? x[place] : 0.0;
-        if (place < -1) {
+        if (place <= FU_COMBINED) {
             const row r = row_of(model, &place);
             for (int k = 0; k < r.n; ++k) dofs[i] += r.value[k] * x[r.place[k]];
         }
     }
 }
 
-/* Number under which `fu_add` knows the k-th unknown beyond the dofs. */
+/* Returns the number under which `fu_add` knows the k-th unknown beyond the dofs. */
 int fu_extra(const fu_model *model, int k)
 {
     return model->n_dof + k;
 }
 
+/* Lets a span take in a row. */
 static void touch(fu_span *span, int row)
 {
     if (row < span->first) span->first = row;
     if (row >= span->end) span->end = row + 1;
 }
 
-/* system += value at these places of the unknowns */
+/* Adds a value to a system at these places of the unknowns. */
 static void add(fu_system *s, int row, int column, double value)
 {
     const int n = s->n;
     if (row < 0 || column < 0) return; /* a fixed dof */
     if (row < n && column < n)
-        s->K[(long)column * (3 * s->width + 1) + 2 * s->width + row - column] += value;
+        s->K[(long)column * FU_BAND_ROWS(s->width) + FU_BAND_DIAGONAL(s->width) + row - column] += value;
     else if (row < n) {
         s->B[(long)(column - n) * n + row] += value;
-        touch(&s->span_B[(column - n) * 2 * s->n_chains + s->half[row]], row);
+        touch(&s->span_B[(column - n) * FU_HALVES * s->n_chains + s->half[row]], row);
     } else if (column < n) {
         s->C[(long)(row - n) * n + column] += value;
-        touch(&s->span_C[(row - n) * 2 * s->n_chains + s->half[column]], column);
+        touch(&s->span_C[(row - n) * FU_HALVES * s->n_chains + s->half[column]], column);
     } else
         s->D[(long)(column - n) * s->m + row - n] += value;
 }
 
-/* system += value at dofs (or extra unknowns) i, j: T' value T; null: nothing */
+/* Adds T' value T to a system at dofs (or unknowns beyond them, fu_extra) i, j, and notes which rows of the border that touches;
+ * to no system (null) nothing. */
 void fu_add(const fu_model *model, fu_system *system, int i, int j, double value)
 {
     if (!system) return;
     const int beyond = model->n_band + model->n_border_dof - model->n_dof;
     const int place_i = i < model->n_dof ? model->place[i] : beyond + i;
     const int place_j = j < model->n_dof ? model->place[j] : beyond + j;
-    if (place_i >= -1 && place_j >= -1) {
+    if (place_i >= FU_FIXED && place_j >= FU_FIXED) {
         add(system, place_i, place_j, value);
         return;
     }
@@ -89,14 +95,14 @@ void fu_add(const fu_model *model, fu_system *system, int i, int j, double value
             add(system, a.place[k], b.place[m], value * a.value[k] * b.value[m]);
 }
 
-/* largest of what the dofs move points by, as a length; a NaN where one is */
+/* Returns the largest of what the dofs move points by, as a length, m; not a number where one is none. */
 double fu_size(const fu_model *model, const double *dofs)
 {
     const double *weight = model->weight;
-    double largest[4] = {0.0}, check = 0.0; /* maxima that do not wait for each other, and do not see a NaN */
+    double largest[MAXIMA] = {0.0}, check = 0.0; /* a maximum does not see a NaN */
     int i = 0;
-    for (; i + 4 <= model->n_dof; i += 4)
-        for (int k = 0; k < 4; ++k) {
+    for (; i + MAXIMA <= model->n_dof; i += MAXIMA)
+        for (int k = 0; k < MAXIMA; ++k) {
             const double size = fabs(dofs[i + k]) * weight[i + k];
             largest[k] = size > largest[k] ? size : largest[k];
             check += 0.0 * size;

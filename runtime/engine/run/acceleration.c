@@ -3,11 +3,12 @@
 
 #include <string.h>
 
-#define MOST_SWEEPS 100
-#define SETTLED 1e-15 /* change of R by a sweep, over the force */
-#define NEARLY 1e-7   /* the same where rounding may rule it */
+#define MOST_SWEEPS 100 /* over the couplings whose forces depend on multipliers, before there is no solution */
+#define SETTLED 1e-15   /* change of R by a sweep, over the force: one that is rounding */
+#define NEARLY 1e-7     /* the same, where it is enough if a sweep changes R no less than the one before */
+#define DIVERGED 1e30   /* the same, of a sweep that runs away */
 
-/* Constraint rows of all couplings. */
+/* Makes the constraint rows of all couplings. */
 static void evaluate(const fu_model *model, const fu_state *state, fu_accelerator *work)
 {
     ++work->evaluated;
@@ -26,7 +27,8 @@ static void evaluate(const fu_model *model, const fu_state *state, fu_accelerato
     }
 }
 
-/* M is constant, that of rigid bodies by body axes: its band is factored once, and its border's columns are solved. */
+/* Factors the band of M once, and solves for the columns of its border that are constant: those of the cables, and of rigid
+ * bodies, by body axes. Returns 0, or not 0 where the band is not positive definite. */
 int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
@@ -40,7 +42,7 @@ int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
     return !s->definite; /* else it would be in K, which the Newton matrix takes */
 }
 
-/* The border of M. */
+/* Makes the border of M. */
 static void border(const fu_model *model, const double *q, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
@@ -51,7 +53,7 @@ static void border(const fu_model *model, const double *q, fu_accelerator *work)
     fu_bodies_mass(model, q, 0, s);
 }
 
-/* Border of [M H'; H 0] (eq 11) at a state whose terms are evaluated. */
+/* Makes and factors the border of [M H'; H 0] (eq 11) at a state whose terms are evaluated. */
 static int factor_border(const fu_model *model, const fu_state *state, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
@@ -72,7 +74,7 @@ static int factor_border(const fu_model *model, const fu_state *state, fu_accele
     return fu_system_factor_border(s, model->lapack);
 }
 
-/* Solve [M H'; H 0] with forces on the dofs and right sides of the joints; multipliers are scaled back. */
+/* Solves [M H'; H 0] with forces on the dofs and right sides of the joints; multipliers are scaled back. */
 static void solve(const fu_model *model, fu_accelerator *work, const double *force, double *solution)
 {
     double *x = work->rhs, *lambda = x + model->n_band + model->n_border_dof;
@@ -85,7 +87,7 @@ static void solve(const fu_model *model, fu_accelerator *work, const double *for
         for (int c = 0; c < work->rows[r].max_multipliers; ++c) lambda[work->rows[r].first + c] *= work->rows[r].scale[c];
 }
 
-/* -sum_k H_ck x_k: what the right sides lose to known accelerations or velocities */
+/* Returns -sum_k H_ck x_k, what the right sides lose to known accelerations or velocities. */
 static double minus_H(const fu_rows *rows, int c, const double *x)
 {
     double sum = 0.0;
@@ -93,7 +95,7 @@ static double minus_H(const fu_rows *rows, int c, const double *x)
     return sum;
 }
 
-/* Forces that depend on these multipliers, into work->work; null: on those of the state. Returns the largest change over the
+/* Adds the forces that depend on these multipliers to work->work; null: on those of the state. Returns the largest change over the
  * force, of the coupling that work->jammed tells. */
 static double react(const fu_model *model, const fu_state *state, fu_accelerator *work, const double *lambda)
 {
@@ -104,7 +106,7 @@ static double react(const fu_model *model, const fu_state *state, fu_accelerator
         const double size = c->type->react(model, c, state, lambda, work);
         if (size == 0.0 || size <= largest) continue;
         largest = size;
-        work->jammed = c->index;
+        work->jammed = c->number;
     }
     return largest;
 }
@@ -117,8 +119,8 @@ static void reacted(const fu_model *model, const fu_state *state, fu_accelerator
     }
 }
 
-/* Accelerations and multipliers, in work->rhs, by the forces in work->work; by sweeps where friction depends on the
- * multipliers. Not zero where these do not converge: where friction presses the rider on the cable by more than what it
+/* Finds accelerations and multipliers, in work->rhs, by the forces in work->work; by sweeps where friction depends on the
+ * multipliers. Returns not zero where these do not converge: where friction presses the rider on the cable by more than what it
  * comes from, there is no solution (Painleve's). */
 static int solve_friction(const fu_model *model, const fu_state *state, fu_accelerator *work, double *acceleration)
 {
@@ -133,14 +135,14 @@ static int solve_friction(const fu_model *model, const fu_state *state, fu_accel
         if (!model->n_reacting) return 0;
         const double change = react(model, state, work, lambda);
         if (change <= SETTLED || (change <= NEARLY && change >= last)) break;
-        if (!(change < 1e30) || sweep == MOST_SWEEPS) return 1;
+        if (!(change < DIVERGED) || sweep == MOST_SWEEPS) return 1;
         last = change;
     }
     work->jammed = -1;
     return 0;
 }
 
-/* S = H M^-1 H' (multipliers x multipliers) at a state: singular where joints hold the same. */
+/* Makes S = H M^-1 H' (multipliers x multipliers) at a state: singular where joints hold the same. */
 int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S)
 {
     fu_system *s = &work->mass;
@@ -167,7 +169,7 @@ int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *
     return info;
 }
 
-/* what supports give to each dof, zero to rounding where it is free */
+/* Makes what supports give to each dof, zero to rounding where it is free. */
 static void reactions(const fu_model *model, const fu_state *state, fu_accelerator *work, const double *acceleration,
                       const double *lambda, double *reaction)
 {
@@ -182,7 +184,8 @@ static void reactions(const fu_model *model, const fu_state *state, fu_accelerat
     }
 }
 
-/* Eq 38. `reaction` may be null. */
+/* Finds accelerations and multipliers by eq 38, and the reactions of supports, unless `reaction` is null; returns 0 where there is
+ * one solution. */
 int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerator *work, double *acceleration,
                      double *reaction)
 {
@@ -214,7 +217,7 @@ typedef struct {
     double rate;
 } strike;
 
-/* change = the smallest (in the mass norm) change of the dofs with H change = -C_m, or, of velocities, -H v; of these the
+/* Makes `change` the smallest (in the mass norm) change of the dofs with H change = -C_m, or, of velocities, -H v; of these the
  * constraint that has been `struck`, which may be null, gets its rate */
 static int project(const fu_model *model, const fu_state *state, fu_accelerator *work, int of_velocities,
                    const strike *struck, double *change)
@@ -235,19 +238,19 @@ static int project(const fu_model *model, const fu_state *state, fu_accelerator 
     return 0;
 }
 
-/* change = an increment of the dofs that makes constraints zero, to first order */
+/* Makes `change` an increment of the dofs that makes constraints zero, to first order */
 int fu_project_positions(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change)
 {
     return project(model, state, work, 0, 0, change);
 }
 
-/* change = a change of v that makes H v = 0, or minus what drives them */
+/* Makes `change` a change of v that makes H v = 0, or minus what drives them */
 int fu_project_velocities(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change)
 {
     return project(model, state, work, 1, 0, change);
 }
 
-/* change = that of v where a constraint is struck: M change + H' L = 0, so that momentum changes by what the constraints give
+/* Makes `change` that of v where a constraint is struck: M change + H' L = 0, so that momentum changes by what the constraints give
  * alone; minus `rate` is what that constraint changes by afterwards */
 int fu_strike(const fu_model *model, const fu_state *state, fu_accelerator *work, int row, int constraint, double rate,
               double *change)

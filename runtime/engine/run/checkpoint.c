@@ -5,19 +5,22 @@
 #include <stddef.h>
 #include <string.h>
 
-#define ASIDE 1e-3       /* of an element: how far from it a slide may stand, which events leave much nearer */
-#define SHORTEST 1e-13   /* of the duration: a step, or what steps stay below; the time loop gives up before */
-#define LONGEST 2.0      /* of the duration: the same */
-#define MOST_COUNT 100000 /* of rejected steps, of turns on a boundary */
+/* What a state that a run has paused in keeps to, by far: other bytes are damaged or forged. */
+#define ASIDE 1e-3        /* of a piece: how far from it a coupling may stand, where events leave it within 1e-6 */
+#define SHORTEST 1e-13    /* of the duration: a step, or what steps stay below; a run gives up at 1e-12 */
+#define LONGEST 2.0       /* of the duration: a step, or what steps stay below */
+#define MOST_COUNT 100000 /* rejected steps, and turns on a boundary; a run gives up at 10000 */
 
 enum { MEASURE, SAVE, RESTORE };
 
+/* The place in the bytes, how many there are until there, and what is done with them. */
 typedef struct {
     char *at;
     long size;
     int what;
 } copier;
 
+/* Copies so many bytes, to the checkpoint or from it, or counts them. */
 static void copy(copier *c, void *data, size_t size)
 {
     if (c->what == SAVE) memcpy(c->at, data, size);
@@ -26,6 +29,7 @@ static void copy(copier *c, void *data, size_t size)
     c->size += (long)size;
 }
 
+/* Copies a state: its time and all its arrays. */
 static void copy_state(copier *c, const fu_model *model, fu_state *state)
 {
     copy(c, &state->t, sizeof state->t);
@@ -35,7 +39,8 @@ static void copy_state(copier *c, const fu_model *model, fu_state *state)
     }
 }
 
-/* The list of it. Factored matrices are not in it: fu_pause drops the Newton matrix, and fu_start makes that of eq 38. */
+/* Copies all that the steps to come depend on. Factored matrices are not in it: fu_pause drops the Newton matrix, and fu_start
+ * makes that of eq 38. */
 static void copy_all(copier *c, fu_run *run)
 {
     const fu_model *model = run->model;
@@ -52,7 +57,7 @@ static void copy_all(copier *c, fu_run *run)
     copy(c, (char *)run + numbers, sizeof *run - numbers);
 }
 
-/* Forget what a checkpoint does not hold. Done at each pause whether a checkpoint is taken or not, so that results do
+/* Drops what a checkpoint does not hold. Done at each pause whether a checkpoint is taken or not, so that results do
  * not depend on it. */
 void fu_pause(fu_run *run)
 {
@@ -61,7 +66,7 @@ void fu_pause(fu_run *run)
     if (run->integrator->forget) run->integrator->forget(run);
 }
 
-/* Copy it to `bytes`, null to learn the number of them, which is returned. */
+/* Copies what the steps to come depend on to `bytes`, unless it is null; returns the number of bytes. */
 long fu_save(const fu_run *run, char *bytes)
 {
     copier c = {bytes, 0, bytes ? SAVE : MEASURE};
@@ -69,27 +74,19 @@ long fu_save(const fu_run *run, char *bytes)
     return c.size;
 }
 
+/* Returns whether a value is one of a range. */
 static int in_range(int value, int least, int most)
 {
     return value >= least && value <= most;
 }
 
-/* the last of n, or 0, as which it is when there is none and nothing has happened */
+/* Returns the last index of n, or 0, which an index is where there is none and nothing has happened. */
 static int last_of(int n)
 {
     return n > 0 ? n - 1 : 0;
 }
 
-static int slides_on_their_elements(const fu_model *model, const fu_state *state)
-{
-    for (int j = 0; j < model->n_slides; ++j) {
-        const double length = model->cables[model->slides[j].cable].length;
-        const double x = state->s[j] - fu_element_start(model, j, state->element[j]);
-        if (state->mode[j] != FU_LEFT && !(x >= -ASIDE * length && x <= (1.0 + ASIDE) * length)) return 0;
-    }
-    return 1;
-}
-
+/* Returns whether all real numbers of a state are finite. */
 static int finite_state(const fu_model *model, const fu_state *state)
 {
     for (int k = 0; k < FU_N_STATE_ARRAYS; ++k) {
@@ -99,14 +96,14 @@ static int finite_state(const fu_model *model, const fu_state *state)
     return fu_all_finite(&state->t, 1);
 }
 
-/* whether a run stands where fu_pause leaves one: at the time of its last row, without a factored matrix */
+/* Returns whether a run stands where fu_pause leaves one: at the time of its last row, without a factored matrix */
 static int is_paused(const fu_run *run, int rows)
 {
     return run->record.n == rows && run->now.t == (rows - 1) * run->output_step && run->now.t < run->duration &&
            run->recorded == run->now.t && !run->factored && run->h_factored == 0.0;
 }
 
-/* whether counts can be: of steps, of what happened on the way */
+/* Returns whether counts are possible: of steps, of what happened on the way. */
 static int possible_counts(const fu_run *run)
 {
     const fu_statistics *s = &run->statistics;
@@ -119,16 +116,16 @@ static int possible_counts(const fu_run *run)
     return in_range(run->turned, 0, MOST_COUNT) && in_range(run->net_rejections, -MOST_COUNT, MOST_COUNT);
 }
 
-/* whether flags, and numbers of slides and dofs, can be: some lead to places in memory */
+/* Returns whether flags, and numbers of couplings and dofs, are possible: some lead to places in memory. */
 static int possible_indices(const fu_run *run)
 {
-    const int last_slide = last_of(run->model->n_slides);
-    return in_range(run->stopped_joint, 0, last_slide) && in_range(run->keep_elements, 0, 1) &&
+    const int last = last_of(run->model->n_couplings);
+    return in_range(run->stopped_joint, 0, last) && in_range(run->keep_pieces, 0, 1) &&
            in_range(run->rest_start, 0, 1) && in_range(run->failure.cause, FU_NO_FAILURE, FU_JAM) &&
-           in_range(run->failure.dof, 0, last_of(run->model->n_dof)) && in_range(run->failure.slide, -1, last_slide);
+           in_range(run->failure.dof, 0, last_of(run->model->n_dof)) && in_range(run->failure.coupling, -1, last);
 }
 
-/* whether the numbers that lead the steps to come, and those that messages tell, can be */
+/* Returns whether the numbers that the steps to come depend on, and those that messages tell, are possible. */
 static int possible_numbers(const fu_run *run)
 {
     const double steps[] = {run->h, run->ceiling};
@@ -146,14 +143,14 @@ static int possible_numbers(const fu_run *run)
            fu_all_finite(run->first, run->model->n_q) && fu_all_finite(run->s_slope, run->model->n_coordinates);
 }
 
-/* Take up again, after fu_start of the same model and settings; the rows before, so many, are not in the arrays. Not zero
- * where the bytes are of no run that could have paused there: it must not go on then. */
+/* Takes up a run again, after fu_start of the same model and settings; the rows before, so many, are not in the arrays. Returns
+ * not zero where the bytes are of no run that could have paused there: it must not go on then. */
 int fu_restore(fu_run *run, const char *bytes, int rows)
 {
     copier c = {(char *)bytes, 0, RESTORE};
     copy_all(&c, run);
     run->record.first = run->record.n;
     return !(is_paused(run, rows) && fu_is_possible(run->model, &run->now) && fu_is_possible(run->model, &run->next) &&
-             finite_state(run->model, &run->now) && slides_on_their_elements(run->model, &run->now) &&
+             finite_state(run->model, &run->now) && fu_are_on_pieces(run->model, &run->now, ASIDE) &&
              possible_counts(run) && possible_indices(run) && possible_numbers(run));
 }

@@ -1,147 +1,74 @@
-/* Events: a slide leaves its element, a quantity passes a threshold, a function of the user's changes sign. */
+/* Events: a coupling passes a boundary of its path or changes by itself, a quantity passes a threshold, a function of the user's
+ * changes sign. */
 #include "engine.h"
 
-#include <stdlib.h>
-#include <string.h>
+#define MOST_TRIALS 80    /* steps that are tried to end on an event */
+#define FEW_TRIALS 10     /* after so many trials every second one halves the interval: rounding may rule the value */
+#define LEAST_STEP 1e-13  /* of the duration: shorter intervals are not divided */
+#define FINER 1e-2        /* of Newton's tolerance, which is used near an event, lest its noise rule where the event is */
+#define PRECISE 1e-13     /* of a piece, or of what a watched quantity changes by in the step: how close to an event it ends */
+#define LITTLE 1e-2       /* of the allowed error: what a passage beside a boundary may make */
+#define LARGEST_MISS 1e-6 /* of a piece: how close to a boundary a step ends at least */
+#define SMALLEST 1e-300   /* a value that has a sign and is nearly zero */
 
-#define MOST_TRIALS 80
-#define FEW_TRIALS 10     /* after so many every second one halves the interval */
-#define LEAST_STEP 1e-13  /* of the duration */
-#define FINER 1e-2        /* of Newton's tolerance: lest its noise rule where the event is */
-#define PRECISE 1e-13     /* of an element, or of what a watched quantity changes by in the step */
-#define LITTLE 1e-2       /* of what is allowed */
-#define LARGEST_MISS 1e-6 /* of an element */
-#define SMALLEST 1e-300   /* a value with a sign */
+const fu_event fu_no_event = {FU_NO_EVENT, 0, 0, 0};
 
-static double boundary_tolerance(const fu_run *run, int j)
-{
-    return 1e-11 * run->model->cables[run->model->slides[j].cable].length;
-}
-
-/* how far s lies outside its element, negative inside */
-static double outside(const fu_run *run, const fu_state *state, int j, int *side)
-{
-    const double length = run->model->cables[run->model->slides[j].cable].length;
-    const double x = state->s[j] - fu_element_start(run->model, j, state->element[j]);
-    *side = x > 0.5 * length ? 1 : -1;
-    return *side > 0 ? x - length : -x;
-}
-
-/* Slides of `next` on the elements that hold their s, unless they are to keep those of `now`. The matrix is of the
- * elements that it was made with. */
-void fu_seat_slides(fu_run *run)
-{
-    if (run->keep_elements) return;
-    for (int j = 0; j < run->model->n_slides; ++j) {
-        const fu_cable *cable = &run->model->cables[run->model->slides[j].cable];
-        int side, *element = &run->next.element[j];
-        if (!(outside(run, &run->next, j, &side) > boundary_tolerance(run, j))) continue;
-        const double place = fmin(fmax(run->next.s[j] / cable->length, 0.0), cable->n_elements - 1.0);
-        if ((int)place != *element) run->factored = 0;
-        *element = (int)place;
-    }
-}
-
-/* how many boundaries the slides are across at `next` */
-int fu_count_changes(const fu_run *run)
-{
-    int count = 0;
-    for (int j = 0; j < run->model->n_slides; ++j) count += abs(run->next.element[j] - run->now.element[j]);
-    return count;
-}
-
-/* Slides of `next` on the elements of `now`, which they have left. */
-void fu_keep_elements(fu_run *run)
-{
-    memcpy(run->next.element, run->now.element, sizeof(int) * (size_t)run->model->n_slides);
-}
-
-/* s until the first of the slides reaches a boundary of its element at the speed that it has */
-double fu_time_to_boundary(fu_run *run)
-{
-    double least = INFINITY;
-    for (int j = 0; j < run->model->n_slides; ++j) {
-        const double rate = fu_slide_rate(run->model, &run->now, j);
-        const double end = fu_element_start(run->model, j, run->now.element[j] + (rate > 0.0));
-        const double slip_direction = fabs(end - run->now.s[j]);
-        if (slip_direction > boundary_tolerance(run, j)) least = fmin(least, slip_direction / fabs(rate));
-    }
-    return least;
-}
-
-/* How long after `now` a slide turns, by the parabola through both ends of the step, that is back at `next` from beyond a
- * boundary, or beyond one that it stood on and has left inwards; 0 where none does. */
-double fu_time_of_turn(fu_run *run, double h)
-{
-    for (int j = 0; j < run->model->n_slides; ++j) {
-        const double rise = h * fu_slide_rate(run->model, &run->now, j), slip_direction = fabs(rise);
-        const double at = 0.5 * rise / (rise - (run->next.s[j] - run->now.s[j])), close = boundary_tolerance(run, j);
-        const int up = rise > 0.0, element = run->now.element[j];
-        const double ahead = fabs(fu_element_start(run->model, j, element + up) - run->now.s[j]);
-        const double behind = fabs(fu_element_start(run->model, j, element + !up) - run->now.s[j]);
-        const double gone = (up ? 1.0 : -1.0) * (run->next.s[j] - run->now.s[j]);
-        if (at > 0.0 && at < 1.0 && ((0.5 * slip_direction * at > ahead + close && gone < ahead) ||
-                                     (behind <= close && gone < -behind - close))) return at * h;
-    }
-    return 0.0;
-}
-
-/* The force on a rider along the cable, as results have it; not a number where eq 38 has no solution. */
-static double traction(const fu_run *run, const fu_state *state, int slide)
+/* Returns a number of a coupling's row of output; not a number where eq 38 has no solution. */
+static double output_of(const fu_run *run, const fu_state *state, const fu_coupling *c, int which)
 {
     fu_accelerator *work = (fu_accelerator *)&run->accelerator; /* scratch: a run is never a constant */
-    fu_slide_output out;
-    if (fu_accelerations(run->model, state, work, run->watch_work, 0)) return NAN;
-    fu_slide_outputs(run->model, state, slide, run->watch_work, work, &out);
-    return out.traction;
+    double *acceleration = run->watch_work, *out = acceleration + run->model->n_dof;
+    if (fu_accelerations(run->model, state, work, acceleration, 0)) return NAN;
+    c->type->outputs(run->model, c, state, acceleration, work, out);
+    return out[which];
 }
 
-/* what an event of the user's, or of a slide's, watches, positive where it has happened when `side` is 1 */
+/* Returns what is watched, for an event of the user's or of a coupling's. */
 static double watched(const fu_run *run, const fu_state *state, int k)
 {
     const fu_watch *watch = &run->watches[k];
-    switch (watch->kind) {
-    case FU_WATCH_Q: return state->q[watch->index] - watch->value;
-    case FU_WATCH_V: return state->v[watch->index] - watch->value;
-    case FU_WATCH_S: return state->s[watch->index] - watch->value;
-    case FU_WATCH_RATE: return fu_slide_rate(run->model, state, watch->index) - watch->value;
-    case FU_WATCH_TRACTION: return traction(run, state, watch->index) - watch->value;
-    case FU_WATCH_STICK: return fu_stick_margin(run, state, watch->index);
-    case FU_WATCH_BUFFER: return fu_buffer_margin(run, state, watch->index, (int)watch->value);
-    default: return run->call(run->context, k, state);
-    }
+    if (watch->kind == FU_WATCH_Q) return state->q[watch->index] - watch->value;
+    if (watch->kind == FU_WATCH_V) return state->v[watch->index] - watch->value;
+    if (watch->kind == FU_WATCH_S) return state->s[watch->index] - watch->value;
+    if (watch->kind == FU_WATCH_CALL) return run->call(run->context, k, state);
+    const fu_coupling *c = run->model->couplings[watch->index];
+    if (watch->kind == FU_WATCH_RATE) return c->type->events->rate(run->model, c, state) - watch->value;
+    if (watch->kind == FU_WATCH_OUTPUT) return output_of(run, state, c, watch->which) - watch->value;
+    return c->type->events->watched(run, c, state, watch->which);
 }
 
-/* an event's value at a state: it happens where this reaches zero from below */
+/* Returns an event's value at a state: the event happens where this reaches zero from below. */
 static double value(const fu_run *run, const fu_state *state, fu_event event)
 {
     if (event.kind == FU_WATCHED) return event.side * watched(run, state, event.which);
-    const int boundary = run->now.element[event.which] + (event.side > 0);
-    return event.side * (state->s[event.which] - fu_element_start(run->model, event.which, boundary));
+    const fu_coupling *c = run->model->couplings[event.which];
+    const int boundary = run->now.piece[c->coordinate] + (event.side > 0);
+    return event.side * (state->s[c->coordinate] - boundary * fu_path_of(run->model, c, &run->now).length);
 }
 
-/* whether a watch passes between the value kept and this one */
+/* Returns the event of a watch that passes zero between the value kept and this one, else none. */
 static fu_event passes(const fu_run *run, int k, double after)
 {
     const double before = run->watched[k];
     const int side = before < 0.0 && after >= 0.0 ? 1 : before > 0.0 && after < 0.0 ? -1 : 0;
-    return side && run->watches[k].direction * side >= 0 ? (fu_event){FU_WATCHED, k, side}
-                                                         : (fu_event){FU_NO_EVENT, 0, 0};
+    return side && run->watches[k].direction * side >= 0 ? (fu_event){FU_WATCHED, k, side, 0} : fu_no_event;
 }
 
-/* The slide of `next` that is farthest outside its element, else the first of the user's events between `now` and
- * `next`, but for one. */
+/* Returns the crossing of the coupling of `next` that is farthest outside its piece, else the first of the watches that pass
+ * zero between `now` and `next`; but for one event. */
 fu_event fu_find_event(const fu_run *run, fu_event but)
 {
-    fu_event found = {FU_NO_EVENT, 0, 0};
+    fu_event found = fu_no_event;
     double worst = 0.0;
-    for (int j = 0; j < run->model->n_slides; ++j) {
+    for (int k = 0; k < run->model->n_couplings; ++k) {
+        const fu_coupling *c = run->model->couplings[k];
+        const fu_path path = fu_path_of(run->model, c, &run->next);
         int side;
-        if (run->next.mode[j] == FU_LEFT) continue; /* its s stays where it was */
-        const double d = outside(run, &run->next, j, &side) - boundary_tolerance(run, j);
-        if (d > worst && (but.kind != FU_CROSSING || but.which != j)) {
+        if (!path.n) continue;
+        const double d = fu_outside(run->model, c, &run->next, &side) - fu_boundary_tolerance(path);
+        if (d > worst && (but.kind != FU_CROSSING || but.which != k)) {
             worst = d;
-            found = (fu_event){FU_CROSSING, j, side};
+            found = (fu_event){FU_CROSSING, k, side, 0};
         }
     }
     for (int k = 0; k < run->n_watches && !found.kind; ++k)
@@ -149,36 +76,30 @@ fu_event fu_find_event(const fu_run *run, fu_event but)
     return found;
 }
 
-/* Whether a slide stands on the boundary already: then the element changes and not the time. */
-int fu_stands_on_boundary(const fu_run *run, fu_event event)
-{
-    int side;
-    return event.kind == FU_CROSSING && outside(run, &run->now, event.which, &side) >=
-        -boundary_tolerance(run, event.which) && side == event.side;
-}
-
-/* The fraction of a step at which g = g_low + rate x + ... reaches zero on its way to g_high: that of the parabola. */
+/* Returns the part of a step at which g = g_low + rate x + ... reaches zero on its way to g_high: that of the parabola. */
 static double root_of_parabola(double g_low, double g_high, double rate)
 {
     const double bend = g_high - g_low - rate, square = rate * rate - 4.0 * bend * g_low;
     return square > 0.0 ? -2.0 * g_low / (rate + sqrt(square)) : -g_low / (g_high - g_low);
 }
 
-/* How close to an event a step must end. A slide that goes on in the next element, a way d from the boundary, has gone
- * that way on the wrong curve, whose direction is wrong by d times the jump of r_xx: its velocity by less than rate
- * d/length for elements that bend by less than a radian. Over the step that shall be little of what is allowed. */
+/* Returns how close to an event a step must end. A coupling that goes on in the next piece, a way d from the boundary, has
+ * gone that way on the wrong curve, whose direction is wrong by d times the jump of r_xx: its velocity by less than rate
+ * d/length for pieces that bend by less than a radian. Over the step that shall be little of what is allowed. */
 static double landing(const fu_run *run, fu_event event, double range)
 {
     if (event.kind == FU_WATCHED) return PRECISE * range;
-    const fu_cable *cable = &run->model->cables[run->model->slides[event.which].cable];
-    const int next = run->now.element[event.which] + event.side;
-    if (run->fixed_step > 0.0 || next < 0 || next >= cable->n_elements) return PRECISE * cable->length;
-    return fmax(PRECISE, fmin(LARGEST_MISS, LITTLE * run->allowed / range)) * cable->length;
+    const fu_coupling *c = run->model->couplings[event.which];
+    const fu_path path = fu_path_of(run->model, c, &run->now);
+    const int next = run->now.piece[c->coordinate] + event.side;
+    if (run->fixed_step > 0.0 || next < 0 || next >= path.n) return PRECISE * path.length;
+    return fmax(PRECISE, fmin(LARGEST_MISS, LITTLE * run->allowed / range)) * path.length;
 }
 
-static int is_of_a_slide(const fu_watch *watch)
+/* Returns whether an event is of a watch of a coupling's own, whose value leaves its zero anew after each event. */
+static int is_of_a_coupling(const fu_run *run, fu_event event)
 {
-    return watch->kind == FU_WATCH_STICK || watch->kind == FU_WATCH_BUFFER;
+    return event.kind == FU_WATCHED && run->watches[event.which].kind == FU_WATCH_COUPLING;
 }
 
 /* An interval of steps in which g, the event's value, passes zero: g_low < 0 <= g_high. */
@@ -208,7 +129,7 @@ static void narrow(bracket *b, double middle, double g)
     b->last = side;
 }
 
-/* For an event that has just happened, and whose value leaves its zero anew: moves the low end to where it is off that zero
+/* Moves, for an event that has just happened, and whose value leaves its zero anew, the low end to where it is off that zero
  * again. Returns 1 where it is found, 0 where there is none, -1 where a step fails. */
 static int leave_zero(fu_run *run, fu_event event, bracket *b, double least, double close)
 {
@@ -238,7 +159,7 @@ static double search(fu_run *run, fu_event event, bracket b, double middle, doub
     return 0.0;
 }
 
-/* The same from the step h, which leads beyond the event. */
+/* Does the same from the step h, which leads beyond the event. */
 static double locate(fu_run *run, fu_event event, double h)
 {
     bracket b = {0.0, h, 0.0, value(run, &run->next, event), 0};
@@ -246,11 +167,12 @@ static double locate(fu_run *run, fu_event event, double h)
     const double least = LEAST_STEP * run->duration, close = landing(run, event, b.g_high - b.g_low);
     double middle = h * b.g_low / (b.g_low - b.g_high);
     if (event.kind == FU_CROSSING) {
-        const double rate = event.side * fu_slide_rate(run->model, &run->now, event.which);
+        const fu_coupling *c = run->model->couplings[event.which];
+        const double rate = event.side * c->type->events->rate(run->model, c, &run->now);
         middle = h * root_of_parabola(b.g_low, b.g_high, h * rate);
     }
     if (b.g_high <= close) return h;
-    if (event.kind == FU_WATCHED && is_of_a_slide(&run->watches[event.which]) && fabs(b.g_low) <= close) {
+    if (is_of_a_coupling(run, event) && fabs(b.g_low) <= close) {
         const int found = leave_zero(run, event, &b, least, close);
         if (found < 0) return 0.0;
         if (!found) return b.high < h || !run->integrator->step(run, b.high) ? b.high : 0.0;
@@ -259,18 +181,19 @@ static double locate(fu_run *run, fu_event event, double h)
     return search(run, event, b, middle, least, close);
 }
 
-/* The same, with slides that keep their elements until one of them leaves it. */
+/* Shortens the step h, which leads beyond an event, until it ends there, with couplings that keep their pieces until one of
+ * them leaves its piece. Returns the step, 0 on failure; `next` is there then. */
 double fu_locate(fu_run *run, fu_event event, double h)
 {
-    const int kept = run->keep_elements;
-    run->keep_elements |= event.kind == FU_CROSSING;
+    const int kept = run->keep_pieces;
+    run->keep_pieces |= event.kind == FU_CROSSING;
     run->newton_tolerance *= FINER;
     const double found = locate(run, event, h);
-    run->keep_elements = kept;
+    run->keep_pieces = kept;
     return found;
 }
 
-/* Values of the user's events at `now`; none of those that have just passed, or rounding would let them pass again.
+/* Takes the values of what is watched at `now`, but not of those that have just passed, or rounding would let them pass again.
  * `late` tells which did together with the one that the step was for. */
 void fu_watch_now(fu_run *run, fu_event event)
 {
@@ -284,27 +207,29 @@ void fu_watch_now(fu_run *run, fu_event event)
     }
 }
 
-/* The side on which a slide's watches stand now that a slide has another state, and has just had their value zero. */
-void fu_watch_anew(fu_run *run, int slide)
+/* Gives couplings' watches the sign that they have now that a coupling (its number, or -1) has changed, and has just had the
+ * value of one of them zero. */
+void fu_watch_anew(fu_run *run, int coupling)
 {
     for (int k = 0; k < run->n_watches; ++k) {
         const fu_watch *watch = &run->watches[k];
-        if (!is_of_a_slide(watch)) continue;
-        if (watch->index == slide) run->late[k] = 0;
+        if (watch->kind != FU_WATCH_COUPLING) continue;
+        if (watch->index == coupling) run->late[k] = 0;
         if (run->late[k]) continue;
-        const int side = watch->kind == FU_WATCH_BUFFER && run->now.contact[watch->index] == (int)watch->value ? 1 : -1;
-        run->watched[k] = side * fmax(side * watched(run, &run->now, k), SMALLEST);
+        const fu_coupling *c = run->model->couplings[watch->index];
+        const int sign = c->type->events->sign(run->model, c, &run->now, watch->which);
+        run->watched[k] = sign * fmax(sign * watched(run, &run->now, k), SMALLEST);
     }
 }
 
-/* An event of the user's that passed together with another one. */
+/* Returns an event that passed together with another one, and is still to happen; none where there is none. */
 fu_event fu_late_event(fu_run *run)
 {
     for (int k = 0; k < run->n_watches; ++k)
         if (run->late[k]) {
-            const fu_event event = {FU_WATCHED, k, run->late[k]};
+            const fu_event event = {FU_WATCHED, k, run->late[k], 0};
             run->late[k] = 0;
             return event;
         }
-    return (fu_event){FU_NO_EVENT, 0, 0};
+    return fu_no_event;
 }

@@ -1,23 +1,24 @@
 /* Why a step failed, and where: what a message can name. */
 #include "engine.h"
 
-/* Remember the cause, the dof that moves farthest (or is no number), and the joint; returns 1. */
-int fu_fail(fu_run *run, int cause, const double *dofs, int slide)
+/* Notes why a step failed: the cause, the dof that moves farthest (or is not a number), and the number of the coupling or -1.
+ * Returns 1. */
+int fu_fail(fu_run *run, int cause, const double *dofs, int coupling)
 {
     const fu_model *model = run->model;
     double largest = -1.0;
-    run->failure = (fu_failure){cause, 0, slide};
+    run->failure = (fu_failure){cause, 0, coupling};
     for (int i = 0; i < model->n_dof; ++i) {
         const double size = fabs(dofs[i]) * model->weight[i];
         if (size <= largest) continue;
         run->failure.dof = i;
-        if (size != size) break;
+        if (isnan(size)) break;
         largest = size;
     }
     return 1;
 }
 
-/* The same by the unknown at which a matrix is singular. */
+/* Does the same by the unknown at which a matrix is singular. */
 int fu_fail_at(fu_run *run, int cause, int unknown)
 {
     const fu_model *model = run->model;
@@ -26,11 +27,11 @@ int fu_fail_at(fu_run *run, int cause, int unknown)
     for (int i = 0; i < model->n_dof; ++i)
         if (model->place[i] == unknown) run->failure.dof = i;
     const fu_coupling *owner = extra >= 0 ? fu_owner(model, extra) : 0;
-    if (owner && owner->n_coordinates) run->failure.slide = owner->index;
+    if (owner && owner->n_coordinates) run->failure.coupling = owner->number;
     return 1;
 }
 
-/* The same where eq 38 has no solution: by friction that jams, or by its matrix. */
+/* Does the same where eq 38 has no solution: by friction that jams, or by its matrix. */
 int fu_fail_eq38(fu_run *run)
 {
     const int jammed = run->accelerator.jammed;

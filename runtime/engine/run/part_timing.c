@@ -5,12 +5,13 @@
 #include "engine.h"
 
 #define BUDGET 5e-4 /* s, for all that is timed */
-#define BATCHES 4   /* the fastest counts: the machine may be busy */
+#define BATCHES 4   /* of calls, of which the fastest counts: the machine may be busy */
 #define MOST 100    /* calls in a batch */
+#define SHORTEST 1e-8 /* s: of a call, that a clock that stands still may not show */
 
 enum { RESIDUAL, TANGENT, ROWS, OWN_COORDINATES, WORKS };
 
-/* An operation of a coupling at `now`, with what it leaves in scratch. */
+/* Does an operation of a coupling at `now`, with what it leaves in its work space. */
 static void work_of(fu_run *run, const fu_coupling *c, int what)
 {
     const fu_model *model = run->model;
@@ -26,13 +27,13 @@ static void work_of(fu_run *run, const fu_coupling *c, int what)
     }
 }
 
-/* seconds of one call; of many parts each has little time, and the first call tells */
+/* Returns the seconds of one call. Where many parts share the budget the first call is all that is timed. */
 static double timed(fu_run *run, const fu_coupling *c, int what, double budget)
 {
     double begin = fu_clock();
     work_of(run, c, what);
     double fastest = fu_clock() - begin;
-    const double fit = budget / (BATCHES * fmax(fastest, 1e-8));
+    const double fit = budget / (BATCHES * fmax(fastest, SHORTEST));
     const int calls = fit > MOST ? MOST : (int)fit;
     for (int b = 0; b < BATCHES && calls; ++b) {
         begin = fu_clock();
@@ -42,7 +43,7 @@ static double timed(fu_run *run, const fu_coupling *c, int what, double budget)
     return fastest;
 }
 
-/* seconds a step, of each coupling */
+/* Makes the seconds a step of each coupling. */
 void fu_part_timing(fu_run *run, double *seconds)
 {
     const fu_model *model = run->model;

@@ -3,30 +3,30 @@
 
 #include <math.h>
 
-#define RECOVERY 1.05       /* of what steps stay below after a failure, with each step that is taken */
-#define FIRST_PART 1e-3     /* of the duration: errors in it share one allowance */
-#define SAFETY 0.5          /* what the logarithm costs */
-#define CAUTIOUS 0.8        /* of the step that the error would allow; smaller factors shorten the step */
-#define LARGEST_FACTOR 2.0  /* from step to step */
-#define LEAST_FACTOR 0.2    /* after a step that was rejected for its error */
-#define LEAST_RATIO 1e-12   /* of an error to what is allowed, lest a power of it overflow */
-#define WORTH_WHILE 1.4     /* a step that could be larger by less keeps its size, and its factored matrix */
-#define AFTER_FAILURE 0.5   /* of a step that failed */
-#define ROUNDED 1e-9        /* of a number of steps */
-#define ROUND_OFF 4e-16     /* of a coordinate: two units in its last place */
-#define NEWTON_PART 0.1     /* of what is allowed, times the step over the duration: what Newton may leave */
-#define NEWTON_MOST 1e-10   /* of the extent: likewise, at most */
-#define FIXED_PART 1e-2     /* of the last step's error: likewise, with a fixed step */
-#define FIXED_MOST 1e-14    /* of the extent: likewise */
+#define RECOVERY 1.05      /* growth, with each step that is taken, of what steps stay below after a failure */
+#define FIRST_PART 1e-3    /* of the duration: errors in it share one allowance, as in it hardly anything has moved */
+#define SAFETY 0.5         /* of tol: local errors add up to tol times a logarithm, which this pays for */
+#define CAUTIOUS 0.8       /* of the step that the error would allow; smaller factors shorten the step */
+#define LARGEST_FACTOR 2.0 /* growth of a step over the one before */
+#define LEAST_FACTOR 0.2   /* of a step that was rejected for its error: what the next is at least */
+#define LEAST_RATIO 1e-12  /* of an error to what is allowed, lest a power of it overflow */
+#define WORTH_WHILE 1.4    /* growth below which a step keeps its size, and its factored matrix */
+#define AFTER_FAILURE 0.5  /* of a step that could not be made: what the next is */
+#define ROUNDED 1e-9       /* of a number of steps: what rounding may add to it */
+#define ROUND_OFF 4e-16    /* of a coordinate: two units in its last place */
+#define NEWTON_PART 0.1    /* of what is allowed, times the step over the duration: what Newton may leave */
+#define NEWTON_MOST 1e-10  /* of the extent: what Newton may leave at most */
+#define FIXED_PART 1e-2    /* of the last step's error, times the step over the duration: what Newton may leave of a fixed step */
+#define FIXED_MOST 1e-14   /* of the extent: what Newton may leave of a fixed step at most */
 
-/* The step that ends at the target, or one of equal steps to there, none larger than wanted. */
+/* Returns the step that ends at the target, or one of equal steps to there, none larger than wanted, s. */
 double fu_fit_step(double remaining, double want)
 {
     const double pieces = ceil(remaining / want * (1.0 - ROUNDED));
     return pieces <= 1.0 ? remaining : remaining / pieces;
 }
 
-/* Tolerances of a step: of its error, of Newton, and where rounding begins. Returns the first, m. */
+/* Sets the tolerances of a step: of its error, of Newton, and where rounding begins. Returns the first, m. */
 double fu_allow(fu_run *run, double h)
 {
     run->round_off = ROUND_OFF * fmax(run->extent, run->motion);
@@ -44,7 +44,7 @@ double fu_allow(fu_run *run, double h)
     return run->allowed = allowed;
 }
 
-/* The next step by the last one's error over what is allowed: the error falls with the power order + 1 of the step,
+/* Sets the next step by the last one's error over what is allowed: the error falls with the power order + 1 of the step,
  * what is allowed with the first. Small changes are not worth a new factorisation. After a step that failed the next ones
  * stay below it for a while. */
 void fu_adapt_step(fu_run *run, double h, double ratio)
@@ -56,18 +56,18 @@ void fu_adapt_step(fu_run *run, double h, double ratio)
     else if (factor < CAUTIOUS) run->h = h * factor;
 }
 
-/* The step after one whose error was too large. */
+/* Returns the step after one whose error was too large, s. */
 double fu_shrink_step(fu_run *run, double h, double ratio)
 {
     double want = h * fmax(LEAST_FACTOR, CAUTIOUS * pow(ratio, -1.0 / run->order));
-    if (!(want > 0.0)) want = LEAST_FACTOR * h;
+    if (!(want > 0.0)) want = LEAST_FACTOR * h; /* an error that is not a number */
     fu_fail(run, FU_ERROR, run->work, -1);
     ++run->statistics.rejected;
     ++run->net_rejections;
     return run->h = want;
 }
 
-/* The step after one that could not be made. */
+/* Returns the step after one that could not be made, s. */
 double fu_retry_step(fu_run *run, double h)
 {
     const double want = AFTER_FAILURE * h;

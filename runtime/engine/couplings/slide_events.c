@@ -1,0 +1,103 @@
+/* What a slide does by itself (include/coupling_events.h): it passes from element to element of its cable, sticks, breaks loose,
+ * and reaches what waits at the ends. couplings/end_stops.c has what then happens.
+ */
+#include "engine.h"
+
+/* Watches of a slide: whether it stays locked, or slides on in its direction; or, as the side of that end, its buffer. */
+enum { BUFFER_AT_START = -1, STICKING = 0, BUFFER_AT_END = 1 };
+
+static const fu_slide *slide_of(const fu_coupling *coupling)
+{
+    return (const fu_slide *)coupling;
+}
+
+/* The path is the cable; a slide that has left it is on no element. */
+static fu_path path(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    const fu_cable *cable = &model->cables[slide_of(coupling)->cable];
+    const int left = fu_slide_flags_of(model, state, coupling->index)->mode == FU_LEFT;
+    return (fu_path){left ? 0 : cable->n_elements, cable->length};
+}
+
+static double rate(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    return fu_slide_rate(model, state, coupling->index);
+}
+
+static int can_act(const fu_coupling *coupling)
+{
+    const fu_slide *slide = slide_of(coupling);
+    return slide->resistance || slide->stops[0].kind || slide->stops[1].kind;
+}
+
+/* A slide that can act passes no boundary unseen; axes that a slide ties to the cable turn by a jump where curvature jumps. */
+static int stops_at_boundaries(const fu_model *model, const fu_coupling *coupling)
+{
+    return can_act(coupling) || fu_ties_a_frame(model, coupling->index);
+}
+
+/* Where the rider's axes are tied to the cable they get a new angular velocity. What the step has left of the constraints is
+ * projected away before, lest it be taken for a loss. The tangent of the neighbour differs by the jump of the curvature times
+ * how far the slide is beyond the boundary: were the axes not turned along at once, the first short step would turn them, at a
+ * speed that none of the energies has. */
+static int enter(fu_run *run, const fu_coupling *coupling, int piece)
+{
+    const fu_model *model = run->model;
+    fu_state *now = &run->now;
+    if (!fu_ties_a_frame(model, coupling->index)) return FU_RUNNING;
+    if (fu_project_velocities(model, now, &run->accelerator, run->work)) return FU_SINGULAR;
+    for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->work[i];
+    now->piece[coupling->coordinate] = piece;
+    if (fu_close(run)) return FU_NO_CONVERGENCE;
+    if (fu_project_velocities(model, now, &run->accelerator, run->work)) return FU_SINGULAR;
+    fu_impact(run, run->work, 0.0);
+    return FU_RUNNING;
+}
+
+static int watches(const fu_coupling *coupling, fu_watch *out)
+{
+    const fu_slide *slide = slide_of(coupling);
+    fu_watch found[3];
+    int n = 0;
+    if (slide->drive >= 0) return 0;
+    if (slide->sticks || slide->stops[0].kind == FU_END_IS_HARD || slide->stops[1].kind == FU_END_IS_HARD)
+        found[n++] = (fu_watch){.which = STICKING, .direction = 1};
+    for (int side = BUFFER_AT_START; side <= BUFFER_AT_END; side += 2)
+        if (slide->stops[side > 0].kind == FU_END_IS_BUFFERED) found[n++] = (fu_watch){.which = side, .direction = 0};
+    for (int i = 0; i < n && out; ++i) out[i] = found[i];
+    return n;
+}
+
+static double watched(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which)
+{
+    return which == STICKING ? fu_stick_margin(run, state, coupling->index)
+                             : fu_buffer_margin(run, state, coupling->index, which);
+}
+
+static int sign(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which)
+{
+    return which != STICKING && fu_slide_flags_of(model, state, coupling->index)->contact == which ? 1 : -1;
+}
+
+static int act(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what)
+{
+    *what = 0;
+    if (which == STICKING) return fu_release_or_stick(run, coupling, what);
+    fu_pass_buffer(run, coupling, which, side > 0, what);
+    return FU_RUNNING;
+}
+
+const fu_coupling_events fu_slide_events = {
+    .path = path,
+    .rate = rate,
+    .stops_at_boundaries = stops_at_boundaries,
+    .enter = enter,
+    .reach_end = fu_reach_end,
+    .watches = watches,
+    .watched = watched,
+    .sign = sign,
+    .act = act,
+    .can_act = can_act,
+    .begin = fu_begin_stops,
+    .take_velocities = fu_find_slip_direction,
+};

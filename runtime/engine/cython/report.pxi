@@ -1,0 +1,143 @@
+# What a run tells of itself: counts, sizes, where it stands, why it failed.
+
+cdef class Report(Statics):
+    """Numbers of a run, read only."""
+
+    def relaxed_strains(self):
+        """Return, for each cable, (elements, rates + 1): g and the energy of r of algorithmic dissipation, as in
+        engine/integrators/algorithmic_dissipation.c.
+        """
+        numbers, ends = self._view(&self.run.now, "dissipation_state").copy(), np.cumsum([self.cables[i].n_elements * (self.cables[i].law.rates + 1)
+                                                     for i in range(self.model.n_cables)])
+        return [part.reshape(self.cables[i].n_elements, -1)
+                for i, part in enumerate(np.split(numbers, ends[:-1]))]
+
+    def without_algorithmic_force(self):
+        """Numbers of the cables whose law has no kernel for algorithmic dissipation."""
+        return [i for i in range(self.model.n_cables) if self.cables[i].law.algorithmic_force == NULL]
+
+    @property
+    def knots_passed(self):
+        """Return at how many knots of signals steps have ended."""
+        cdef int k, passed = 0
+        for k in range(self.run.n_knots):
+            passed += self.run.knots[k].t <= self.run.now.t
+        return passed
+
+    @property
+    def row_bytes(self):
+        """Bytes of a row of output."""
+        return 8 * sum([fu_record_array(&self.model, &self.run.record, k).items for k in range(FU_N_RECORD_ARRAYS)])
+
+    cdef _snapshot(self, const fu_state *state):
+        """t, q, v, s of a state."""
+        return state.t, *(self._view(state, name).copy() for name in ("q", "v", "s"))
+
+    @property
+    def n_rows(self):
+        """Number of output rows since the start."""
+        return self.run.record.n
+
+    def slide_row(self, slides):
+        """Split slides' numbers (..., numbers of a slide) by name; see fu_slide_output."""
+        ends = np.cumsum(list(SLIDE_OUTPUTS.values()))
+        if slides.shape[-1] != ends[-1]:
+            raise ValueError(f"a slide has {slides.shape[-1]} numbers, not {ends[-1]}")
+        return {name: slides[..., end - size:end] if size > 1 else slides[..., end - 1]
+                for (name, size), end in zip(SLIDE_OUTPUTS.items(), ends)}
+
+    @property
+    def statistics(self):
+        """Counts, step sizes, error estimate and seconds by part."""
+        s = self.run.statistics
+        return {"steps": s.steps, "rejected_steps": s.rejected, "newton_iterations": s.newton_iterations,
+                "factorisations": s.factorisations, "newton_failures": s.newton_failures, "evaluations": s.evaluations,
+                "element_crossings": s.crossings, "smallest_step_s": s.h_min, "largest_step_s": s.h_max,
+                "sum_of_local_error_estimates_m": s.error_sum, "largest_motion_m": self.run.motion,
+                "time_s": {"residual": s.time_residual, "factorisation": s.time_factor, "solve": s.time_solve,
+                           "output": s.time_output}}
+
+    def costs(self):
+        """(couplings,): what each takes of a step, in seconds, timed by itself in less than 1 ms; see run/part_timing.c."""
+        cdef double[::1] seconds = np.zeros(self.model.n_couplings + 1)
+        fu_part_timing(&self.run, &seconds[0])
+        return np.asarray(seconds)[:self.model.n_couplings]
+
+    @property
+    def integrator(self):
+        """Name of the integrator."""
+        return self.run.integrator.name.decode()
+
+    @property
+    def unknowns(self):
+        """Number of unknowns of a Newton system."""
+        return self.run.newton.n + self.run.newton.m
+
+    @property
+    def in_blocks(self):
+        """Whether cables have kernels for several elements at once."""
+        return [self.cables[i].blocks != NULL for i in range(self.model.n_cables)]
+
+    @property
+    def band(self):
+        """Unknowns in the band of a Newton system, its half width, and unknowns in its border."""
+        return self.run.newton.n, self.run.newton.width, self.run.newton.m
+
+    @property
+    def memory(self):
+        """Bytes of the engine's arrays; recorded rows count only after `start`."""
+        return sum(array.nbytes for array in self.kept)
+
+    @property
+    def time(self):
+        """Time reached, s."""
+        return self.run.now.t
+
+    @property
+    def failure(self):
+        """Of the last step that failed: why (see CAUSES), and the dof and coupling (or None) where that shows most.
+
+        Why is None where energy grew, and where no step was tried that failed.
+        """
+        f = self.run.failure
+        return CAUSES[f.cause], f.dof, f.coupling if f.cause != FU_NO_FAILURE and f.coupling >= 0 else None
+
+    @property
+    def jammed(self):
+        """Number of the coupling whose friction has no solution, -1."""
+        return self.run.accelerator.jammed
+
+    @property
+    def balance(self):
+        """Energy that has come from nowhere, that went there, was exchanged, in motion, and what rounding makes, J."""
+        b = self.run.balance
+        return b.grown, b.lost, b.exchanged, b.in_motion, b.rounding
+
+    @property
+    def moves(self):
+        """Whether anything has moved beyond rounding."""
+        return bool(fu_moves(&self.run))
+
+    @property
+    def extent(self):
+        """Largest size of what coordinates are, m."""
+        return self.run.extent
+
+    @property
+    def closed(self):
+        """How far, in m, things moved at the start to close the gaps of joints."""
+        return self.run.closed
+
+    def now(self):
+        """t, q, v, s at the time reached."""
+        return self._snapshot(&self.run.now)
+
+    @property
+    def stopped_joint(self):
+        """Index of the slide that ran off its cable."""
+        return self.run.stopped_joint
+
+    @property
+    def stopped_s(self):
+        """Arc-length of that slide, m."""
+        return self._view(&self.run.now, "s")[self.run.stopped_joint]

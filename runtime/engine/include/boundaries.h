@@ -1,0 +1,19 @@
+/* Boundaries between the pieces of couplings' paths, as between the elements of a cable: run/boundaries.c. */
+#ifndef FUNICULAR_BOUNDARIES_H
+#define FUNICULAR_BOUNDARIES_H
+
+#include "coupling_events.h"
+
+double fu_boundary_tolerance(fu_path path);
+double fu_outside(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int *side);
+int fu_stop_at_boundaries(const fu_model *model);
+double fu_time_to_boundary(const fu_run *run);
+double fu_time_of_turn(const fu_run *run, double h);
+void fu_choose_pieces(fu_run *run);
+int fu_count_changes(const fu_run *run);
+void fu_keep_pieces(fu_run *run);
+void fu_find_pieces(const fu_model *model, fu_state *state);
+int fu_stands_on_boundary(const fu_run *run, fu_event event);
+int fu_are_on_pieces(const fu_model *model, const fu_state *state, double aside);
+
+#endif

@@ -1,0 +1,54 @@
+/* Events that a coupling finds by itself: a part of its table of operations (include/coupling.h). run/boundaries.c and
+ * run/events.c find the instants at which they happen, run/happenings.c lets them happen; none of them knows a kind of coupling.
+ */
+#ifndef FUNICULAR_COUPLING_EVENTS_H
+#define FUNICULAR_COUPLING_EVENTS_H
+
+#include "coupling.h"
+#include "events.h"
+
+/* The path of a coupling's coordinate: n pieces of one length, m, with boundaries between them at which the equations are not
+ * smooth. state->piece tells on which piece a coupling is. n is zero while the coupling is on none of them. */
+typedef struct {
+    int n;
+    double length;
+} fu_path;
+
+struct fu_coupling_events {
+    /* Boundaries of pieces. A null `path`: the coupling has none. */
+    fu_path (*path)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+    /* Rate of the coordinate along the path, m/s. */
+    double (*rate)(const fu_model *model, const fu_coupling *coupling, const fu_state *state);
+    /* Whether every step must end where the coupling passes a boundary, whatever the integrator. */
+    int (*stops_at_boundaries)(const fu_model *model, const fu_coupling *coupling);
+    /* Changes the velocities of `now` as the passage to another piece asks for; returns a status. Null: it asks for nothing. */
+    int (*enter)(fu_run *run, const fu_coupling *coupling, int piece);
+    /* Lets happen what follows where the coupling stands at an end of its path and goes on outwards: at the last piece where
+     * side is 1, at the first where it is -1. Returns a status; *what says in words what has happened. */
+    int (*reach_end)(fu_run *run, const fu_coupling *coupling, int side, const char **what);
+
+    /* Watches: numbers, each an event where it passes zero. Writes their `which` and `direction` to `out`, unless it is null,
+     * and returns how many they are. */
+    int (*watches)(const fu_coupling *coupling, fu_watch *out);
+    double (*watched)(const fu_run *run, const fu_coupling *coupling, const fu_state *state, int which);
+    /* The sign that a watched number has from here on, after it has been zero and the coupling has changed: 1 or -1. */
+    int (*sign)(const fu_model *model, const fu_coupling *coupling, const fu_state *state, int which);
+    /* Lets happen what follows where a watched number has passed zero to this side; returns a status. *what says in words
+     * what has happened, and is null where nothing has. */
+    int (*act)(fu_run *run, const fu_coupling *coupling, int which, int side, const char **what);
+
+    /* Whether the coupling can change by itself: `begin` then finds how it is at the start; returns a status. */
+    int (*can_act)(const fu_coupling *coupling);
+    int (*begin)(fu_run *run, const fu_coupling *coupling);
+    /* Gives the state what follows from velocities that have jumped. */
+    void (*take_velocities)(fu_run *run, const fu_coupling *coupling);
+};
+
+/* The path of a coupling at a state, with no pieces where it has none. */
+static inline fu_path fu_path_of(const fu_model *model, const fu_coupling *coupling, const fu_state *state)
+{
+    const fu_coupling_events *events = coupling->type->events;
+    return events && events->path ? events->path(model, coupling, state) : (fu_path){0, 0.0};
+}
+
+#endif

@@ -1,0 +1,32 @@
+/* What a coupling's structure takes from the model, described: cython/translation.pxi fills in each field from the attribute of
+ * its name of the coupling's class in the package funicular.model, and knows no kind of coupling.
+ */
+#ifndef FUNICULAR_FIELDS_H
+#define FUNICULAR_FIELDS_H
+
+#include <stddef.h>
+
+/* FU_INTEGER, FU_REAL: numbers. FU_WORD: the index among `words` of a word. FU_KERNELS: a table of kernels by its name, null for
+ * an empty one; words[0] is its role, or the name of the coupling's type where words is null. FU_ATTACHMENT: an attachment.
+ * FU_MODAL_POINT: the point of a modal body, left out for None. FU_INTEGERS, FU_REALS: an array of any length, to which the
+ * structure has a pointer. */
+enum { FU_INTEGER, FU_REAL, FU_WORD, FU_KERNELS, FU_ATTACHMENT, FU_MODAL_POINT, FU_INTEGERS, FU_REALS };
+typedef struct {
+    const char *name; /* null: the last of a list */
+    int kind;
+    size_t offset;
+    int most;         /* items that the structure has: so many may be given */
+    size_t stride;    /* bytes from one item to the next */
+    const char *const *words; /* the last of them null */
+} fu_field;
+
+/* A field of one item of this name in the structure. */
+#define FU_FIELD(structure, member, kind, words) {#member, kind, offsetof(structure, member), 1, 0, words}
+/* A field that the model has another name for. */
+#define FU_FIELD_AS(name, structure, member, kind) {name, kind, offsetof(structure, member), 1, 0, NULL}
+/* A field of an array. */
+#define FU_FIELD_ARRAY(structure, member, kind)                                                                         \
+    {#member, kind, offsetof(structure, member), sizeof(((structure *)0)->member) / sizeof(*((structure *)0)->member),  \
+     sizeof(*((structure *)0)->member), NULL}
+
+#endif

@@ -1,0 +1,62 @@
+/* What the files of the integrator Radau IIA share: integrators/radau.c, radau_stages.c, radau_newton.c, radau_error.c.
+ * None but they includes this. */
+#ifndef FUNICULAR_RADAU_H
+#define FUNICULAR_RADAU_H
+
+#include "complex_system.h"
+#include "engine.h"
+#include "workspace.h"
+
+enum { STAGES = 3 };
+
+/* A^-1 = T L T^-1 with L = gamma beside the block of alpha +- i beta; the error's weights stand over the stages'
+ * increments, beside gamma0 = 1/gamma times the rate at the start. */
+typedef struct {
+    double A[STAGES * STAGES], A_inverse[STAGES * STAGES], c[STAGES], T[STAGES * STAGES], T_inverse[STAGES * STAGES];
+    double gamma, alpha, beta, error[STAGES];
+} fu_radau_parameters;
+_Static_assert(sizeof(fu_radau_parameters) == (4 * STAGES * STAGES + 2 * STAGES + 3) * sizeof(double),
+               "parameters are an array of doubles");
+
+/* The head of the integrator's work space, and the arrays behind it. */
+typedef struct {
+    double *Z;        /* stages' increments of velocity, n_dof each */
+    double *a;        /* accelerations: likewise */
+    double *w;        /* their transforms: likewise */
+    double *q;        /* configurations, n_q each */
+    double *powers;   /* dissipated and external, of each stage */
+    double *multipliers; /* of eq 38 at the start and at each stage, where forces depend on them */
+    double *unknowns; /* of a Newton system */
+    double *D_real;   /* the real system's border before it was factored */
+    double *last;     /* the last step's Z */
+    double h_last;    /* its size, s; 0: there is none to predict from */
+    fu_complex_system newton;
+} fu_radau_workspace;
+
+const fu_radau_parameters *fu_radau_method(const fu_run *run);
+fu_radau_workspace *fu_radau_space(const fu_run *run);
+
+/* radau_stages.c. Stages from the last step's polynomial, else from the acceleration at hand. */
+void fu_radau_predict(fu_run *run, fu_radau_workspace *w, double h);
+/* Moves the dofs of all stages by the quadrature of velocities. */
+void fu_radau_configure(fu_run *run, fu_radau_workspace *w, double h);
+/* Makes `next` stage k, without accelerations; returns 0 where its slides were found. */
+int fu_radau_place_stage(fu_run *run, fu_radau_workspace *w, int k, double h);
+/* Finds the accelerations of all stages; returns 0 where they were found. */
+int fu_radau_evaluate(fu_run *run, fu_radau_workspace *w, double h);
+/* Keeps the multipliers of the state that accelerations have just been found of, as those of stage k. */
+void fu_radau_keep_multipliers(fu_run *run, fu_radau_workspace *w, int k);
+/* Adds the powers of the stages to the energy balance, and keeps the stages for the next prediction. */
+void fu_radau_account(fu_run *run, double h);
+
+/* radau_newton.c. Makes and factors the real and the complex matrix at `now`; returns 0, or not 0 where one is singular. */
+int fu_radau_factor(fu_run *run, double h);
+/* Makes run->rhs = [M r; H r] of dofs r that keep to the supports; unknowns: work space. */
+void fu_radau_right_side(fu_run *run, const double *r, double *unknowns);
+/* Makes one Newton correction of the stages; returns its size as a length. */
+double fu_radau_correct(fu_run *run, fu_radau_workspace *w, double h);
+
+/* radau_error.c. Returns the local error of positions of the step just made, m. */
+double fu_radau_error(fu_run *run, double h);
+
+#endif

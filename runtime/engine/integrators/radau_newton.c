@@ -1,0 +1,142 @@
+/* Newton's systems of Radau IIA, a real and a complex one (integrators/radau.c). */
+#include "radau.h"
+
+#include <string.h>
+
+/* Returns h / L, with the complex eigenvalue L. */
+static fu_complex complex_step(const fu_radau_parameters *method, double h)
+{
+    return fu_complex_quotient((fu_complex){h, 0.0}, (fu_complex){method->alpha, method->beta});
+}
+
+/* Returns whether any force depends on velocities. */
+static int is_damped(const fu_model *model)
+{
+    int damped = 0;
+    for (int c = 0; c < model->n_cables; ++c) damped |= model->cables[c].tau > 0.0 || model->cables[c].mass_damping > 0.0;
+    return damped || model->n_damped || model->n_bodies; /* forces of inertia go with the velocity of a body */
+}
+
+/* Both matrices at `now` are made of M + J, K and D, which systems of other weights differ by. */
+int fu_radau_factor(fu_run *run, double h)
+{
+    const double begin = fu_clock();
+    const fu_radau_parameters *method = fu_radau_method(run);
+    const fu_system *s = &run->newton;
+    fu_radau_workspace *w = fu_radau_space(run);
+    fu_complex_system *c = &w->newton;
+    const double real = h / method->gamma, rate = 1.0 / real;
+    const fu_complex other = complex_step(method, h), square = fu_complex_product(other, other);
+    const fu_complex by_damping = {other.re / real, other.im / real};
+    const fu_complex by_stiffness = {square.re / (real * real), square.im / (real * real)};
+    const int damped = is_damped(run->model);
+    fu_complex_system_clear(c, s);
+    fu_matrix_of_weights(run, (fu_weights){1.0, 0.0, 2.0 * real * real});
+    fu_complex_system_accumulate(c, s, (fu_complex){by_stiffness.re - 1.0, by_stiffness.im});
+    if (damped) {
+        fu_matrix_of_weights(run, (fu_weights){1.0, 0.0, real * real});
+        const fu_complex rest = {2.0 - by_stiffness.re - by_damping.re, -by_stiffness.im - by_damping.im};
+        fu_complex_system_accumulate(c, s, rest);
+    }
+    fu_matrix_of_weights(run, (fu_weights){1.0, rate, real * real});
+    fu_complex_system_accumulate(c, s, damped ? by_damping : (fu_complex){2.0 - by_stiffness.re, -by_stiffness.im});
+    memcpy(w->D_real, s->D, sizeof(double) * (size_t)s->m * (size_t)s->m);
+    int info = fu_system_factor_band(&run->newton, run->model->lapack);
+    if (!info) info = fu_system_factor_border(&run->newton, run->model->lapack);
+    if (!info) info = fu_complex_system_factor(c, s, run->model->lapack, w->unknowns);
+    run->factored = !info;
+    run->h_factored = h;
+    run->statistics.factorisations += 2;
+    run->statistics.time_factor += fu_clock() - begin;
+    return info;
+}
+
+/* Writes the right sides H r of the constraint rows from this one on. */
+static void keep_row(fu_run *run, int first, int rows, const double *unknowns)
+{
+    const fu_model *model = run->model;
+    const fu_system *s = &run->newton;
+    for (int row = model->n_border_dof + first; rows-- > 0; ++row) {
+        const double *along = s->C + (long)row * s->n;
+        double sum = 0.0;
+        for (const fu_piece *p = s->rows; p < s->rows + s->n_rows; ++p)
+            for (int i = p->rows.first; i < p->rows.end && p->k == row; ++i) sum += along[i] * unknowns[i];
+        for (int i = 0; i < model->n_border_dof; ++i)
+            sum += fu_radau_space(run)->D_real[(long)i * s->m + row] * unknowns[s->n + i];
+        run->rhs[s->n + row] = sum;
+    }
+}
+
+void fu_radau_right_side(fu_run *run, const double *r, double *unknowns)
+{
+    const fu_model *model = run->model;
+    const int beyond = model->n_band + model->n_border_dof;
+    for (int i = 0; i < model->n_dof; ++i)
+        if (model->place[i] >= 0) unknowns[model->place[i]] = r[i];
+    for (int i = 0; i < model->n_dof; ++i) run->work[i] = r[i];
+    for (int k = 0; k < model->n_motions; ++k) run->work[model->motions[k].dof] = 0.0;
+    fu_mass_times(model, run->next.q, run->work, run->psi);
+    fu_gather(model, run->psi, run->rhs);
+    for (int i = 0; i < model->n_extra; ++i) run->rhs[beyond + i] = 0.0;
+    for (int k = 0; k < model->n_couplings; ++k) {
+        const fu_coupling *c = model->couplings[k];
+        if (c->row >= 0) keep_row(run, c->unknown + c->n_coordinates, c->n_forces, unknowns);
+    }
+}
+
+double fu_radau_correct(fu_run *run, fu_radau_workspace *w, double h)
+{
+    const double begin = fu_clock();
+    const fu_model *model = run->model;
+    const fu_radau_parameters *method = fu_radau_method(run);
+    const int n = model->n_dof, all = run->newton.n + run->newton.m;
+    const double real = h / method->gamma;
+    const fu_complex other = complex_step(method, h), square = fu_complex_product(other, other);
+    fu_complex *x = w->newton.x;
+    for (int i = 0; i < n; ++i)
+        for (int r = 0; r < STAGES; ++r) {
+            const double *row = method->T_inverse + STAGES * r;
+            w->w[(long)r * n + i] = 0.0;
+            for (int k = 0; k < STAGES; ++k) {
+                const double *A = method->A_inverse + STAGES * k;
+                w->w[(long)r * n + i] += row[k] * (w->a[(long)k * n + i] - (A[0] * w->Z[i] + A[1] * w->Z[n + i] +
+                                                                       A[2] * w->Z[2 * n + i]) / h);
+            }
+        }
+    for (int i = 0; i < n; ++i) {
+        const fu_complex r = fu_complex_product(square, (fu_complex){w->w[n + i], w->w[2 * n + i]});
+        w->w[i] *= real * real;
+        w->w[n + i] = r.re;
+        w->w[2 * n + i] = r.im;
+    }
+    for (int part = 1; part < STAGES; ++part) {
+        fu_radau_right_side(run, w->w + (long)part * n, w->unknowns);
+        for (int i = 0; i < all; ++i) *(part == 1 ? &x[i].re : &x[i].im) = run->rhs[i];
+    }
+    fu_complex_system_solve(&w->newton, &run->newton, model->lapack);
+    fu_radau_right_side(run, w->w, w->unknowns);
+    fu_system_solve(&run->newton, model->lapack, run->rhs);
+    fu_spread(model, run->rhs, w->w);
+    for (int i = 0; i < n; ++i) w->w[i] /= real;
+    for (int part = 1; part < STAGES; ++part) {
+        for (int i = 0; i < all; ++i) {
+            const fu_complex change = fu_complex_quotient(x[i], other);
+            run->rhs[i] = part == 1 ? change.re : change.im;
+        }
+        fu_spread(model, run->rhs, w->w + (long)part * n);
+    }
+    for (int i = 0; i < model->n_extra; ++i) run->rhs[model->n_band + model->n_border_dof + i] = 0.0;
+    double largest = 0.0;
+    for (int k = 0; k < STAGES; ++k) {
+        const double *row = method->T + STAGES * k;
+        for (int i = 0; i < n; ++i) {
+            const double change = row[0] * w->w[i] + row[1] * w->w[n + i] + row[2] * w->w[2 * n + i];
+            w->Z[(long)k * n + i] += change;
+            run->work[i] = h * change;
+        }
+        const double size = fu_size(model, run->work);
+        if (!(size <= largest)) largest = size;
+    }
+    run->statistics.time_solve += fu_clock() - begin;
+    return largest;
+}

@@ -1,0 +1,131 @@
+/* Stages of Radau IIA: their configurations by the quadrature of velocities, their accelerations by eq 38. */
+#include "radau.h"
+
+#include <string.h>
+
+#define SWEEPS 4 /* of the attitudes' quadrature for each iteration of Newton's, which goes on with those at hand */
+
+/* Moves the entries of the stages' q that have n dofs for rates by the quadrature of velocities. */
+static void integrate(fu_run *run, fu_radau_workspace *w, double h, int at, int dof, int n)
+{
+    const fu_model *model = run->model;
+    const fu_radau_parameters *method = fu_radau_method(run);
+    const double *Z = w->Z + dof, *v = run->now.v + dof;
+    for (int k = 0; k < STAGES; ++k) {
+        double *q = w->q + (long)k * model->n_q + at;
+        const double *row = method->A + STAGES * k;
+        for (int i = 0; i < n; ++i)
+            q[i] = run->now.q[at + i] + h * (method->c[k] * v[i] + row[0] * Z[i] + row[1] * Z[model->n_dof + i] +
+                                             row[2] * Z[2 * model->n_dof + i]);
+    }
+}
+
+/* Moves the stages' dofs by the quadrature of velocities, attitudes by sweeps over those at hand. */
+void fu_radau_configure(fu_run *run, fu_radau_workspace *w, double h)
+{
+    const fu_model *model = run->model;
+    const fu_radau_parameters *method = fu_radau_method(run);
+    const fu_state *now = &run->now;
+    const int n = model->n_dof, n_flexible = model->n_bodies ? model->bodies[0].dof : n;
+    integrate(run, w, h, 0, 0, n_flexible);
+    for (int b = 0; b < model->n_bodies; ++b) {
+        const fu_body *body = &model->bodies[b];
+        integrate(run, w, h, body->configuration + body->kernel->configuration, body->dof + body->kernel->velocity,
+                  body->modes);
+    }
+    for (int sweep = 0; sweep < SWEEPS; ++sweep)
+        for (int b = 0; b < model->n_bodies; ++b) {
+            const fu_body *body = &model->bodies[b];
+            const int at = body->configuration, size = body->kernel->configuration;
+            double rates[STAGES][7], velocity[6];
+            for (int k = 0; k < STAGES; ++k) {
+                for (int i = 0; i < body->kernel->velocity; ++i)
+                    velocity[i] = now->v[body->dof + i] + w->Z[(long)k * n + body->dof + i];
+                fu_body_rate(body->kernel, w->q + (long)k * model->n_q + at, velocity, rates[k]);
+            }
+            for (int k = 0; k < STAGES; ++k) {
+                const double *row = method->A + STAGES * k;
+                for (int i = 0; i < size; ++i)
+                    w->q[(long)k * model->n_q + at + i] =
+                        now->q[at + i] + h * (row[0] * rates[0][i] + row[1] * rates[1][i] + row[2] * rates[2][i]);
+            }
+        }
+}
+
+/* Makes `next` stage k, without accelerations; returns 0 where its slides were found. */
+int fu_radau_place_stage(fu_run *run, fu_radau_workspace *w, int k, double h)
+{
+    const fu_model *model = run->model;
+    fu_state *next = &run->next;
+    memcpy(next->q, w->q + (long)k * model->n_q, sizeof(double) * (size_t)model->n_q);
+    for (int i = 0; i < model->n_dof; ++i) next->v[i] = run->now.v[i] + w->Z[(long)k * model->n_dof + i];
+    next->t = run->now.t + fu_radau_method(run)->c[k] * h;
+    if (model->n_motions) fu_prescribe(model, next);
+    return fu_find_own(run);
+}
+
+/* Keeps the multipliers of the state that accelerations have just been found of, as those of stage k. */
+void fu_radau_keep_multipliers(fu_run *run, fu_radau_workspace *w, int k)
+{
+    const long n = run->model->n_multipliers;
+    if (run->model->n_reacting) memcpy(w->multipliers + k * n, run->accelerator.multipliers, sizeof(double) * (size_t)n);
+}
+
+/* Finds the accelerations of all stages; returns 0 where they were found. */
+int fu_radau_evaluate(fu_run *run, fu_radau_workspace *w, double h)
+{
+    const double begin = fu_clock();
+    const fu_model *model = run->model;
+    fu_state *next = &run->next;
+    double *reaction = model->n_motions ? run->force : 0;
+    fu_radau_configure(run, w, h);
+    for (int k = 0; k < STAGES; ++k) {
+        if (fu_radau_place_stage(run, w, k, h)) return 1;
+        if (fu_accelerations(model, next, &run->accelerator, next->acceleration, reaction)) return fu_fail_eq38(run);
+        memcpy(w->a + (long)k * model->n_dof, next->acceleration, sizeof(double) * (size_t)model->n_dof);
+        w->powers[2 * k] = fu_dissipated_power(run, next);
+        w->powers[2 * k + 1] = fu_external_power(run, next, reaction);
+        fu_radau_keep_multipliers(run, w, k + 1);
+    }
+    run->statistics.evaluations += STAGES;
+    run->statistics.time_residual += fu_clock() - begin;
+    return 0;
+}
+
+/* Predicts the stages from the last step's polynomial, else from the acceleration at hand. */
+void fu_radau_predict(fu_run *run, fu_radau_workspace *w, double h)
+{
+    const fu_model *model = run->model;
+    const fu_radau_parameters *method = fu_radau_method(run);
+    const int n = model->n_dof;
+    const double *c = method->c;
+    for (int k = 0; k < STAGES; ++k) {
+        double weight[STAGES];
+        const double x = w->h_last > 0.0 ? 1.0 + c[k] * h / w->h_last : 0.0;
+        for (int j = 0; j < STAGES; ++j) { /* Lagrange on 0 and the nodes */
+            weight[j] = x / c[j];
+            for (int m = 0; m < STAGES; ++m)
+                if (m != j) weight[j] *= (x - c[m]) / (c[j] - c[m]);
+        }
+        for (int i = 0; i < n; ++i)
+            w->Z[(long)k * n + i] = w->h_last > 0.0
+                ? weight[0] * w->last[i] + weight[1] * w->last[n + i] + weight[2] * w->last[2 * n + i] - w->last[2 * n + i]
+                : c[k] * h * run->now.acceleration[i];
+        memcpy(w->q + (long)k * model->n_q, run->now.q, sizeof(double) * (size_t)model->n_q);
+    }
+}
+
+/* Adds the stages' powers by their weights, the last row of A, and keeps the stages for the next prediction. */
+void fu_radau_account(fu_run *run, double h)
+{
+    fu_radau_workspace *w = fu_radau_space(run);
+    const double *b = fu_radau_method(run)->A + STAGES * (STAGES - 1);
+    for (int k = 0; k < STAGES; ++k) {
+        run->dissipated += h * b[k] * w->powers[2 * k];
+        run->external += h * b[k] * w->powers[2 * k + 1];
+    }
+    run->dissipated_power = fu_dissipated_power(run, &run->next);
+    run->external_power = fu_external_power(run, &run->next, run->force);
+    memcpy(w->last, w->Z, sizeof(double) * STAGES * (size_t)run->model->n_dof);
+    w->h_last = h;
+}

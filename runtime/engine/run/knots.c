@@ -1,0 +1,37 @@
+/* Knots: instants at which signals are not smooth, and steps end. */
+#include "engine.h"
+
+/* Returns the first knot after `now` at which steps end, until `latest`; null where there is none. */
+const fu_knot *fu_next_knot(const fu_run *run, double latest)
+{
+    const double close = FU_AT_ONCE * run->duration;
+    int low = 0, high = run->n_knots;
+    while (low < high) {
+        const int middle = (low + high) / 2;
+        if (run->knots[middle].t > run->now.t + close) high = middle;
+        else low = middle + 1;
+    }
+    return low < run->n_knots && run->knots[low].t <= latest + close ? &run->knots[low] : 0;
+}
+
+/* Goes on from a knot that `now` has reached; returns a status. What jumps there starts the scheme anew; so does any knot
+ * between steps of a fixed length, whose neighbours can be of any ratio. Where a rate jumps, all that joints tie to it jumps,
+ * too, and what drives it does the work of that; a drive that turned within an instant would lose none. */
+int fu_pass_knot(fu_run *run, const fu_knot *knot, int event)
+{
+    const fu_model *model = run->model;
+    fu_state *now = &run->now;
+    now->t = knot->t;
+    run->drive_step = fmin(run->drive_step, 0.0); /* powers before do not tell how it changes from here */
+    if (knot->jumps == FU_HIGHER_JUMPS && run->fixed_step <= 0.0) return FU_RUNNING;
+    if (knot->jumps == FU_RATE_JUMPS) {
+        const double before = fu_kinetic_energy(model, now->q, now->v);
+        fu_prescribe(model, now);
+        if (fu_project_velocities(model, now, &run->accelerator, run->work)) return FU_SINGULAR;
+        for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->work[i];
+        run->external += fu_kinetic_energy(model, now->q, now->v) - before;
+    }
+    fu_prescribe(model, now);
+    if (!event) fu_watch_now(run, fu_no_event);
+    return fu_start_scheme(run, 0);
+}

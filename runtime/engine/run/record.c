@@ -1,0 +1,55 @@
+/* Rows of output. */
+#include "engine.h"
+
+#include <string.h>
+
+/* Returns whether n numbers are all finite. */
+int fu_all_finite(const double *numbers, long n)
+{
+    for (long i = 0; i < n; ++i)
+        if (!isfinite(numbers[i])) return 0;
+    return 1;
+}
+
+/* Records `now` as a row. Returns FU_RUNNING; FU_SINGULAR or FU_UNSTABLE; or FU_NO_CONVERGENCE for a row that is not finite,
+ * which does not count. */
+int fu_record_row(fu_run *run)
+{
+    const double begin = fu_clock();
+    const fu_model *model = run->model;
+    const fu_state *now = &run->now;
+    fu_record *r = &run->record;
+    const long row = r->n - r->first;
+    double *acceleration = r->acceleration + row * model->n_dof;
+    r->time[row] = now->t;
+    memcpy(r->q + row * model->n_q, now->q, sizeof(double) * (size_t)model->n_q);
+    memcpy(r->v + row * model->n_dof, now->v, sizeof(double) * (size_t)model->n_dof);
+    memcpy(r->s + row * model->n_coordinates, now->s, sizeof(double) * (size_t)model->n_coordinates);
+    const int info = fu_accelerations(model, now, &run->accelerator, acceleration,
+                                      r->reaction + row * model->n_dof);
+    r->kinetic[row] = fu_kinetic_energy(model, now->q, now->v);
+    r->elastic[row] = fu_elastic_energy(model, now);
+    r->potential[row] = fu_potential_energy(model, now->q);
+    r->dissipated[row] = run->dissipated;
+    r->external[row] = run->external;
+    if (!info) fu_coupling_outputs(model, now, acceleration, &run->accelerator, r->output + row * model->n_outputs);
+    const double energies[FU_ENERGIES] = {r->kinetic[row], r->elastic[row], r->potential[row], run->dissipated,
+                                          -run->external};
+    run->statistics.time_output += fu_clock() - begin;
+    if (!fu_record_is_finite(model, r, row)) {
+        if (info) return FU_SINGULAR;
+        fu_fail(run, FU_NOT_FINITE, now->v, -1);
+        return FU_NO_CONVERGENCE;
+    }
+    ++r->n;
+    run->recorded = now->t;
+    return info ? FU_SINGULAR : fu_check_energy_balance(run, energies, row == 0) ? FU_UNSTABLE : FU_RUNNING;
+}
+
+/* Records where the run has stopped, if that is not done already; returns FU_EVENT, or the status of a row that cannot be
+ * recorded. */
+int fu_stop(fu_run *run)
+{
+    const int recorded = run->now.t > run->recorded ? fu_record_row(run) : FU_RUNNING;
+    return recorded ? recorded : FU_EVENT;
+}

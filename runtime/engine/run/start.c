@@ -1,0 +1,76 @@
+/* The start of a run, and of its scheme wherever something has jumped. */
+#include "engine.h"
+
+#include <string.h>
+
+#define AT_REST 1e-9      /* of the extent: a scene that moves less may be at rest */
+#define FIRST_MOTION 1e-3 /* of the duration: until then the motion is judged by the velocities at the start */
+
+/* Starts the scheme at `now` with consistent velocities, which are projected on the joints where that is asked for, and with
+ * accelerations and forces from eq 38; returns a status. Starting it from zero accelerations instead makes every error fall with the first power of the step
+ * (tests/benchmarks/order.py). */
+int fu_start_scheme(fu_run *run, int project)
+{
+    const fu_model *model = run->model;
+    fu_state *now = &run->now;
+    if (project) {
+        if (fu_project_velocities(model, now, &run->accelerator, run->before)) return FU_SINGULAR;
+        for (int i = 0; i < model->n_dof; ++i) now->v[i] += run->before[i];
+    }
+    if (fu_complete(run, now)) return FU_SINGULAR;
+    run->dissipated_power = fu_dissipated_power(run, now);
+    run->external_power = fu_external_power(run, now, run->force);
+    run->drive_step = -1.0;
+    fu_coordinate_rates(model, &run->accelerator, run->s_slope);
+    return run->integrator->start(run);
+}
+
+/* Makes what the first evaluation needs: a state on its cables, the mass matrix; returns a status. */
+int fu_prepare(fu_run *run)
+{
+    const fu_model *model = run->model;
+    fu_state *now = &run->now;
+    fu_prescribe(model, now);
+    fu_carry(model, now);
+    if (fu_follow(model, now)) return FU_SINGULAR;
+    if (fu_accelerator_prepare(model, &run->accelerator)) return FU_SINGULAR;
+    memset(run->first, 0, sizeof(double) * (size_t)model->n_q);
+    run->extent = fu_extent(model, run->first, now->q);
+    run->size = fu_scene_size(model, run->first, now->q);
+    return FU_RUNNING;
+}
+
+/* Starts a run: closes small gaps, makes the state consistent, records the first row; returns a status. run->before has then the
+ * change of velocities that constraints asked for. */
+int fu_start(fu_run *run)
+{
+    const fu_model *model = run->model;
+    fu_state *now = &run->now;
+    run->ceiling = run->duration;
+    if (fu_prepare(run)) return FU_SINGULAR;
+    if (fu_may_start_open(model, now) && fu_close(run)) return FU_SINGULAR;
+    memcpy(run->first, now->q, sizeof(double) * (size_t)model->n_q);
+    if (fu_start_scheme(run, 1)) return FU_SINGULAR;
+    if (fu_couplings_can_act(model)) {
+        memcpy(run->psi, run->before, sizeof(double) * (size_t)model->n_dof); /* what the start asked for, for the caller */
+        if (fu_begin_couplings(run) || fu_start_scheme(run, 0)) return FU_SINGULAR;
+        memcpy(run->before, run->psi, sizeof(double) * (size_t)model->n_dof);
+    }
+    const int recorded = fu_record_row(run);
+    if (recorded) return recorded == FU_NO_CONVERGENCE ? recorded : FU_SINGULAR;
+    if (run->rest_start) {
+        memset(now->acceleration, 0, sizeof(double) * (size_t)model->n_dof);
+        memset(now->a, 0, sizeof(double) * (size_t)model->n_dof);
+    }
+    /* tolerances are relative to the largest motion: until there is one, that of a thousandth of the duration; and
+     * never to less than what a scene at rest cannot help */
+    run->least_motion = AT_REST * run->extent;
+    for (int i = 0; i < model->n_dof; ++i) {
+        const double t = fmin(run->output_step, FIRST_MOTION * run->duration);
+        const double d = model->weight[i] * (fabs(now->v[i]) * t + 0.5 * fabs(now->acceleration[i]) * t * t);
+        if (d > run->least_motion) run->least_motion = d;
+    }
+    fu_watch_now(run, fu_no_event);
+    fu_watch_anew(run, -1);
+    return FU_RUNNING;
+}

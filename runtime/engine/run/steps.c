@@ -1,0 +1,175 @@
+/* Steps: their size, trial, error and events, until one is accepted. */
+#include "engine.h"
+
+#define SMALLEST_STEP 1e-12   /* of the duration: a run that needs a shorter step ends */
+#define BEYOND 0.1            /* of a step: how far it may go on after a coupling should have reached its boundary */
+#define MOST_REJECTIONS 10000 /* steps rejected beyond those taken, before a run ends */
+#define ACCEPTED 2.0          /* of what is allowed: a step with a larger error is rejected */
+#define DIVISIONS 8           /* rejections of a fixed step that each step taken makes up for: so often it may be divided */
+#define MOST_TURNS 2          /* of a coupling on one boundary before a step is taken all the same: it rests there */
+#define PASSED_BY 0.5         /* of the step that was wanted: what is wanted after one whose event was not found */
+
+/* Takes the step just made: `next` becomes `now`. */
+static void accept(fu_run *run, double h, fu_event event)
+{
+    const fu_model *model = run->model;
+    for (int i = 0; i < model->n_coordinates; ++i) run->s_slope[i] = (run->next.s[i] - run->now.s[i]) / h;
+    run->integrator->account(run, h);
+    if (model->n_reacting) run->dissipated += fu_lost_in_step(model, &run->now, &run->next);
+    run->statistics.crossings += fu_count_changes(run);
+    const fu_state state = run->now;
+    run->now = run->next;
+    run->next = state;
+    fu_carry(model, &run->now);
+    const double moved = fu_largest_motion(model, run->first, run->now.q);
+    if (moved > run->motion) run->motion = moved;
+    fu_watch_now(run, event);
+    run->net_rejections -= run->net_rejections > 0 ? run->fixed_step > 0.0 ? DIVISIONS : 1 : 0;
+    fu_statistics *s = &run->statistics;
+    ++s->steps;
+    if (s->steps == 1 || h < s->h_min) s->h_min = h;
+    if (h > s->h_max) s->h_max = h;
+}
+
+/* Starts the scheme anew after a very short step; returns a status. What is left between an event and an output time can be so
+ * short that the rounding of psi, over h^2, is all there is in its accelerations: they must not go on. */
+static int refresh(fu_run *run, double h)
+{
+    run->usual = run->fixed_step > 0.0 ? run->fixed_step : run->h;
+    return fu_is_short(run, h) ? fu_start_scheme(run, !run->integrator->keeps_energy) : FU_RUNNING;
+}
+
+/* Returns whether the error chooses the size of steps. */
+static int is_adaptive(const fu_run *run)
+{
+    return run->fixed_step <= 0.0;
+}
+
+/* Returns the shortest step, s. */
+static double shortest(const fu_run *run)
+{
+    return SMALLEST_STEP * run->duration;
+}
+
+/* Returns whether couplings must keep their pieces in a step, which ends where one of them leaves its piece. */
+static int must_keep_pieces(const fu_run *run)
+{
+    return !is_adaptive(run) || !run->integrator->crosses_boundaries || fu_stop_at_boundaries(run->model);
+}
+
+/* A step that is tried: the size that is wanted and the one that is taken, s; its error, m, and that over what is allowed;
+ * how many boundaries couplings have passed in it; the event that it ends on. */
+typedef struct {
+    double want, h, error, ratio;
+    int changes;
+    fu_event event;
+} trial;
+
+/* Chooses the size of the step; returns 0 where there is none that is large enough. */
+static int choose_size(fu_run *run, trial *t, double remaining)
+{
+    t->h = fu_fit_step(remaining, t->want);
+    if ((t->h < shortest(run) && remaining > shortest(run)) || run->net_rejections > MOST_REJECTIONS) return 0;
+    if (run->keep_pieces) t->h = fmin(t->h, fu_time_to_boundary(run) + BEYOND * t->h);
+    return 1;
+}
+
+/* Makes the step and estimates its error; returns 0 where it is rejected, and a shorter one is wanted. */
+static int attempt(fu_run *run, trial *t)
+{
+    const double allowed = fu_allow(run, t->h);
+    run->failure.cause = FU_NO_FAILURE;
+    run->usual = t->want;
+    if (run->integrator->step(run, t->h)) {
+        if (!run->failure.cause) fu_fail(run, FU_ITERATION, run->next.v, -1);
+        t->want = fu_retry_step(run, t->h);
+        return 0;
+    }
+    t->error = run->integrator->error(run, t->h);
+    t->ratio = t->error / allowed;
+    t->changes = fu_count_changes(run);
+    if (is_adaptive(run) && !t->changes && !(t->ratio <= ACCEPTED)) {
+        t->want = fu_shrink_step(run, t->h, t->ratio);
+        return 0;
+    }
+    return 1;
+}
+
+/* Finds the event that the step leads to. Where accelerations jump by too much within it, it shall end at the boundary. */
+static void find_event(fu_run *run, trial *t)
+{
+    t->event = fu_find_event(run, fu_no_event);
+    if (t->changes && (t->event.kind == FU_CROSSING || !(t->ratio <= 1.0))) {
+        fu_keep_pieces(run);
+        t->event = fu_find_event(run, fu_no_event);
+    }
+}
+
+/* Shortens the step until it ends on the first of its events; returns 0 where that is not found. */
+static int end_on_event(fu_run *run, trial *t)
+{
+    for (int i = 0; i <= run->model->n_coordinates + run->n_watches; ++i) {
+        const fu_event earlier = i ? fu_find_event(run, t->event) : t->event;
+        if (!earlier.kind) break;
+        t->event = earlier;
+        t->h = fu_locate(run, t->event, t->h);
+        if (t->h == 0.0) {
+            t->want *= PASSED_BY;
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* Returns whether a step that was cut at a jump is accurate: its error without the jump was not known before. */
+static int is_accurate_without_jump(fu_run *run, trial *t)
+{
+    const double ratio = run->integrator->error(run, t->h) / fu_allow(run, t->h);
+    if (ratio <= ACCEPTED) return 1;
+    t->want = fu_shrink_step(run, t->h, ratio);
+    return 0;
+}
+
+/* Takes a step that ends on no event; returns a status. */
+static int take_step(fu_run *run, const trial *t)
+{
+    accept(run, t->h, t->event);
+    run->turned = 0;
+    run->statistics.error_sum += t->error;
+    run->last_error = t->error;
+    if (is_adaptive(run)) fu_adapt_step(run, t->h, t->ratio);
+    return refresh(run, t->h);
+}
+
+/* Makes and takes one step towards `target`, or lets happen what follows from an event that `now` stands on; returns a status. */
+int fu_step_towards(fu_run *run, double target)
+{
+    const fu_event late = fu_late_event(run);
+    trial t = {.want = is_adaptive(run) ? run->h : run->fixed_step};
+    if (late.kind) return fu_let_happen(run, late);
+    run->keep_pieces = must_keep_pieces(run);
+    for (;;) {
+        if (!choose_size(run, &t, target - run->now.t)) return FU_NO_CONVERGENCE;
+        if (!attempt(run, &t)) continue;
+        find_event(run, &t);
+        const double turn = run->keep_pieces ? fu_time_of_turn(run, t.h) : 0.0;
+        if (turn > shortest(run) && run->turned < MOST_TURNS) {
+            t.want = turn;
+            continue;
+        }
+        if (t.event.kind == FU_CROSSING && run->turned >= MOST_TURNS) t.event = fu_no_event;
+        if (fu_stands_on_boundary(run, t.event)) {
+            ++run->turned;
+            return fu_let_happen(run, t.event);
+        }
+        if (!t.event.kind) return take_step(run, &t);
+        if (!end_on_event(run, &t)) {
+            if (t.want < shortest(run)) return FU_NO_CONVERGENCE;
+            continue;
+        }
+        if (t.changes && !is_accurate_without_jump(run, &t)) continue;
+        accept(run, t.h, t.event);
+        const int status = t.event.kind == FU_CROSSING ? FU_RUNNING : refresh(run, t.h);
+        return status ? status : fu_let_happen(run, t.event);
+    }
+}
