@@ -48,6 +48,9 @@ typedef double fu_real;
 #define FU_EACH_7(i, ...) FU_EACH_6(i, __VA_ARGS__) FU_AT(i, 6, __VA_ARGS__)
 #define FU_EACH_8(i, ...) FU_EACH_7(i, __VA_ARGS__) FU_AT(i, 7, __VA_ARGS__)
 #define FU_EACH_9(i, ...) FU_EACH_8(i, __VA_ARGS__) FU_AT(i, 8, __VA_ARGS__)
+#define FU_EACH_10(i, ...) FU_EACH_9(i, __VA_ARGS__) FU_AT(i, 9, __VA_ARGS__)
+#define FU_EACH_11(i, ...) FU_EACH_10(i, __VA_ARGS__) FU_AT(i, 10, __VA_ARGS__)
+#define FU_EACH_12(i, ...) FU_EACH_11(i, __VA_ARGS__) FU_AT(i, 11, __VA_ARGS__)
 #define FU_PAIR(i, j, a, b, ...) { enum { i = a, j = b }; __VA_ARGS__ }
 #define FU_ROW_2(i, j, a, ...) FU_PAIR(i, j, a, 0, __VA_ARGS__) FU_PAIR(i, j, a, 1, __VA_ARGS__)
 #define FU_ROW_3(i, j, a, ...) FU_ROW_2(i, j, a, __VA_ARGS__) FU_PAIR(i, j, a, 2, __VA_ARGS__)
