@@ -25,7 +25,7 @@ _SPACE = {2: "the plane", 3: "space"}
 def _element(element: Element) -> ElementFamily:
     return ElementFamily(element.name, element.doc, partial(element_kernels.build, element),
                          (f"elements.{element.name}", "elements.kernels"),
-                         role="element",
+                         group=element.name, role="element",
                          facts={"nodes": len(element.nodes), "vectors": len(element.nodal_vectors), "dim": element.dim},
                          element=element)
 
@@ -40,7 +40,7 @@ def _law(element: Element, law: str | type) -> LawFamily:
     else:
         builder, build = "laws.kernels", partial(law_kernels.build, element, law, damping=not shared)
     return LawFamily(f"{element.name}_{name}", f"elastic law {name} on {element.name}", build,
-                     (f"elements.{element.name}", builder), role="law",
+                     (f"elements.{element.name}", builder), group=element.name, role="law",
                      outside_table=("stiffness", "stiffness_at", "section_forces"), shared=shared,
                      missing=law_kernels.missing(law), facts=law_kernels.facts(element, law), element=element, law=name,
                      stiffness_of=stiffness_of(law), traits=traits)
@@ -67,7 +67,7 @@ def _slide(element: Element, rider: Rider) -> SlideFamily:
                        partial(slide.build, element, rider),
                        ("couplings.slide", f"elements.{element.name}",
                         "bodies.point" if isinstance(rider, Point) else f"bodies.{rider.NAME}"),
-                       role="slide",
+                       group="slide", role="slide",
                        facts={"coordinates": element.n_coordinates + rider.N_VELOCITY, "dim": element.dim},
                        element=element, rider=rider.NAME)
 
@@ -117,6 +117,13 @@ def families() -> dict[str, Family]:
              *map(_frame, frame.FRAMES), *joints, *map(_resistance, resistance.RESISTANCES),
              *(_spring(name, kind) for name, kind in spring.SPRINGS.items())]
     return {f.name: f for f in every}
+
+
+def whole_groups(some: Iterable[str]) -> dict[str, Family]:
+    """Return the families of these names, and those of their groups: what they share is found in all of them."""
+    every = families()
+    groups = {every[name].group for name in some} - {""}
+    return {name: family for name, family in every.items() if name in some or family.group in groups}
 
 
 def named(names: Iterable[str]) -> dict[str, Family]:

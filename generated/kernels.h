@@ -3,7 +3,8 @@
  * each kernel stand the shape and the unit of each argument, and what it gives; all that is
  * known of them is in manifest.json. `python -m funicular.generated` prints where the sources are.
  * The same text compiles for double, with FU_COMPLEX for complex numbers (verification by complex step), and with
- * FU_BLOCK for so many doubles at once, one an element (blocks.c).
+ * FU_BLOCK for so many doubles at once, one an element (blocks.c). Stages that several kernels have alike are macros in
+ * capital letters, at the head of their file or in a header *_stages.h.
  */
 #ifndef FUNICULAR_KERNELS_H
 #define FUNICULAR_KERNELS_H

@@ -1,8 +1,8 @@
 """SymPy expressions to C text: the same text on every machine.
 
-Order is SymPy's canonical one, small integer powers become products, halves, quarters and eighths decimals,
-other rationals quotients of doubles that the compiler folds, and square roots, sines and cosines go through macros so that the same text serves double and
-complex.
+Order is SymPy's canonical one, small integer powers become products, halves, quarters and eighths become decimals,
+other rationals quotients of doubles that the compiler folds, and square roots, sines and cosines go through macros so
+that the same text serves double and complex.
 """
 # ruff: noqa: N802  (SymPy dispatches on these names)
 

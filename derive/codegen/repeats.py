@@ -118,7 +118,7 @@ class Arrays:
 
 
 def _steps(indices: Sequence[int], variable: str) -> str | None:
-    """Return the expression in a variable 0, 1, ... that gives these indices by equal steps, None where they have none."""
+    """Return the expression in a variable 0, 1, ... that gives these indices by equal steps, or None."""
     first, step = indices[0], indices[1] - indices[0]
     if step == 0 or any(k != first + t * step for t, k in enumerate(indices)):
         return str(first) if len(set(indices)) == 1 else None
