@@ -4,6 +4,7 @@ import re
 import shutil
 from pathlib import Path
 
+from funicular.derive.catalogue import families
 from funicular.derive.codegen import drift
 
 STAGE = re.compile(r"^#define ([A-Z]\w*) \\\n((?:.* \\\n)*.*)\n", re.MULTILINE)
@@ -28,6 +29,6 @@ def copy_written_out(folder: Path) -> None:
         shutil.copy(file, folder)
         if file.name.endswith("_stages.h"):
             shared |= stages(file.read_text(encoding="utf-8"))
-    for file in drift.folder().glob("*.c"):
-        text = file.read_text(encoding="utf-8")
-        (folder / file.name).write_text(written_out(text, shared), encoding="utf-8")
+    for name in families():
+        text = (drift.folder() / f"{name}.c").read_text(encoding="utf-8")
+        (folder / f"{name}.c").write_text(written_out(text, shared), encoding="utf-8")
