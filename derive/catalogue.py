@@ -32,13 +32,11 @@ def _element(element: Element) -> ElementFamily:
 
 def _law(element: Element, law: str | type) -> LawFamily:
     name, traits = law_name(law), law_traits(law)
-    twin = traits.damped_like if isinstance(law, str) else ""  # a law of the user's has a damping of its own
-    shared = {kernel: f"{element.name}_{twin}" for kernel in (*law_kernels.DAMPING, *law_kernels.ALGORITHMIC)
-              if twin in element.laws}
+    shared = {kernel: f"{element.name}_{other}" for kernel, other in law_kernels.taken(element, law).items()}
     if name == structural.NAME:
         builder, build = "laws.structural.kernels", partial(structural_kernels.build, element)
     else:
-        builder, build = "laws.kernels", partial(law_kernels.build, element, law, damping=not shared)
+        builder, build = "laws.kernels", partial(law_kernels.build, element, law)
     return LawFamily(f"{element.name}_{name}", f"elastic law {name} on {element.name}", build,
                      (f"elements.{element.name}", builder), group=element.name, role="law",
                      outside_table=("stiffness", "stiffness_at", "section_forces"), shared=shared,

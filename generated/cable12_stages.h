@@ -77,7 +77,7 @@
     FU_EACH(i, 3, f_t1[i] = F2_abc2[i] - 0.906179845938664*difference_abc[0][i] - 0.5384693101056831*difference_abc[1][i] + sum_abc[2][i] + sum_abc[3][i];) \
     FU_EACH(i, 3, f_t2[i] = -0.5*F1_abc2[i] - 2.718539537815992*difference_abc[2][i] - 1.6154079303170494*difference_abc[3][i] + 0.7317428697781312*sum_abc[0][i] - 0.06507620311146456*sum_abc[1][i];)
 
-/* strain vectors at both ends of the step: of cable12_green_exact_step_stiffness and 9 more */
+/* strain vectors at both ends of the step: of cable12_green_exact_step_stiffness and 1 more */
 #define CABLE12_STRAIN_VECTORS_AT_BOTH_ENDS_OF_THE_STEP_2 \
     fu_real now_t_x[2], now_t_y[2], now_t_z[2], next_t_x[2], next_t_y[2], next_t_z[2], change_t_x[2], change_t_y[2], \
         change_t_z[2]; \
@@ -111,42 +111,7 @@
         change_t_y[g] = next_t_y[g] - now_t_y[g]; \
         change_t_z[g] = next_t_z[g] - now_t_z[g];)
 
-/* strain of the change at the quadrature points: of cable12_green_exact_step_stiffness and 5 more */
-#define CABLE12_STRAIN_OF_THE_CHANGE_AT_THE_QUADRATURE_POINTS \
-    const fu_real \
-        EA_l = 0.5*A[0]/w, \
-        d_even0_x = change_t0_x + 0.40000000000000013*change_t_x[1], \
-        d_even0_y = change_t0_y + 0.40000000000000013*change_t_y[1], \
-        d_even0_z = change_t0_z + 0.40000000000000013*change_t_z[1], \
-        d_odd0_x = -(0.7745966692414834*change_t_x[0]), \
-        d_odd0_y = -(0.7745966692414834*change_t_y[0]), \
-        d_odd0_z = -(0.7745966692414834*change_t_z[0]), \
-        d_2_x = d_even0_x - d_odd0_x, \
-        d_2_y = d_even0_y - d_odd0_y, \
-        d_2_z = d_even0_z - d_odd0_z, \
-        d_0_x = d_even0_x + d_odd0_x, \
-        d_0_y = d_even0_y + d_odd0_y, \
-        d_0_z = d_even0_z + d_odd0_z, \
-        d_1_x = change_t0_x - 0.5*change_t_x[1], \
-        d_1_y = change_t0_y - 0.5*change_t_y[1], \
-        d_1_z = change_t0_z - 0.5*change_t_z[1], \
-        u_0 = 0.06944444444444446*EA_l*(d_0_x*d_0_x + d_0_y*d_0_y + d_0_z*d_0_z), \
-        u_1 = 0.1111111111111111*EA_l*(d_1_x*d_1_x + d_1_y*d_1_y + d_1_z*d_1_z), \
-        u_2 = 0.06944444444444446*EA_l*(d_2_x*d_2_x + d_2_y*d_2_y + d_2_z*d_2_z);
-
-/* over nodal vectors: K T: of cable12_green_exact_step_stiffness and 5 more */
-#define CABLE12_OVER_NODAL_VECTORS_K_T_2 \
-    const fu_real \
-        KT_t0_r_2_xx = w*(0.5999999999999999*u_0 + 1.5*u_1 + 0.5999999999999999*u_2), \
-        KT_t0_r_x2_xx = -0.18729833462074164*u_0 - 0.25*u_1 + 0.5872983346207418*u_2, \
-        KT_t1_r_x1_xx = -0.45491933384829675*u_0 - 0.1450806661517033*u_2, \
-        KT_t1_r_2_xx = w*(-0.46475800154488994*u_0 + 0.46475800154488994*u_2), \
-        KT_t1_r_x2_xx = 0.1450806661517033*u_0 + 0.45491933384829675*u_2, \
-        KT_t2_r_x1_xx = 0.23491933384829677*u_0 + 0.125*u_1 - 0.07491933384829667*u_2, \
-        KT_t2_r_2_xx = w*(0.24000000000000002*u_0 - 0.75*u_1 + 0.24000000000000002*u_2), \
-        KT_t2_r_x2_xx = -0.07491933384829667*u_0 + 0.125*u_1 + 0.23491933384829677*u_2;
-
-/* over nodal vectors: T' K T: of cable12_green_exact_step_stiffness and 9 more */
+/* over nodal vectors: T' K T: of cable12_green_exact_step_stiffness and 1 more */
 #define CABLE12_OVER_NODAL_VECTORS_T_K_T_2 \
     const fu_real \
         K_r_x1_r_x1_xx = -0.5*KT_t1_r_x1_xx + 0.5*KT_t2_r_x1_xx, \
@@ -156,7 +121,7 @@
         K_r_2_r_x2_xx = w*(KT_t0_r_x2_xx - KT_t2_r_x2_xx), \
         K_r_x2_r_x2_xx = 0.5*KT_t1_r_x2_xx + 0.5*KT_t2_r_x2_xx;
 
-/* outputs: of cable12_green_exact_step_stiffness and 9 more */
+/* outputs: of cable12_green_exact_step_stiffness and 1 more */
 #define CABLE12_OUTPUTS \
     k[0] = -K_r_1_r_2_xx; \
     k[1] = K_r_1_r_x1_xx; \
@@ -241,7 +206,7 @@
     FU_PAIRS(i, j, 3, K_t_t2[2][i][j] = 0.25*K_1[i][j] + 0.16000000000000011*sum11_d10[i][j] + 2.9999999999999996*sum_d20[3][i][j];)
 
 /* over nodal vectors: K T: of cable12_green_exact_damping_tangent and 1 more */
-#define CABLE12_OVER_NODAL_VECTORS_K_T_3 \
+#define CABLE12_OVER_NODAL_VECTORS_K_T_2 \
     fu_real KT_t_r_x1[3][3][3], KT_t_r_2[3][3][3], KT_t_r_x2[3][3][3]; \
     FU_EACH(g, 3, \
         FU_PAIRS(i, j, 3, KT_t_r_x1[g][i][j] = -0.5*K_t_t1[g][i][j] + 0.5*K_t_t2[g][i][j];) \
@@ -546,33 +511,6 @@
     const fu_real \
         now_even_N_2 = 1.1377777777777773*now_N_m0 - 0.5688888888888887*now_N_m2, \
         next_even_N_2 = 1.1377777777777773*next_N_m0 - 0.5688888888888887*next_N_m2;
-
-/* strain of the change by its Legendre modes: of cable12_green_exact_assumed_step_stiffness and 3 more */
-#define CABLE12_STRAIN_OF_THE_CHANGE_BY_ITS_LEGENDRE_MODES \
-    const fu_real \
-        dG_t0t0 = change_t0_x*change_t0_x + change_t0_y*change_t0_y + change_t0_z*change_t0_z, \
-        dG_t0t1 = change_t0_x*change_t_x[0] + change_t0_y*change_t_y[0] + change_t0_z*change_t_z[0], \
-        dG_t0t2 = change_t0_x*change_t_x[1] + change_t0_y*change_t_y[1] + change_t0_z*change_t_z[1], \
-        dG_t1t1 = change_t_x[0]*change_t_x[0] + change_t_y[0]*change_t_y[0] + change_t_z[0]*change_t_z[0], \
-        dG_t1t2 = change_t_x[0]*change_t_x[1] + change_t_y[0]*change_t_y[1] + change_t_z[0]*change_t_z[1], \
-        dG_t2t2 = change_t_x[1]*change_t_x[1] + change_t_y[1]*change_t_y[1] + change_t_z[1]*change_t_z[1], \
-        EA_l = 0.5*A[0]/w, \
-        EA_up_l = 0.5*A[2]/w, \
-        N_m0 = 2.0*EA_l*(0.125*dG_t0t0 + (1.0/24.0)*dG_t1t1 + (1.0/40.0)*dG_t2t2), \
-        N_m1 = (2.0/3.0)*EA_l*(0.25*dG_t0t1 + (1.0/10.0)*dG_t1t2), \
-        N_m2 = (2.0/5.0)*EA_up_l*(0.25*dG_t0t2 + (1.0/12.0)*dG_t1t1 + (1.0/28.0)*dG_t2t2);
-
-/* over nodal vectors: K T: of cable12_green_exact_assumed_step_stiffness and 3 more */
-#define CABLE12_OVER_NODAL_VECTORS_K_T_4 \
-    const fu_real \
-        KT_t0_r_2_xx = w*(N_m0 - N_m2), \
-        KT_t0_r_x2_xx = 0.5*N_m1 + 0.5*N_m2, \
-        KT_t1_r_x1_xx = -(1.0/6.0)*N_m0 + (1.0/5.0)*N_m1 - (1.0/3.0)*N_m2, \
-        KT_t1_r_2_xx = (3.0/5.0)*N_m1*w, \
-        KT_t1_r_x2_xx = (1.0/6.0)*N_m0 + (1.0/5.0)*N_m1 + (1.0/3.0)*N_m2, \
-        KT_t2_r_x1_xx = (1.0/10.0)*N_m0 - (1.0/5.0)*N_m1 + (1.0/7.0)*N_m2, \
-        KT_t2_r_2_xx = w*(-(1.0/5.0)*N_m0 + (5.0/7.0)*N_m2), \
-        KT_t2_r_x2_xx = (1.0/10.0)*N_m0 + (1.0/5.0)*N_m1 + (1.0/7.0)*N_m2;
 
 /* outputs: of cable12_green_exact_assumed_section_forces and 1 more */
 #define CABLE12_OUTPUTS_3 \

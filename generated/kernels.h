@@ -299,9 +299,6 @@ void cable12_green_linear_elastic_tangent(fu_real l, const fu_real *e, const fu_
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 2[N, N
  * m^2] -> f 4x3[N, N m] */
 void cable12_green_linear_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 2[N, N m^2] ->
- * k 4x4[N/m, N, N m] */
-void cable12_green_linear_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* force and moment resultants of a section: l [m]; x [m]; e 4x3[m, 1]; S 2[N, N m^2] -> force 3[N]; moment 3[N m];
  * axes 3x3[1]; strain 6[1, 1/m] */
 void cable12_green_linear_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
@@ -318,9 +315,6 @@ void cable12_engineering_exact_elastic_tangent(fu_real l, const fu_real *e, cons
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 2[N, N
  * m^2] -> f 4x3[N, N m] */
 void cable12_engineering_exact_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 2[N, N m^2] ->
- * k 4x4[N/m, N, N m] */
-void cable12_engineering_exact_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* minus the Kelvin-Voigt damping force Q_d: l [m]; e 4x3[m, 1]; v 4x3[m/s, 1/s]; A 2[N, N m^2]; tau [s] -> f 4x3[N,
  * N m] */
 void cable12_engineering_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
@@ -348,9 +342,6 @@ void cable12_engineering_linear_elastic_tangent(fu_real l, const fu_real *e, con
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 2[N, N
  * m^2] -> f 4x3[N, N m] */
 void cable12_engineering_linear_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 2[N, N m^2] ->
- * k 4x4[N/m, N, N m] */
-void cable12_engineering_linear_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* force and moment resultants of a section: l [m]; x [m]; e 4x3[m, 1]; S 2[N, N m^2] -> force 3[N]; moment 3[N m];
  * axes 3x3[1]; strain 6[1, 1/m] */
 void cable12_engineering_linear_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
@@ -386,9 +377,6 @@ void cable12_green_linear_assumed_elastic_tangent(fu_real l, const fu_real *e, c
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 3[N, N
  * m^2, N] -> f 4x3[N, N m] */
 void cable12_green_linear_assumed_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 3[N, N m^2, N]
- * -> k 4x4[N/m, N, N m] */
-void cable12_green_linear_assumed_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* force and moment resultants of a section: l [m]; x [m]; e 4x3[m, 1]; S 3[N, N m^2, N] -> force 3[N]; moment 3[N
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable12_green_linear_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
@@ -405,9 +393,6 @@ void cable12_engineering_exact_assumed_elastic_tangent(fu_real l, const fu_real 
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 3[N, N
  * m^2, N] -> f 4x3[N, N m] */
 void cable12_engineering_exact_assumed_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 3[N, N m^2, N]
- * -> k 4x4[N/m, N, N m] */
-void cable12_engineering_exact_assumed_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* force and moment resultants of a section: l [m]; x [m]; e 4x3[m, 1]; S 3[N, N m^2, N] -> force 3[N]; moment 3[N
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable12_engineering_exact_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
@@ -424,9 +409,6 @@ void cable12_engineering_linear_assumed_elastic_tangent(fu_real l, const fu_real
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 3[N, N
  * m^2, N] -> f 4x3[N, N m] */
 void cable12_engineering_linear_assumed_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 3[N, N m^2, N]
- * -> k 4x4[N/m, N, N m] */
-void cable12_engineering_linear_assumed_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* force and moment resultants of a section: l [m]; x [m]; e 4x3[m, 1]; S 3[N, N m^2, N] -> force 3[N]; moment 3[N
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable12_engineering_linear_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
@@ -443,9 +425,6 @@ void cable12_green_exact_curved_elastic_tangent(fu_real l, const fu_real *e, con
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 32[N, N
  * m^2, 1] -> f 4x3[N, N m] */
 void cable12_green_exact_curved_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 32[N, N m^2, 1]
- * -> k 4x4[N/m, N, N m] */
-void cable12_green_exact_curved_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* force and moment resultants of a section: l [m]; x [m]; e 4x3[m, 1]; S 2[N, N m^2]; e0 4x3[m, 1] -> force 3[N];
  * moment 3[N m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable12_green_exact_curved_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
@@ -462,9 +441,6 @@ void cable12_engineering_exact_curved_elastic_tangent(fu_real l, const fu_real *
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 32[N, N
  * m^2, 1] -> f 4x3[N, N m] */
 void cable12_engineering_exact_curved_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 32[N, N m^2, 1]
- * -> k 4x4[N/m, N, N m] */
-void cable12_engineering_exact_curved_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* force and moment resultants of a section: l [m]; x [m]; e 4x3[m, 1]; S 2[N, N m^2]; e0 4x3[m, 1] -> force 3[N];
  * moment 3[N m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable12_engineering_exact_curved_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
@@ -511,9 +487,6 @@ void cable18_engineering_exact_elastic_tangent(fu_real l, const fu_real *e, cons
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 6x3[m, 1]; e_next 6x3[m, 1]; A 2[N, N
  * m^2] -> f 6x3[N, N m] */
 void cable18_engineering_exact_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 6x3[m, 1]; e_next 6x3[m, 1]; A 2[N, N m^2] ->
- * k 6x6[N/m, N, N m] */
-void cable18_engineering_exact_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* minus the Kelvin-Voigt damping force Q_d: l [m]; e 6x3[m, 1]; v 6x3[m/s, 1/s]; A 2[N, N m^2]; tau [s] -> f 6x3[N,
  * N m] */
 void cable18_engineering_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
@@ -560,9 +533,6 @@ void cable18_engineering_exact_assumed_elastic_tangent(fu_real l, const fu_real 
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 6x3[m, 1]; e_next 6x3[m, 1]; A 3[N, N
  * m^2, N] -> f 6x3[N, N m] */
 void cable18_engineering_exact_assumed_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 6x3[m, 1]; e_next 6x3[m, 1]; A 3[N, N m^2, N]
- * -> k 6x6[N/m, N, N m] */
-void cable18_engineering_exact_assumed_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* force and moment resultants of a section: l [m]; x [m]; e 6x3[m, 1]; S 3[N, N m^2, N] -> force 3[N]; moment 3[N
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable18_engineering_exact_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
@@ -682,9 +652,6 @@ void cable8p_green_linear_elastic_tangent(fu_real l, const fu_real *e, const fu_
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x2[m, 1]; e_next 4x2[m, 1]; A 2[N, N
  * m^2] -> f 4x2[N, N m] */
 void cable8p_green_linear_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x2[m, 1]; e_next 4x2[m, 1]; A 2[N, N m^2] ->
- * k 4x4[N/m, N, N m] */
-void cable8p_green_linear_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* force and moment resultants of a section: l [m]; x [m]; e 4x2[m, 1]; S 2[N, N m^2] -> force 3[N]; moment 3[N m];
  * axes 3x3[1]; strain 6[1, 1/m] */
 void cable8p_green_linear_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
@@ -701,9 +668,6 @@ void cable8p_engineering_exact_elastic_tangent(fu_real l, const fu_real *e, cons
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x2[m, 1]; e_next 4x2[m, 1]; A 2[N, N
  * m^2] -> f 4x2[N, N m] */
 void cable8p_engineering_exact_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x2[m, 1]; e_next 4x2[m, 1]; A 2[N, N m^2] ->
- * k 4x4[N/m, N, N m] */
-void cable8p_engineering_exact_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* minus the Kelvin-Voigt damping force Q_d: l [m]; e 4x2[m, 1]; v 4x2[m/s, 1/s]; A 2[N, N m^2]; tau [s] -> f 4x2[N,
  * N m] */
 void cable8p_engineering_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
@@ -731,9 +695,6 @@ void cable8p_engineering_linear_elastic_tangent(fu_real l, const fu_real *e, con
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x2[m, 1]; e_next 4x2[m, 1]; A 2[N, N
  * m^2] -> f 4x2[N, N m] */
 void cable8p_engineering_linear_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x2[m, 1]; e_next 4x2[m, 1]; A 2[N, N m^2] ->
- * k 4x4[N/m, N, N m] */
-void cable8p_engineering_linear_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* force and moment resultants of a section: l [m]; x [m]; e 4x2[m, 1]; S 2[N, N m^2] -> force 3[N]; moment 3[N m];
  * axes 3x3[1]; strain 6[1, 1/m] */
 void cable8p_engineering_linear_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
@@ -769,9 +730,6 @@ void cable8p_green_linear_assumed_elastic_tangent(fu_real l, const fu_real *e, c
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x2[m, 1]; e_next 4x2[m, 1]; A 3[N, N
  * m^2, N] -> f 4x2[N, N m] */
 void cable8p_green_linear_assumed_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x2[m, 1]; e_next 4x2[m, 1]; A 3[N, N m^2, N]
- * -> k 4x4[N/m, N, N m] */
-void cable8p_green_linear_assumed_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* force and moment resultants of a section: l [m]; x [m]; e 4x2[m, 1]; S 3[N, N m^2, N] -> force 3[N]; moment 3[N
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable8p_green_linear_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
@@ -788,9 +746,6 @@ void cable8p_engineering_exact_assumed_elastic_tangent(fu_real l, const fu_real 
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x2[m, 1]; e_next 4x2[m, 1]; A 3[N, N
  * m^2, N] -> f 4x2[N, N m] */
 void cable8p_engineering_exact_assumed_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x2[m, 1]; e_next 4x2[m, 1]; A 3[N, N m^2, N]
- * -> k 4x4[N/m, N, N m] */
-void cable8p_engineering_exact_assumed_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* force and moment resultants of a section: l [m]; x [m]; e 4x2[m, 1]; S 3[N, N m^2, N] -> force 3[N]; moment 3[N
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable8p_engineering_exact_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
@@ -807,9 +762,6 @@ void cable8p_engineering_linear_assumed_elastic_tangent(fu_real l, const fu_real
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x2[m, 1]; e_next 4x2[m, 1]; A 3[N, N
  * m^2, N] -> f 4x2[N, N m] */
 void cable8p_engineering_linear_assumed_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x2[m, 1]; e_next 4x2[m, 1]; A 3[N, N m^2, N]
- * -> k 4x4[N/m, N, N m] */
-void cable8p_engineering_linear_assumed_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* force and moment resultants of a section: l [m]; x [m]; e 4x2[m, 1]; S 3[N, N m^2, N] -> force 3[N]; moment 3[N
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable8p_engineering_linear_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);

@@ -7,6 +7,7 @@ import pytest
 from funicular.derive import catalogue
 from funicular.derive.codegen import rendering as emit
 from funicular.derive.codegen import sharing
+from funicular.derive.laws.kernels import Kernels
 from written_out import stages, written_out
 
 NAMES = ["cable8p", "cable8p_green_linear", "cable8p_engineering_linear"]
@@ -59,3 +60,13 @@ def test_all_families_of_a_group_are_derived_together():
     assert catalogue.whole_groups(["rigid"]).keys() == {"rigid"}
     assert catalogue.whole_groups(["cable18", "rigid"]).keys() == {
         "rigid", *(name for name, family in every.items() if family.group == "cable18")}
+
+
+@pytest.mark.parametrize("name", [name for name, family in catalogue.families().items()
+                                  if "step_stiffness" in family.shared])
+def test_the_stiffness_of_a_step_is_what_the_law_that_takes_it_would_derive(name):
+    family = catalogue.families()[name]
+    other = catalogue.families()[family.shared["step_stiffness"]]
+    own, taken = (Kernels(family.element, law).step_stiffness().prune() for law in (family.law, other.law))
+    assert [stage.definitions for stage in own.stages] == [stage.definitions for stage in taken.stages]
+    assert (own.values["k"] == taken.values["k"]).all()
