@@ -34,22 +34,20 @@ _SPACE = {2: "the plane", 3: "space"}
 def _element(element: Element) -> ElementFamily:
     return ElementFamily(element.name, element.doc, partial(element_kernels.build, element),
                          (f"elements.{element.name}", "elements.kernels"),
-                         role="element",
+                         group=element.name, role="element",
                          facts={"nodes": len(element.nodes), "vectors": len(element.nodal_vectors), "dim": element.dim},
                          element=element)
 
 
 def _law(element: Element, law: str | type) -> LawFamily:
     name, traits = law_name(law), law_traits(law)
-    twin = traits.damped_like if isinstance(law, str) else ""  # a law of the user's has a damping of its own
-    shared = {kernel: f"{element.name}_{twin}" for kernel in (*law_kernels.DAMPING, *law_kernels.ALGORITHMIC)
-              if twin in element.laws}
+    shared = {kernel: f"{element.name}_{other}" for kernel, other in law_kernels.taken(element, law).items()}
     if name == structural.NAME:
         builder, build = "laws.structural.kernels", partial(structural_kernels.build, element)
     else:
-        builder, build = "laws.kernels", partial(law_kernels.build, element, law, damping=not shared)
+        builder, build = "laws.kernels", partial(law_kernels.build, element, law)
     return LawFamily(f"{element.name}_{name}", f"elastic law {name} on {element.name}", build,
-                     (f"elements.{element.name}", builder), role="law",
+                     (f"elements.{element.name}", builder), group=element.name, role="law",
                      outside_table=("stiffness", "stiffness_at", "section_forces"), shared=shared,
                      missing=law_kernels.missing(law), facts=law_kernels.facts(element, law), element=element, law=name,
                      stiffness_of=stiffness_of(law), traits=traits)
@@ -76,7 +74,7 @@ def _slide(element: Element, rider: Rider) -> SlideFamily:
                        partial(slide.build, element, rider),
                        ("couplings.slide", f"elements.{element.name}",
                         "bodies.point" if isinstance(rider, Point) else f"bodies.{rider.NAME}"),
-                       role="slide",
+                       group="slide", role="slide",
                        facts={"coordinates": element.n_coordinates + rider.N_VELOCITY, "dim": element.dim},
                        element=element, rider=rider.NAME)
 
@@ -128,6 +126,13 @@ def families() -> dict[str, Family]:
              *map(_frame, frame.FRAMES), *joints, *map(_resistance, resistance.RESISTANCES),
              *(family for name, law in POINT_LAWS.items() for family in of_point_law(name, law))]
     return {f.name: f for f in every}
+
+
+def whole_groups(some: Iterable[str]) -> dict[str, Family]:
+    """Return the families of these names, and those of their groups: what they share is found in all of them."""
+    every = families()
+    groups = {every[name].group for name in some} - {""}
+    return {name: family for name, family in every.items() if name in some or family.group in groups}
 
 
 def named(names: Iterable[str]) -> dict[str, Family]:

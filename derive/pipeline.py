@@ -17,20 +17,21 @@ from rich.console import Console
 from rich.progress import Progress
 
 from .algebra import section_points
-from .catalogue import families, named
+from .catalogue import families, named, whole_groups
 from .codegen import drift
 from .codegen import rendering as emit
 from .codegen.family import FamilyError
 
 
 def generate(names: list[str] | None = None, show: bool = False) -> dict[str, str]:
-    """Return the text of every generated file, or (names not None) of the named families' and the common ones, by name.
+    """Return the text of every generated file, or (names not None) of those of the named families and their groups, and
+    of the common ones, by name.
 
     With names, the other families stand in the common files as the manifest records them: as their files are.
     Raises KeyError for an unknown family, naming the near ones.
     """
     every = families()
-    wanted = every if names is None else named(names)
+    wanted = every if names is None else whole_groups(named(names))
     record = {} if names is None else drift.record()
     with Progress(disable=not show, console=Console(stderr=True), transient=True) as progress:
         task = progress.add_task("derive", total=2 * len(wanted))
@@ -44,7 +45,7 @@ def generate(names: list[str] | None = None, show: bool = False) -> dict[str, st
                 known.append(old)
         progress.update(task, description="print")
         files = emit.render(known, wanted, lambda _: progress.advance(task))
-    kept = {f"{d.family.name}.c": drift.current(f"{d.family.name}.c") for d in known if d.family.name not in wanted}
+    kept = {name: drift.current(name) for d in known if d.family.name not in wanted for name in drift.of(d.family)}
     files[drift.MANIFEST] = emit.manifest(known, {n: text for n, text in kept.items() if text is not None} | files,
                                           more={"section_points": section_points.table()})
     return files
@@ -57,7 +58,7 @@ def changed() -> list[str]:
         return list(families())
     return [name for name, family in families().items()
             if record.get("families", {}).get(name, {}).get("spec_hash") != emit.came_from(family)[1]
-            or record["files"].get(f"{name}.c") != emit.digest(drift.current(f"{name}.c") or "")]
+            or any(record["files"].get(file) != emit.digest(drift.current(file) or "") for file in drift.of(family))]
 
 
 def main(names: list[str], check: bool = False) -> int:

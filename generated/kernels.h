@@ -3,7 +3,8 @@
  * each kernel stand the shape and the unit of each argument, and what it gives; all that is
  * known of them is in manifest.json. `python -m funicular.generated` prints where the sources are.
  * The same text compiles for double, with FU_COMPLEX for complex numbers (verification by complex step), and with
- * FU_BLOCK for so many doubles at once, one an element (blocks.c).
+ * FU_BLOCK for so many doubles at once, one an element (blocks.c). Stages that several kernels have alike are macros in
+ * capital letters, at the head of their file or in a header *_stages.h.
  */
 #ifndef FUNICULAR_KERNELS_H
 #define FUNICULAR_KERNELS_H
@@ -48,6 +49,9 @@ typedef double fu_real;
 #define FU_EACH_7(i, ...) FU_EACH_6(i, __VA_ARGS__) FU_AT(i, 6, __VA_ARGS__)
 #define FU_EACH_8(i, ...) FU_EACH_7(i, __VA_ARGS__) FU_AT(i, 7, __VA_ARGS__)
 #define FU_EACH_9(i, ...) FU_EACH_8(i, __VA_ARGS__) FU_AT(i, 8, __VA_ARGS__)
+#define FU_EACH_10(i, ...) FU_EACH_9(i, __VA_ARGS__) FU_AT(i, 9, __VA_ARGS__)
+#define FU_EACH_11(i, ...) FU_EACH_10(i, __VA_ARGS__) FU_AT(i, 10, __VA_ARGS__)
+#define FU_EACH_12(i, ...) FU_EACH_11(i, __VA_ARGS__) FU_AT(i, 11, __VA_ARGS__)
 #define FU_PAIR(i, j, a, b, ...) { enum { i = a, j = b }; __VA_ARGS__ }
 #define FU_ROW_2(i, j, a, ...) FU_PAIR(i, j, a, 0, __VA_ARGS__) FU_PAIR(i, j, a, 1, __VA_ARGS__)
 #define FU_ROW_3(i, j, a, ...) FU_ROW_2(i, j, a, __VA_ARGS__) FU_PAIR(i, j, a, 2, __VA_ARGS__)
@@ -295,9 +299,6 @@ void cable12_green_linear_elastic_tangent(fu_real l, const fu_real *e, const fu_
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 2[N, N
  * m^2] -> f 4x3[N, N m] */
 void cable12_green_linear_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 2[N, N m^2] ->
- * k 4x4[N/m, N, N m] */
-void cable12_green_linear_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* force and moment resultants of a section: l [m]; x [m]; e 4x3[m, 1]; S 2[N, N m^2] -> force 3[N]; moment 3[N m];
  * axes 3x3[1]; strain 6[1, 1/m] */
 void cable12_green_linear_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
@@ -314,9 +315,6 @@ void cable12_engineering_exact_elastic_tangent(fu_real l, const fu_real *e, cons
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 2[N, N
  * m^2] -> f 4x3[N, N m] */
 void cable12_engineering_exact_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 2[N, N m^2] ->
- * k 4x4[N/m, N, N m] */
-void cable12_engineering_exact_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* minus the Kelvin-Voigt damping force Q_d: l [m]; e 4x3[m, 1]; v 4x3[m/s, 1/s]; A 2[N, N m^2]; tau [s] -> f 4x3[N,
  * N m] */
 void cable12_engineering_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
@@ -344,9 +342,6 @@ void cable12_engineering_linear_elastic_tangent(fu_real l, const fu_real *e, con
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 2[N, N
  * m^2] -> f 4x3[N, N m] */
 void cable12_engineering_linear_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 2[N, N m^2] ->
- * k 4x4[N/m, N, N m] */
-void cable12_engineering_linear_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* force and moment resultants of a section: l [m]; x [m]; e 4x3[m, 1]; S 2[N, N m^2] -> force 3[N]; moment 3[N m];
  * axes 3x3[1]; strain 6[1, 1/m] */
 void cable12_engineering_linear_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
@@ -382,9 +377,6 @@ void cable12_green_linear_assumed_elastic_tangent(fu_real l, const fu_real *e, c
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 3[N, N
  * m^2, N] -> f 4x3[N, N m] */
 void cable12_green_linear_assumed_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 3[N, N m^2, N]
- * -> k 4x4[N/m, N, N m] */
-void cable12_green_linear_assumed_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* force and moment resultants of a section: l [m]; x [m]; e 4x3[m, 1]; S 3[N, N m^2, N] -> force 3[N]; moment 3[N
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable12_green_linear_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
@@ -401,9 +393,6 @@ void cable12_engineering_exact_assumed_elastic_tangent(fu_real l, const fu_real 
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 3[N, N
  * m^2, N] -> f 4x3[N, N m] */
 void cable12_engineering_exact_assumed_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 3[N, N m^2, N]
- * -> k 4x4[N/m, N, N m] */
-void cable12_engineering_exact_assumed_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* force and moment resultants of a section: l [m]; x [m]; e 4x3[m, 1]; S 3[N, N m^2, N] -> force 3[N]; moment 3[N
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable12_engineering_exact_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
@@ -420,9 +409,6 @@ void cable12_engineering_linear_assumed_elastic_tangent(fu_real l, const fu_real
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 3[N, N
  * m^2, N] -> f 4x3[N, N m] */
 void cable12_engineering_linear_assumed_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 3[N, N m^2, N]
- * -> k 4x4[N/m, N, N m] */
-void cable12_engineering_linear_assumed_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* force and moment resultants of a section: l [m]; x [m]; e 4x3[m, 1]; S 3[N, N m^2, N] -> force 3[N]; moment 3[N
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable12_engineering_linear_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
@@ -439,9 +425,6 @@ void cable12_green_exact_curved_elastic_tangent(fu_real l, const fu_real *e, con
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 32[N, N
  * m^2, 1] -> f 4x3[N, N m] */
 void cable12_green_exact_curved_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 32[N, N m^2, 1]
- * -> k 4x4[N/m, N, N m] */
-void cable12_green_exact_curved_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* force and moment resultants of a section: l [m]; x [m]; e 4x3[m, 1]; S 2[N, N m^2]; e0 4x3[m, 1] -> force 3[N];
  * moment 3[N m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable12_green_exact_curved_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
@@ -458,9 +441,6 @@ void cable12_engineering_exact_curved_elastic_tangent(fu_real l, const fu_real *
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 32[N, N
  * m^2, 1] -> f 4x3[N, N m] */
 void cable12_engineering_exact_curved_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x3[m, 1]; e_next 4x3[m, 1]; A 32[N, N m^2, 1]
- * -> k 4x4[N/m, N, N m] */
-void cable12_engineering_exact_curved_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* force and moment resultants of a section: l [m]; x [m]; e 4x3[m, 1]; S 2[N, N m^2]; e0 4x3[m, 1] -> force 3[N];
  * moment 3[N m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable12_engineering_exact_curved_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, const fu_real *e0, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
@@ -507,9 +487,6 @@ void cable18_engineering_exact_elastic_tangent(fu_real l, const fu_real *e, cons
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 6x3[m, 1]; e_next 6x3[m, 1]; A 2[N, N
  * m^2] -> f 6x3[N, N m] */
 void cable18_engineering_exact_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 6x3[m, 1]; e_next 6x3[m, 1]; A 2[N, N m^2] ->
- * k 6x6[N/m, N, N m] */
-void cable18_engineering_exact_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* minus the Kelvin-Voigt damping force Q_d: l [m]; e 6x3[m, 1]; v 6x3[m/s, 1/s]; A 2[N, N m^2]; tau [s] -> f 6x3[N,
  * N m] */
 void cable18_engineering_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
@@ -556,9 +533,6 @@ void cable18_engineering_exact_assumed_elastic_tangent(fu_real l, const fu_real 
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 6x3[m, 1]; e_next 6x3[m, 1]; A 3[N, N
  * m^2, N] -> f 6x3[N, N m] */
 void cable18_engineering_exact_assumed_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 6x3[m, 1]; e_next 6x3[m, 1]; A 3[N, N m^2, N]
- * -> k 6x6[N/m, N, N m] */
-void cable18_engineering_exact_assumed_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* force and moment resultants of a section: l [m]; x [m]; e 6x3[m, 1]; S 3[N, N m^2, N] -> force 3[N]; moment 3[N
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable18_engineering_exact_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
@@ -678,9 +652,6 @@ void cable8p_green_linear_elastic_tangent(fu_real l, const fu_real *e, const fu_
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x2[m, 1]; e_next 4x2[m, 1]; A 2[N, N
  * m^2] -> f 4x2[N, N m] */
 void cable8p_green_linear_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x2[m, 1]; e_next 4x2[m, 1]; A 2[N, N m^2] ->
- * k 4x4[N/m, N, N m] */
-void cable8p_green_linear_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* force and moment resultants of a section: l [m]; x [m]; e 4x2[m, 1]; S 2[N, N m^2] -> force 3[N]; moment 3[N m];
  * axes 3x3[1]; strain 6[1, 1/m] */
 void cable8p_green_linear_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
@@ -697,9 +668,6 @@ void cable8p_engineering_exact_elastic_tangent(fu_real l, const fu_real *e, cons
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x2[m, 1]; e_next 4x2[m, 1]; A 2[N, N
  * m^2] -> f 4x2[N, N m] */
 void cable8p_engineering_exact_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x2[m, 1]; e_next 4x2[m, 1]; A 2[N, N m^2] ->
- * k 4x4[N/m, N, N m] */
-void cable8p_engineering_exact_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* minus the Kelvin-Voigt damping force Q_d: l [m]; e 4x2[m, 1]; v 4x2[m/s, 1/s]; A 2[N, N m^2]; tau [s] -> f 4x2[N,
  * N m] */
 void cable8p_engineering_exact_damping_force(fu_real l, const fu_real *e, const fu_real *v, const fu_real *A, fu_real tau, fu_real *f);
@@ -727,9 +695,6 @@ void cable8p_engineering_linear_elastic_tangent(fu_real l, const fu_real *e, con
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x2[m, 1]; e_next 4x2[m, 1]; A 2[N, N
  * m^2] -> f 4x2[N, N m] */
 void cable8p_engineering_linear_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x2[m, 1]; e_next 4x2[m, 1]; A 2[N, N m^2] ->
- * k 4x4[N/m, N, N m] */
-void cable8p_engineering_linear_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* force and moment resultants of a section: l [m]; x [m]; e 4x2[m, 1]; S 2[N, N m^2] -> force 3[N]; moment 3[N m];
  * axes 3x3[1]; strain 6[1, 1/m] */
 void cable8p_engineering_linear_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
@@ -765,9 +730,6 @@ void cable8p_green_linear_assumed_elastic_tangent(fu_real l, const fu_real *e, c
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x2[m, 1]; e_next 4x2[m, 1]; A 3[N, N
  * m^2, N] -> f 4x2[N, N m] */
 void cable8p_green_linear_assumed_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x2[m, 1]; e_next 4x2[m, 1]; A 3[N, N m^2, N]
- * -> k 4x4[N/m, N, N m] */
-void cable8p_green_linear_assumed_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* force and moment resultants of a section: l [m]; x [m]; e 4x2[m, 1]; S 3[N, N m^2, N] -> force 3[N]; moment 3[N
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable8p_green_linear_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
@@ -784,9 +746,6 @@ void cable8p_engineering_exact_assumed_elastic_tangent(fu_real l, const fu_real 
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x2[m, 1]; e_next 4x2[m, 1]; A 3[N, N
  * m^2, N] -> f 4x2[N, N m] */
 void cable8p_engineering_exact_assumed_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x2[m, 1]; e_next 4x2[m, 1]; A 3[N, N m^2, N]
- * -> k 4x4[N/m, N, N m] */
-void cable8p_engineering_exact_assumed_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* force and moment resultants of a section: l [m]; x [m]; e 4x2[m, 1]; S 3[N, N m^2, N] -> force 3[N]; moment 3[N
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable8p_engineering_exact_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);
@@ -803,9 +762,6 @@ void cable8p_engineering_linear_assumed_elastic_tangent(fu_real l, const fu_real
 /* discrete gradient of the energy, f . (e_next - e) = U_next - U: l [m]; e 4x2[m, 1]; e_next 4x2[m, 1]; A 3[N, N
  * m^2, N] -> f 4x2[N, N m] */
 void cable8p_engineering_linear_assumed_discrete_force(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *f);
-/* k: elastic_tangent half-way + k (x) I has the mean stress: l [m]; e 4x2[m, 1]; e_next 4x2[m, 1]; A 3[N, N m^2, N]
- * -> k 4x4[N/m, N, N m] */
-void cable8p_engineering_linear_assumed_step_stiffness(fu_real l, const fu_real *e, const fu_real *e_next, const fu_real *A, fu_real *k);
 /* force and moment resultants of a section: l [m]; x [m]; e 4x2[m, 1]; S 3[N, N m^2, N] -> force 3[N]; moment 3[N
  * m]; axes 3x3[1]; strain 6[1, 1/m] */
 void cable8p_engineering_linear_assumed_section_forces(fu_real l, fu_real x, const fu_real *e, const fu_real *S, fu_real *force, fu_real *moment, fu_real *axes, fu_real *strain);

@@ -31,17 +31,17 @@ static const fu_law_kernels laws[] = {
      cable12_green_exact_damping_force, cable12_green_exact_damping_tangent, cable12_green_exact_dissipation,
      cable12_green_exact_algorithmic_force},
     {"cable12_green_linear", 9, 1, cable12_green_linear_energy, cable12_green_linear_elastic_force,
-     cable12_green_linear_elastic_tangent, cable12_green_linear_discrete_force, cable12_green_linear_step_stiffness,
+     cable12_green_linear_elastic_tangent, cable12_green_linear_discrete_force, cable12_green_exact_step_stiffness,
      cable12_green_exact_damping_force, cable12_green_exact_damping_tangent, cable12_green_exact_dissipation,
      cable12_green_exact_algorithmic_force},
     {"cable12_engineering_exact", 9, 1, cable12_engineering_exact_energy, cable12_engineering_exact_elastic_force,
      cable12_engineering_exact_elastic_tangent, cable12_engineering_exact_discrete_force,
-     cable12_engineering_exact_step_stiffness, cable12_engineering_exact_damping_force,
+     cable12_green_exact_step_stiffness, cable12_engineering_exact_damping_force,
      cable12_engineering_exact_damping_tangent, cable12_engineering_exact_dissipation,
      cable12_engineering_exact_algorithmic_force},
     {"cable12_engineering_linear", 9, 1, cable12_engineering_linear_energy, cable12_engineering_linear_elastic_force,
      cable12_engineering_linear_elastic_tangent, cable12_engineering_linear_discrete_force,
-     cable12_engineering_linear_step_stiffness, cable12_engineering_exact_damping_force,
+     cable12_green_exact_step_stiffness, cable12_engineering_exact_damping_force,
      cable12_engineering_exact_damping_tangent, cable12_engineering_exact_dissipation,
      cable12_engineering_exact_algorithmic_force},
     {"cable12_green_exact_assumed", 9, 1, cable12_green_exact_assumed_energy, cable12_green_exact_assumed_elastic_force,
@@ -50,26 +50,26 @@ static const fu_law_kernels laws[] = {
      cable12_green_exact_dissipation, cable12_green_exact_algorithmic_force},
     {"cable12_green_linear_assumed", 9, 1, cable12_green_linear_assumed_energy,
      cable12_green_linear_assumed_elastic_force, cable12_green_linear_assumed_elastic_tangent,
-     cable12_green_linear_assumed_discrete_force, cable12_green_linear_assumed_step_stiffness,
+     cable12_green_linear_assumed_discrete_force, cable12_green_exact_assumed_step_stiffness,
      cable12_green_exact_damping_force, cable12_green_exact_damping_tangent, cable12_green_exact_dissipation,
      cable12_green_exact_algorithmic_force},
     {"cable12_engineering_exact_assumed", 9, 1, cable12_engineering_exact_assumed_energy,
      cable12_engineering_exact_assumed_elastic_force, cable12_engineering_exact_assumed_elastic_tangent,
-     cable12_engineering_exact_assumed_discrete_force, cable12_engineering_exact_assumed_step_stiffness,
+     cable12_engineering_exact_assumed_discrete_force, cable12_green_exact_assumed_step_stiffness,
      cable12_engineering_exact_damping_force, cable12_engineering_exact_damping_tangent,
      cable12_engineering_exact_dissipation, cable12_engineering_exact_algorithmic_force},
     {"cable12_engineering_linear_assumed", 9, 1, cable12_engineering_linear_assumed_energy,
      cable12_engineering_linear_assumed_elastic_force, cable12_engineering_linear_assumed_elastic_tangent,
-     cable12_engineering_linear_assumed_discrete_force, cable12_engineering_linear_assumed_step_stiffness,
+     cable12_engineering_linear_assumed_discrete_force, cable12_green_exact_assumed_step_stiffness,
      cable12_engineering_exact_damping_force, cable12_engineering_exact_damping_tangent,
      cable12_engineering_exact_dissipation, cable12_engineering_exact_algorithmic_force},
     {"cable12_green_exact_curved", 9, 1, cable12_green_exact_curved_energy, cable12_green_exact_curved_elastic_force,
      cable12_green_exact_curved_elastic_tangent, cable12_green_exact_curved_discrete_force,
-     cable12_green_exact_curved_step_stiffness, cable12_green_exact_damping_force, cable12_green_exact_damping_tangent,
+     cable12_green_exact_step_stiffness, cable12_green_exact_damping_force, cable12_green_exact_damping_tangent,
      cable12_green_exact_dissipation, cable12_green_exact_algorithmic_force},
     {"cable12_engineering_exact_curved", 9, 1, cable12_engineering_exact_curved_energy,
      cable12_engineering_exact_curved_elastic_force, cable12_engineering_exact_curved_elastic_tangent,
-     cable12_engineering_exact_curved_discrete_force, cable12_engineering_exact_curved_step_stiffness,
+     cable12_engineering_exact_curved_discrete_force, cable12_green_exact_step_stiffness,
      cable12_engineering_exact_damping_force, cable12_engineering_exact_damping_tangent,
      cable12_engineering_exact_dissipation, cable12_engineering_exact_algorithmic_force},
     {"cable18_green_exact", 17, 1, cable18_green_exact_energy, cable18_green_exact_elastic_force,
@@ -78,7 +78,7 @@ static const fu_law_kernels laws[] = {
      cable18_green_exact_algorithmic_force},
     {"cable18_engineering_exact", 17, 1, cable18_engineering_exact_energy, cable18_engineering_exact_elastic_force,
      cable18_engineering_exact_elastic_tangent, cable18_engineering_exact_discrete_force,
-     cable18_engineering_exact_step_stiffness, cable18_engineering_exact_damping_force,
+     cable18_green_exact_step_stiffness, cable18_engineering_exact_damping_force,
      cable18_engineering_exact_damping_tangent, cable18_engineering_exact_dissipation,
      cable18_engineering_exact_algorithmic_force},
     {"cable18_green_exact_assumed", 17, 1, cable18_green_exact_assumed_energy,
@@ -88,7 +88,7 @@ static const fu_law_kernels laws[] = {
      cable18_green_exact_algorithmic_force},
     {"cable18_engineering_exact_assumed", 17, 1, cable18_engineering_exact_assumed_energy,
      cable18_engineering_exact_assumed_elastic_force, cable18_engineering_exact_assumed_elastic_tangent,
-     cable18_engineering_exact_assumed_discrete_force, cable18_engineering_exact_assumed_step_stiffness,
+     cable18_engineering_exact_assumed_discrete_force, cable18_green_exact_assumed_step_stiffness,
      cable18_engineering_exact_damping_force, cable18_engineering_exact_damping_tangent,
      cable18_engineering_exact_dissipation, cable18_engineering_exact_algorithmic_force},
     {"beam12p_continuum", 15, 0, beam12p_continuum_energy, beam12p_continuum_elastic_force,
@@ -107,17 +107,17 @@ static const fu_law_kernels laws[] = {
      cable8p_green_exact_damping_force, cable8p_green_exact_damping_tangent, cable8p_green_exact_dissipation,
      cable8p_green_exact_algorithmic_force},
     {"cable8p_green_linear", 7, 0, cable8p_green_linear_energy, cable8p_green_linear_elastic_force,
-     cable8p_green_linear_elastic_tangent, cable8p_green_linear_discrete_force, cable8p_green_linear_step_stiffness,
+     cable8p_green_linear_elastic_tangent, cable8p_green_linear_discrete_force, cable8p_green_exact_step_stiffness,
      cable8p_green_exact_damping_force, cable8p_green_exact_damping_tangent, cable8p_green_exact_dissipation,
      cable8p_green_exact_algorithmic_force},
     {"cable8p_engineering_exact", 7, 0, cable8p_engineering_exact_energy, cable8p_engineering_exact_elastic_force,
      cable8p_engineering_exact_elastic_tangent, cable8p_engineering_exact_discrete_force,
-     cable8p_engineering_exact_step_stiffness, cable8p_engineering_exact_damping_force,
+     cable8p_green_exact_step_stiffness, cable8p_engineering_exact_damping_force,
      cable8p_engineering_exact_damping_tangent, cable8p_engineering_exact_dissipation,
      cable8p_engineering_exact_algorithmic_force},
     {"cable8p_engineering_linear", 7, 0, cable8p_engineering_linear_energy, cable8p_engineering_linear_elastic_force,
      cable8p_engineering_linear_elastic_tangent, cable8p_engineering_linear_discrete_force,
-     cable8p_engineering_linear_step_stiffness, cable8p_engineering_exact_damping_force,
+     cable8p_green_exact_step_stiffness, cable8p_engineering_exact_damping_force,
      cable8p_engineering_exact_damping_tangent, cable8p_engineering_exact_dissipation,
      cable8p_engineering_exact_algorithmic_force},
     {"cable8p_green_exact_assumed", 7, 0, cable8p_green_exact_assumed_energy, cable8p_green_exact_assumed_elastic_force,
@@ -126,17 +126,17 @@ static const fu_law_kernels laws[] = {
      cable8p_green_exact_dissipation, cable8p_green_exact_algorithmic_force},
     {"cable8p_green_linear_assumed", 7, 0, cable8p_green_linear_assumed_energy,
      cable8p_green_linear_assumed_elastic_force, cable8p_green_linear_assumed_elastic_tangent,
-     cable8p_green_linear_assumed_discrete_force, cable8p_green_linear_assumed_step_stiffness,
+     cable8p_green_linear_assumed_discrete_force, cable8p_green_exact_assumed_step_stiffness,
      cable8p_green_exact_damping_force, cable8p_green_exact_damping_tangent, cable8p_green_exact_dissipation,
      cable8p_green_exact_algorithmic_force},
     {"cable8p_engineering_exact_assumed", 7, 0, cable8p_engineering_exact_assumed_energy,
      cable8p_engineering_exact_assumed_elastic_force, cable8p_engineering_exact_assumed_elastic_tangent,
-     cable8p_engineering_exact_assumed_discrete_force, cable8p_engineering_exact_assumed_step_stiffness,
+     cable8p_engineering_exact_assumed_discrete_force, cable8p_green_exact_assumed_step_stiffness,
      cable8p_engineering_exact_damping_force, cable8p_engineering_exact_damping_tangent,
      cable8p_engineering_exact_dissipation, cable8p_engineering_exact_algorithmic_force},
     {"cable8p_engineering_linear_assumed", 7, 0, cable8p_engineering_linear_assumed_energy,
      cable8p_engineering_linear_assumed_elastic_force, cable8p_engineering_linear_assumed_elastic_tangent,
-     cable8p_engineering_linear_assumed_discrete_force, cable8p_engineering_linear_assumed_step_stiffness,
+     cable8p_engineering_linear_assumed_discrete_force, cable8p_green_exact_assumed_step_stiffness,
      cable8p_engineering_exact_damping_force, cable8p_engineering_exact_damping_tangent,
      cable8p_engineering_exact_dissipation, cable8p_engineering_exact_algorithmic_force},
 };
@@ -319,14 +319,12 @@ static const fu_point_law_kernels point_laws[] = {
     X(cable12_green_linear_elastic_force, *a[0], a[1], a[2], out[0]) \
     X(cable12_green_linear_elastic_tangent, *a[0], a[1], a[2], out[0]) \
     X(cable12_green_linear_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable12_green_linear_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
     X(cable12_green_linear_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
     X(cable12_engineering_exact_stiffness, *a[0], a[1], out[0]) \
     X(cable12_engineering_exact_energy, *a[0], a[1], a[2], out[0]) \
     X(cable12_engineering_exact_elastic_force, *a[0], a[1], a[2], out[0]) \
     X(cable12_engineering_exact_elastic_tangent, *a[0], a[1], a[2], out[0]) \
     X(cable12_engineering_exact_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable12_engineering_exact_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
     X(cable12_engineering_exact_damping_force, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
     X(cable12_engineering_exact_damping_tangent, *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]) \
     X(cable12_engineering_exact_dissipation, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
@@ -337,7 +335,6 @@ static const fu_point_law_kernels point_laws[] = {
     X(cable12_engineering_linear_elastic_force, *a[0], a[1], a[2], out[0]) \
     X(cable12_engineering_linear_elastic_tangent, *a[0], a[1], a[2], out[0]) \
     X(cable12_engineering_linear_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable12_engineering_linear_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
     X(cable12_engineering_linear_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
     X(cable12_green_exact_assumed_stiffness, *a[0], a[1], out[0]) \
     X(cable12_green_exact_assumed_energy, *a[0], a[1], a[2], out[0]) \
@@ -351,35 +348,30 @@ static const fu_point_law_kernels point_laws[] = {
     X(cable12_green_linear_assumed_elastic_force, *a[0], a[1], a[2], out[0]) \
     X(cable12_green_linear_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
     X(cable12_green_linear_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable12_green_linear_assumed_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
     X(cable12_green_linear_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
     X(cable12_engineering_exact_assumed_stiffness, *a[0], a[1], out[0]) \
     X(cable12_engineering_exact_assumed_energy, *a[0], a[1], a[2], out[0]) \
     X(cable12_engineering_exact_assumed_elastic_force, *a[0], a[1], a[2], out[0]) \
     X(cable12_engineering_exact_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
     X(cable12_engineering_exact_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable12_engineering_exact_assumed_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
     X(cable12_engineering_exact_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
     X(cable12_engineering_linear_assumed_stiffness, *a[0], a[1], out[0]) \
     X(cable12_engineering_linear_assumed_energy, *a[0], a[1], a[2], out[0]) \
     X(cable12_engineering_linear_assumed_elastic_force, *a[0], a[1], a[2], out[0]) \
     X(cable12_engineering_linear_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
     X(cable12_engineering_linear_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable12_engineering_linear_assumed_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
     X(cable12_engineering_linear_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
     X(cable12_green_exact_curved_stiffness, *a[0], a[1], a[2], out[0]) \
     X(cable12_green_exact_curved_energy, *a[0], a[1], a[2], out[0]) \
     X(cable12_green_exact_curved_elastic_force, *a[0], a[1], a[2], out[0]) \
     X(cable12_green_exact_curved_elastic_tangent, *a[0], a[1], a[2], out[0]) \
     X(cable12_green_exact_curved_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable12_green_exact_curved_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
     X(cable12_green_exact_curved_section_forces, *a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]) \
     X(cable12_engineering_exact_curved_stiffness, *a[0], a[1], a[2], out[0]) \
     X(cable12_engineering_exact_curved_energy, *a[0], a[1], a[2], out[0]) \
     X(cable12_engineering_exact_curved_elastic_force, *a[0], a[1], a[2], out[0]) \
     X(cable12_engineering_exact_curved_elastic_tangent, *a[0], a[1], a[2], out[0]) \
     X(cable12_engineering_exact_curved_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable12_engineering_exact_curved_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
     X(cable12_engineering_exact_curved_section_forces, *a[0], *a[1], a[2], a[3], a[4], out[0], out[1], out[2], out[3]) \
     X(cable18_green_exact_stiffness, *a[0], a[1], out[0]) \
     X(cable18_green_exact_energy, *a[0], a[1], a[2], out[0]) \
@@ -397,7 +389,6 @@ static const fu_point_law_kernels point_laws[] = {
     X(cable18_engineering_exact_elastic_force, *a[0], a[1], a[2], out[0]) \
     X(cable18_engineering_exact_elastic_tangent, *a[0], a[1], a[2], out[0]) \
     X(cable18_engineering_exact_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable18_engineering_exact_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
     X(cable18_engineering_exact_damping_force, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
     X(cable18_engineering_exact_damping_tangent, *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]) \
     X(cable18_engineering_exact_dissipation, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
@@ -415,7 +406,6 @@ static const fu_point_law_kernels point_laws[] = {
     X(cable18_engineering_exact_assumed_elastic_force, *a[0], a[1], a[2], out[0]) \
     X(cable18_engineering_exact_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
     X(cable18_engineering_exact_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable18_engineering_exact_assumed_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
     X(cable18_engineering_exact_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
     X(beam12p_continuum_stiffness, *a[0], a[1], out[0]) \
     X(beam12p_continuum_energy, *a[0], a[1], a[2], out[0]) \
@@ -459,14 +449,12 @@ static const fu_point_law_kernels point_laws[] = {
     X(cable8p_green_linear_elastic_force, *a[0], a[1], a[2], out[0]) \
     X(cable8p_green_linear_elastic_tangent, *a[0], a[1], a[2], out[0]) \
     X(cable8p_green_linear_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable8p_green_linear_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
     X(cable8p_green_linear_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
     X(cable8p_engineering_exact_stiffness, *a[0], a[1], out[0]) \
     X(cable8p_engineering_exact_energy, *a[0], a[1], a[2], out[0]) \
     X(cable8p_engineering_exact_elastic_force, *a[0], a[1], a[2], out[0]) \
     X(cable8p_engineering_exact_elastic_tangent, *a[0], a[1], a[2], out[0]) \
     X(cable8p_engineering_exact_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable8p_engineering_exact_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
     X(cable8p_engineering_exact_damping_force, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
     X(cable8p_engineering_exact_damping_tangent, *a[0], a[1], a[2], a[3], *a[4], *a[5], out[0]) \
     X(cable8p_engineering_exact_dissipation, *a[0], a[1], a[2], a[3], *a[4], out[0]) \
@@ -477,7 +465,6 @@ static const fu_point_law_kernels point_laws[] = {
     X(cable8p_engineering_linear_elastic_force, *a[0], a[1], a[2], out[0]) \
     X(cable8p_engineering_linear_elastic_tangent, *a[0], a[1], a[2], out[0]) \
     X(cable8p_engineering_linear_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable8p_engineering_linear_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
     X(cable8p_engineering_linear_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
     X(cable8p_green_exact_assumed_stiffness, *a[0], a[1], out[0]) \
     X(cable8p_green_exact_assumed_energy, *a[0], a[1], a[2], out[0]) \
@@ -491,21 +478,18 @@ static const fu_point_law_kernels point_laws[] = {
     X(cable8p_green_linear_assumed_elastic_force, *a[0], a[1], a[2], out[0]) \
     X(cable8p_green_linear_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
     X(cable8p_green_linear_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable8p_green_linear_assumed_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
     X(cable8p_green_linear_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
     X(cable8p_engineering_exact_assumed_stiffness, *a[0], a[1], out[0]) \
     X(cable8p_engineering_exact_assumed_energy, *a[0], a[1], a[2], out[0]) \
     X(cable8p_engineering_exact_assumed_elastic_force, *a[0], a[1], a[2], out[0]) \
     X(cable8p_engineering_exact_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
     X(cable8p_engineering_exact_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable8p_engineering_exact_assumed_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
     X(cable8p_engineering_exact_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
     X(cable8p_engineering_linear_assumed_stiffness, *a[0], a[1], out[0]) \
     X(cable8p_engineering_linear_assumed_energy, *a[0], a[1], a[2], out[0]) \
     X(cable8p_engineering_linear_assumed_elastic_force, *a[0], a[1], a[2], out[0]) \
     X(cable8p_engineering_linear_assumed_elastic_tangent, *a[0], a[1], a[2], out[0]) \
     X(cable8p_engineering_linear_assumed_discrete_force, *a[0], a[1], a[2], a[3], out[0]) \
-    X(cable8p_engineering_linear_assumed_step_stiffness, *a[0], a[1], a[2], a[3], out[0]) \
     X(cable8p_engineering_linear_assumed_section_forces, *a[0], *a[1], a[2], a[3], out[0], out[1], out[2], out[3]) \
     X(rigid_point, a[0], a[1], a[2], out[0], out[1], out[2], out[3]) \
     X(rigid_point_force, a[0], a[1], a[2], out[0], out[1], out[2]) \

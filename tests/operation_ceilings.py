@@ -37,11 +37,11 @@ CEILINGS = {
     },
     "cable12_green_exact_curved": {
         "stiffness": 266, "energy": 310, "elastic_force": 735, "elastic_tangent": 2865, "section_forces": 608,
-        "discrete_force": 1321, "step_stiffness": 161
+        "discrete_force": 1321
     },
     "cable12_engineering_exact_curved": {
         "stiffness": 266, "energy": 325, "elastic_force": 760, "elastic_tangent": 2940, "section_forces": 616,
-        "discrete_force": 1341, "step_stiffness": 161
+        "discrete_force": 1341
     },
     "beam12p_continuum_curved": {
         "stiffness_at": 521, "energy": 572, "elastic_force": 656, "elastic_tangent": 2590, "section_forces": 616,
@@ -54,16 +54,16 @@ CEILINGS = {
     },
     "cable12_green_linear": {
         "stiffness": 0, "energy": 150, "elastic_force": 222, "elastic_tangent": 661, "section_forces": 156,
-        "discrete_force": 407, "step_stiffness": 161
+        "discrete_force": 407
     },
     "cable12_engineering_exact": {
         "stiffness": 0, "energy": 266, "elastic_force": 501, "elastic_tangent": 1741, "damping_force": 450,
         "damping_tangent": 1842, "dissipation": 325, "section_forces": 260,
-        "discrete_force": 907, "step_stiffness": 161, "algorithmic_force": 466
+        "discrete_force": 907, "algorithmic_force": 466
     },
     "cable12_engineering_linear": {
         "stiffness": 0, "energy": 165, "elastic_force": 257, "elastic_tangent": 746, "section_forces": 161,
-        "discrete_force": 442, "step_stiffness": 161
+        "discrete_force": 442
     },
     "cable12_green_exact_assumed": {
         "stiffness": 0, "energy": 280, "elastic_force": 510, "elastic_tangent": 2029, "section_forces": 361,
@@ -71,15 +71,15 @@ CEILINGS = {
     },
     "cable12_green_linear_assumed": {
         "stiffness": 0, "energy": 156, "elastic_force": 223, "elastic_tangent": 778, "section_forces": 236,
-        "discrete_force": 407, "step_stiffness": 164
+        "discrete_force": 407
     },
     "cable12_engineering_exact_assumed": {
         "stiffness": 0, "energy": 295, "elastic_force": 525, "elastic_tangent": 2167, "section_forces": 377,
-        "discrete_force": 981, "step_stiffness": 164
+        "discrete_force": 981
     },
     "cable12_engineering_linear_assumed": {
         "stiffness": 0, "energy": 194, "elastic_force": 281, "elastic_tangent": 1172, "section_forces": 278,
-        "discrete_force": 516, "step_stiffness": 164
+        "discrete_force": 516
     },
     "cable18_green_exact": {
         "stiffness": 0, "energy": 410, "elastic_force": 788, "elastic_tangent": 5134, "damping_force": 1500,
@@ -89,7 +89,7 @@ CEILINGS = {
     "cable18_engineering_exact": {
         "stiffness": 0, "energy": 425, "elastic_force": 813, "elastic_tangent": 5194, "damping_force": 1545,
         "damping_tangent": 9221, "dissipation": 1063, "section_forces": 518,
-        "discrete_force": 1378, "step_stiffness": 980, "algorithmic_force": 1577
+        "discrete_force": 1378, "algorithmic_force": 1577
     },
     "cable18_green_exact_assumed": {
         "stiffness": 0, "energy": 459, "elastic_force": 842, "elastic_tangent": 6608, "section_forces": 693,
@@ -97,7 +97,7 @@ CEILINGS = {
     },
     "cable18_engineering_exact_assumed": {
         "stiffness": 0, "energy": 474, "elastic_force": 857, "elastic_tangent": 6794, "section_forces": 709,
-        "discrete_force": 1492, "step_stiffness": 824
+        "discrete_force": 1492
     },
     "beam12p_continuum": {
         "stiffness": 94, "energy": 219, "elastic_force": 303, "elastic_tangent": 1295, "damping_force": 396,
@@ -111,16 +111,16 @@ CEILINGS = {
     },
     "cable8p_green_linear": {
         "stiffness": 0, "energy": 112, "elastic_force": 154, "elastic_tangent": 351, "section_forces": 102,
-        "discrete_force": 284, "step_stiffness": 127
+        "discrete_force": 284
     },
     "cable8p_engineering_exact": {
         "stiffness": 0, "energy": 209, "elastic_force": 381, "elastic_tangent": 1050, "damping_force": 307,
         "damping_tangent": 959, "dissipation": 223, "section_forces": 184,
-        "discrete_force": 700, "step_stiffness": 127, "algorithmic_force": 319
+        "discrete_force": 700, "algorithmic_force": 319
     },
     "cable8p_engineering_linear": {
         "stiffness": 0, "energy": 127, "elastic_force": 189, "elastic_tangent": 436, "section_forces": 107,
-        "discrete_force": 319, "step_stiffness": 127
+        "discrete_force": 319
     },
     "cable8p_green_exact_assumed": {
         "stiffness": 0, "energy": 223, "elastic_force": 390, "elastic_tangent": 1177, "section_forces": 263,
@@ -128,15 +128,15 @@ CEILINGS = {
     },
     "cable8p_green_linear_assumed": {
         "stiffness": 0, "energy": 122, "elastic_force": 163, "elastic_tangent": 431, "section_forces": 166,
-        "discrete_force": 299, "step_stiffness": 131
+        "discrete_force": 299
     },
     "cable8p_engineering_exact_assumed": {
         "stiffness": 0, "energy": 238, "elastic_force": 405, "elastic_tangent": 1279, "section_forces": 279,
-        "discrete_force": 774, "step_stiffness": 131
+        "discrete_force": 774
     },
     "cable8p_engineering_linear_assumed": {
         "stiffness": 0, "energy": 156, "elastic_force": 213, "elastic_tangent": 665, "section_forces": 202,
-        "discrete_force": 393, "step_stiffness": 131
+        "discrete_force": 393
     },
     "beam24_structural": {
         "stiffness": 360, "energy": 533, "elastic_force": 1067, "elastic_tangent": 7419, "damping_force": 1385,

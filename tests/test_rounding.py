@@ -2,7 +2,6 @@
 
 import math
 import re
-import shutil
 from pathlib import Path
 
 import mpmath
@@ -10,7 +9,6 @@ import numpy as np
 import pytest
 import sympy as sp
 from funicular.derive.catalogue import families
-from funicular.derive.codegen import drift
 from funicular.derive.codegen.program import Program
 from funicular.derive.verify import command as verify
 from funicular.derive.verify.inputs import KINDS, Input, inputs
@@ -18,13 +16,13 @@ from funicular.derive.verify.numbers import Numbers, exact, real
 from funicular.derive.verify.rounding import ENTRY, NORM, measure
 from funicular.derive.verify.samples import states
 from funicular.generated import kernels
+from written_out import copy_written_out
 
 
 @pytest.fixture
 def generated(tmp_path) -> Path:
     """A copy of the generated C, to spoil."""
-    for file in drift.folder().glob("*.[ch]"):
-        shutil.copy(file, tmp_path)
+    copy_written_out(tmp_path)
     return tmp_path
 
 

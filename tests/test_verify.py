@@ -1,6 +1,5 @@
 """`funicular verify` passes on what is checked in, and fails by name on what somebody broke."""
 
-import shutil
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -8,20 +7,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 from funicular.derive.catalogue import families
-from funicular.derive.codegen import drift
 from funicular.derive.codegen import rendering as emit
 from funicular.derive.codegen.program import Argument
 from funicular.derive.laws.cable.cable import Cable
 from funicular.derive.verify import command as verify
 from funicular.derive.verify.compiled import CompilerError, compiler
 from funicular.derive.verify.methods import CEILINGS, METHODS, Relation, examine
+from written_out import copy_written_out
 
 
 @pytest.fixture
 def generated(tmp_path) -> Path:
     """A copy of the generated C, to break."""
-    for file in drift.folder().glob("*.[ch]"):
-        shutil.copy(file, tmp_path)
+    copy_written_out(tmp_path)
     return tmp_path
 
 

@@ -1,8 +1,8 @@
 """SymPy expressions to C text: the same text on every machine.
 
-Order is SymPy's canonical one, small integer powers become products, rationals become quotients of doubles
-that the compiler folds, and square roots, sines and cosines go through macros so that the same text serves double and
-complex.
+Order is SymPy's canonical one, small integer powers become products, halves, quarters and eighths become decimals,
+other rationals quotients of doubles that the compiler folds, and square roots, sines and cosines go through macros so
+that the same text serves double and complex.
 """
 # ruff: noqa: N802  (SymPy dispatches on these names)
 
@@ -28,7 +28,11 @@ class KernelPrinter(C99CodePrinter):
         return f"{int(expr)}.0"
 
     def _print_Rational(self, expr):
-        return f"{int(expr.p)}.0/{int(expr.q)}.0"
+        return repr(float(expr)) if _is_short(expr) else f"{int(expr.p)}.0/{int(expr.q)}.0"
+
+    def parenthesize(self, item, level, strict=False):
+        """Return the text of a part of an expression, in brackets where it needs them: a short decimal does not."""
+        return self._print(item) if _is_short(item) else super().parenthesize(item, level, strict)
 
     def _print_Float(self, expr):
         return repr(float(expr))
@@ -85,6 +89,11 @@ class KernelPrinter(C99CodePrinter):
         if not isinstance(expr, _PRINTED):
             raise ValueError(f"{type(expr).__name__} has no kernel form: {expr}")
         return super()._print(expr, **kwargs)
+
+
+def _is_short(expr: sp.Expr) -> bool:
+    """Return whether it is a positive fraction with a few binary digits: its decimals are exact."""
+    return expr.is_Rational and expr > 0 and int(expr.q) in (2, 4, 8)
 
 
 _PRINTER = KernelPrinter({"order": "lex"})

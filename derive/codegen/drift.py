@@ -5,11 +5,13 @@ from __future__ import annotations
 import difflib
 import json
 import re
-from collections.abc import Iterable
+from collections.abc import Mapping
 from importlib import resources
 from pathlib import Path
 
 from . import rendering as emit
+from . import sharing
+from .family import Family
 
 MANIFEST = "manifest.json"
 BYTECODE = "__pycache__"
@@ -60,11 +62,16 @@ def differences(files: dict[str, str]) -> list[str]:
     return found
 
 
-def extra(families: Iterable[str]) -> list[str]:
-    """Return a line for each file in the folder, of whatever kind and however deep, that neither a family of these
-    names nor a build makes.
+def of(family: Family) -> list[str]:
+    """Return the names of the files that a family's text stands in: its own, and the header of its group."""
+    return [f"{family.name}.c", *([sharing.header(family.group)] if family.group else [])]
+
+
+def extra(families: Mapping[str, Family]) -> list[str]:
+    """Return a line for each file in the folder, of whatever kind and however deep, that neither one of these families
+    nor a build makes.
     """
-    known = {MANIFEST, *emit.COMMON, *(f"{name}.c" for name in families)}
+    known = {MANIFEST, *emit.COMMON, *(name for family in families.values() for name in of(family))}
     modules = [Path(name).stem for name in emit.COMMON if name.endswith(".pyx")]
     found = [path for path in sorted(folder().rglob("*"))
              if (path.is_symlink() or not path.is_dir() or not any(path.iterdir()))

@@ -21,6 +21,7 @@ class Family:
     name, doc        of the family; names of its kernels begin with the name
     build            derives the programs of its kernels
     modules          its specs: their text, and that of all modules that they import here, decides the spec hash
+    group            families of one group have stages in common, which stand in a header of the group
     role             families of one role have kernels of the same signatures; the engine finds them in one table
     facts            integers of the family in the engine's table
     outside_table    kernels of its own signature, which the table leaves out
@@ -36,6 +37,7 @@ class Family:
     doc: str
     build: Callable[[], list[Program]]
     modules: tuple[str, ...]
+    group: str = ""
     role: str = ""
     facts: dict[str, int] = field(default_factory=dict)
     outside_table: tuple[str, ...] = ()

@@ -21,7 +21,7 @@ SOURCES = {"funicular.generated.kernels": ["generated/*.c"],
 """Patterns of the C files of a module; blocks.c is compiled into the engine, with the options of its hot loops."""
 NOT_OF_KERNELS = ("generated/blocks.c", "generated/kernels.c")
 """C files in generated/ of another module, and Cython's own."""
-DEPENDENCIES = {"funicular.generated.kernels": ["generated/kernels.h"],
+DEPENDENCIES = {"funicular.generated.kernels": ["generated/*.h"],
                 "funicular.engine": ["generated/*.h", "runtime/engine/**/*.h", "runtime/engine/**/*.pxi"]}
 """Patterns of the files whose change has a module built anew."""
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 PACKAGE = "funicular.derive"
 PRINTING = ("codegen.c_printer", "codegen.rendering")
-TEMPLATE = "codegen/templates/family.c.jinja"
+TEMPLATES = ("codegen/templates/family.c.jinja", "codegen/templates/stages.h.jinja")
 
 
 def deciding(roots: Iterable[str]) -> tuple[str, ...]:
@@ -23,7 +23,7 @@ def deciding(roots: Iterable[str]) -> tuple[str, ...]:
         if module not in found:
             found[module] = None
             waiting[:0] = _imports(module)
-    return (*(_file(m) for m in found), TEMPLATE)
+    return (*(_file(m) for m in found), *TEMPLATES)
 
 
 def spec_hash(files: Iterable[str], spec: Path | None = None) -> str:

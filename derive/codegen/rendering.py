@@ -19,6 +19,7 @@ from .family import Family, FamilyError, PointLawFamily
 from .loops import sections
 from .program import Argument, Program
 from .provenance import deciding, spec_hash
+from .sharing import Sections, header, share
 
 TOOLS = ("sympy", "mpmath", "jinja2")
 WIDTH = 120
@@ -130,7 +131,8 @@ def interface(of: dict[str, dict]) -> str:
 
 def render(every: list[Derived], wanted: Iterable[str], done: Callable[[str], None],
            like: dict | None = None) -> dict[str, str]:
-    """Text of the wanted families' files and of the files common to all, by name; calls done(name) for each.
+    """Text of the wanted families' files, of the headers of their groups and of the files common to all, by name; calls
+    done(name) for each family. Of a group all families are wanted, or none.
 
     like: the "tables" of the manifest whose layout a library of the user's must have; the Python face is left out.
     """
@@ -138,13 +140,18 @@ def render(every: list[Derived], wanted: Iterable[str], done: Callable[[str], No
                                      lstrip_blocks=True, keep_trailing_newline=True,
                                      undefined=jinja2.StrictUndefined)
     files = {}
+    stages = {derived.family.name: _sections(derived) for derived in every if derived.family.name in wanted}
+    shared = share({derived.family.name: derived.family for derived in every if derived.family.name in stages}, stages)
     for derived in every:
-        if derived.family.name in wanted:
+        if derived.family.name in stages:
             text = environment.get_template("family.c.jinja").render(
                 derived=derived, signature=signature, operations=_operations_text, blocks=block_kernels(derived),
-                sections=sections, plain=c_expression, number=_number)
+                sections=stages[derived.family.name], stages=shared.get(derived.family.name, ()))
             files[f"{derived.family.name}.c"] = text
             done(derived.family.name)
+    for group in dict.fromkeys(d.family.group for d in every if d.family.group and d.family.name in stages):
+        files[header(group)] = environment.get_template("stages.h.jinja").render(group=group,
+                                                                                 stages=shared[header(group)])
     blocks = {name for derived in every for name in block_kernels(derived)}
     common = {"every": every, "tables": tables(every, like), "signature": signature, "call": _call, "blocks": blocks,
               "about": _about, "entry": _entry,
@@ -152,6 +159,13 @@ def render(every: list[Derived], wanted: Iterable[str], done: Callable[[str], No
     for name in COMMON if like is None else (HEADER, REGISTRY):
         files[name] = environment.get_template(f"{name}.jinja").render(**common)
     return files
+
+
+def _sections(derived: Derived) -> Sections:
+    """Return the sections of a family's kernels, by kernel."""
+    hot = block_kernels(derived)
+    return {program.name: sections(program, _number if program.name in hot else c_expression)
+            for program in derived.programs if isinstance(program, Program)}
 
 
 def digest(text: str) -> str:

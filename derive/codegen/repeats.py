@@ -14,7 +14,9 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 NAME = re.compile(r"(?<![\w.])[A-Za-z_]\w*")
-MOST, LONGEST = 9, 90
+PLACE = re.compile(r"(?<![\w.])[A-Za-z_]\w*|(?<=\[)\d+(?=\])")
+"""What may change from one repetition to the next: names, and indices."""
+MOST, LONGEST = 12, 90
 """Repetitions that FU_EACH knows, and items in a block."""
 LEAST = 3
 """Items that a repetition must save."""
@@ -35,7 +37,12 @@ class Item:
     @cached_property
     def shape(self) -> tuple:
         """What items of repeated blocks have in common."""
-        return bool(self.constant), self.times, NAME.sub("#", self.text)
+        return bool(self.constant), self.times, PLACE.sub("#", self.text)
+
+    @cached_property
+    def places(self) -> list[str]:
+        """Return the names and indices in the text."""
+        return PLACE.findall(self.text)
 
     def lines(self) -> list[str]:
         """Lines of C."""
@@ -110,6 +117,17 @@ class Arrays:
         return NAME.sub(entry, text)
 
 
+def _steps(indices: Sequence[int], variable: str) -> str | None:
+    """Return the expression in a variable 0, 1, ... that gives these indices by equal steps, or None."""
+    first, step = indices[0], indices[1] - indices[0]
+    if step == 0 or any(k != first + t * step for t, k in enumerate(indices)):
+        return str(first) if len(set(indices)) == 1 else None
+    if step < 0:
+        return f"{first} - {variable}" if step == -1 else None
+    moving = variable if step == 1 else f"{step}*{variable}"
+    return f"{moving} + {first}" if first else moving
+
+
 def _progression(places: Sequence[int], variable: str) -> str | None:
     """The expression in a variable 0, 1, ... that gives these numbers: a step of one, up, down, or up and down."""
     first, last = places[0], places[-1]
@@ -128,16 +146,21 @@ def _progression(places: Sequence[int], variable: str) -> str | None:
 def fold(stages: Sequence[list[Item]], sizes: Mapping[str, str], taken: set[str], variable: str) -> Arrays:
     """Replace repeated blocks in the stages by items that stand for them; returns the arrays that this makes.
 
-    sizes: C sizes by local name, "" for a number; taken: names that no array may have.
+    sizes: C sizes by local name, "" for a number; taken: names that no array may have. The last stage, the outputs,
+    makes no array: what is only written there may be in registers, and compilers write it two at a time.
     """
     arrays = Arrays(sizes, set(taken))
+    numbers: dict[tuple, int] = {}
     for times in range(MOST, 1, -1):
         for items in stages:
+            shapes = [numbers.setdefault(item.shape, len(numbers)) for item in items]
             start = 0
             while start < len(items):
-                found = _longest(items, start, times, arrays, variable)
+                found = _longest(items, shapes, start, times, arrays, variable, items is not stages[-1])
                 if found:
-                    items[start:start + times * len(found)] = [Item(variable, block=found, times=times)]
+                    block = slice(start, start + times * len(found))
+                    items[block] = [Item(variable, block=found, times=times)]
+                    shapes[block] = [numbers.setdefault(items[start].shape, len(numbers))]
                 start += 1
     for items in stages:
         for item in items:
@@ -153,33 +176,49 @@ def _place(item: Item, arrays: Arrays) -> None:
         _place(inner, arrays)
 
 
-def _longest(items: Sequence[Item], start: int, times: int, arrays: Arrays, variable: str) -> list[Item] | None:
-    """The longest block at a place that stands there so many times, with the variable in it."""
+def _longest(items: Sequence[Item], shapes: Sequence[int], start: int, times: int, arrays: Arrays,
+             variable: str, may_add: bool) -> list[Item] | None:
+    """The longest block at a place that stands there so many times, with the variable in it.
+
+    shapes: a number for the shape of each item, the same for the same shape; may_add: whether it may make arrays.
+    """
     for length in range(min(LONGEST, (len(items) - start) // times), 0, -1):
         if length * (times - 1) < LEAST:
             return None
-        if items[start].shape != items[start + length].shape:
+        if shapes[start] != shapes[start + length]:
             continue
-        blocks = [items[start + k * length:start + (k + 1) * length] for k in range(times)]
-        if all(one.shape == other.shape and not one.times
-               for block in blocks[1:] for one, other in zip(blocks[0], block, strict=True)):
-            new: dict[tuple[str, ...], str] = {}
-            folded = [item for k in range(length)
-                      if (item := _folded([block[k] for block in blocks], arrays, variable, new))]
-            if len(folded) == length:
-                for names, base in new.items():
-                    arrays.add(names, base)
-                return folded
+        places, first = range(start, start + times * length, length), shapes[start:start + length]
+        if all(shapes[k:k + length] == first for k in places) and not any(items[k].times for k in range(*places[:2])):
+            found = _block([items[k:k + length] for k in places], arrays, variable, may_add)
+            if found:
+                return found
     return None
+
+
+def _block(blocks: Sequence[Sequence[Item]], arrays: Arrays, variable: str, may_add: bool) -> list[Item] | None:
+    """One block for these, None where their names are no entries of arrays."""
+    new: dict[tuple[str, ...], str] = {}
+    found = []
+    for items in zip(*blocks, strict=True):
+        item = _folded(items, arrays, variable, new)
+        if item is None or (new and not may_add):
+            return None
+        found.append(item)
+    for names, base in new.items():
+        arrays.add(names, base)
+    return found
 
 
 def _folded(items: Sequence[Item], arrays: Arrays, variable: str, new: dict) -> Item | None:
     """One item for these, None where their names are no entries of arrays."""
     found = []
-    for names in zip(*(NAME.findall(item.text) for item in items), strict=True):
-        entry = arrays.index(names, variable, new)
+    for names in zip(*(item.places for item in items), strict=True):
+        if all(name.isdigit() for name in names):
+            entry = _steps([int(name) for name in names], variable)
+        else:
+            entry = arrays.index(names, variable, new)
         if entry is None:
             return None
         found.append(entry)
     entries = iter(found)
-    return Item(NAME.sub(lambda _: next(entries), items[0].text))
+    return Item(PLACE.sub(lambda _: next(entries), items[0].text))

@@ -42,14 +42,30 @@ def _class(law: str | type) -> Any:
     return getattr(found, "func", found)
 
 
-def build(element: Element, law: str | type, damping: bool = True) -> list[Program]:
-    """Return every kernel of a law on an element; those of damping where it does not take another law's."""
-    left_out = missing(law)
-    discrete, damped = ([kernel for kernel in kernels if kernel not in left_out]
-                        for kernels in (DISCRETE, (*DAMPING, *ALGORITHMIC) if damping else ()))
+def taken(element: Element, law: str | type) -> dict[str, str]:
+    """Return by kernel the law of the element whose kernel a law takes: damping from the law that it is damped like, a
+    step's stiffness from the first cable with the same membrane, for that is all that it knows.
+    """
+    if not isinstance(law, str):  # a law of the user's has its own
+        return {}
+    traits, found = law_traits(law), {}
+    if traits.damped_like in element.laws:
+        found = dict.fromkeys((*DAMPING, *ALGORITHMIC), traits.damped_like)
+    if traits.kind == "cable":
+        alike = (other for other in element.laws if isinstance(other, str)
+                 and (law_traits(other).kind, law_traits(other).membrane) == ("cable", traits.membrane))
+        first = next(alike)
+        found |= {} if first == law else {"step_stiffness": first}
+    return found
+
+
+def build(element: Element, law: str | type) -> list[Program]:
+    """Return every kernel of a law on an element, but for those that it takes from another law."""
+    left_out = {*missing(law), *taken(element, law)}
+    more = [kernel for kernel in (*DISCRETE, *DAMPING, *ALGORITHMIC) if kernel not in left_out]
     kernels = Kernels(element, law)
     return [kernels.set_up(), kernels.energy(), kernels.elastic_force(), kernels.elastic_tangent(),
-            *(getattr(kernels, kernel)() for kernel in (*discrete, *damped)), kernels.section_forces()]
+            *(getattr(kernels, kernel)() for kernel in more), kernels.section_forces()]
 
 
 class Kernels:

@@ -21,7 +21,7 @@ def law(family: LawFamily, k: Numbers, s: State) -> Iterator[Invariance]:
     yield from _deformed(family, k, s)
     if "discrete_force" not in family.missing:
         yield from _step(family, k, s)
-    if not family.shared:
+    if "damping_force" not in family.shared:
         yield from _damping(family, k, s)
 
 
