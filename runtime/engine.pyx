@@ -34,7 +34,7 @@ STATUS = {FU_DONE: "completed", FU_END_OF_CABLE: "end_of_cable", FU_NO_CONVERGEN
           FU_SINGULAR: "singular", FU_EVENT: "event",
           FU_UNSTABLE: "unstable"}
 CAUSES = {FU_NO_FAILURE: None, FU_ITERATION: "iteration", FU_MATRIX: "matrix", FU_ERROR: "error",
-          FU_LOST_RIDER: "lost_rider", FU_NOT_FINITE: "not_finite", FU_JAM: "jam"}
+          FU_LOST_RIDER: "lost_rider", FU_NOT_FINITE: "not_finite", FU_SELF_LOCKING: "self_locking"}
 ACTIONS = {FU_STUCK: "stuck", FU_BROKE_LOOSE: "broke loose", FU_TURNED: "turned round", FU_STRUCK: "struck the end",
            FU_RESTS: "came to rest at the end", FU_FREED: "left the end", FU_FLEW: "left", FU_ENTERED: "entered the buffer",
            FU_CAME_OUT: "left the buffer"}
@@ -351,9 +351,9 @@ cdef class Engine(Statics):
         return CAUSES[f.cause], f.dof, f.slide if f.cause != FU_NO_FAILURE and f.slide >= 0 else None
 
     @property
-    def jammed(self):
+    def self_locking(self):
         """Index of the slide whose friction has no solution, -1."""
-        return self.run.accelerator.jammed
+        return self.run.accelerator.self_locking
 
     @property
     def balance(self):
@@ -383,7 +383,7 @@ cdef class Engine(Statics):
         for joint, row in rows:
             self.joints[joint].redundant_rows |= 1 << row
 
-    def wander(self, along):
+    def probe_mechanism(self, along):
         """What is left of the joints' equations, (links, 6), after a small way `along` (n_dof,) the freedom that they
         leave; None where no way leads back onto them. See fu_probe_mechanism.
         """
@@ -393,7 +393,7 @@ cdef class Engine(Statics):
             return None
         return self._own("joint", left, 6)
 
-    def held(self):
+    def joint_forces(self):
         """(joints, 7): force and moment of joints on their second ends, and residual, in the static state."""
         cdef int k, n = self._count("joint")
         out = np.zeros((n, fu_coupling_type_of(b"joint").n_outputs))
@@ -418,11 +418,11 @@ cdef class Engine(Statics):
         return self._snapshot(&self.run.now)
 
     @property
-    def stopped_joint(self):
+    def stopped_slide(self):
         """Index of the slide that ran off its cable."""
-        return self.run.stopped_joint
+        return self.run.stopped_slide
 
     @property
     def stopped_s(self):
         """Arc-length of that slide, m."""
-        return self._view(&self.run.now, "s")[self.run.stopped_joint]
+        return self._view(&self.run.now, "s")[self.run.stopped_slide]

@@ -38,8 +38,8 @@ P = TypeVar("P", bound=Part)
 class Scene(SceneMethods):
     """Cables, bodies, and what joins, holds and loads them.
 
-    ``gravity`` in m/s²; ``cables``, ``bodies``, ``joints``, ``slides``, ``ties``, ``loads``, ``springs``, ``events``
-    are dicts by name; ``pins``, ``clamps`` and ``motions`` are lists; ``messages`` lists what was adjusted;
+    ``gravity`` in m/s²; ``cables``, ``bodies``, ``joints``, ``slides``, ``ties``, ``loads``, ``point_forces``,
+    ``events`` are dicts by name; ``pins``, ``clamps`` and ``motions`` are lists; ``messages`` lists what was adjusted;
     ``run_settings`` and ``equilibrium_settings`` hold the settings that a scene file gives.
     """
 

@@ -40,7 +40,7 @@ def planar():
 
 def test_ends_and_names_are_completed(scene):
     joint = scene.joint("spherical", "A", (0, 2, 0))
-    assert (joint.pair, joint.name, joint.a, joint.b) == (
+    assert (joint.joint_kind, joint.name, joint.a, joint.b) == (
         "spherical", "joint_1", Attachment(on="A", at=(0, 0, 0)), Attachment(at=(0, 2, 0)))
     assert scene.joint("spherical", ("rope", 2 + 1e-12), (2, 1, 0)).a.s == 2
     assert scene.joint("distance", scene.bodies["B"], (1, 5, 0), name="rod").length == 3

@@ -59,7 +59,7 @@ def test_springs_know_their_ends_and_length(scene):
     assert (spring.a, spring.b) == (Attachment(on="A", at=(0, 0, 0)), Attachment(on="beam", s=1))
     assert_allclose(spring.length, np.sqrt(2), rtol=1e-15)
     assert scene.spring(("A", (0, 1, 0)), (0, 5, 0), stiffness=5, damping=1, length=0).length == 0
-    assert scene.springs["spring_2"].b == Attachment(at=(0, 5, 0))
+    assert scene.point_forces["spring_2"].b == Attachment(at=(0, 5, 0))
 
 
 @pytest.mark.parametrize(("held", "complaint"), [

@@ -140,7 +140,7 @@ initial = "equilibrium"
 """, "x.toml")
     assert scene.motions[0].displacement[1] == Ramp(start=0, end=1, after=0.1)
     assert scene.loads["push"].scale == TableSignal(time=[0, 1, 2], value=[0, 1, 0])
-    assert scene.springs["spring_1"].length == 2
+    assert scene.point_forces["spring_1"].length == 2
     assert (scene.equilibrium_settings, scene.run_settings) == (
         {"load_steps": 3}, {"duration": 1.0, "initial": "equilibrium"})
 

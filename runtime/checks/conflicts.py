@@ -8,7 +8,7 @@ from ..errors import SceneError
 from ..parts.attachment import Attachment
 from ..parts.cable import EXACT
 from ..parts.joint import DRIVEN, LINES, POINTS, Joint
-from ..parts.places import Node, joined, point_of, support_of
+from ..parts.locations import Node, joined, point_of, support_of
 from ..parts.scene_data import SceneData
 from ..parts.support import Motion, Support
 from ..parts.validation import show
@@ -57,17 +57,18 @@ def _clash(scene: SceneData, joint: Joint, other: Joint, ends: tuple[Attachment,
            near: float) -> str | None:
     """What is wrong with two joints between the same two bodies; ``ends`` are the other's, in the order of joint's."""
     between = f"{called(joint.a)} and {called(joint.b)}"
-    if "weld" in (joint.pair, other.pair):
-        verbs = ["welds" if each.pair == "weld" else f"is a {each.pair} joint between" for each in (joint, other)]
+    if "weld" in (joint.joint_kind, other.joint_kind):
+        verbs = ["welds" if each.joint_kind == "weld" else f"is a {each.joint_kind} joint between"
+                 for each in (joint, other)]
         return f'{verbs[0]} {between}, but joint "{other.name}" {verbs[1]} them, too'
-    pairs = {joint.pair, other.pair}
+    kinds = {joint.joint_kind, other.joint_kind}
     parallel = np.linalg.norm(np.cross(joint.axes[:, 2], other.axes[:, 2])) <= 1e-9
     same_points = all(np.linalg.norm(point_of(scene, one) - point_of(scene, end)) <= near
                       for one, end in zip((joint.a, joint.b), ends, strict=True))
-    if joint.is_driven and other.is_driven and DRIVEN[joint.pair] == DRIVEN[other.pair]:
-        if (same_points and pairs == {"distance"}) or (parallel and "distance" not in pairs):
-            return f'drives the {DRIVEN[joint.pair]} of {between}, as joint "{other.name}" does'
-    if same_points and (pairs <= set(POINTS) or pairs == {"distance"} or (pairs <= set(LINES) and parallel)):
+    if joint.is_driven and other.is_driven and DRIVEN[joint.joint_kind] == DRIVEN[other.joint_kind]:
+        if (same_points and kinds == {"distance"}) or (parallel and "distance" not in kinds):
+            return f'drives the {DRIVEN[joint.joint_kind]} of {between}, as joint "{other.name}" does'
+    if same_points and (kinds <= set(POINTS) or kinds == {"distance"} or (kinds <= set(LINES) and parallel)):
         return f'holds the same of {between} as joint "{other.name}"'
     return None
 

@@ -10,7 +10,7 @@ from ..errors import FunicularWarning, SceneError
 from ..kernels.elements import built_in
 from ..parts.cable import EXACT
 from ..parts.joint import DRIVEN, LINES, POINTS, UNITS, Joint
-from ..parts.places import point_of
+from ..parts.locations import point_of
 from ..parts.scene_data import SceneData
 from ..parts.validation import show
 from .conflicts import called, check_other_joints, check_supports, move_as_one
@@ -55,24 +55,24 @@ def check_drive(scene: SceneData, joint: Joint) -> None:
     """A run that starts as drawn must not begin with a jump."""
     if joint.prescribed is None:
         return
-    name, start = DRIVEN[joint.pair], 0.0
+    name, start = DRIVEN[joint.joint_kind], 0.0
     size = 1.0 if name == "angle" else scene_size(scene, joint)
-    if joint.pair == "distance":
+    if joint.joint_kind == "distance":
         a, b = point_of(scene, joint.a), point_of(scene, joint.b)
         start = float(np.linalg.norm(b - a))
     value = float(joint.prescribed.value(0.0))
-    if abs(value - start) > (EXACT if joint.pair != "distance" else MOVABLE) * size:
+    if abs(value - start) > (EXACT if joint.joint_kind != "distance" else MOVABLE) * size:
         raise SceneError(joint.where, f"{name} is {show(value, UNITS[name])} at t = 0, but the joint starts at "
                          f"{show(start, UNITS[name])}", 'let it start there, or start with initial="equilibrium"')
 
 
 def _completed(scene: SceneData, joint: Joint) -> dict:
     """Return what is left out and follows from the scene."""
-    if joint.pair == "revolute" and joint.axis is None:
+    if joint.joint_kind == "revolute" and joint.axis is None:
         if scene.dim == 3:
             raise SceneError(joint.where, "axis is missing: a revolute joint needs it")
         return {"axis": (0.0, 0.0, 1.0)}
-    if joint.pair != "distance":
+    if joint.joint_kind != "distance":
         return {}
     points = point_of(scene, joint.a), point_of(scene, joint.b)
     distance = float(np.linalg.norm(points[1] - points[0]))
@@ -93,10 +93,10 @@ def _gap(scene: SceneData, joint: Joint) -> tuple[float, str]:
     """Return how far in m the ends are from where the joint holds them, and a sentence on it."""
     a, b = point_of(scene, joint.a), point_of(scene, joint.b)
     apart, at = b - a, f"a at {show(a)} and b at {show(b, 'm')}"
-    if joint.pair in POINTS:
+    if joint.joint_kind in POINTS:
         gap = float(np.linalg.norm(apart))
         return gap, f"its ends are {gap:.6g} m apart at the start, {at}"
-    if joint.pair in LINES:
+    if joint.joint_kind in LINES:
         gap = float(np.linalg.norm(np.cross(joint.axes[:, 2], apart)))
         return gap, f"its ends are {gap:.6g} m apart across the axis at the start, {at}"
     distance = float(np.linalg.norm(apart))
@@ -114,7 +114,7 @@ def _check_frames(scene: SceneData, joint: Joint) -> None:
         bare, tangent = True, cable_frame(cable, end.s)[:, 0]
         if joint.up is not None:
             check_up(joint.up, tangent, f'cable "{cable.name}"', joint.where)
-        elif joint.pair not in ("spherical", "distance") and not _tangent_is_enough(joint, name, tangent):
+        elif joint.joint_kind not in ("spherical", "distance") and not _tangent_is_enough(joint, name, tangent):
             raise SceneError(joint.where, f'{name}: {_needs(joint)} section axes of cable "{cable.name}", but '
                              f"{cable.element} has a tangent only, {show(tangent)} there",
                              f"give up, a direction off the tangent, or take {elements_with_sections()}")
@@ -124,16 +124,16 @@ def _check_frames(scene: SceneData, joint: Joint) -> None:
 
 def _tangent_is_enough(joint: Joint, end: str, tangent: np.ndarray) -> bool:
     """Return whether all that the joint holds at this end of a cable is along its tangent."""
-    if joint.is_driven or joint.pair in ("weld", "prismatic"):
+    if joint.is_driven or joint.joint_kind in ("weld", "prismatic"):
         return False
-    axis = joint.axes[:, 0 if joint.pair == "universal" and end == "b" else 2]
+    axis = joint.axes[:, 0 if joint.joint_kind == "universal" and end == "b" else 2]
     return float(np.linalg.norm(np.cross(axis, tangent))) <= 1e-6
 
 
 def _needs(joint: Joint) -> str:
-    if joint.is_driven or joint.pair in ("weld", "prismatic"):
-        return f"a {'driven ' * joint.is_driven}{joint.pair} joint needs"
-    return f"a {joint.pair} joint about an axis that is not its tangent needs"
+    if joint.is_driven or joint.joint_kind in ("weld", "prismatic"):
+        return f"a {'driven ' * joint.is_driven}{joint.joint_kind} joint needs"
+    return f"a {joint.joint_kind} joint about an axis that is not its tangent needs"
 
 
 def elements_with_sections() -> str:

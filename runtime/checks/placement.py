@@ -12,8 +12,8 @@ from ..kernels.elements import built_in
 from ..parts.attachment import Attachment
 from ..parts.cable import EXACT, Cable
 from ..parts.load import DistributedForce, Force, Moment
+from ..parts.locations import Node, joined, node_of, point_of, support_of
 from ..parts.modal_body import ModalBody
-from ..parts.places import Node, joined, node_of, point_of, support_of
 from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from ..parts.support import Support, Tie
@@ -154,7 +154,7 @@ def placed_attachment(scene: SceneData, end: Attachment, where: str, prefix: str
         if isinstance(body := scene.bodies[end.on], ModalBody):
             try:
                 at = body.located(end.at, end.s)
-                body.spot(at)
+                body.attachment_modes(at)
             except ValueError as error:
                 cause, *remedy = error.args
                 raise SceneError(where, f'{prefix}modal_body "{end.on}": {cause}', *remedy) from None

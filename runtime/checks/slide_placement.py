@@ -9,7 +9,7 @@ import numpy as np
 from ..errors import FunicularWarning, SceneError
 from ..parts.cable import EXACT, Cable
 from ..parts.end_stops import Buffer
-from ..parts.places import point_of
+from ..parts.locations import point_of
 from ..parts.rigid_body import RigidBody
 from ..parts.scene_data import SceneData
 from ..parts.slide import Slide

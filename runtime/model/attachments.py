@@ -25,7 +25,7 @@ SECTIONS = {2: np.array([[0.0, 1.0], [-1.0, 0.0]]), 3: np.eye(3)[:, [2, 0, 1]]}
 class AttachmentModel:
     """fu_attachment of engine.h: -1 for what it is not on; mass and length are scales of it, kg and m.
 
-    spot: of a modal body's node, where it is undeformed, and its displacements and turns by modes.
+    modal: of a modal body's node, where it is undeformed, and its displacements and turns by modes.
     """
 
     cable: int
@@ -41,7 +41,7 @@ class AttachmentModel:
     slopes: tuple[int, int] = (0, UP)
     up: tuple[float, ...] = (0.0, 0.0, 0.0)
     axes: np.ndarray | None = None
-    spot: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
+    modal: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
 
 
 class AttachmentBuilder:
@@ -70,7 +70,7 @@ class AttachmentBuilder:
             part = self.scene.bodies[attachment.on]
             if isinstance(part, ModalBody):
                 return AttachmentModel(-1, self.body_index[attachment.on], 0, -1, (0.0,) * 3, none, none, body.mass,
-                                       length, axes=axes, spot=self._spot(part.spot(attachment.point)))
+                                       length, axes=axes, modal=self._modal(part.attachment_modes(attachment.point)))
             return AttachmentModel(-1, self.body_index[attachment.on], 0, -1, part.arm(attachment.point), none, none,
                                    body.mass, length, axes=axes)
         found = self._on_cable(attachment.on, attachment.arc_length, axes, up,
@@ -106,8 +106,8 @@ class AttachmentBuilder:
         return AttachmentModel(index, -1, 0, -1, (0.0,) * 3, np.zeros(0), np.zeros(0), mass, length,
                                FRAMES[self.scene.dim], slopes, (0.0,) * 3 if up is None else up, axes)
 
-    def _spot(self, spot) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        dim, (at, displacements, turns) = self.scene.dim, spot
+    def _modal(self, attachment_modes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        dim, (at, displacements, turns) = self.scene.dim, attachment_modes
         return at[:dim], displacements[:, :dim], turns[:, 2:] if dim == 2 else turns
 
     def _axes(self, axes: np.ndarray | None) -> np.ndarray | None:

@@ -41,7 +41,7 @@ def build(scene: SceneData) -> Model:
     joints = [frame_joint_model(attachments, slide, k) for k, slide in enumerate(scene.slides.values())
               if slide.frame != "point"]
     joints += [joint_model(attachments, joint, loads.signal) for joint in scene.joints.values()]
-    point_forces = [loads.point_force(force) for force in scene.springs.values()]
+    point_forces = [loads.point_force(force) for force in scene.point_forces.values()]
     n_extra, n_multipliers = number([*slides, *joints, *point_forces])
     n_of_bodies = sum(dofs_of(body, dim) for body in bodies)
     numbering = reduction.numbering
@@ -54,7 +54,7 @@ def build(scene: SceneData) -> Model:
         weight=_joined(*map(cable_weights, drawn), *(body_weights(body, dim) for body in described)),
         gravity=_joined(*(cable_gravity(model, cable, gravity) for model, cable in zip(cables, drawn, strict=True)),
                         *(body_gravity(body, gravity) for body in bodies)),
-        place=np.concatenate([reduction.place, reduction.n_unknowns + np.arange(n_of_bodies)]).astype(int),
+        unknown_of_dof=np.append(reduction.unknown_of_dof, reduction.n_unknowns + np.arange(n_of_bodies)).astype(int),
         combinations=reduction.combinations,
         n_band=numbering.n_band,
         n_border_dof=reduction.n_unknowns - numbering.n_band + n_of_bodies,

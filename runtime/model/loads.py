@@ -48,7 +48,7 @@ class DeadLoad:
 
 @dataclass
 class LoadModel:
-    """A load that turns with what it acts on; spot: of a modal body, as of an `AttachmentModel`."""
+    """A load that turns with what it acts on; modal: of a modal body, as of an `AttachmentModel`."""
 
     kind: int
     signal: int
@@ -57,7 +57,7 @@ class LoadModel:
     x: float
     u: tuple[float, ...]
     c: tuple[float, float, float]
-    spot: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
+    modal: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
 
 
 @dataclass
@@ -72,7 +72,7 @@ class PointForceModel(CouplingModel):
     type: str
     kernel: str
     name: str
-    ends: list[AttachmentModel]
+    attachments: list[AttachmentModel]
     dim: int
     parameters: tuple[float, ...]
     is_damped: bool
@@ -117,7 +117,8 @@ class LoadBuilder:
             kind = BODY_MOMENT if isinstance(load, Moment) else BODY_FOLLOWER if load.follower else BODY_FORCE
             attachment = Attachment(on=load.on, s=load.s, at=getattr(load, "at", None))
             on = self.attachments.model(placed_attachment(self.scene, attachment, load.where))
-            self.turning.append(LoadModel(kind, number, on.body, 0, 0.0, on.u, (value[0], value[1], value[2]), on.spot))
+            components = (value[0], value[1], value[2])
+            self.turning.append(LoadModel(kind, number, on.body, 0, 0.0, on.u, components, on.modal))
 
     def _distributed(self, load: DistributedForce, number: int, value: np.ndarray) -> None:
         model = self.cables[self.cable_index[load.cable]]

@@ -106,7 +106,7 @@ class SlideModel(CouplingModel):
     """One slide: kernels, its cable and its rider, what drives it, and where it starts; its first unknown is s.
 
     rider_is_rigid: the kernels take the rider's own configuration; drive: a signal, or -1;
-    resistance: kernels of friction and buffers, or none; ends: what waits at the start and at the end of the cable.
+    resistance: kernels of friction and buffers, or none; end_stops: those at the cable's start and at its end.
     """
 
     name: str
@@ -122,7 +122,7 @@ class SlideModel(CouplingModel):
     director: np.ndarray
     resistance: str = ""
     friction: Friction | None = None
-    ends: tuple[str | Stop, str | Stop] = ("error", "error")
+    end_stops: tuple[str | Stop, str | Stop] = ("error", "error")
 
 
 @dataclass
@@ -155,7 +155,7 @@ class Model:
     v: np.ndarray
     weight: np.ndarray
     gravity: np.ndarray
-    place: np.ndarray
+    unknown_of_dof: np.ndarray
     combinations: csr_array
     n_band: int
     n_border_dof: int

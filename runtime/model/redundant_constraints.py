@@ -76,7 +76,7 @@ def _check_that_they_follow(model: Model, engine, dropped: list[tuple[int, int]]
     size = engine.extent
     unit = np.where(model.weight == 1, size, np.minimum(size / model.weight, 1.0))
     probe = PROBE * unit * np.random.default_rng(0).uniform(-1, 1, model.n_dof)
-    at_start, beside = (engine.wander(along) for along in (np.zeros(model.n_dof), probe))
+    at_start, beside = (engine.probe_mechanism(along) for along in (np.zeros(model.n_dof), probe))
     gap, error = (np.inf if left is None else max(abs(left[at]) for at in dropped) for left in (at_start, beside))
     if gap > RETURN * min(size, 1.0):
         raise SceneError("scene", f"is over-constrained: {names} hold the same, but do not fit together: {gap:.3g} (m "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..parts.places import ends_of, joined, node_of
+from ..parts.locations import ends_of, joined, node_of
 from ..parts.scene_data import SceneData
 from ..parts.support import Support, Tie
 from ..rotations import rotate
@@ -111,7 +111,7 @@ def _turning(rates: np.ndarray) -> np.ndarray:
 def point_force_state(model: Model, between: PointForceModel, force: np.ndarray,
                       q: np.ndarray) -> dict[str, np.ndarray]:
     """Force on the first end, (time, 3) in N; length between the ends, in m; tension, in N, negative in compression."""
-    a, b = (attachment_points(model, each, q) for each in between.ends)
+    a, b = (attachment_points(model, each, q) for each in between.attachments)
     gap, force = b - a, spatial(force)
     length = np.linalg.norm(gap, axis=1)
     along = gap / np.where(length > 0, length, 1.0)[:, None]
@@ -128,8 +128,8 @@ def attachment_points(model: Model, attachment, q: np.ndarray) -> np.ndarray:
     if attachment.body >= 0:
         body = model.bodies[attachment.body]
         state, arm = body_state(model, body, q), body.centre + attachment.u
-        if attachment.spot is not None:
+        if attachment.modal is not None:
             eta = modal_state(model, body, state, q)["modal_coordinates"]
-            arm = spatial(attachment.spot[0] + eta @ attachment.spot[1])
+            arm = spatial(attachment.modal[0] + eta @ attachment.modal[1])
         return state["position"] + rotate(state["orientation"], arm)
     return np.broadcast_to(np.array(attachment.u), (len(q), 3))

@@ -65,9 +65,11 @@ class Numbering:
 
 @dataclass
 class Reduction:
-    """place[dof]: its unknown, -1 fixed, -2 - k the k-th row of `combinations`; the prescribed parts by dof."""
+    """How dofs are made of unknowns: `unknown_of_dof` has the number of its unknown, -1 where the dof is fixed, and
+    -2 - k where it is the k-th row of `combinations`; `prescribed` lists the parts that signals add to a dof.
+    """
 
-    place: np.ndarray
+    unknown_of_dof: np.ndarray
     combinations: csr_array
     n_unknowns: int
     numbering: Numbering
@@ -186,20 +188,20 @@ class Supports:
             others = (_counted(touches, *_near(touches)), _counted(touches, *_strung(touches)))
             numbering = min(numbering, *others, key=lambda one: one.operations)
         number = numbering.number[drawn.clip(0)] if n else drawn
-        place = np.where(unknown, number, -1)
+        unknown_of_dof = np.where(unknown, number, -1)
         rows, columns, values, count = [], [], [], 0
         for dof, row in sorted(combined.items()):
             if list(row.free.values()) == [1.0]:
-                place[dof] = number[next(iter(row.free))]
+                unknown_of_dof[dof] = number[next(iter(row.free))]
                 continue
-            place[dof] = -2 - count
+            unknown_of_dof[dof] = -2 - count
             rows += [count] * len(row.free)
             columns += [int(number[of]) for of in row.free]
             values += list(row.free.values())
             count += 1
         combinations = csr_array((values, (rows, columns)), shape=(count, max(n, 1)))
         prescribed = [(dof, part) for dof, row in self.rows.items() for part in row.prescribed]
-        return Reduction(place.astype(int), combinations, n, numbering, prescribed)
+        return Reduction(unknown_of_dof.astype(int), combinations, n, numbering, prescribed)
 
 
 def _shared(master: Node, slave: Node) -> dict[str, list[dict[int, float]]]:

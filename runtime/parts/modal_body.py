@@ -150,7 +150,7 @@ class ModalBody(Part):
         axes = self._drawn.axes.T
         return np.array(self.start) + self.offset * axes[:, 0], quaternion(axes)
 
-    def spot(self, at: Vector) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def attachment_modes(self, at: Vector) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """The point ``at`` (m, body axes) as the engine knows it: undeformed (3,), and there modes and turns (n, 3).
 
         It is a node, or goes with a node's section, where sections turn: of a beam any point across its axis there.

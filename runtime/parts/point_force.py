@@ -18,7 +18,7 @@ class PointForce(Part):
     and the role of its kernels. A further force is a class of this kind and an entry in kinds.py.
     """
 
-    group: ClassVar[str] = "springs"
+    group: ClassVar[str] = "point_forces"
     positional: ClassVar[tuple[str, ...]] = ("a", "b")
     quantities: ClassVar[dict[str, Quantity]] = {
         "force": vector_of_time("N", "force on the first end"),

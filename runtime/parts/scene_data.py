@@ -40,7 +40,7 @@ class SceneData:
     joints: dict[str, Joint]
     slides: dict[str, Slide]
     loads: dict[str, Force | DistributedForce | Moment]
-    springs: dict[str, PointForce]
+    point_forces: dict[str, PointForce]
     events: dict[str, Event]
 
     def __init__(self, gravity: Any = (0, -9.81, 0)):

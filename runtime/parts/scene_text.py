@@ -87,7 +87,7 @@ def _check_libraries(tables: dict, directory: str | os.PathLike, allowed: list[s
     for kind, part in PARTS.items():
         for index, table in enumerate(_array(tables, kind), start=1):
             if isinstance(library := table.get("library"), str):
-                place = part.place(table) if isinstance(table.get("name"), str) else f"[[{kind}]] {index}"
+                place = part.title(table) if isinstance(table.get("name"), str) else f"[[{kind}]] {index}"
                 try:
                     asked = resolved(os.path.join(directory, library))
                 except ValueError as error:

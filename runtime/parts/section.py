@@ -11,7 +11,7 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from pydantic import Field, PlainValidator, model_validator
 
-from ..errors import SceneError, check_renamed
+from ..errors import SceneError
 from .validation import Part, part_of_table, positive, show, shown, vector
 
 Length = Annotated[float, positive("m")]
@@ -40,11 +40,6 @@ class Section(Part):
     shape: ClassVar[str]
     given_torsion_constant: TorsionConstant | None = Field(None, alias="torsion_constant")
     given_shear_factors: ShearFactors | None = Field(None, alias="shear_factors")
-
-    def __getattr__(self, name: str) -> Any:
-        """Refuse an attribute that there is not; of an older version's, say what it is called now."""
-        check_renamed(f"{type(self).__name__!r} object", name, dir(type(self)))
-        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
     def moments(self) -> np.ndarray:
         """Return the even moments up to order 4.

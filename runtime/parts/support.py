@@ -32,7 +32,7 @@ class Support(Part):
     s: Annotated[float, finite("m")]
 
     @classmethod
-    def place(cls, data: dict) -> str:
+    def title(cls, data: dict) -> str:
         """Return how messages name the support."""
         return f"{cls.kind} on {_called(data.get('cable'))}"
 
@@ -181,8 +181,8 @@ class Tie(Part):
     rotation: Annotated[str, one_of(("rigid", "free"))] = "rigid"
 
     @classmethod
-    def place(cls, data: dict) -> str:
+    def title(cls, data: dict) -> str:
         """Return how messages name the tie."""
         if data.get("name") is not None:
-            return super().place(data)
+            return super().title(data)
         return f"tie of {_called(data.get('cable'))} and {_called(data.get('to'))}"

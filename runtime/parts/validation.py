@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeVar
 import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainValidator, ValidationError, model_validator
 
-from ..errors import SceneError, near
+from ..errors import SceneError, check_renamed, near
 from .quantity import Quantity
 
 LIMITS = {"m": (1e-12, 1e9), "s": (1e-12, 1e12), "m²": (1e-24, 1e24), "m⁴": (1e-48, 1e48)}
@@ -248,7 +248,7 @@ class _TranslatingType(ModelMetaclass):
         try:
             return super().__call__(**data)
         except ValidationError as error:
-            raise _scene_error(cls.place(data), error) from None  # type: ignore[attr-defined]  # of its one user, Part
+            raise _scene_error(cls.title(data), error) from None  # type: ignore[attr-defined]  # of its one user, Part
 
 
 class Part(BaseModel, metaclass=_TranslatingType):
@@ -268,8 +268,13 @@ class Part(BaseModel, metaclass=_TranslatingType):
     quantities: ClassVar[dict[str, Quantity]] = {}
     """What results tell of such parts, beside the nodal vectors of cables and the modes of bodies."""
 
+    def __getattr__(self, name: str) -> Any:
+        """Refuse an attribute that there is not; of an older version's, say what it is called now."""
+        check_renamed(f"{type(self).__name__!r} object", name, [*type(self).model_fields, *dir(type(self))])
+        return super().__getattr__(name)  # type: ignore[misc]  # which pydantic hides from type checkers
+
     @classmethod
-    def place(cls, data: dict) -> str:
+    def title(cls, data: dict) -> str:
         """Return how messages name the part made of ``data``."""
         kind = cls.kind or cls.__name__
         return f'{kind} "{data["name"]}"' if isinstance(data.get("name"), str) else kind
@@ -292,7 +297,7 @@ class Part(BaseModel, metaclass=_TranslatingType):
     @property
     def where(self) -> str:
         """Return how messages name this part."""
-        return self.place(dict(self))
+        return self.title(dict(self))
 
     def off_plane(self) -> Iterator[str]:
         """Yield its quantities that leave the plane z = 0, in words: by default those of the parts in it."""

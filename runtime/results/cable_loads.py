@@ -172,16 +172,16 @@ class CableLoads:
             cable = self.model.cables[slide.cable]
             s = np.clip(self.at.value(f"{joint.slide}.s"), 0.0, cable.length * cable.n_elements)
             element, x = at_element(cable, s)
-            f = self._couple(cable, joint.ends[0], element, x, -moment)
+            f = self._couple(cable, joint.attachments[0], element, x, -moment)
             self._add(slide.cable, element, x, f)
-            self._on_end(joint.ends[1], None, moment)
+            self._on_end(joint.attachments[1], None, moment)
 
     def _joints(self) -> None:
         for joint in self.model.joints:
-            if joint.slide is not None or all(end.cable < 0 for end in joint.ends):
+            if joint.slide is not None or all(end.cable < 0 for end in joint.attachments):
                 continue
             force, moment = self.at.value(f"{joint.name}.force"), self.at.value(f"{joint.name}.moment")
-            one, other = joint.ends[::-1] if joint.reversed else joint.ends
+            one, other = joint.attachments[::-1] if joint.reversed else joint.attachments
             self._on_end(other, force, moment)
             if one.cable >= 0:  # its moment balances the other end's, and the forces where these stand apart
                 gap = self._end_point(other) - self._end_point(one)
@@ -193,16 +193,16 @@ class CableLoads:
             return attachment_points(self.model, end, self.at.q)
         body = self.model.bodies[end.body]
         arm = body.centre + end.u
-        if end.spot is not None:
-            arm = spatial(end.spot[0] + self.at.value(f"{body.name}.modal_coordinates") @ end.spot[1])
+        if end.modal is not None:
+            arm = spatial(end.modal[0] + self.at.value(f"{body.name}.modal_coordinates") @ end.modal[1])
         return self.at.value(f"{body.name}.position") + rotate(self.at.value(f"{body.name}.orientation"), arm)
 
     def _point_forces(self) -> None:
         for between in self.model.point_forces:
-            if any(end.cable >= 0 for end in between.ends):
+            if any(end.cable >= 0 for end in between.attachments):
                 force = self.at.value(f"{between.name}.force")
-                self._on_end(between.ends[0], force, None)
-                self._on_end(between.ends[1], -force, None)
+                self._on_end(between.attachments[0], force, None)
+                self._on_end(between.attachments[1], -force, None)
 
     def _on_end(self, end: AttachmentModel, force: np.ndarray | None, moment: np.ndarray | None) -> None:
         """A force and a moment (T, 3) on what carries an end, where that is a cable."""

@@ -135,12 +135,12 @@ def _mass(cable: CableModel) -> csr_array:
 
 def _reduction(model: Model, dofs: np.ndarray):
     """(dofs, unknowns that they have) sparse: dofs = T unknowns + what is prescribed."""
-    place, combinations = model.place[dofs], model.combinations.tocsr()
-    free, combined = np.flatnonzero(place >= 0), np.flatnonzero(place < -1)
-    n = max(combinations.shape[1], int(place.max(initial=-1)) + 1)
-    T = coo_array((np.ones(len(free)), (free, place[free])), shape=(len(dofs), n)).tocsr()
+    unknown, combinations = model.unknown_of_dof[dofs], model.combinations.tocsr()
+    free, combined = np.flatnonzero(unknown >= 0), np.flatnonzero(unknown < -1)
+    n = max(combinations.shape[1], int(unknown.max(initial=-1)) + 1)
+    T = coo_array((np.ones(len(free)), (free, unknown[free])), shape=(len(dofs), n)).tocsr()
     if len(combined):
-        part = combinations[-2 - place[combined]].tocoo()
+        part = combinations[-2 - unknown[combined]].tocoo()
         T = T + coo_array((part.data, (combined[part.row], part.col)), shape=T.shape).tocsr()
     used = np.flatnonzero(np.diff(T.tocsc().indptr))
     return T.tocsc()[:, used].tocsr()

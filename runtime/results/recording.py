@@ -140,7 +140,7 @@ def _message(simulation: Simulation, settings: RunSettings) -> str:
     when = f"t = {engine.time:.6g} s of {settings.duration:.6g} s"
     match status:
         case "end_of_cable":
-            slide = model.slides[engine.stopped_joint]
+            slide = model.slides[engine.stopped_slide]
             cable = model.cables[slide.cable]
             middle = 0.5 * cable.n_elements * cable.length
             end = "end" if engine.stopped_s > middle else "start"

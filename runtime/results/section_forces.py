@@ -138,7 +138,7 @@ def of_equilibrium(state: RestState, name: str, s: np.ndarray, *, method: str = 
 
 def rest_instants(state: RestState) -> Instants:
     """Return a state of rest as one instant, with as much of the loads as it has."""
-    return Instants(np.zeros(1), state.placed["q"][None], np.zeros((1, state.model.n_dof)),
+    return Instants(np.zeros(1), state.static_state["q"][None], np.zeros((1, state.model.n_dof)),
                     lambda quantity: state[quantity][None], state.load_fraction, state.gravity_fraction)
 
 

@@ -32,7 +32,7 @@ def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
     when = f"t = {engine.time:.6g} s of {settings.duration:.6g} s"
     cause, dof, joint = engine.failure
     _, q, v, _ = engine.now()
-    where, (state, folded) = place(model, dof, joint), condition(model, dof, q, v)
+    where, (state, folded) = describe_dof(model, dof, joint), condition(model, dof, q, v)
     of_a_body = joint is None and _node(model, dof) is None
     if status == "unstable":
         grown, _, exchanged, in_motion, _ = engine.balance
@@ -55,12 +55,12 @@ def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
             "error": f"the error stays above what tol allows, most of all at {where}",
             "lost_rider": f"{where} does not find its place on the cable any more",
             "not_finite": f"{where} runs away",
-            "jam": f"friction jams {where}: the more it holds, the more it is pressed on the cable"}[cause]
+            "self_locking": f"friction jams {where}: the more it holds, the more it is pressed on the cable"}[cause]
     counts = engine.statistics
     gone = f" after {counts['steps']} steps down to {counts['smallest_step_s']:.2g} s" if counts["steps"] else ""
     if settings.step is not None and INTEGRATORS[engine.integrator].stability is not None:
         remedy = _too_large(engine, settings)
-    elif cause == "jam":
+    elif cause == "self_locking":
         remedy = "Take a smaller coefficient, or the rider's point nearer to its centre of mass"
     elif folded:
         remedy = f"The cable folds up there: take more elements{damping(model, dof)}"
@@ -79,7 +79,7 @@ def _too_large(engine, settings: RunSettings) -> str:
     return f'The {size} is too large for integrator "{engine.integrator}": take a smaller one{others}{stable}'
 
 
-def place(model: Model, dof: int, joint: int | None = None) -> str:
+def describe_dof(model: Model, dof: int, joint: int | None = None) -> str:
     """Return what a dof, or a joint, is of."""
     if joint is not None:
         return f'slide "{model.slides[joint].name}" on cable "{model.cables[model.slides[joint].cable].name}"'

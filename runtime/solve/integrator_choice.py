@@ -117,7 +117,7 @@ def fastest_rates(model: Model, engine: Engine) -> tuple[float, float]:
 
     Holding riders on their cables only lowers them.
     """
-    engine.place(0.0)
+    engine.set_state(0.0)
     n = model.n_band + model.n_border_dof
     if n == 0:
         return 0.0, 0.0

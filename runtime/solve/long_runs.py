@@ -11,7 +11,7 @@ from ..errors import FunicularWarning
 from ..integrators import INTEGRATORS, stable_at
 from ..model.model import Model
 from ..parts.settings import RunSettings
-from .diagnosis import damping, place
+from .diagnosis import damping, describe_dof
 from .event_watcher import EventWatcher
 from .integrator_choice import fastest_rates
 from .progress import Meter
@@ -90,7 +90,7 @@ class LongRun:
             return (f"there were {events} events and crossings of elements in {counts['steps']} steps, and a step ends "
                     "at each. Look at the slides that stick, strike or cross nodes")
         _, dof, joint = engine.failure  # of the last step that was rejected
-        where = f", most of all at {place(self._model, dof, joint)}" if counts["rejected_steps"] else ""
+        where = f", most of all at {describe_dof(self._model, dof, joint)}" if counts["rejected_steps"] else ""
         damped = damping(self._model, max(dof, 0), joint)
         if counts["rejected_steps"] > REJECTED * counts["steps"]:
             return (f"{counts['rejected_steps']} steps were rejected beside {counts['steps']} taken{where}: forces "

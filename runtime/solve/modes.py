@@ -77,7 +77,7 @@ def modes(scene: SceneData, n: int, about: RestState | None = None) -> Modes:
     model = build(scene)
     engine = Engine(model)
     drop_redundant_rows(model, engine)
-    engine.place(0.0, **({} if about is None else about.placed))
+    engine.set_state(0.0, **({} if about is None else about.static_state))
     K, constraints = condensed(engine.matrix(0.0, 0.0, 1.0), model)
     size = K.shape[0]
     M = engine.matrix(1.0, 0.0, 0.0)[:size, :size]
@@ -110,13 +110,13 @@ def _rounded_shape(engine, model, K: csc_array) -> csc_array:
 
     A tension of so much of EA is nothing beside EA, but not beside the bending of a long thin cable.
     """
-    placed = engine.placed()
-    stretched = placed["q"].copy()
+    undeformed = engine.state()
+    stretched = undeformed["q"].copy()
     for cable in model.cables:
         stretched[cable.coordinates] *= 1 + STRAIN
-    engine.place(0.0, **placed | {"q": stretched})
+    engine.set_state(0.0, **undeformed | {"q": stretched})
     change = condensed(engine.matrix(0.0, 0.0, 1.0), model)[0] - K
-    engine.place(0.0, **placed)
+    engine.set_state(0.0, **undeformed)
     return ROUNDING / STRAIN * change
 
 
@@ -153,7 +153,7 @@ def _refuse_what_is_out_of_range(scene: SceneData, model, K: csc_array, M: csc_a
 
 def _owner(scene: SceneData, model, unknown: int) -> str:
     """The part whose coordinate an unknown is."""
-    dof = int(np.argmax(model.place == unknown))
+    dof = int(np.argmax(model.unknown_of_dof == unknown))
     for name, nodes in model.nodes.items():
         if dof < model.cables[list(model.nodes).index(name)].coordinates.stop and nodes:
             return scene.cables[name].where

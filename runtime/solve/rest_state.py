@@ -27,7 +27,7 @@ def layout(scene: SceneData) -> dict[str, list]:
     """Return what must be the same in two scenes for a state of one to be a state of the other."""
     return {"cables": [(c.name, c.element, c.elements, c.length) for c in scene.cables.values()],
             "bodies": list(scene.bodies), "slides": list(scene.slides),
-            "joints": [(j.name, j.pair) for j in scene.joints.values()], "springs": list(scene.springs)}
+            "joints": [(j.name, j.joint_kind) for j in scene.joints.values()], "point_forces": list(scene.point_forces)}
 
 
 @dataclass
@@ -59,7 +59,7 @@ class RestState:
 
     scene: SceneData
     model: Model
-    placed: dict
+    static_state: dict
     reaction: np.ndarray
     joint_forces: np.ndarray
     load_fraction: float
@@ -80,8 +80,8 @@ class RestState:
         left = problem.residual()
         units = np.where(problem.weight > 0, problem.weight, np.inf)
         engine = problem.engine
-        state = cls(problem.scene, problem.model, problem.keep(), engine.reaction(), engine.held(), problem.fraction,
-                    problem.iterations, float(np.max(np.abs(left) / units, initial=0.0)), stability,
+        state = cls(problem.scene, problem.model, problem.keep(), engine.reaction(), engine.joint_forces(),
+                    problem.fraction, problem.iterations, float(np.max(np.abs(left) / units, initial=0.0)), stability,
                     problem.fraction if problem.settings.scale_gravity else 1.0, heading)
         state.quantities = state._quantities()
         state.path, state.layout = [state], layout(problem.scene)
@@ -121,8 +121,8 @@ class RestState:
 
     def start(self, model: Model) -> None:
         """Put a freshly built model of the same scene into this state."""
-        model.q = self.placed["q"].copy()
-        for slide, s in zip(model.slides, self.placed["s"], strict=True):
+        model.q = self.static_state["q"].copy()
+        for slide, s in zip(model.slides, self.static_state["s"], strict=True):
             cable = model.cables[slide.cable]
             slide.s = float(s)
             at = s / cable.length
@@ -130,7 +130,7 @@ class RestState:
                 slide.element = min(max(int(at), 0), cable.n_elements - 1)
 
     def _quantities(self) -> dict[str, np.ndarray]:
-        model, scene, q, reaction = self.model, self.scene, self.placed["q"][None], self.reaction[None]
+        model, scene, q, reaction = self.model, self.scene, self.static_state["q"][None], self.reaction[None]
         found = {}
         for cable in model.cables:
             vectors = spatial(q[0, cable.coordinates].reshape(cable.shape))
@@ -141,8 +141,8 @@ class RestState:
             state |= modal_state(model, body, state, q) if body.modes else {}
             found |= {f"{body.name}.{name}": value[0] for name, value in state.items()}
         for k, slide in enumerate(model.slides):
-            found[f"{slide.name}.s"] = self.placed["s"][k]
-            found[f"{slide.name}.force"] = self.placed["force"][k]
+            found[f"{slide.name}.s"] = self.static_state["s"][k]
+            found[f"{slide.name}.force"] = self.static_state["force"][k]
         for joint, numbers in zip(model.joints, self.joint_forces, strict=True):
             values = joint_state(joint, numbers)
             found |= {f"{joint.name}.{name}": values[name]
@@ -152,7 +152,7 @@ class RestState:
             found |= {f"{part.label}.{name}": value[0] for name, value in given_.items()}
         for name, tie in scene.ties.items():
             found |= {f"{name}.{part}": value[0] for part, value in tie_force(model, scene, tie, reaction, q).items()}
-        for between, force in zip(model.point_forces, self.placed["point_force"], strict=True):
+        for between, force in zip(model.point_forces, self.static_state["point_force"], strict=True):
             values = point_force_state(model, between, force[None], q)
             found |= {f"{between.name}.{name}": value[0] for name, value in values.items()}
         return found

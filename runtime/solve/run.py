@@ -136,8 +136,8 @@ def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine
         knots=knots(model, settings.duration, settings.tol),
         capacity=capacity,
     )
-    if status == "singular" and engine.jammed >= 0:
-        slide = list(scene.slides.values())[engine.jammed]
+    if status == "singular" and engine.self_locking >= 0:
+        slide = list(scene.slides.values())[engine.self_locking]
         raise SceneError(slide.where, "friction jams it at the start: the more it holds, the more it presses it on the "
                          "cable", "take a smaller coefficient, or the rider's point nearer to its centre of mass")
     if status == "singular":

@@ -38,7 +38,7 @@ def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestStat
     """
     problem = StaticProblem(scene, settings)
     if start is not None:
-        problem.restore(start.placed)
+        problem.restore(start.static_state)
     search = _Search(problem, made)
     reached = search.along_path(start) if settings.method == "arc_length" else search.in_steps()
     state = search.found

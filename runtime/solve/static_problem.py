@@ -34,13 +34,13 @@ class StaticProblem:
         self.model = build(scene)
         self.engine = Engine(self.model)
         drop_redundant_rows(self.model, self.engine)
-        self.engine.place(0.0)
+        self.engine.set_state(0.0)
         self.load(1.0)
         drawn = self.residual()
-        place = self.model.place
-        free = place >= 0
+        unknown = self.model.unknown_of_dof
+        free = unknown >= 0
         self.weight = np.zeros(len(drawn))  # forces and arc-lengths do not count in the size of a correction
-        self.weight[place[free]] = self.model.weight[free]
+        self.weight[unknown[free]] = self.model.weight[free]
         self.size = self._extent()
         self.mass = self.engine.matrix(1.0, 0.0, 0.0)
         # rad²/s²: what is left free (a rider that may turn about its rope) has no stiffness. Of points, not of
@@ -51,7 +51,7 @@ class StaticProblem:
         n = self.model.n_band + self.model.n_border_dof
         arcs = [n + slide.unknown for slide in self.model.slides if slide.drive < 0]
         self.coordinates = np.append(np.arange(n), np.array(arcs, dtype=int))
-        self.places = _places(self.model)
+        self.point_entries = _point_entries(self.model)
         self.iterations = 0
         self.pushed = False  # off an unstable branch, in a direction that nothing prefers
         self.messages: list[str] = []
@@ -66,7 +66,7 @@ class StaticProblem:
         model = self.model
         lengths = [cable.length * cable.n_elements for cable in model.cables]
         lengths += [float(np.linalg.norm(model.q[b.configuration : b.configuration + model.dim])) for b in model.bodies]
-        gaps = [np.subtract(*(attachment_points(model, end, model.q[None]) for end in force.ends))
+        gaps = [np.subtract(*(attachment_points(model, end, model.q[None]) for end in force.attachments))
                 for force in model.point_forces]
         return max([*lengths, *(float(np.linalg.norm(gap)) for gap in gaps)], default=0.0) or 1.0
 
@@ -106,7 +106,7 @@ class StaticProblem:
 
     def distance(self, kept: dict) -> float:
         """Return how far the farthest coordinate of a position has moved from a state, in m."""
-        moved = np.abs(self.engine.placed()["q"] - kept["q"])[self.places]
+        moved = np.abs(self.engine.state()["q"] - kept["q"])[self.point_entries]
         return float(np.max(moved, initial=0.0))
 
     def solver(self, inertia: float = 0.0) -> Callable[[np.ndarray], np.ndarray]:
@@ -124,17 +124,17 @@ class StaticProblem:
 
     def keep(self) -> dict:
         """Return the static state, as `restore` takes it."""
-        return self.engine.placed()
+        return self.engine.state()
 
     def restore(self, kept: dict) -> None:
         """Go back to a state that `keep` returned."""
-        self.engine.place(0.0, **kept)
+        self.engine.set_state(0.0, **kept)
 
     def move(self, change: np.ndarray) -> None:
         """Move the state; slides that leave their element enter the next."""
         self.engine.move(change)
         if self.model.slides:
-            self.engine.place(0.0, **self.engine.placed())
+            self.engine.set_state(0.0, **self.engine.state())
 
     def newton(self) -> bool:
         """Newton under the load that is on, full steps.
@@ -162,16 +162,16 @@ class StaticProblem:
         """Return whether no slide is past an end of its cable, where the last element would go on for ever."""
         ends = np.array([self.model.cables[j.cable].length * self.model.cables[j.cable].n_elements
                          for j in self.model.slides])
-        s = self.engine.placed()["s"]
+        s = self.engine.state()["s"]
         past = np.maximum(-s, s - ends)
         return bool(np.all(past <= self.settings.tolerance * self.size))
 
 
-def _places(model) -> np.ndarray:
+def _point_entries(model) -> np.ndarray:
     """Entries of the configuration that are coordinates of points."""
     nodes = [node.dofs("r") for cable in model.nodes.values() for node in cable]
     bodies = [range(body.configuration, body.configuration + model.dim) for body in model.bodies]
-    return np.array([place for part in (*nodes, *bodies) for place in part], dtype=int)
+    return np.array([entry for part in (*nodes, *bodies) for entry in part], dtype=int)
 
 
 def solver(matrix: csc_array) -> Callable[[np.ndarray], np.ndarray]:

@@ -20,7 +20,7 @@ static void look(const fu_model *model, const fu_joint *joint, const fu_state *s
 {
     const int dim = model->dim, turns = dim == 3 ? 3 : 1;
     for (int e = 0; e < 2; ++e)
-        fu_attachment_at(model, &joint->ends[e], state, s_rate ? s_rate[e] : 0.0, FU_POINT | FU_AXES, &view->at[e]);
+        fu_attachment_at(model, &joint->attachments[e], state, s_rate ? s_rate[e] : 0.0, FU_POINT | FU_AXES, &view->at[e]);
     const fu_attachment_state *one = &view->at[0], *two = &view->at[1];
     const int n1 = one->n, n2 = two->n, n = n1 + n2;
     view->n = n;
@@ -67,7 +67,7 @@ static int coordinates(const joint_view *view, int *at)
 static int is_inactive(const fu_joint *joint, const fu_state *state)
 {
     for (int e = 0; e < 2; ++e)
-        if (joint->ends[e].slide >= 0 && state->mode[joint->ends[e].slide] == FU_LEFT) return 1;
+        if (joint->attachments[e].slide >= 0 && state->mode[joint->attachments[e].slide] == FU_LEFT) return 1;
     return 0;
 }
 
@@ -91,7 +91,7 @@ int fu_ties_a_frame(const fu_model *model, int which)
         if (model->couplings[k]->type != &fu_joint_type) continue;
         const fu_joint *joint = (const fu_joint *)model->couplings[k];
         for (int e = 0; e < 2; ++e) {
-            const int slide = joint->ends[e].slide;
+            const int slide = joint->attachments[e].slide;
             if (slide >= 0 && (which < 0 || slide == which)) return 1;
         }
     }
@@ -100,7 +100,7 @@ int fu_ties_a_frame(const fu_model *model, int which)
 
 int fu_between_cables(const fu_joint *joint)
 {
-    return joint->ends[0].cable >= 0 && joint->ends[1].cable >= 0;
+    return joint->attachments[0].cable >= 0 && joint->attachments[1].cable >= 0;
 }
 
 /* the same with K, the derivative of J' multipliers */
@@ -128,7 +128,7 @@ int fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_stat
         const int m = view.at[e].n, from = e ? n1 : 0;
         for (int d = 0; d < dim; ++d) pull[d] = e ? g[d] : -g[d];
         memset(part, 0, sizeof(double) * (size_t)(m * m));
-        fu_geometric_stiffness(model, &joint->ends[e], state, pull, g + dim + e * turns, m, part);
+        fu_geometric_stiffness(model, &joint->attachments[e], state, pull, g + dim + e * turns, m, part);
         for (int i = 0; i < m; ++i)
             for (int j = 0; j < m; ++j) K[(from + i) * n + from + j] += part[i * m + j];
     }
@@ -137,7 +137,7 @@ int fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_stat
 
 static const fu_rows *rows_of_slide(const fu_model *model, const fu_joint *joint, int e, const fu_accelerator *work)
 {
-    return &work->rows[model->slides[joint->ends[e].slide].base.row];
+    return &work->rows[model->slides[joint->attachments[e].slide].base.row];
 }
 
 /* H and W over the joint's coordinates made those over the dofs: s of an attachment on a slide follows (eq 24, 31, 37). */
@@ -154,11 +154,11 @@ static void replace_s(const fu_model *model, const fu_joint *joint, const joint_
         }
     rows->n = n;
     for (int e = 0; e < 2; ++e)
-        if (joint->ends[e].slide >= 0) rows->n += rows_of_slide(model, joint, e, work)->n;
+        if (joint->attachments[e].slide >= 0) rows->n += rows_of_slide(model, joint, e, work)->n;
     for (int r = 0; r < m; ++r)
         for (int i = 0; i < n; ++i) rows->H[r * rows->n + i] = J[r * view->n + column[i]];
     for (int e = 0, to = n; e < 2; ++e) {
-        const int slide = joint->ends[e].slide;
+        const int slide = joint->attachments[e].slide;
         if (slide < 0) continue;
         const fu_rows *of = rows_of_slide(model, joint, e, work);
         const fu_slide_state *slide_state = &work->slide_states[slide];
@@ -189,7 +189,7 @@ static void constraint_rows(const fu_model *model, const fu_coupling *coupling, 
         rows->n = rows->rows = 0;
         return;
     }
-    for (int e = 0; e < 2; ++e) s_rate[e] = joint->ends[e].slide >= 0 ? slide_states[joint->ends[e].slide].s_rate : 0.0;
+    for (int e = 0; e < 2; ++e) s_rate[e] = joint->attachments[e].slide >= 0 ? slide_states[joint->attachments[e].slide].s_rate : 0.0;
     look(model, joint, state, s_rate, &view);
     const fu_attachment_state *one = &view.at[0], *two = &view.at[1];
     joint->kernel->force(view.gap, one->A, two->A, view.c, state->forces + joint->base.force, rows->C,
@@ -223,7 +223,7 @@ static void constraint_rows(const fu_model *model, const fu_coupling *coupling, 
 static int moves(const fu_model *model, const fu_joint *joint, const fu_state *state, int at)
 {
     for (int e = 0; e < 2 && at >= model->n_dof; ++e) {
-        const int slide = joint->ends[e].slide;
+        const int slide = joint->attachments[e].slide;
         if (slide >= 0 && fu_extra(model, model->slides[slide].base.unknown) == at) return state->mode[slide] == FU_SLIDES;
     }
     return 1;
@@ -265,7 +265,7 @@ static void unit_rows(const fu_model *model, const fu_joint *joint, int which, d
 static void turn_ends(const fu_model *model, const fu_joint *joint, const double *psi, double *rows, int n_rows, int n,
                       int n_first)
 {
-    for (int e = 0; e < 2; ++e) fu_turn_attachment(model, &joint->ends[e], psi, rows, n_rows, n, e ? n_first : 0);
+    for (int e = 0; e < 2; ++e) fu_turn_attachment(model, &joint->attachments[e], psi, rows, n_rows, n, e ? n_first : 0);
 }
 
 static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, fu_system *system)
@@ -281,7 +281,7 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
         return;
     }
     const int n = fu_joint_tangent(model, joint, next, at, J, K);
-    const int n_first = fu_attachment_coordinates(model, &joint->ends[0], next, unused);
+    const int n_first = fu_attachment_coordinates(model, &joint->attachments[0], next, unused);
     for (int r = 0; r < rows; ++r)
         if (joint->redundant_rows >> r & 1) memset(J + r * n, 0, sizeof(double) * (size_t)n);
     unit_rows(model, joint, joint->redundant_rows, w.inertia, system);

@@ -35,7 +35,7 @@ cdef extern from "blocks.h" nogil:
 cdef extern from "engine.h" nogil:
     int FU_MAX_COORDINATES, FU_MAX_PARAMETERS, FU_MAX_RATES, FU_ATTACHMENT_COORDINATES, FU_SLIDES, FU_LOCKED, FU_LEFT
     int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT, FU_UNSTABLE
-    int FU_NO_FAILURE, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE, FU_JAM
+    int FU_NO_FAILURE, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE, FU_SELF_LOCKING
     int FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_RATE, FU_WATCH_TRACTION, FU_WATCH_CALL
     int FU_WATCH_STICK, FU_WATCH_BUFFER
     int FU_ACTED, FU_STUCK, FU_BROKE_LOOSE, FU_TURNED, FU_STRUCK, FU_FREED, FU_FLEW, FU_ENTERED, FU_CAME_OUT, FU_RESTS
@@ -85,7 +85,7 @@ cdef extern from "engine.h" nogil:
         double S[64]
         double up[3]
         double axes[9]
-        fu_modal_attachment spot
+        fu_modal_attachment modal
     ctypedef struct fu_modal_point:
         double p[3]
         double axes[9]
@@ -94,9 +94,9 @@ cdef extern from "engine.h" nogil:
         double bias[3]
         double omega_bias[3]
     int fu_body_dofs(const fu_body *body)
-    void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *spot, const double *b, const double *w,
+    void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *attachment, const double *b, const double *w,
                          fu_modal_point *out, double *P, double *T)
-    void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *spot, const double *b, const double *f,
+    void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *attachment, const double *b, const double *f,
                                const double *m, double *K)
     ctypedef struct fu_end_stop:
         int kind
@@ -123,7 +123,7 @@ cdef extern from "engine.h" nogil:
     ctypedef struct fu_joint:
         fu_coupling base
         const fu_joint_kernels *kernel
-        fu_attachment ends[2]
+        fu_attachment attachments[2]
         int signal, redundant_rows
         double c0
     ctypedef struct fu_signal:
@@ -145,11 +145,11 @@ cdef extern from "engine.h" nogil:
         double x
         double u[3]
         double c[3]
-        fu_modal_attachment spot
+        fu_modal_attachment modal
     ctypedef struct fu_point_force:
         fu_coupling base
         const void *kernels
-        fu_attachment ends[2]
+        fu_attachment attachments[2]
         int dim
         double parameters[8]
     ctypedef struct fu_lapack:
@@ -194,9 +194,9 @@ cdef extern from "engine.h" nogil:
         const fu_signal *signals
         int n_q, n_dof, n_band, n_border_dof, n_dissipation_state, n_extra, n_multipliers
         int n_coordinates, n_forces, n_rows, n_outputs
-        const int *place
+        const int *unknown_of_dof
         const int *combination_start
-        const int *combination_place
+        const int *combination_unknown
         const double *combination_value
         const double *weight
         const double *gravity
@@ -232,7 +232,7 @@ cdef extern from "engine.h" nogil:
         double *work
         double *prescribed
         double *multipliers
-        int jammed
+        int self_locking
         long evaluated
     ctypedef struct fu_joint_output:
         double residual
@@ -286,7 +286,7 @@ cdef extern from "engine.h" nogil:
         double *first
         double *s_slope
         double h, h_factored, contraction, motion, extent, closed
-        int factored, stopped_joint, rest_start
+        int factored, stopped_slide, rest_start
         fu_failure failure
         fu_energy_balance balance
     ctypedef struct fu_integrator:

@@ -53,9 +53,9 @@ cdef class Translation(Arrays):
         self._list_couplings(model)
         m.n_band, m.n_border_dof = model.n_band, model.n_border_dof
         m.n_extra, m.n_multipliers = model.n_extra, model.n_multipliers
-        m.place, m.weight, m.lapack = self._ints(model.place), self._doubles(model.weight), &LAPACK
+        m.unknown_of_dof, m.weight, m.lapack = self._ints(model.unknown_of_dof), self._doubles(model.weight), &LAPACK
         m.combination_start = self._ints(model.combinations.indptr)
-        m.combination_place = self._ints(model.combinations.indices)
+        m.combination_unknown = self._ints(model.combinations.indices)
         m.combination_value = self._doubles(model.combinations.data)
         m.threads, m.parts = 1, NULL
         m.gravity, m.zero = self._doubles(model.gravity), self._doubles(np.zeros(model.n_dof))
@@ -106,27 +106,27 @@ cdef class Translation(Arrays):
             h.g[k] = shape.gravity[k]
         return 0
 
-    def anchor(self, int index, x, phi, psi, b, w, f, m):
+    def modal_attachment(self, int index, x, phi, psi, b, w, f, m):
         """A point of modal body `index` with its axes, as engine/bodies/modal.c has it; for tests.
 
         x (dim,), phi (modes, dim), psi (modes, turns); b, w: the body's entries of q and v. Returns what `fu_modal_point`
         holds, P, T, and K for a force f and a moment m on the point.
         """
         cdef fu_body *r = &self.bodies[index]
-        cdef fu_modal_attachment spot
+        cdef fu_modal_attachment modal
         cdef fu_modal_point out
         cdef int n = fu_body_dofs(r), dim = r.kernel.dim, turns = r.kernel.velocity - r.kernel.dim
-        spot.x, spot.phi, spot.psi = self._doubles(x), self._doubles(phi), self._doubles(psi)
+        modal.x, modal.phi, modal.psi = self._doubles(x), self._doubles(phi), self._doubles(psi)
         P, T, K = np.zeros((dim, n)), np.zeros((turns, n)), np.zeros((n, n))
         cdef double[:, ::1] P_view = P, T_view = T, K_view = K
-        fu_modal_attachment_state(r, &spot, self._doubles(b), self._doubles(w), &out, &P_view[0, 0], &T_view[0, 0])
-        fu_modal_attachment_force(r, &spot, self._doubles(b), self._doubles(f), self._doubles(m), &K_view[0, 0])
+        fu_modal_attachment_state(r, &modal, self._doubles(b), self._doubles(w), &out, &P_view[0, 0], &T_view[0, 0])
+        fu_modal_attachment_force(r, &modal, self._doubles(b), self._doubles(f), self._doubles(m), &K_view[0, 0])
         return {"p": np.array(out.p)[:dim], "axes": np.array(out.axes)[:dim * dim].reshape(dim, dim), "P": P, "T": T, "K": K,
                 "velocity": np.array(out.velocity)[:dim], "omega": np.array(out.omega)[:turns],
                 "bias": np.array(out.bias)[:dim], "omega_bias": np.array(out.omega_bias)[:turns]}
 
-    cdef int _spot(self, fu_modal_attachment *to, int body, spot) except -1:
-        to.x, to.phi, to.psi = self._doubles(spot[0]), self._doubles(spot[1]), self._doubles(spot[2])
+    cdef int _modal_attachment(self, fu_modal_attachment *to, int body, modal) except -1:
+        to.x, to.phi, to.psi = self._doubles(modal[0]), self._doubles(modal[1]), self._doubles(modal[2])
         if fu_body_dofs(&self.bodies[body]) > FU_ATTACHMENT_COORDINATES:
             raise ValueError(f"more modes than the engine's {FU_ATTACHMENT_COORDINATES - 6}")
         return 0
@@ -139,8 +139,8 @@ cdef class Translation(Arrays):
             to.u[k] = end.u[k]
         for k in range(len(end.N)):
             to.N[k] = end.N[k]
-        if end.spot is not None:
-            self._spot(&to.spot, end.body, end.spot)
+        if end.modal is not None:
+            self._modal_attachment(&to.modal, end.body, end.modal)
         if end.axes is None:
             return 0
         if end.frame:
@@ -200,7 +200,7 @@ cdef class Translation(Arrays):
             if slide.friction is not None:
                 j.sticks, j.viscous, j.velocity = slide.friction.sticks, slide.friction.viscous, slide.friction.velocity
                 j.friction, j.static_friction = slide.friction.sliding, slide.friction.static_friction
-            for k, end in enumerate(slide.ends):
+            for k, end in enumerate(slide.end_stops):
                 e = &j.stops[k]
                 e.kind = ENDS[end if isinstance(end, str) else end.stop]
                 if e.kind == FU_END_IS_HARD:
@@ -214,7 +214,7 @@ cdef class Translation(Arrays):
             l.base.multiplier, l.base.n_multipliers, l.base.is_driven = joint.multiplier, joint.rows, joint.signal >= 0
             l.signal, l.c0 = joint.signal, joint.base
             for k in range(2):
-                self._end(&l.ends[k], joint.ends[k], tables)
+                self._end(&l.attachments[k], joint.attachments[k], tables)
         for i, force in enumerate(model.point_forces):
             p = &self.point_forces[i]
             self._coupling(&p.base, force.type, i, force.unknown, [force.mass] * force.dim)
@@ -225,7 +225,7 @@ cdef class Translation(Arrays):
             for k in range(len(force.parameters)):
                 p.parameters[k] = force.parameters[k]
             for k in range(2):
-                self._end(&p.ends[k], force.ends[k], tables)
+                self._end(&p.attachments[k], force.attachments[k], tables)
         self.model.n_slides, self.model.slides = len(model.slides), self.slides
 
     def _loads_and_motions(self, model):
@@ -257,8 +257,8 @@ cdef class Translation(Arrays):
             n.kind, n.signal, n.on, n.element, n.x = load.kind, load.signal, load.on, load.element, load.x
             for k in range(3):
                 n.u[k], n.c[k] = load.u[k], load.c[k]
-            if load.spot is not None:
-                self._spot(&n.spot, load.on, load.spot)
+            if load.modal is not None:
+                self._modal_attachment(&n.modal, load.on, load.modal)
         m = &self.model
         m.n_motions, m.n_dead_loads = len(model.motions), len(model.dead_loads)
         m.motions, m.dead_loads, m.signals = self.motions, self.dead_loads, self.signals
@@ -331,7 +331,7 @@ cdef class Translation(Arrays):
         a.rows = <fu_rows *>self._zeros(self.model.n_rows * sizeof(fu_rows) // sizeof(double) + 1)
         a.slide_states = <fu_slide_state *>self._zeros(n_slides * sizeof(fu_slide_state) // sizeof(double) + 1)
         a.multipliers = self._zeros(model.n_multipliers)
-        a.jammed = -1
+        a.self_locking = -1
         a.force, a.work = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         a.prescribed = self._doubles(np.zeros(n_dof))
         run.rhs = self._zeros(unknowns + model.n_extra + FU_BAND_BEYOND(width))

@@ -11,7 +11,7 @@
 typedef struct {
     fu_coupling base;
     const void *kernels; /* of its law: derive/couplings/ */
-    fu_attachment ends[2];
+    fu_attachment attachments[2];
     int dim;
     double parameters[FU_MAX_PARAMETERS];
 } fu_point_force;

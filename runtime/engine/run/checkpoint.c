@@ -123,8 +123,8 @@ static int possible_counts(const fu_run *run)
 static int possible_indices(const fu_run *run)
 {
     const int last_slide = last_of(run->model->n_slides);
-    return in_range(run->stopped_joint, 0, last_slide) && in_range(run->keep_elements, 0, 1) &&
-           in_range(run->rest_start, 0, 1) && in_range(run->failure.cause, FU_NO_FAILURE, FU_JAM) &&
+    return in_range(run->stopped_slide, 0, last_slide) && in_range(run->keep_elements, 0, 1) &&
+           in_range(run->rest_start, 0, 1) && in_range(run->failure.cause, FU_NO_FAILURE, FU_SELF_LOCKING) &&
            in_range(run->failure.dof, 0, last_of(run->model->n_dof)) && in_range(run->failure.slide, -1, last_slide);
 }
 

@@ -152,7 +152,7 @@ static int acted(fu_run *run, int j, int what)
     run->acts = run->now.t - run->acted <= SMALLEST_STEP * run->duration ? run->acts + 1 : 0;
     run->acted = run->now.t;
     if (run->acts > MOST_ACTS) {
-        fu_fail(run, FU_JAM, run->now.v, j);
+        fu_fail(run, FU_SELF_LOCKING, run->now.v, j);
         return FU_NO_CONVERGENCE;
     }
     fu_watch_anew(run, j);
