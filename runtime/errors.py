@@ -97,7 +97,7 @@ def shown_path(path: str | os.PathLike) -> str:
 
 
 def near(name: str, known: Iterable[str]) -> str:
-    """The remedy for a name that is not known: what it is called now, the nearest known one, or the list of them."""
+    """Return the remedy for an unknown name: what it is called now, the nearest known one, or the list of them."""
     known = list(known)
     if (new := new_name(name)) in known:
         return f'it is called "{new}" now{INTEGRALS.get(new[-7:], "")}'
@@ -107,7 +107,9 @@ def near(name: str, known: Iterable[str]) -> str:
 
 
 def new_name(name: str) -> str:
-    """What an older version's name is now, also where a number, or a quantity of a result, follows it; else itself."""
+    """Return what an older version's name is now, also where a number or a quantity of a result follows it; else
+    itself.
+    """
     if name in RENAMED:
         return RENAMED[name]
     numbered = re.fullmatch(r"([a-z]+)(_\d+(?:\..+)?)", str(name))

@@ -44,7 +44,7 @@ class Scene(SceneMethods):
     """
 
     def add(self, part: P) -> P:
-        """Add a part made elsewhere, complete it with what the scene knows; the methods for each kind end here.
+        """Add a part, completed with what the scene knows, and return it; the methods for each kind end here.
 
         Returns the part as it stands in the scene. Raises SceneError.
         """
@@ -199,7 +199,8 @@ class Scene(SceneMethods):
             return equilibrium(self, settings, begin, Equilibrium)
 
     def modes(self, n: int, about: Equilibrium | None = None) -> Modes:
-        """The ``n`` lowest natural frequencies and shapes, about the scene as drawn or a state from `equilibrium`.
+        """Return the ``n`` lowest natural frequencies and shapes, about the scene as drawn or a state from
+        `equilibrium`.
 
         As drawn, joints and slides bear nothing yet: what swings by its weight does so about its equilibrium alone.
         Damping and friction are left out; what rounding hides is reported, as in `Modes`. Raises SceneError.

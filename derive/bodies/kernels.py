@@ -93,7 +93,7 @@ class Step:
         self.theta, self.axes = body.step_turn(p, b, self.ends[0], self.b_next)
 
     def jacobian(self, arm: np.ndarray) -> np.ndarray:
-        """By translation and Cayley vector, of a point on this arm."""
+        """Return the Jacobian, by translation and Cayley vector, of a point on this arm."""
         turns = np.array([cross(axis, arm) for axis in self.axes.T], dtype=object).reshape(-1, len(arm)).T
         return np.concatenate([np.eye(len(arm), dtype=int), turns], axis=1)
 

@@ -14,7 +14,7 @@ from . import load_kernels
 
 
 def _ring(expr: sp.Expr):
-    """A polynomial in x, y, z, 1/l of the spec, in the ring of `moments`."""
+    """Return a polynomial in x, y, z, 1/l of the spec, in the ring of polynomials of `section_integrals`."""
     w = sp.Symbol("w", positive=True)
     poly = sp.Poly(sp.expand(expr.subs(l, 1 / w)), x, y, z, w, 1 / w)
     xi = integrals.L * (1 + integrals.X) / 2

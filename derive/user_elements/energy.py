@@ -80,7 +80,7 @@ class _Trial:
         return value
 
     def _scale(self) -> float:
-        """Energy of a strain of order one."""
+        """Return the energy of a strain of order one."""
         bent = [self.value("energy", "U", s) for s in self.states[:2]]
         for sample, U in zip(SAMPLES, bent, strict=False):
             if U is None:
@@ -88,7 +88,7 @@ class _Trial:
         return max(float(abs(U[0])) for U in bent) or 1.0
 
     def run(self) -> None:
-        """Every property in turn."""
+        """Check every property in turn."""
         self._objective()
         self._stress_free()
         self._smooth()
@@ -129,7 +129,8 @@ class _Trial:
                        f"{float(max(map(abs, f.ravel()))):.6g} N")
 
     def _smooth(self) -> None:
-        """Slope and curvature of the energy are the same to either side, along every coordinate."""
+        """Raise SpecError unless slope and curvature of the energy are the same to either side, along every coordinate.
+        """
         names = [f"{name}[{axis}]" for name in self.family.element.names for axis in "xyz"[: self.family.element.dim]]
         for sample, s in zip(SAMPLES, self.states, strict=True):
             for j, name in enumerate(names):

@@ -48,7 +48,7 @@ class Mesh:
 
     @classmethod
     def parse(cls, text: str) -> Mesh:
-        """From x2 (a factor) or 24 (a number of elements). Raises SceneError."""
+        """Return the mesh that x2 (a factor) or 24 (a number of elements) stands for. Raises SceneError."""
         if (match := re.fullmatch(r"(x?)(\d+(?:\.\d*)?|\.\d+)", text.strip())) is None:
             raise SceneError("bench", f'elements: "{text}" is neither a factor nor a number of elements',
                              "write x2 for twice the scene's elements, or 24 for 24 in each cable")
@@ -60,7 +60,7 @@ class Mesh:
         return mesh
 
     def __str__(self) -> str:
-        """As it is written on the command line."""
+        """Return the mesh as it is written on the command line."""
         return f"{'x' * self.factor}{self.count:g}"
 
     def elements(self, cable: Cable) -> int:
@@ -221,7 +221,9 @@ def bench(scene: Scene, grid: Grid, tell: Callable[[str], None] = lambda text: N
 
 def _run(scene: Scene, grid: Grid, integrator: str, tol: float,
          finer: int = 1) -> tuple[Run, dict[str, np.ndarray]]:
-    """A run and its outputs; finer: with so many times the output times, of which those of the grid are given."""
+    """Return a run and its outputs; finer: how many times the output times are taken, of which those of the grid are
+    given.
+    """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", FunicularWarning)  # the same notes for every run of the grid
         run = scene.run(grid.duration, tol=tol, output_step=grid.output_step / finer, integrator=integrator,
@@ -239,7 +241,7 @@ def _reference(scene: Scene, mesh: Mesh, grid: Grid) -> Reference:
 
 
 def _compare_meshes(result: Bench, tell: Callable[[str], None]) -> None:
-    """Mesh errors, from a mesh with every element of the finest one halved."""
+    """Add the errors of the meshes, from a mesh with every element of the finest one halved."""
     if not result.references or not result.scene.cables:
         return
     mesh = max(result.references, key=lambda mesh: _total(mesh, result.scene)).twice()

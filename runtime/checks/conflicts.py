@@ -16,7 +16,7 @@ from .placement import HELD
 
 
 def check_supports(scene: SceneData, joint: Joint) -> None:
-    """No support or tie may hold a node to what the joint holds it to."""
+    """Raise SceneError where a support or a tie fixes a node to what the joint fixes it to."""
     for end, other in ((joint.a, joint.b), (joint.b, joint.a)):
         if (node := _node(scene, end)) is None:
             continue
@@ -41,7 +41,7 @@ def _node(scene: SceneData, end: Attachment) -> Node | None:
 
 
 def check_other_joints(scene: SceneData, joint: Joint, near: float) -> None:
-    """Of joints between the same two bodies none is beside a weld, and no two hold or drive the same.
+    """Raise SceneError where two joints between the same bodies conflict: one is a weld, or both fix or drive the same.
 
     near: points nearer than this, in m, are the same.
     """
@@ -55,7 +55,9 @@ def check_other_joints(scene: SceneData, joint: Joint, near: float) -> None:
 
 def _clash(scene: SceneData, joint: Joint, other: Joint, ends: tuple[Attachment, Attachment],
            near: float) -> str | None:
-    """What is wrong with two joints between the same two bodies; ``ends`` are the other's, in the order of joint's."""
+    """Return what is wrong with two joints between the same two bodies; ``ends`` are the other's, in the order of
+    joint's.
+    """
     between = f"{called(joint.a)} and {called(joint.b)}"
     if "weld" in (joint.joint_kind, other.joint_kind):
         verbs = ["welds" if each.joint_kind == "weld" else f"is a {each.joint_kind} joint between"

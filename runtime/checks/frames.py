@@ -47,7 +47,8 @@ def draws_section(cable: Cable) -> bool:
 
 
 def section_frame(cable: Cable, s: float) -> np.ndarray:
-    """(3, 3): normal, height and width of the section at ``s`` as the elements draw it, as columns; height along r_y.
+    """Return (3, 3): normal, height and width of the section at ``s`` as the elements draw it, as columns; height along
+    r_y.
 
     What a joint holds: a moment on r_x alone bends a beam that shears sharply there, the more the finer its elements.
     """
@@ -76,7 +77,8 @@ def joint_axes(scene: SceneData, joint: Joint) -> JointAxes:
 
 
 def slide_axes(scene: SceneData, slide: Slide) -> JointAxes:
-    """The axes that a slide of frame "tangent" or "section" keeps together: a in the cable's frame, b in the rider's.
+    """Return the axes that a slide of frame "tangent" or "section" keeps together: a in the cable's frame, b in the
+    rider's.
 
     z along the tangent, x along the height, y along the width. With roll "held" the cable's frame is that of
     `cable_frame` with the slide's up, at every s; with roll "free" the turn about z is free.

@@ -25,7 +25,7 @@ UPRIGHT = 1e-3
 
 
 def placed_joint(scene: SceneData, joint: Joint) -> Joint:
-    """The joint with its ends, axis and length complete, sure to be possible between its ends; a gap is reported."""
+    """Return the joint with its ends, axis and length complete, after a check of its ends; a gap is reported."""
     joint = placed_between(scene, joint)
     if move_as_one(scene, joint.a, joint.b):
         raise SceneError(joint.where, f"joins {called(joint.a)} to itself", "give it two ends")
@@ -42,7 +42,9 @@ def placed_joint(scene: SceneData, joint: Joint) -> Joint:
 
 
 def check_joint(scene: SceneData, joint: Joint) -> None:
-    """The ends of a complete joint have to be where it holds them, but for a small gap, and not held there already."""
+    """Raise SceneError unless the ends of a complete joint are where it needs them, but for a small gap, and free to
+    follow it.
+    """
     check_supports(scene, joint)
     gap, where = _gap(scene, joint)
     most = MOVABLE * scene_size(scene, joint)
@@ -52,7 +54,7 @@ def check_joint(scene: SceneData, joint: Joint) -> None:
 
 
 def check_drive(scene: SceneData, joint: Joint) -> None:
-    """A run that starts as drawn must not begin with a jump."""
+    """Raise SceneError where the drive of a joint makes a run that starts as drawn begin with a jump."""
     if joint.prescribed is None:
         return
     name, start = DRIVEN[joint.joint_kind], 0.0
@@ -105,7 +107,9 @@ def _gap(scene: SceneData, joint: Joint) -> tuple[float, str]:
 
 
 def _check_frames(scene: SceneData, joint: Joint) -> None:
-    """A cable without section axes has a tangent to give, and no more unless up completes it."""
+    """Raise SceneError where a joint needs more than the tangent of a cable without section axes, and up does not
+    complete it.
+    """
     bare = False
     for name in ("a", "b"):
         end = getattr(joint, name)
@@ -142,7 +146,7 @@ def elements_with_sections() -> str:
 
 
 def check_up(up, tangent: np.ndarray, what: str, where: str) -> None:
-    """The direction ``up`` completes a frame only off the tangent of ``what``."""
+    """Raise SceneError where the direction ``up`` lies along the tangent of ``what``: it completes no frame there."""
     if np.linalg.norm(np.cross(tangent, up)) <= UPRIGHT * np.linalg.norm(up):
         raise SceneError(where, f"up {show(up)} is along the tangent of {what}, {show(tangent)}: the frame is lost",
                          "give a direction across it")

@@ -123,7 +123,7 @@ def placed_load(scene: SceneData, load: Force | DistributedForce | Moment) -> Pa
 
 
 def _check_without_section(load: Force | DistributedForce | Moment, cable: Cable) -> None:
-    """Without axes of the section there is nothing to turn about the tangent, and no direction across it."""
+    """Raise SceneError for a load that needs the axes of the section, where the elements have none."""
     with_axes = "element=" + " or ".join(f'"{n}"' for n, kind in built_in().items() if kind.director and kind.dim == 3)
     if isinstance(load, Moment):
         assert load.s is not None, f"{load.where} is not complete"

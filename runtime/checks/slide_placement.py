@@ -44,7 +44,7 @@ def placed_slide(scene: SceneData, slide: Slide) -> Slide:
 
 
 def check_on_cable(scene: SceneData, slide: Slide) -> None:
-    """A rider has to be on its cable still, after others moved it."""
+    """Raise SceneError where a rider is not on its cable any more, since others moved it."""
     gap, where = _gap(scene, slide)
     if gap > (EXACT if slide.body_s is None else MOVABLE) * scene.cables[slide.along].length:
         raise SceneError(slide.where, where, f'body "{slide.body}" is on more than one slide: it cannot be moved for '
@@ -91,7 +91,7 @@ def _framed(scene: SceneData, slide: Slide, cable: Cable) -> Slide:
 
 
 def _check_drive(slide: Slide, cable: Cable) -> None:
-    """A driven slide starts where it is, on the cable."""
+    """Raise SceneError unless a driven slide starts where it is, on the cable."""
     if slide.drive is None:
         return
     start = float(slide.drive.value(0.0))

@@ -60,7 +60,7 @@ def check_allowed(asked: str, allowed: Iterable[str | os.PathLike], place: str) 
 
 
 def manifest_digest(content: dict) -> str:
-    """sha256 of a library's manifest, but for the digest in it."""
+    """Return sha256 of a library's manifest, but for the digest in it."""
     bare = content | {"library": {name: value for name, value in content["library"].items() if name != "digest"}}
     return hashlib.sha256(json.dumps(bare, sort_keys=True).encode()).hexdigest()
 
@@ -95,7 +95,7 @@ class Kernel:
                                    *(ctypes.c_void_p for _ in self._outputs)]
 
     def __call__(self, *given, **named):
-        """The outputs for these inputs: one array, or a tuple of them."""
+        """Return the outputs for these inputs: one array, or a tuple of them."""
         names = [name for name, _ in self._inputs]
         named = dict(zip(names, given, strict=False)) | named
         if len(given) > len(names) or set(named) != set(names):
@@ -107,7 +107,7 @@ class Kernel:
         return outputs[0] if len(outputs) == 1 else tuple(outputs)
 
     def rows(self, n: int, *given):
-        """The outputs (n, ...) of n calls; each argument once, or (n, ...) for each its own."""
+        """Return the outputs (n, ...) of n calls; each argument once, or (n, ...) for each its own."""
         if len(given) != len(self._inputs):
             raise TypeError(f"{self.__name__} takes ({', '.join(name for name, _ in self._inputs)})")
         arrays = [np.asarray(value, dtype=float) for value in given]
@@ -159,7 +159,8 @@ def of_library(library: str | None) -> dict[str, ElementKind]:
 
 
 def kernels_of(library: str | None):
-    """Where the kernels of a library are, of this package for None, as attributes by name. Raises LibraryError."""
+    """Return the object whose attributes are the kernels of a library, of this package for None. Raises LibraryError.
+    """
     if library is not None:
         return load(library).kernels
     from funicular.generated import kernels  # machine code of 2 MB: a scene may be described without it
@@ -168,7 +169,7 @@ def kernels_of(library: str | None):
 
 
 def tables_of(library: str | None) -> int:
-    """Address of a library's fu_all for the engine, 0 for this package's own. Raises LibraryError."""
+    """Return the address of a library's fu_all for the engine, 0 for this package's own. Raises LibraryError."""
     return load(library).tables if library is not None else 0
 
 

@@ -59,7 +59,9 @@ class AttachmentBuilder:
         return element, s - element * model.length
 
     def model(self, attachment: Attachment, axes: np.ndarray | None = None, up=None) -> AttachmentModel:
-        """The model of a complete attachment, with axes (3, 3) in the frame of what carries it where it has some."""
+        """Return the model of a complete attachment, with axes (3, 3) in the frame of what carries it where it has
+        some.
+        """
         none = np.zeros(0)
         axes = self._axes(axes)
         if attachment.on is None:
@@ -111,7 +113,9 @@ class AttachmentBuilder:
         return at[:dim], displacements[:, :dim], turns[:, 2:] if dim == 2 else turns
 
     def _axes(self, axes: np.ndarray | None) -> np.ndarray | None:
-        """In the plane x is the joint's axis if that lies in it, y square to it; see derive/couplings/joint.py."""
+        """Return the axes for the scene's dimension: in the plane x is the joint's axis if that lies in it, y square to
+        it. See derive/couplings/joint.py.
+        """
         if axes is None or self.scene.dim == 3:
             return axes
         x = axes[:2, 2] if np.linalg.norm(axes[:2, 2]) > 0.5 else axes[:2, 0]

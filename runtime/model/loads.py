@@ -132,7 +132,7 @@ class LoadBuilder:
         self._along_cable(load.cable, number, points, value, load.follower)
 
     def _along_cable(self, cable: str, number: int, points, value: np.ndarray, follower: bool) -> None:
-        """Forces value times weight at points (element, x, weight)."""
+        """Add a distributed load as forces, value times weight, at points (element, x, weight)."""
         if follower:
             self._turning(CABLE_FOLLOWER, number, cable, points, value)
             return

@@ -54,7 +54,7 @@ class CableModel:
 
     @property
     def coordinates(self) -> slice:
-        """Its part of q, v and the dofs."""
+        """Return the part of q, v and the dofs that is the cable's."""
         return slice(self.first, self.first + int(np.prod(self.shape)))
 
     def kernel(self, name: str) -> Kernel:

@@ -103,7 +103,7 @@ def redundant(model: Model, engine, ratio: float = NEARLY) -> str:
 
 
 def _compliance(engine) -> np.ndarray | None:
-    """H M^-1 H'; None where the state has none: it is not finite, or the mass matrix is singular there."""
+    """Return H M^-1 H'; None where the state is not finite, or the mass matrix is singular there."""
     try:
         S = engine.compliance()
     except ArithmeticError:
@@ -162,7 +162,7 @@ def _driven(model: Model) -> set[int]:
 
 
 def _listed(names: list[str]) -> str:
-    """Slides first, each once: slides "a" and "b", or joint "c", or both."""
+    """Return the names in words, slides first, each once: slides "a" and "b", or joint "c", or both."""
     parts = []
     for kind in ("slide", "joint"):
         own = [name.split(" ", 1)[1] for name in dict.fromkeys(names) if name.startswith(kind)]

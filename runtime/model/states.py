@@ -14,7 +14,7 @@ from .model import Model
 
 
 def spatial(vectors: np.ndarray) -> np.ndarray:
-    """(..., 2 or 3) -> (..., 3)."""
+    """Return vectors (..., 2 or 3) as spatial ones, (..., 3)."""
     return np.concatenate([vectors, np.zeros((*vectors.shape[:-1], 3 - vectors.shape[-1]))], axis=-1)
 
 
@@ -55,7 +55,7 @@ def tie_force(model: Model, scene: SceneData, tie: Tie, reaction: np.ndarray, q:
 
 
 def body_state(model: Model, body, q: np.ndarray) -> dict[str, np.ndarray]:
-    """position, orientation of a body from configurations (time, n_q)."""
+    """Return position, orientation of a body from configurations (time, n_q)."""
     b = body.configuration
     if model.dim == 3:
         centre, orientation = q[:, b : b + 3], q[:, b + 3 : b + 7]
@@ -68,7 +68,7 @@ def body_state(model: Model, body, q: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def body_rates(model: Model, body, orientation: np.ndarray, v: np.ndarray, a: np.ndarray | None = None) -> dict:
-    """velocity of a body's origin, angular_velocity, and with accelerations theirs, from rates (time, n_dof)."""
+    """Return velocity of a body's origin, angular_velocity, and with accelerations theirs, from rates (time, n_dof)."""
     at = slice(body.dof, body.dof + model.dim)
     turn = slice(at.stop, at.stop + (3 if model.dim == 3 else 1))
     velocity, omega = spatial(v[:, at]), _turning(v[:, turn])
@@ -84,7 +84,7 @@ def body_rates(model: Model, body, orientation: np.ndarray, v: np.ndarray, a: np
 
 
 def modal_state(model: Model, body, state: dict[str, np.ndarray], q: np.ndarray, v: np.ndarray | None = None) -> dict:
-    """modal_coordinates (time, mode) and nodes (time, node, 3) of a modal body whose frame's `state` is known.
+    """Return modal_coordinates (time, mode) and nodes (time, node, 3) of a modal body whose frame's `state` is known.
 
     With v (time, n_dof) modal_velocities, too.
     """
@@ -98,19 +98,23 @@ def modal_state(model: Model, body, state: dict[str, np.ndarray], q: np.ndarray,
 
 
 def joint_state(joint: JointModel, numbers: np.ndarray) -> dict[str, np.ndarray]:
-    """Force and moment on the end b, and residual, from the engine's numbers (..., FU_JOINT_OUTPUTS) of a joint."""
+    """Return the force and moment on the end b, and residual, from the engine's numbers (..., FU_JOINT_OUTPUTS) of a
+    joint.
+    """
     sign = -1.0 if joint.reversed else 1.0  # that has its ends at one point
     return {"force": sign * numbers[..., :3], "moment": sign * numbers[..., 3:6], "residual": numbers[..., 6]}
 
 
 def _turning(rates: np.ndarray) -> np.ndarray:
-    """Rotation about three axes, or about z alone."""
+    """Return the spatial vector (time, 3) of turns about three axes, or about z alone."""
     return rates if rates.shape[1] == 3 else np.concatenate([np.zeros((len(rates), 2)), rates], axis=1)
 
 
 def point_force_state(model: Model, between: PointForceModel, force: np.ndarray,
                       q: np.ndarray) -> dict[str, np.ndarray]:
-    """Force on the first end, (time, 3) in N; length between the ends, in m; tension, in N, negative in compression."""
+    """Return the force on the first end, (time, 3) in N; length between the ends, in m; tension, in N, negative in
+    compression.
+    """
     a, b = (attachment_points(model, each, q) for each in between.attachments)
     gap, force = b - a, spatial(force)
     length = np.linalg.norm(gap, axis=1)

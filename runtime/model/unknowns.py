@@ -132,14 +132,14 @@ class Supports:
                     self.rows[dof] = Row({node.dofs("r_x")[unknown]: ratio} if ratio else {})
 
     def displace(self, node: Node, signals: Iterable[int | None]) -> None:
-        """Position as drawn plus a signal an axis; None leaves it free."""
+        """Prescribe the position as drawn plus a signal an axis; None leaves it free."""
         for dof, start, signal in zip(node.dofs("r"), node.vector("r"), signals, strict=False):
             if signal is None:
                 continue
             self.rows[dof] = Row(prescribed=[Prescribed(signal, base=float(start), linear=1.0)])
 
     def rotate(self, node: Node, axis: np.ndarray, signal: int) -> None:
-        """Section, or slope where there is none, turned about an axis."""
+        """Prescribe a turn of the section, or of the slope where there is none, about an axis."""
         for name in node.directors or ["r_x"]:
             drawn = np.zeros(3)
             drawn[: node.dim] = node.vector(name)
@@ -150,7 +150,9 @@ class Supports:
                                                             float(turned[d]))])
 
     def join(self, master: Node, slave: Node, rigid: bool) -> None:
-        """Positions equal; rigid: slopes too, or what turns with the section, as they stand at the start."""
+        """Join the positions of two nodes; rigid: also the slopes, or what turns with the section, as they stand at the
+        start.
+        """
         for dof, of in zip(slave.dofs("r"), master.dofs("r"), strict=True):
             self.rows[dof] = self._combined({of: 1.0})
         if rigid:
@@ -205,7 +207,7 @@ class Supports:
 
 
 def _shared(master: Node, slave: Node) -> dict[str, list[dict[int, float]]]:
-    """Of rigidly joined nodes: rows over the master's slopes, component by component, by the slave's nodal vector."""
+    """Return, for rigidly joined nodes, rows over the master's slopes, by the slave's nodal vector and component."""
     names = [name for name in slave.names if name in ("r_x", "r_y", "r_z")]
     if master.dim == 3 or (master.directors and slave.directors and _in_line(master, slave)):
         return {name: _slope(master, slave, name) for name in names}
@@ -227,7 +229,8 @@ def _turned(vector: np.ndarray, at: range, drawn: np.ndarray) -> list[dict[int, 
 
 
 def _slope(master: Node, slave: Node, name: str) -> list[dict[int, float]]:
-    """Rows over the master's slopes of the slave's nodal vector `name`: the gradient of the deformation is one."""
+    """Return rows over the master's slopes of the slave's nodal vector `name`: the gradient of the deformation is one.
+    """
     drawn = slave.vector(name)
     slopes = [n for n in ("r_x", "r_y", "r_z") if n in master.names]
     if len(slopes) == master.dim:
@@ -244,7 +247,9 @@ def _slope(master: Node, slave: Node, name: str) -> list[dict[int, float]]:
 
 
 def _touches(elements: np.ndarray, made_of: np.ndarray, shape: tuple[int, int]) -> csr_array:
-    """(elements, unknowns): 1 where an element has a share of an unknown; made_of (k, 2): a dof, an unknown of it."""
+    """Return (elements, unknowns): 1 where an element has a share of an unknown; made_of (k, 2): a dof, an unknown of
+    it.
+    """
     counts = elements[:, 1]
     dofs = np.repeat(elements[:, 0] - np.cumsum(counts) + counts, counts) + np.arange(counts.sum())
     has = csr_array((np.ones(len(dofs)), dofs, np.append(0, np.cumsum(counts))), shape=(len(elements), shape[0]))

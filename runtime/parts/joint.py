@@ -116,7 +116,7 @@ class Joint(Part):
 
     @property
     def prescribed(self) -> Signal | None:
-        """Its angle (rad) or distance (m) over time, see `DRIVEN`, where it is driven."""
+        """Return its angle (rad) or distance (m) over time, see `DRIVEN`, where it is driven."""
         if self.velocity is not None:
             return Integral(rate=self.velocity, start=self.length or 0.0)
         return self.distance if self.angle is None else self.angle

@@ -93,7 +93,7 @@ class Slide(Part):
 
     @property
     def prescribed(self) -> Signal | None:
-        """s over time in m, where it is driven."""
+        """Return s over time in m, where it is driven."""
         return self.drive if self.velocity is None else Integral(rate=self.velocity, start=self.s)
 
     def off_plane(self) -> Iterator[str]:

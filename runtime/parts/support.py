@@ -38,7 +38,7 @@ class Support(Part):
 
     @property
     def label(self) -> str:
-        """Its name in the results, such as ``wire@0``."""
+        """Return the its name in the results, such as ``wire@0``."""
         return f"{self.cable}@{self.s + 0.0:.12g}"
 
 

@@ -45,7 +45,7 @@ class _Short(reprlib.Repr):
         self.maxlist = self.maxtuple = self.maxdict = 12
 
     def repr_int(self, value: int, level: int) -> str:
-        """Python writes no integers of thousands of digits."""
+        """Return an integer's text; Python writes no integers of thousands of digits."""
         return repr(value) if value.bit_length() < 256 else f"an integer of {value.bit_length()} bits"
 
 
@@ -63,7 +63,8 @@ def _real(value: Any) -> float:
 
 
 def _in_range(numbers: tuple[float, ...], unit: str, got: str) -> None:
-    """ValueError unless all numbers are finite and within the limits of their unit; got: how messages quote them."""
+    """Raise ValueError unless all numbers are finite and within the limits of their unit; got: how messages quote them.
+    """
     if not all(map(math.isfinite, numbers)):
         raise ValueError(f"must be finite, got {got}")
     largest = LIMITS.get(unit, OTHER_LIMITS)[1]
@@ -72,14 +73,16 @@ def _in_range(numbers: tuple[float, ...], unit: str, got: str) -> None:
 
 
 def number(value: Any, unit: str = "") -> float:
-    """``value`` as a finite float within `LIMITS`; ValueError if it is none. Text and booleans are no numbers."""
+    """Return ``value`` as a finite float within `LIMITS`. Raises ValueError if it is none; text and booleans are no
+    numbers.
+    """
     result = _real(value)
     _in_range((result,), unit, show(result, unit))
     return result
 
 
 def vector(value: Any, unit: str = "", size: int = 3) -> tuple[float, ...]:
-    """``value`` as ``size`` finite floats within `LIMITS`; ValueError if it is anything else."""
+    """Return ``value`` as ``size`` finite floats within `LIMITS`. Raises ValueError if it is anything else."""
     if isinstance(value, np.ndarray):
         value = value.tolist()
     if not isinstance(value, list | tuple) or len(value) != size:
@@ -110,7 +113,7 @@ def show(value: float | tuple[float, ...] | np.ndarray, unit: str = "") -> str:
 
 
 def one_of(known: Iterable[str], optional: bool = False) -> PlainValidator:
-    """Check of a name among known ones, or of None where it may be left out; the refusal suggests the near one."""
+    """Return the check of a name among known ones, or of None if optional; a refusal suggests the nearest one."""
     def check(value: Any) -> str | None:
         if value is None and optional:
             return None
@@ -124,7 +127,7 @@ def one_of(known: Iterable[str], optional: bool = False) -> PlainValidator:
 
 
 def finite(unit: str = "") -> PlainValidator:
-    """Check of a finite number."""
+    """Return the check of a finite number."""
     return PlainValidator(lambda value: number(value, unit))
 
 
@@ -139,7 +142,7 @@ def _bounded(unit: str, allowed: Callable[[float], bool], rule: str) -> PlainVal
 
 
 def positive(unit: str = "") -> PlainValidator:
-    """Check of a finite number above 0 and within `LIMITS`."""
+    """Return the check of a finite number above 0 and within `LIMITS`."""
     least = LIMITS.get(unit, OTHER_LIMITS)[0]
 
     def check(value: Any) -> float:
@@ -154,29 +157,29 @@ def positive(unit: str = "") -> PlainValidator:
 
 
 def not_negative(unit: str = "") -> PlainValidator:
-    """Check of a finite number, 0 or above."""
+    """Return the check of a finite number, 0 or above."""
     return _bounded(unit, lambda x: x >= 0, "not be negative")
 
 
 def within(low: float, high: float, *, ends: bool) -> PlainValidator:
-    """Check of a finite number between ``low`` and ``high``, the ends included or not."""
+    """Return the check of a finite number between ``low`` and ``high``, the ends included or not."""
     if ends:
         return _bounded("", lambda x: low <= x <= high, f"lie in [{low:g}, {high:g}]")
     return _bounded("", lambda x: low < x < high, f"lie inside ({low:g}, {high:g})")
 
 
 def above(low: float, most: float) -> PlainValidator:
-    """Check of a finite number above ``low`` and at most ``most``."""
+    """Return the check of a finite number above ``low`` and at most ``most``."""
     return _bounded("", lambda x: low < x <= most, f"be above {low:g} and at most {most:g}")
 
 
 def xyz(unit: str = "") -> PlainValidator:
-    """Check of three finite numbers."""
+    """Return the check of three finite numbers."""
     return PlainValidator(lambda value: vector(value, unit))
 
 
 def direction() -> PlainValidator:
-    """Check of three finite numbers that are not all zero; their length is free."""
+    """Return the check of three finite numbers that are not all zero; their length is free."""
     def check(value: Any) -> tuple[float, ...]:
         result = vector(value)
         if not any(result):
@@ -189,7 +192,7 @@ def direction() -> PlainValidator:
 
 
 def list_of(unit: str = "", *, least: int) -> PlainValidator:
-    """Check of a list of at least ``least`` finite numbers."""
+    """Return the check of a list of at least ``least`` finite numbers."""
     def check(value: Any) -> tuple[float, ...]:
         value = value.tolist() if isinstance(value, np.ndarray) else value
         if not isinstance(value, list | tuple) or len(value) < least:

@@ -66,7 +66,9 @@ def at_element(cable: CableModel, s: ArrayLike) -> tuple[np.ndarray, np.ndarray]
 
 
 def element_coordinates(cable: CableModel, values: np.ndarray, element: np.ndarray | None = None) -> np.ndarray:
-    """(T, elements, vectors, dim) of a cable from (T, n), or with element (T,) those of one each: (T, vectors, dim)."""
+    """Return (T, elements, vectors, dim) of a cable from (T, n), or with element (T,) those of one each: (T, vectors,
+    dim).
+    """
     nodal = values[:, cable.coordinates].reshape(len(values), *cable.shape)
     if element is not None:
         rows = np.arange(len(values))
@@ -81,7 +83,7 @@ def shape_on_axis(cable: CableModel, x: np.ndarray) -> np.ndarray:
 
 
 def rows(kernel, n: int, *given):
-    """A kernel n times; each argument has the kernel's shape, or that after n."""
+    """Call a kernel n times and return its outputs; each argument has the kernel's shape, or that after n."""
     return kernel.rows(n, *given)
 
 
@@ -156,7 +158,7 @@ class CableLoads:
             self.spreads.setdefault(number, []).append(Spread(element, start, stop, places, density, f))
 
     def _slides(self) -> None:
-        """Riders: their force at s, with the opposite on what rides; and moments of slides that keep axes."""
+        """Add riders: their force at s, with the opposite on what rides; and moments of slides that keep axes."""
         for slide in self.model.slides:
             force, s = self.at.value(f"{slide.name}.force"), self.at.value(f"{slide.name}.s")
             cable = self.model.cables[slide.cable]
@@ -205,7 +207,7 @@ class CableLoads:
                 self._on_end(between.attachments[1], -force, None)
 
     def _on_end(self, end: AttachmentModel, force: np.ndarray | None, moment: np.ndarray | None) -> None:
-        """A force and a moment (T, 3) on what carries an end, where that is a cable."""
+        """Add a force and a moment (T, 3) on what carries an attachment, where that is a cable."""
         if end.cable < 0:
             return
         cable = self.model.cables[end.cable]
@@ -238,7 +240,9 @@ class CableLoads:
         return sum(S[:, slope, :, None] * g[:, k, None] for k, slope in enumerate(end.slopes) if slope >= 0)
 
     def _x_of(self, cable: CableModel, end: AttachmentModel) -> float:
-        """x of an end in its element, from its shape functions: those of positions and slopes weigh a line's points."""
+        """Return x of an attachment in its element, from its shape functions: those of positions and slopes weigh a
+        line's points.
+        """
         straight = np.zeros(len(end.N))
         names = [*cable.vectors, *cable.vectors]
         for k, name in enumerate(names):

@@ -86,7 +86,9 @@ class File:
         return self._row.itemsize
 
     def read(self, name: str) -> np.ndarray:
-        """All values of a variable, in this machine's order of bytes; texts as str. Not of rows that are left out."""
+        """Return all values of a variable, in this machine's order of bytes, texts as str; without rows that are left
+        out.
+        """
         entry = self.entries[name]
         if not entry.in_rows:
             raw = read_at(self.descriptor, size_of(entry), entry.begin)
@@ -123,7 +125,7 @@ class File:
             yield start, part
 
     def _kept_blocks(self) -> Iterator[np.ndarray]:
-        """Rows that are not left out."""
+        """Yield blocks of rows that are not left out."""
         for start, block in self._blocks(self.rows):
             gone = self.left_out[(self.left_out >= start) & (self.left_out < start + len(block))] - start
             yield np.delete(block, gone) if len(gone) else block
@@ -246,6 +248,6 @@ def create(path: str | os.PathLike, coords: Mapping[str, Variable], variables: M
 
 
 def _texts(characters: np.ndarray) -> np.ndarray:
-    """(..., n) characters -> (...) str."""
+    """Return characters (..., n) as texts (...)."""
     joined = np.ascontiguousarray(characters).view(f"S{characters.shape[-1]}")[..., 0]
     return np.char.decode(joined, "utf-8")

@@ -94,7 +94,8 @@ def _external(model: Model, number: int, at: Instants, loads: CableLoads) -> np.
 
 
 def _accelerations(model: Model, at: Instants, forces: dict[int, np.ndarray]) -> np.ndarray:
-    """(T, n_dof): nodal accelerations of these cables; forces (T, elements, vectors, dim) are internal less outer ones.
+    """Return (T, n_dof): nodal accelerations of these cables; forces (T, elements, vectors, dim) are internal less
+    outer ones.
 
     M a = -forces on what is free, with what supports and joins hold and motions prescribe. Eq 38 gave the same at each
     of the instants: so a run need not keep them.
@@ -134,7 +135,7 @@ def _mass(cable: CableModel) -> csr_array:
 
 
 def _reduction(model: Model, dofs: np.ndarray):
-    """(dofs, unknowns that they have) sparse: dofs = T unknowns + what is prescribed."""
+    """Return T (dofs, unknowns that they have), sparse: dofs = T unknowns + what is prescribed."""
     unknown, combinations = model.unknown_of_dof[dofs], model.combinations.tocsr()
     free, combined = np.flatnonzero(unknown >= 0), np.flatnonzero(unknown < -1)
     n = max(combinations.shape[1], int(unknown.max(initial=-1)) + 1)

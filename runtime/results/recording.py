@@ -126,7 +126,8 @@ def recorded(simulation: Simulation, scene: SceneData, settings: RunSettings) ->
 
 
 def _costs(model: Model, engine) -> dict[str, float]:
-    """µs of a step that each slide and joint takes by itself; a slide that ties its rider's axes has both its parts."""
+    """Return the µs of a step that each slide and joint takes; a slide that ties its rider's axes has both its parts.
+    """
     found: dict[str, float] = {}
     if model.slides or model.joints:
         names = [*(slide.name for slide in model.slides), *(joint.name for joint in model.joints)]

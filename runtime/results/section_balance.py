@@ -45,7 +45,8 @@ class Cuts:
 
 
 def resultants(f: np.ndarray, e: np.ndarray, is_r: np.ndarray, about: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Force and moment (..., 3) about a point `about` (..., 3) of generalised forces f (..., vectors, dim) on e."""
+    """Return force and moment (..., 3) about a point `about` (..., 3) of generalised forces f (..., vectors, dim) on e.
+    """
     f, e = spatial(f), spatial(e)
     arms = e - np.where(is_r[:, None], about[..., None, :], 0.0)
     return f[..., is_r, :].sum(axis=-2), np.cross(arms, f).sum(axis=-2)
@@ -97,7 +98,8 @@ def _shape(model: CableModel, x: np.ndarray) -> np.ndarray:
 
 
 def _of_inertia(cable: Cable, model: CableModel, cuts: Cuts, e: np.ndarray, a: np.ndarray):
-    """Force and moment (T, n, 3) about the element's first node that the element takes up to the cut.
+    """Return the force and moment (T, n, 3) about the element's first node that the element's inertia takes up to the
+    cut.
 
     Gauss points in as large a number as the product of two shape functions needs.
     """
@@ -120,12 +122,13 @@ def _of_inertia(cable: Cable, model: CableModel, cuts: Cuts, e: np.ndarray, a: n
 
 
 def _at(N: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """(T, n, 3) from shape functions (T or 1, n, vectors) and vectors (T, n, vectors, 3)."""
+    """Return (T, n, 3) from shape functions (T or 1, n, vectors) and vectors (T, n, vectors, 3)."""
     return np.einsum("tnk,tnkd->tnd", np.broadcast_to(N, (len(values), *N.shape[1:])), values)
 
 
 def _of_spread(model: CableModel, spread, x: np.ndarray, e: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Force and moment (T, n, 3) about the element's first node of what is spread up to x, and the force a length at x.
+    """Return the force and moment (T, n, 3) about the element's first node of what is spread up to x, and the force a
+    length at x.
 
     x: (T or 1, n) in m; e: (T, n, vectors, 3).
     """

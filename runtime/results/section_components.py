@@ -62,7 +62,8 @@ def unresolved(cable: Cable, force: np.ndarray) -> np.ndarray:
 
 def taut_bending(cable: Cable, force: np.ndarray, change: np.ndarray, axes: np.ndarray, cuts,
                  kinks: Callable[[], list[Kink]]) -> np.ndarray:
-    """(T, n, 3): the moment of bending that a taut cable has along the line of its force, see results/section_layer.py.
+    """Return (T, n, 3): the moment of bending that a taut cable has along the line of its force, see
+    results/section_layer.py.
 
     Nil where the mesh shows all, and in compression.
     """

@@ -102,7 +102,7 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
 
 def of_run(run: Results, name: str, s: np.ndarray, chosen=slice(None), *, method: str = "balance",
            side: str = "after") -> dict[str, np.ndarray]:
-    """`cut_forces` of a run at the chosen times; s: (1 or T, n)."""
+    """Return `cut_forces` of a run at the chosen times; s: (1 or T, n)."""
     time = run.time[chosen]
     numbers = np.arange(len(run.time))[chosen]
     found: list[dict] = []
@@ -132,7 +132,7 @@ def _instants(run: Results, numbers: np.ndarray) -> Instants:
 
 def of_equilibrium(state: RestState, name: str, s: np.ndarray, *, method: str = "balance",
                    side: str = "after") -> dict[str, np.ndarray]:
-    """`cut_forces` of a state of rest: T = 1; s: (1, n)."""
+    """Return `cut_forces` of a state of rest: T = 1; s: (1, n)."""
     return cut_forces(state.scene, state.model, rest_instants(state), name, s, method=method, side=side, at_rest=True)
 
 
@@ -166,7 +166,7 @@ def even(cable: Cable) -> np.ndarray:
 
 
 def with_sides(cable: Cable, s: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """s (n,), in order, with a point on either side of each of the places (..., m): (..., n + 2 m)."""
+    """Return s (n,), in order, with a point on either side of each of the places (..., m): (..., n + 2 m)."""
     beside = BESIDE * cable.length
     sides = np.clip(np.concatenate([places - beside, places + beside], axis=-1), 0.0, cable.length)
     return np.sort(np.concatenate([np.broadcast_to(s, (*sides.shape[:-1], len(s))), sides], axis=-1), axis=-1)
@@ -206,7 +206,7 @@ def dataset(state: Results | RestState, cable: Cable | str, s: ArrayLike | Slide
 
 
 def _places(state: Results | RestState, cable: Cable, s, over_time: bool) -> tuple[np.ndarray, bool]:
-    """(1 or T, n) arc-lengths from what was asked for, and whether they go with a slide."""
+    """Return arc-lengths (1 or T, n) from what was asked for, and whether they go with a slide."""
     scene, name = state.scene, cable.name
     if s is None:
         places = jumps(scene, name)

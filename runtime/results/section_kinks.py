@@ -44,7 +44,7 @@ def _of_points(cable, model, forces, loads, number, force_at) -> list[Kink]:
 
 
 def _of_nodes(scene: SceneData, cable: Cable, model: CableModel, forces: ElementForces, force_at) -> list[Kink]:
-    """Supports and joins; a section that they keep from turning fixes the direction of the line."""
+    """Return the kinks at supports and ties; a section that they keep from turning fixes the direction of the line."""
     found: list[Kink] = []
     directed: dict[int, bool] = {}  # nodes, and whether their section keeps its direction
     ends = [(support.cable, support.s, _keeps_direction(support)) for support in scene.supports]
@@ -70,7 +70,9 @@ def _of_nodes(scene: SceneData, cable: Cable, model: CableModel, forces: Element
 
 
 def _normal(model: CableModel, vectors: np.ndarray) -> np.ndarray:
-    """(T, 3): direction of the section's normal at a node, of its vectors (T, vectors, 3); of a cable the tangent."""
+    """Return (T, 3): the direction of the section's normal at a node, of its vectors (T, vectors, 3); of a cable the
+    tangent.
+    """
     named = dict(zip(model.vectors, np.moveaxis(vectors, 1, 0), strict=True))
     if "r_y" not in named:
         return named["r_x"]

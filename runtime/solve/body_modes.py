@@ -54,7 +54,7 @@ def of_mesh(body: ModalBody) -> Shape:
 
 
 def _integrals(model, fields: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """S and X of fields (k, node, vector, 3)."""
+    """Return S and X of fields (k, node, vector, 3)."""
     ones = np.array([v == "r" for v in model.vectors] * 2, dtype=float)
     S, X = np.zeros((len(fields), 3)), np.zeros((len(fields), len(fields), 3, 3))
     for element in range(model.n_elements):

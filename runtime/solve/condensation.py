@@ -9,14 +9,16 @@ from ..model.model import Model
 
 
 def fastest(K: csc_array, M: csc_array, unknowns=slice(None)) -> float:
-    """rad²/s², about the square of the highest frequency of some unknowns; M may have more after those of K."""
+    """Return about the square of the highest frequency of some unknowns, rad²/s²; M may have more after those of K."""
     inertia, stiffness = M.diagonal()[: K.shape[0]][unknowns], K.diagonal()[unknowns]
     heavy = inertia > 0
     return float(np.max(np.abs(stiffness[heavy]) / inertia[heavy], initial=0.0))
 
 
 def condensed(full: csc_array, model: Model) -> tuple[csc_array, csc_array]:
-    """Stiffness over coordinates and free arc-lengths, forces between points eliminated; the constraints on them."""
+    """Return the stiffness over coordinates and free arc-lengths, forces between points eliminated; the constraints on
+    them.
+    """
     n = model.n_band + model.n_border_dof
     dim = model.dim
     arc = np.array([n + slide.unknown for slide in model.slides if slide.drive < 0], dtype=int)

@@ -141,7 +141,8 @@ def notes(engine, settings: RunSettings) -> list[str]:
 
 
 def unexplained(engine, settings: RunSettings) -> list[str]:
-    """A note where energy has come or gone that nothing in the scene explains; empty where the balance closes."""
+    """Return a note where energy has come or gone that nothing in the scene explains; empty where the balance closes.
+    """
     grown, lost, exchanged, in_motion, rounding = engine.balance
     off, fixed = max(grown, lost), settings.step is not None
     quiet = QUIET_LOSS if fixed else min(max(QUIET_LOSS, 100 * settings.tol), LOOSE_LOSS)

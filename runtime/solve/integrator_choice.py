@@ -94,7 +94,9 @@ def _check_gradients(integrator: Integrator, scene: SceneData, model: Model, eng
 
 
 def regularised_decay(scene: SceneData, slide: Slide) -> float:
-    """1/s: how fast a slow rider under its weight comes to the speed at which regularised friction lets it creep."""
+    """Return how fast, in 1/s, a slow rider under its weight comes to the speed at which regularised friction lets it
+    creep.
+    """
     friction = slide.friction
     if friction is None or friction.sticks or slide.prescribed is not None:
         return 0.0
@@ -102,7 +104,9 @@ def regularised_decay(scene: SceneData, slide: Slide) -> float:
 
 
 def slowest_rate(scene: SceneData, model: Model, duration: float) -> float:
-    """rad/s of the motion as a whole: a pendulum as long as the scene, or what crosses it, or the run."""
+    """Return the rate of the motion as a whole in rad/s: a pendulum as long as the scene, or what crosses it, or the
+    run.
+    """
     points = [node.vector("r") for nodes in model.nodes.values() for node in nodes]
     points += [model.q[b.configuration : b.configuration + model.dim] for b in model.bodies]
     size = float(np.max(np.ptp(points, axis=0)))
@@ -113,7 +117,7 @@ def slowest_rate(scene: SceneData, model: Model, duration: float) -> float:
 
 
 def fastest_rates(model: Model, engine: Engine) -> tuple[float, float]:
-    """rad/s and 1/s: the highest frequency and rate of decay of the state at the start, its slides left out.
+    """Return the highest frequency in rad/s and rate of decay in 1/s of the state at the start, its slides left out.
 
     Holding riders on their cables only lowers them.
     """
@@ -128,7 +132,9 @@ def fastest_rates(model: Model, engine: Engine) -> tuple[float, float]:
 
 
 def _largest(matrix, mass) -> float:
-    """About the largest eigenvalue of the symmetric part by the mass, in size: power iteration, some per cent low."""
+    """Return about the largest eigenvalue of the symmetric part by the mass, in size, by power iteration: some per cent
+    low.
+    """
     symmetric, factors = (matrix + matrix.T) / 2, splu(mass.tocsc())
     x = np.random.default_rng(0).normal(size=mass.shape[0])
     value = 0.0

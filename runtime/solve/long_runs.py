@@ -62,7 +62,9 @@ class LongRun:
                           f"present rate of {rate:.2g} a second: {self._why()}", FunicularWarning, stacklevel=6)
 
     def notes(self) -> list[str]:
-        """For the report: how many steps the run has taken or was to take, and why; empty for a run of few steps."""
+        """Return, for the report, how many steps the run has taken or was to take, and why; empty for a run of few
+        steps.
+        """
         if self._steps > MANY_STEPS:
             return [f"the run took {self._steps:.3g} steps: {self._why()}"]
         if self._warned and self._engine.time < self._settings.duration:
@@ -107,7 +109,7 @@ class LongRun:
                 "part there")
 
     def _fastest(self) -> tuple[float, float]:
-        """rad/s and 1/s, of the state at the start."""
+        """Return the highest frequency, rad/s, and rate of decay, 1/s, of the state at the start."""
         return fastest_rates(self._model, Engine(self._model))
 
 

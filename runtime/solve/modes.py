@@ -121,7 +121,9 @@ def _rounded_shape(engine, model, K: csc_array) -> csc_array:
 
 
 def _uncertain(modes: Modes, lowest: float) -> list[str]:
-    """What rounding of the stiffness leaves unknown; lowest: the angular frequency of the lowest that is not zero."""
+    """Return what rounding of the stiffness leaves unknown; lowest: the angular frequency of the lowest that is not
+    zero.
+    """
     notes, w, error = [], np.maximum(modes.angular_frequency, modes.growth_rate), modes.uncertainty
     zero = (w == 0) & (error > HIDDEN * lowest)
     if zero.any():
@@ -138,7 +140,9 @@ def _uncertain(modes: Modes, lowest: float) -> list[str]:
 
 
 def _refuse_what_is_out_of_range(scene: SceneData, model, K: csc_array, M: csc_array) -> None:
-    """Inertia and stiffness must be finite, and the inertia positive, but of the arc-lengths of slides."""
+    """Raise SceneError unless inertia and stiffness are finite, and the inertia positive, but for the arc-lengths of
+    slides.
+    """
     n = model.n_band + model.n_border_dof
     inertia = M.diagonal()[:n]
     stiffness = np.asarray(abs(K).max(axis=1).todense()).ravel()[:n] if n else np.zeros(0)
@@ -152,7 +156,7 @@ def _refuse_what_is_out_of_range(scene: SceneData, model, K: csc_array, M: csc_a
 
 
 def _owner(scene: SceneData, model, unknown: int) -> str:
-    """The part whose coordinate an unknown is."""
+    """Return the part whose coordinate an unknown is."""
     dof = int(np.argmax(model.unknown_of_dof == unknown))
     for name, nodes in model.nodes.items():
         if dof < model.cables[list(model.nodes).index(name)].coordinates.stop and nodes:

@@ -22,7 +22,7 @@ class Meter:
     tell: Callable[[str], None] = _nothing
 
     def __call__(self, time: float) -> None:
-        """The run has come to this time, s."""
+        """Show that the run has come to this time, s."""
         self.reached(time)
 
 

@@ -89,7 +89,8 @@ class RestState:
 
     @property
     def unstable_directions(self) -> int:
-        """How many independent directions lower the energy; of loads that turn: in how many the state diverges."""
+        """Return how many independent directions lower the energy; of loads that turn: in how many the state diverges.
+        """
         return self.stability.unstable
 
     @property

@@ -75,8 +75,8 @@ def _counted(K, C, units: np.ndarray) -> Stability:
 
 
 def lowest_direction(problem: StaticProblem) -> np.ndarray:
-    """(unknowns,): that of the least curvature of the scaled stiffness' symmetric part, towards the loads if it has a
-    part along them, the largest entry positive if not; its length in m is one.
+    """Return (unknowns,): the direction of the least curvature of the scaled stiffness' symmetric part, towards the
+    loads if it has a part along them, the largest entry positive if not; its length in m is one.
     """
     K, C, units = problem.stiffness()
     n = K.shape[0]

@@ -55,8 +55,8 @@ def find_rest(problem: StaticProblem) -> Stability | None:
 
 
 def relax(problem: StaticProblem) -> Stability | None:
-    """Pseudo-transient continuation (Kelley & Keyes 1998): implicit Euler without regard to accuracy, its step growing
-    as the motion fades; to a stable state, or None.
+    """Relax by pseudo-transient continuation (Kelley & Keyes 1998): implicit Euler without regard to accuracy, its step
+    growing as the motion fades; to a stable state, or None.
 
     A step never goes along a direction of negative curvature: it is made shorter until mass outweighs that, so that it
     descends (the test of curvature is that of Chiang & Zavala 2016). A state that its symmetry keeps at rest on an
@@ -106,8 +106,8 @@ def relax(problem: StaticProblem) -> Stability | None:
 
 
 def stiffen(problem: StaticProblem) -> Stability | None:
-    """Cables first so soft along their axis that their loads put all of them in tension, then stiffer in stages, each
-    starting from the one before; the last is the true scene. None where there is no cable to soften.
+    """Make cables first so soft along their axis that their loads put all of them in tension, then stiffer in stages,
+    each starting from the one before; the last is the true scene. None where there is no cable to soften.
 
     A slack cable that is as stiff as it is would fold up in short waves while it falls into its shape.
     """

@@ -57,7 +57,8 @@ class StaticProblem:
         self.messages: list[str] = []
 
     def _falls(self, drawn: np.ndarray, points: np.ndarray) -> float:
-        """rad²/s², of pendulums: where nothing is elastic, weight is all that holds."""
+        """Return the square of a pendulum's frequency, rad²/s²: where nothing is elastic, weight is all that restores.
+        """
         inertia = self.mass.diagonal()[points]
         return float(np.max(np.abs(drawn[points]) / inertia, initial=0.0, where=inertia > 0)) / self.size
 
@@ -76,7 +77,7 @@ class StaticProblem:
         self.engine.load(fraction, self.settings.scale_gravity)
 
     def residual(self) -> np.ndarray:
-        """R at the static state, under the load that is on: internal less external forces, and constraints."""
+        """Return R at the static state, under the load that is on: internal less external forces, and constraints."""
         return self.engine.static_residual()
 
     def load_vector(self) -> np.ndarray:
@@ -94,12 +95,16 @@ class StaticProblem:
         return self.engine.matrix(0.0, 0.0, 1.0)
 
     def stiffness(self) -> tuple[csc_array, csc_array, np.ndarray]:
-        """K over the coordinates, constraints C on them, and how far a unit of each moves a point (coordinates,)."""
+        """Return K over the coordinates, constraints C on them, and how far a unit of each moves a point
+        (coordinates,).
+        """
         K, C = condensed(self.tangent(), self.model)
         return K, C, np.where(self.weight[self.coordinates] > 0, self.weight[self.coordinates], 1.0)
 
     def curvature(self, change: np.ndarray, mass: float) -> float:
-        """Of the energy along a change, with this much mass, less a tenth of what the mass has in it."""
+        """Return the curvature of the energy along a change, with this much mass, less a tenth of what the mass has in
+        it.
+        """
         along = change[self.coordinates]
         K, _ = condensed(self.tangent(), self.model)
         return float(along @ (K @ along)) + 0.9 * mass * float(change @ (self.mass @ change))
@@ -114,7 +119,7 @@ class StaticProblem:
         return solver(self.regular_tangent() if inertia == 0.0 else self.tangent() + inertia * self.mass)
 
     def regular_tangent(self) -> csc_array:
-        """dR/dx, with as much mass as keeps what is free to move from being singular."""
+        """Return dR/dx, with as much mass as keeps what is free to move from being singular."""
         return self.tangent() + FREE * self.fastest * self.mass
 
     def length(self, change: np.ndarray) -> float:
@@ -137,7 +142,7 @@ class StaticProblem:
             self.engine.set_state(0.0, **self.engine.state())
 
     def newton(self) -> bool:
-        """Newton under the load that is on, full steps.
+        """Run Newton's method under the load that is on, with full steps; returns whether it converged.
 
         Corrections may grow for a while: the second order of a turn stretches what is stiff along its axis, and the
         next correction takes that back. A line search makes hundreds of small steps of it; `relax` does better.
@@ -168,14 +173,14 @@ class StaticProblem:
 
 
 def _point_entries(model) -> np.ndarray:
-    """Entries of the configuration that are coordinates of points."""
+    """Return the entries of the configuration that are coordinates of points."""
     nodes = [node.dofs("r") for cable in model.nodes.values() for node in cable]
     bodies = [range(body.configuration, body.configuration + model.dim) for body in model.bodies]
     return np.array([entry for part in (*nodes, *bodies) for entry in part], dtype=int)
 
 
 def solver(matrix: csc_array) -> Callable[[np.ndarray], np.ndarray]:
-    """Of a sparse matrix; raises RuntimeError where it is exactly singular."""
+    """Return the solver of a sparse matrix. Raises RuntimeError where it is exactly singular."""
     if not matrix.shape[0]:
         return lambda right: right
     return splu(matrix.tocsc(), permc_spec="COLAMD").solve

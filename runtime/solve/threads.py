@@ -78,7 +78,9 @@ one_blas_thread = _OneBlasThread()
 
 
 def _let_this_thread_set_limits() -> None:
-    """From 3.8 on threadpoolctl lets only one thread set OpenBLAS's limits, and leaves others without a word."""
+    """Let this thread set OpenBLAS's limits: from 3.8 on threadpoolctl lets only one do so, and leaves others without a
+    word.
+    """
     import threadpoolctl  # for runs alone, not for `import funicular`
 
     controller = getattr(threadpoolctl, "OpenBLASController", None)

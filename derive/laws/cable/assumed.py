@@ -54,12 +54,13 @@ class AssumedCable(Cable):
 
     @property
     def n_full(self) -> int:
-        """Modes that have EA; those above have the stiffness of the upper modes."""
+        """Return the number of modes that have EA; those above have the stiffness of the upper modes."""
         return (self.degree + 1) // 2
 
     @property
     def axial_points(self) -> list[Point]:
-        """Return those of the exact curvature with it; else exact for the modes of the green strain, degree 3(d - 1).
+        """Return the points for the axial strain: see `Cable`; else so many that they are exact for the modes of the
+        green strain, of degree 3(d - 1).
         """
         if self.curvature == "exact" or self.strain == "engineering":
             return super().axial_points
@@ -144,7 +145,7 @@ class AssumedCable(Cable):
         return found
 
     def _product(self, m: int, i: int, k: int) -> sp.Rational:
-        """(2m + 1)/2 ∫ P_m P_i P_k dX."""
+        """Return (2m + 1)/2 ∫ P_m P_i P_k dX."""
         integrand = integrals.legendre(m) * integrals.legendre(i) * integrals.legendre(k)
         total = sum((c * 2 / (powers[0] + 1) for powers, c in integrand.terms() if powers[0] % 2 == 0), sp.QQ(0))
         return sp.Rational(2 * m + 1, 2) * sp.Rational(int(total.numerator), int(total.denominator))

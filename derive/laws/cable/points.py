@@ -75,7 +75,7 @@ def _pairs(series: Series) -> list[tuple[int, int]]:
 
 
 def _alike(series: Series, here: int, there: int) -> list[bool]:
-    """Of every strain vector, whether its factor is the same at both points; else it is opposite."""
+    """Return, for every strain vector, whether its factor is the same at both points; else it is opposite."""
     return [f == g for f, g in zip(series[here], series[there], strict=True)]
 
 
@@ -84,5 +84,5 @@ def _sum(terms) -> np.ndarray:
 
 
 def _vector(program: Program, name: str, value: np.ndarray) -> np.ndarray:
-    """Named, where it is one."""
+    """Return a vector with its entries named, where it is one."""
     return program.vector(name, value) if value.ndim else value

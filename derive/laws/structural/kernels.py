@@ -39,7 +39,7 @@ class Kernels:
         return Program(f"{self.element.name}_{self.law.name}_{kernel}", doc, self.law.source)
 
     def _inputs(self, program: Program, *names: str) -> tuple:
-        """Inputs l, e, A, or l, e, v, A, tau."""
+        """Declare the inputs l, e, A, or l, e, v, A, tau, and return what they make."""
         shape = (self.element.n_vectors, self.element.dim)
         about = {"e": ("m, 1", "nodal vectors e, eq 1"), "v": ("m/s, 1/s", "rates of the nodal vectors")}
         length = program.input("l", (), "m", "length of the element")
@@ -92,7 +92,7 @@ class Kernels:
         return p
 
     def damping_force(self) -> Program:
-        """tau times the elastic law on the rates of strain."""
+        """Return the kernel of tau times the elastic law on the rates of strain."""
         p = self._program("damping_force", "minus the Kelvin-Voigt damping force Q_d")
         length, e, v, A = self._inputs(p, "e", "v")
         configuration = self._configuration(p, e, length, self._shares(A))
@@ -102,7 +102,7 @@ class Kernels:
         return p
 
     def damping_tangent(self) -> Program:
-        """df/de + rate df/dv of the damping force f."""
+        """Return the kernel of df/de + rate df/dv of the damping force f."""
         p = self._program("damping_tangent", "df/de + rate df/dv of the damping force f = -Q_d")
         length, e, v, A = self._inputs(p, "e", "v")
         tau = self._tau(p)
@@ -116,7 +116,7 @@ class Kernels:
         return p
 
     def dissipation(self) -> Program:
-        """Return the rates of strain times viscous resultants."""
+        """Return the kernel of the dissipated power: rates of strain times viscous resultants."""
         p = self._program("dissipation", "power dissipated by the damping force")
         length, e, v, A = self._inputs(p, "e", "v")
         rates = Velocity(self._configuration(p, e, length, self._shares(A)), v).strains()
@@ -125,7 +125,7 @@ class Kernels:
         return p
 
     def section_forces(self) -> Program:
-        """Return what passes through the section at x from the side of greater x."""
+        """Return the kernel of what passes through the section at x from the side of greater x."""
         p = self._program("section_forces", "force and moment resultants of a section")
         length, x = p.input("l", (), "m", "length of the element"), p.input("x", (), "m", "arc-length from its start")
         shape = (self.element.n_vectors, self.element.dim)

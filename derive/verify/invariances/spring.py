@@ -32,6 +32,6 @@ def spring(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance]
 
 
 def _moment(arm: np.ndarray, force: np.ndarray) -> float:
-    """Moment of a force over its size times that of its arm."""
+    """Return the moment of a force over its size times that of its arm."""
     moment = np.cross(spatial(arm), spatial(force))
     return float(np.linalg.norm(moment) / np.linalg.norm(arm) / np.linalg.norm(force))

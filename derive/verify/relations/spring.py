@@ -41,7 +41,7 @@ def spring(family: CouplingFamily) -> list[Relation]:
         return lambda k, s: k(kernel, s, stiffness=0 * s["stiffness"])["f"]
 
     def work(k, s):
-        """U + f . change - h P."""
+        """Return U + f . change - h P."""
         out = k("discrete_force", s)
         return k("energy", s)["U"] + out["f"].dot(s["gap_next"] - s["gap"]) - s["h"] * out["P"]
 
