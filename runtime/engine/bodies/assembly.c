@@ -5,7 +5,7 @@
 
 #define CHUNK 16 /* elements whose forces wait to be added: few enough to stay in the first cache */
 
-/* Elements of a cable from the k-th on. */
+/* Returns the arguments of a kernel for the elements of a cable from the k-th on. */
 static fu_elements elements_from(const fu_cable *cable, const double *q, const double *v, int k)
 {
     const long at = cable->first + (long)k * cable->per_node;
@@ -13,13 +13,13 @@ static fu_elements elements_from(const fu_cable *cable, const double *q, const d
                          cable->per_node, cable->A_stride};
 }
 
-/* How many of n elements a block kernel takes. */
+/* Returns how many of n elements a block kernel takes. */
 static int in_blocks(fu_block kernel, int n)
 {
     return kernel ? n - n % FU_BLOCK_ELEMENTS : 0;
 }
 
-/* How many elements come next. */
+/* Returns how many elements come next. */
 static int chunk(const fu_cable *cable, int k)
 {
     return cable->n_elements - k < CHUNK ? cable->n_elements - k : CHUNK;
@@ -57,8 +57,8 @@ static void elastic_tangents(const fu_cable *cable, int n, const fu_elements *of
 
 typedef void (*work_on)(const fu_cable *cable, int n, const fu_elements *of, double *out);
 
-/* What a cable's elements give, `size` numbers each, to model->parts: groups of them on as many threads as the model
- * has. The groups are those of one thread and each has its place, so that the bits do not depend on the number. */
+/* Writes what a cable's elements give, `size` numbers each, to model->parts, with groups of them on as many threads as the
+ * model has. The groups are those of one thread and each has its own part, so that the bits do not depend on the number. */
 static void on_threads(const fu_model *model, const fu_cable *cable, const double *q, int group, int size, work_on work)
 {
     const int groups = (cable->n_elements + group - 1) / group;
@@ -72,7 +72,7 @@ static void on_threads(const fu_model *model, const fu_cable *cable, const doubl
     }
 }
 
-/* whether the compiler had OpenMP */
+/* Returns whether the compiler had OpenMP. */
 int fu_has_threads(void)
 {
 #ifdef _OPENMP
@@ -82,7 +82,7 @@ int fu_has_threads(void)
 #endif
 }
 
-/* f of the cable's dofs += what n elements from the k-th on give, one after the other */
+/* Adds what n elements from the k-th on give to f of the cable's dofs, one after the other. */
 static void add_forces(const fu_cable *cable, int k, int n, const double *part, double *f)
 {
     double *at = f + cable->first + (long)k * cable->per_node;
@@ -90,7 +90,7 @@ static void add_forces(const fu_cable *cable, int k, int n, const double *part, 
         for (int i = 0; i < cable->coordinates; ++i) at[i] += part[i];
 }
 
-/* f = M a */
+/* Computes f = M a. */
 void fu_mass_times(const fu_model *model, const double *q, const double *a, double *f)
 {
     double part[FU_MAX_COORDINATES];
@@ -105,7 +105,8 @@ void fu_mass_times(const fu_model *model, const double *q, const double *a, doub
     fu_bodies_mass_times(model, q, a, f);
 }
 
-/* f += elastic, damping and bodies' forces, as they stand on the left of the equations of motion; not springs */
+/* Adds elastic, damping and bodies' forces to f, as they stand on the left of the equations of motion; forces between
+ * points are not among them. */
 void fu_internal_forces(const fu_model *model, const double *q, const double *v, double *f)
 {
     double part[CHUNK * FU_MAX_COORDINATES];
@@ -126,7 +127,7 @@ void fu_internal_forces(const fu_model *model, const double *q, const double *v,
     fu_rate_forces(model, q, v, f);
 }
 
-/* f += discrete gradients of the elastic energies over a step */
+/* Adds the discrete gradients of the elastic energies over a step to f. */
 void fu_discrete_forces(const fu_model *model, const double *q, const double *q_next, double *f)
 {
     double part[FU_MAX_COORDINATES];
@@ -139,7 +140,7 @@ void fu_discrete_forces(const fu_model *model, const double *q, const double *q_
     }
 }
 
-/* f += damping and bodies' forces */
+/* Adds damping and bodies' forces to f. */
 void fu_rate_forces(const fu_model *model, const double *q, const double *v, double *f)
 {
     double part[CHUNK * FU_MAX_COORDINATES];
@@ -166,7 +167,7 @@ void fu_rate_forces(const fu_model *model, const double *q, const double *v, dou
     fu_bodies_forces(model, q, v, f);
 }
 
-/* K += mass M of an element */
+/* Adds the mass M of an element to K. */
 static void add_mass(const fu_cable *cable, double mass, double *K)
 {
     const int n = cable->coordinates, dim = cable->kernel->dim, vectors = n / dim;
@@ -175,7 +176,7 @@ static void add_mass(const fu_cable *cable, double mass, double *K)
             for (int d = 0; d < dim; ++d) K[(j * dim + d) * n + i * dim + d] += mass * cable->m[j * vectors + i];
 }
 
-/* system += K over n dofs from `first` on */
+/* Adds K over n dofs from `first` on to the system. */
 static void add_matrix(const fu_model *model, int first, int n, const double *K, fu_system *system)
 {
     const int rows = 3 * system->width + 1, diagonal = 2 * system->width, *unknown = model->unknown_of_dof + first;
@@ -194,7 +195,7 @@ static void add_matrix(const fu_model *model, int first, int n, const double *K,
     }
 }
 
-/* inertia M + stiffness d(forces)/dq + stiffness rate d(forces)/dv of the cables, added to a cleared system */
+/* Adds inertia M + stiffness d(forces)/dq + stiffness rate d(forces)/dv of the cables to a cleared system. */
 void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, double inertia, double rate,
                        double stiffness, fu_system *system)
 {
@@ -227,7 +228,7 @@ void fu_dynamic_matrix(const fu_model *model, const double *q, const double *v, 
     }
 }
 
-/* Sum of e'.M e'/2 over the elements (eq 3), and the bodies' share, J. */
+/* Returns the sum of e'.M e'/2 over the elements (eq 3), and the bodies' share, J. */
 double fu_kinetic_energy(const fu_model *model, const double *q, const double *v)
 {
     double total = 0.0, part[FU_MAX_COORDINATES];
@@ -255,7 +256,7 @@ double fu_elastic_energy(const fu_model *model, const fu_state *state)
     return total + fu_bodies_elastic_energy(model, q) + fu_coupling_energy(model, state);
 }
 
-/* of gravity */
+/* Returns the potential energy of gravity, J. */
 double fu_potential_energy(const fu_model *model, const double *q)
 {
     double total = 0.0;
@@ -267,7 +268,7 @@ double fu_potential_energy(const fu_model *model, const double *q)
     return total + fu_bodies_potential_energy(model, q);
 }
 
-/* power taken out by damping and friction; work: see `dissipation` in coupling.h */
+/* Returns the power that damping and friction take out, W; work: see `dissipation` in coupling.h. */
 double fu_dissipation(const fu_model *model, const fu_state *state, const fu_accelerator *work)
 {
     const double *q = state->q, *v = state->v;
@@ -296,7 +297,7 @@ double fu_length(const fu_model *model, int slide)
     return cable->n_elements * cable->length;
 }
 
-/* arc-length at an element's first node */
+/* Returns the arc-length at an element's first node, m. */
 double fu_element_start(const fu_model *model, int slide, int element)
 {
     return element * model->cables[model->slides[slide].cable].length;

@@ -10,7 +10,7 @@ static void of_rigid_mass_times(const fu_body *body, const double *b, const doub
     body->kernel->inertia_force(body->mass, body->J, rest, a, f);
 }
 
-/* the gyroscopic moment */
+/* Adds the gyroscopic moment to f. */
 static void of_rigid_forces(const fu_body *body, const double *b, const double *w, double *f)
 {
     const double none[RIGID_DOFS] = {0};
@@ -63,7 +63,7 @@ int fu_body_dofs(const fu_body *body)
     return body->kernel->velocity + body->modes;
 }
 
-/* f = M a, on the bodies' dofs */
+/* Computes f = M a on the bodies' dofs. */
 void fu_bodies_mass_times(const fu_model *model, const double *q, const double *a, double *f)
 {
     for (int k = 0; k < model->n_bodies; ++k) {
@@ -72,7 +72,7 @@ void fu_bodies_mass_times(const fu_model *model, const double *q, const double *
     }
 }
 
-/* f += what stands on the left of the equations of motion at zero accelerations */
+/* Adds what stands on the left of the equations of motion at zero accelerations to f. */
 void fu_bodies_forces(const fu_model *model, const double *q, const double *v, double *f)
 {
     for (int k = 0; k < model->n_bodies; ++k) {
@@ -81,8 +81,8 @@ void fu_bodies_forces(const fu_model *model, const double *q, const double *v, d
     }
 }
 
-/* system += weights.inertia M + weights.stiffness (K + weights.rate D) of a body at a state; psi: what moved it there, or
- * null. Without acceleration K is that of rest. */
+/* Adds weights.inertia M + weights.stiffness (K + weights.rate D) of a body at a state to the system; psi is what moved it
+ * there, or null. Without acceleration K is that of rest. */
 static void add_body(const fu_model *model, const fu_body *body, const fu_state *at, const double *psi, fu_weights weights,
                      fu_system *system)
 {
@@ -109,7 +109,7 @@ void fu_bodies_matrix(const fu_model *model, const fu_state *at, const double *p
     for (int k = 0; k < model->n_bodies; ++k) add_body(model, &model->bodies[k], at, psi, weights, system);
 }
 
-/* system += M of the bodies in which it is constant, or of the others */
+/* Adds M of the bodies in which it is constant, or of the others, to the system. */
 void fu_bodies_mass(const fu_model *model, const double *q, int constant, fu_system *system)
 {
     const fu_state at = {.q = (double *)q, .v = (double *)model->zero};
@@ -136,7 +136,7 @@ double fu_bodies_elastic_energy(const fu_model *model, const double *q)
     return total;
 }
 
-/* of gravity: what model->gravity says, and what depends on the attitude */
+/* Returns the potential energy of gravity: by model->gravity, and what depends on the attitude, J. */
 double fu_bodies_potential_energy(const fu_model *model, const double *q)
 {
     double total = 0.0;

@@ -5,12 +5,12 @@
 
 enum { RATES = 3, MOST = 9 }; /* u, u', u''; entries of a matrix in space */
 
-/* Moments of the fields u, u', u''; Y[r] + k dim^2: of mode k with them, k = 0 the undeformed place */
+/* Moments of the fields u, u', u''. Y[r] + k dim^2 are those of mode k with them; k = 0 is the undeformed position. */
 typedef struct {
     double S[RATES][3], X[RATES][MOST], *Y[RATES];
 } moments;
 
-/* Sums over the coefficients c = (1, eta), c' = (0, eta'), c'' = (0, eta''); null: zero. */
+/* Fills the moments: sums over the coefficients c = (1, eta), c' = (0, eta'), c'' = (0, eta''); null stands for zero. */
 static moments sum_of(const fu_body *body, const double *eta, const double *rate, const double *acceleration)
 {
     const fu_shape *shape = body->shape;
@@ -46,7 +46,7 @@ static const double *rate_of(const fu_body *body, const double *w)
     return w + body->kernel->velocity;
 }
 
-/* f += stiffness eta + damping eta', on the modes */
+/* Adds stiffness eta + damping eta' to f of the modes. */
 static void add_elasticity(const fu_body *body, const double *eta, const double *rate, double *f)
 {
     const int n = body->modes;
@@ -55,7 +55,7 @@ static void add_elasticity(const fu_body *body, const double *eta, const double 
             f[k] += body->shape->stiffness[k * n + l] * eta[l] + body->shape->damping[k * n + l] * rate[l];
 }
 
-/* f += inertia without accelerations, less weight */
+/* Adds the inertia force without accelerations, less weight, to f. */
 static void add_inertia(const fu_body *body, const double *b, const double *w, double *f)
 {
     const fu_modal_kernels *kernel = body->shape->kernel;
@@ -72,7 +72,7 @@ static void add_inertia(const fu_body *body, const double *b, const double *w, d
     }
 }
 
-/* M of eq 12 */
+/* Computes M of eq 12. */
 static void mass(const fu_body *body, const double *b, double *M)
 {
     const fu_shape *shape = body->shape;
@@ -186,7 +186,7 @@ static double dissipation(const fu_body *body, const double *b, const double *w)
 const fu_matter fu_modal_matter = {0,       mass_times,     forces,         mass,             tangent,
                                    kinetic_energy, elastic_energy, potential_energy, dissipation};
 
-/* Place, turn and their rates of a point, from its modes. */
+/* Computes displacement u and turn theta of a point from its modes, or their rates. */
 static void point_of(const fu_body *body, const fu_modal_attachment *attachment, const double *c, int is_rate, double u[3],
                      double theta[3])
 {
@@ -199,7 +199,7 @@ static void point_of(const fu_body *body, const fu_modal_attachment *attachment,
     }
 }
 
-/* A point of a modal body with its axes: P (dim x n) and T (turns x n) over all its dofs. */
+/* Computes the state of a point of a modal body with its axes: P (dim x n) and T (turns x n) are over all its dofs. */
 void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *attachment, const double *b, const double *w,
                                fu_modal_point *out, double *P, double *T)
 {
@@ -221,7 +221,7 @@ void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *a
     }
 }
 
-/* K (n x n): derivative by its dofs of P' f + T' m at fixed f, m */
+/* Computes K (n x n), the derivative by the body's dofs of P' f + T' m at fixed f and m. */
 void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *attachment, const double *b, const double *f,
                                const double *m, double *K)
 {
@@ -245,8 +245,8 @@ void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *a
     }
 }
 
-/* A force c along the axes of the section at a point, with which it turns: g its generalised force, K (n x n) the
- * derivative of g by the body's dofs. The row of a mode does not see the frame's motion. */
+/* Computes the generalised force g of a force c along the axes of the section at a point, with which it turns, and K (n x
+ * n), the derivative of g by the body's dofs. The frame's motion does not change the row of a mode. */
 void fu_modal_attachment_follower(const fu_body *body, const fu_modal_attachment *attachment, const double *b, const double *c,
                                   double *g, double *K)
 {

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-/* Configuration moved by a step of the dofs; `cayley`: by Cayley vectors, otherwise by rotation vectors. */
+/* Moves a configuration by a step of the dofs; `cayley`: by Cayley vectors, otherwise by rotation vectors. */
 static void move_all(const fu_model *model, double *q, const double *step, int cayley)
 {
     const int n_flexible = model->n_bodies ? model->bodies[0].dof : model->n_dof;
@@ -20,20 +20,20 @@ static void move_all(const fu_model *model, double *q, const double *step, int c
     }
 }
 
-/* Configuration moved by increments of the dofs: translations, and rotation vectors in body axes. */
+/* Moves a configuration by increments of the dofs: translations, and rotation vectors in body axes. */
 void fu_move(const fu_model *model, double *q, const double *dofs)
 {
     move_all(model, q, dofs, 0);
 }
 
-/* Configuration moved by a step psi: translation, and Theta in body axes with A_next = A cay(Theta). In the plane Theta is
- * twice the tangent of half the angle. */
+/* Moves a configuration by a step psi: translation, and Theta in body axes with A_next = A cay(Theta). In the plane Theta
+ * is twice the tangent of half the angle. */
 void fu_cayley_move(const fu_model *model, double *q, const double *psi)
 {
     move_all(model, q, psi, 1);
 }
 
-/* Half-way between two configurations; bodies have turned half of the way. */
+/* Computes the configuration half-way between two others; bodies have turned half of the way. */
 void fu_between(const fu_model *model, const double *q, const double *q_next, double *between)
 {
     const int n_flexible = model->n_bodies ? model->bodies[0].configuration : model->n_q;
@@ -46,19 +46,19 @@ void fu_between(const fu_model *model, const double *q, const double *q_next, do
     }
 }
 
-/* Rates of the entries of b by the velocity w: translation, and rotation about body axes. */
+/* Computes the rates of the entries of b from the velocity w: translation, and rotation about body axes. */
 void fu_body_rate(const fu_body_kernels *kernel, const double *b, const double *w, double *rate)
 {
     kernel->rate(b, w, rate);
 }
 
-/* A small change of the entries of b as an increment of its dofs: undoes `fu_body_rate`. */
+/* Turns a small change of the entries of b into an increment of its dofs: the inverse of `fu_body_rate`. */
 void fu_body_increment(const fu_body_kernels *kernel, const double *b, const double *change, double *increment)
 {
     kernel->increment(b, change, increment);
 }
 
-/* Rows times T, in the columns of a body's rotations. */
+/* Multiplies rows by T, in the columns of a body's rotations. */
 static inline void turn_columns(const fu_body_kernels *kernel, double *rows, int n_rows, int n_columns, int first, const double *T)
 {
     double *p = rows + first + kernel->dim;
@@ -75,8 +75,8 @@ static inline void turn_columns(const fu_body_kernels *kernel, double *rows, int
     }
 }
 
-/* Derivatives by a body's dofs, the first of them in column `first`, made derivatives by psi of `fu_move`: in the plane
- * they are. */
+/* Turns derivatives by a body's dofs, the first of them in column `first`, into derivatives by psi of `fu_move`; in the
+ * plane they are the same. */
 void fu_turn_columns(const fu_body_kernels *kernel, double *rows, int n_rows, int n_columns, int first, const double *psi)
 {
     double T[9];
@@ -85,7 +85,7 @@ void fu_turn_columns(const fu_body_kernels *kernel, double *rows, int n_rows, in
     turn_columns(kernel, rows, n_rows, n_columns, first, T);
 }
 
-/* The same for psi of `fu_cayley_move`. */
+/* Does the same for psi of `fu_cayley_move`. */
 void fu_cayley_columns(const fu_body_kernels *kernel, double *rows, int n_rows, int n_columns, int first, const double *psi)
 {
     double T[9];

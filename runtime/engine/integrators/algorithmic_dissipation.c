@@ -31,7 +31,7 @@
 
 static const double none[FU_MAX_RATES];
 
-/* A cable in motion, and the turn that is taken off it. */
+/* A cable in motion, and the turn that is subtracted from its motion. */
 typedef struct {
     const fu_cable *cable;
     const double *q, *v;
@@ -43,7 +43,7 @@ const fu_algorithmic *fu_algorithmic_of(const fu_run *run)
     return (const fu_algorithmic *)run->parameters;
 }
 
-/* Numbers of an element: g, and the energy of r. */
+/* The numbers of an element are g, and the energy of r. Returns how many they are. */
 static long numbers_of(const fu_cable *cable)
 {
     return cable->law->rates + 1;
@@ -58,7 +58,7 @@ long fu_algorithmic_state(const fu_run *run)
     return numbers;
 }
 
-/* Numbers of a cable's k-th element in an array of those of all. */
+/* Returns the numbers of a cable's k-th element in an array of those of all. */
 static double *state_of(const fu_cable *cable, double *numbers, int k)
 {
     return numbers + cable->dissipation_state + k * numbers_of(cable);
@@ -76,7 +76,7 @@ static int entry_of(const fu_cable *cable, int k)
     return cable->first + k * cable->per_node;
 }
 
-/* turned += omega x r over an element's vectors, r from the cable's first node */
+/* Adds omega x r over an element's vectors to `turned`; r is counted from the cable's first node. */
 static void turn(const moving *m, int k, const double omega[3], double *turned)
 {
     const fu_cable *cable = m->cable;
@@ -96,7 +96,7 @@ static double dot(int n, const double *a, const double *b)
     return sum;
 }
 
-/* f of D (weight dE - relaxed), and dE; returns the work of the one with the other */
+/* Computes f of D (weight dE - relaxed), and dE; returns the work of the one with the other. */
 static double element_force(const moving *m, int k, const double *relaxed, double *f, double *dE)
 {
     const fu_cable *cable = m->cable;
@@ -109,7 +109,7 @@ static double element_force(const moving *m, int k, const double *relaxed, doubl
     return dot(cable->coordinates, f, v);
 }
 
-/* N x = b, N symmetric and not negative; x is zero where N is */
+/* Solves N x = b, N symmetric and not negative; x is zero where N is. */
 static void solve(double N[9], double b[3], double x[3])
 {
     const double least = LEAST_PIVOT * fmax(N[0], fmax(N[4], N[8]));
@@ -137,7 +137,7 @@ static void solve(double N[9], double b[3], double x[3])
 
 typedef void (*stress_of)(const fu_run *run, const fu_cable *cable, int k, double *relaxed);
 
-/* `relaxed`, the part of dE that makes no stress, of the whole stress, of its second part, of none */
+/* Kinds of `relaxed`, the part of dE that makes no stress: of the whole stress, of its second part, of none. */
 static void of_both(const fu_run *run, const fu_cable *cable, int k, double *relaxed)
 {
     const fu_algorithmic *a = fu_algorithmic_of(run);
@@ -158,7 +158,7 @@ static void of_none(const fu_run *run, const fu_cable *cable, int k, double *rel
     memset(relaxed, 0, sizeof(double) * (size_t)cable->law->rates);
 }
 
-/* the cable, with the turn that leaves the forces of D (weight dE - relaxed) without a moment */
+/* Returns the cable, with the turn that leaves the forces of D (weight dE - relaxed) without a moment. */
 static moving without_turn(const fu_run *run, const fu_cable *cable, const double *q, const double *v, double weight,
                            stress_of stress)
 {
@@ -184,7 +184,7 @@ static moving without_turn(const fu_run *run, const fu_cable *cable, const doubl
     return m;
 }
 
-/* r_0 of a step of h from `now` */
+/* Computes r_0 of a step of h from `now`. */
 void fu_algorithmic_start(fu_run *run, double h)
 {
     const fu_algorithmic *a = fu_algorithmic_of(run);
@@ -203,7 +203,7 @@ void fu_algorithmic_start(fu_run *run, double h)
     }
 }
 
-/* force += those of the step from `now` by psi, q its middle */
+/* Adds the forces of the step from `now` by psi to `force`; q is its middle. */
 void fu_algorithmic_forces(fu_run *run, const double *q, double *force)
 {
     const double weight = fu_algorithmic_of(run)->weight;
@@ -219,7 +219,7 @@ void fu_algorithmic_forces(fu_run *run, const double *q, double *force)
     }
 }
 
-/* The step is taken: fills the dissipation state at its end. Returns the work of the stresses, J. */
+/* Fills the dissipation state at the end of a step that is taken. Returns the work of the stresses, J. */
 double fu_algorithmic_account(fu_run *run, const double *q)
 {
     const fu_algorithmic *a = fu_algorithmic_of(run);

@@ -23,7 +23,7 @@
 
 #define LEFT_BY_NEWTON 1e-17 /* of the way of a step */
 
-/* In the scratch, behind what algorithmic dissipation keeps there: the middle of the step, and forces. */
+/* In the scratch, after what algorithmic dissipation keeps there: the middle of the step, and forces. */
 typedef struct {
     double *q, *v, *force;
 } middle_view;
@@ -45,7 +45,7 @@ static long n_scratch(const fu_run *run)
     return run->model->n_dissipation_state + (long)run->model->n_q + 2L * run->model->n_dof;
 }
 
-/* The same as a state; its couplings' unknowns are those of `next`. */
+/* Returns the middle as a state; its couplings' unknowns are those of `next`. */
 static fu_state middle_of(const fu_run *run, double h)
 {
     const middle_view m = middle(run);
@@ -64,7 +64,7 @@ static void predict(fu_run *run, double h)
     fu_predict_own(run, h);
 }
 
-/* next.q, v, and the mean acceleration of the step, from psi; the middle */
+/* Computes next.q, v, the mean acceleration of the step, and its middle, from psi. */
 static void kinematics(fu_run *run, double h)
 {
     const fu_model *model = run->model;
@@ -86,7 +86,7 @@ static void kinematics(fu_run *run, double h)
     fu_between(model, now->q, next->q, m.q);
 }
 
-/* The equations over a step. */
+/* Returns the equations over a step. */
 static fu_equations equations(const fu_run *run, const fu_state *middle_state, double h)
 {
     return (fu_equations){&run->now, &run->next, middle_state, run->psi, h, {1.0, 2.0 / h, sigma(h)}};
@@ -110,7 +110,8 @@ static void residual(fu_run *run, double h)
     run->statistics.time_residual += fu_clock() - begin;
 }
 
-/* Elasticity half-way knows the stress of the mean vectors: a turn over the step shortens these, the mean stress not. */
+/* Adds to elasticity half-way, which has the stress of the mean vectors, the rest of the mean stress: a turn over the step
+ * shortens the mean vectors, and does not change the mean stress. */
 static void mean_stress(fu_run *run, double stiffness)
 {
     const fu_model *model = run->model;
@@ -169,7 +170,8 @@ static int step(fu_run *run, double h)
     return fu_newton_step(run, &newton, h);
 }
 
-/* Local error of positions, m: h^3/12 times the rate of acceleration, from the means of this step and the one before. */
+/* Returns the local error of positions, m: h^3/12 times the rate of acceleration, from the means of this step and the one
+ * before. */
 static double error(fu_run *run, double h)
 {
     const double factor = h * h * h / 12.0 / (0.5 * h + run->since);
@@ -178,7 +180,7 @@ static double error(fu_run *run, double h)
     return fu_filtered_size(run);
 }
 
-/* Work of the forces that are not conserved, as the step has it: energy balances to rounding. */
+/* Adds the work of the forces that are not conserved, as the step has it: energy balances to rounding. */
 static void account(fu_run *run, double h)
 {
     const fu_model *model = run->model;

@@ -6,7 +6,7 @@ double *fu_own(fu_run *run)
     return run->rhs + run->model->n_band + run->model->n_border_dof;
 }
 
-/* run->rhs of the dofs: minus the scaled sum in run->force. */
+/* Sets run->rhs of the dofs to minus the scaled sum in run->force. */
 void fu_scale_residual(fu_run *run, double scale)
 {
     const fu_model *model = run->model;
@@ -14,7 +14,7 @@ void fu_scale_residual(fu_run *run, double scale)
     for (int i = 0; i < model->n_band + model->n_border_dof; ++i) run->rhs[i] *= -scale;
 }
 
-/* minus the scaled residual, over the unknowns; run->force keeps the unscaled sum over the dofs */
+/* Sets run->rhs to minus the scaled residual, over the unknowns; run->force keeps the unscaled sum over the dofs. */
 void fu_residual(fu_run *run, const fu_equations *at)
 {
     const double begin = fu_clock();
@@ -30,7 +30,7 @@ void fu_residual(fu_run *run, const fu_equations *at)
     run->statistics.time_residual += fu_clock() - begin;
 }
 
-/* Derivative at `next` of the scaled residual by the unknowns, in run->newton. */
+/* Computes the derivative at `next` of the scaled residual by the unknowns, in run->newton. */
 void fu_matrix(fu_run *run, const fu_equations *at)
 {
     const fu_model *model = run->model;
@@ -42,7 +42,7 @@ void fu_matrix(fu_run *run, const fu_equations *at)
     if (w.stiffness != 0.0) fu_coupling_tangents(model, at, &run->newton);
 }
 
-/* the same of these weights, unfactored; unknowns move bodies from `next` */
+/* Computes the same for these weights, unfactored; unknowns move bodies from `next`. */
 void fu_matrix_of_weights(fu_run *run, fu_weights weights)
 {
     const fu_equations at = {.now = &run->now, .next = &run->next, .weights = weights};
@@ -50,7 +50,7 @@ void fu_matrix_of_weights(fu_run *run, fu_weights weights)
     run->factored = 0;
 }
 
-/* Statics: unknowns move `next`, from where it is. */
+/* Moves the static state `next` by these unknowns. */
 void fu_static_move(fu_run *run, const double *change)
 {
     const fu_model *model = run->model;
@@ -61,7 +61,7 @@ void fu_static_move(fu_run *run, const double *change)
     fu_touch(model, &run->next);
 }
 
-/* minus the sum of forces and the residuals of constraints, in run->rhs */
+/* Sets run->rhs to minus the sum of forces and the residuals of constraints. */
 void fu_static_residual(fu_run *run)
 {
     const fu_equations at = {.now = &run->now, .next = &run->next, .weights = {0.0, 0.0, 1.0}};

@@ -50,7 +50,7 @@ static double *powers(const fu_run *run, int k)
     return stage(run, tableau_of(run).stages + 2) + 2 * k;
 }
 
-/* rates of the configuration and of the velocities of a state whose accelerations are known */
+/* Computes the rates of the configuration and of the velocities of a state whose accelerations are known. */
 static void rates(const fu_model *model, const fu_state *state, double *rate)
 {
     const int n_flexible = model->n_bodies ? model->bodies[0].dof : model->n_dof;
@@ -64,7 +64,7 @@ static void rates(const fu_model *model, const fu_state *state, double *rate)
     memcpy(rate + model->n_q, state->acceleration, sizeof(double) * (size_t)model->n_dof);
 }
 
-/* y = the row's combination of the first n stages */
+/* Computes y, the row's combination of the first n stages. */
 static void combine(fu_run *run, const double *row, int n, double h, double *q, double *v)
 {
     const fu_model *model = run->model;
@@ -76,7 +76,7 @@ static void combine(fu_run *run, const double *row, int n, double h, double *q, 
     }
 }
 
-/* what stage k says: rates, and powers of what reads them */
+/* Computes what stage k gives: rates, and powers dissipated and external. */
 static void keep(fu_run *run, int k, const fu_state *state)
 {
     rates(run->model, state, stage(run, k));
@@ -84,7 +84,7 @@ static void keep(fu_run *run, int k, const fu_state *state)
     powers(run, k)[1] = fu_external_power(run, state, run->force);
 }
 
-/* next = now + what the row says, at t; each slide where C_l = 0; 0 when that was found */
+/* Sets next = now + the row's combination, at t, and each slide where C_l = 0. Returns 0 when that was found. */
 static int move_to(fu_run *run, const double *row, int n, double t, double h)
 {
     const fu_model *model = run->model;
@@ -130,7 +130,7 @@ static int step(fu_run *run, double h)
     return 0;
 }
 
-/* an estimate's size as a length: of positions, and of velocities times the step */
+/* Returns an estimate's size as a length: of positions, and of velocities times the step. */
 static double estimate(fu_run *run, const double *row, double h)
 {
     const fu_model *model = run->model;
@@ -152,7 +152,7 @@ static double estimate(fu_run *run, const double *row, double h)
     return fmax(fu_size(model, run->work), fu_size(model, v));
 }
 
-/* Two embedded estimates, joined as in DOP853. */
+/* Returns the two embedded estimates, joined as in DOP853. */
 static double error(fu_run *run, double h)
 {
     const tableau method = tableau_of(run);

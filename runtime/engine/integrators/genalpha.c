@@ -45,7 +45,7 @@ static double sigma(const parameters *g, double h)
     return g->beta * h * h * (1.0 - g->alpha_f) / (1.0 - g->alpha_m);
 }
 
-/* next.q, v, q'' from next.a */
+/* Computes next.q, v, q'' from next.a. */
 static void kinematics(fu_run *run, double h)
 {
     const fu_model *model = run->model;
@@ -68,7 +68,7 @@ static void kinematics(fu_run *run, double h)
     if (model->n_motions) fu_prescribe(model, next);
 }
 
-/* The equations at the end of a step. */
+/* Returns the equations at the end of a step. */
 static fu_equations equations(const fu_run *run, double h)
 {
     const parameters *g = scheme_of(run);
@@ -81,7 +81,7 @@ static void matrix(fu_run *run, double h)
     fu_matrix(run, &at);
 }
 
-/* the solution in run->rhs, applied to `next`; returns its size as a length */
+/* Applies the solution in run->rhs to `next`; returns its size as a length. */
 static double apply(fu_run *run, double h)
 {
     const double per_psi = 1.0 / (scheme_of(run)->beta * h * h), size = fu_spread_size(run);
@@ -91,7 +91,8 @@ static double apply(fu_run *run, double h)
     return size;
 }
 
-/* psi = h v: accelerations are those of vibrations that the step does not resolve, and do not predict where they lead. */
+/* Predicts psi = h v: accelerations are those of vibrations that the step does not resolve, and do not predict where they
+ * lead. */
 static void predict(fu_run *run, double h)
 {
     const double kept = 1.0 - 0.5 / scheme_of(run)->beta;

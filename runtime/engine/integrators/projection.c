@@ -9,13 +9,14 @@
 #define CLOSED 1e-13     /* of the extent: smaller gaps at the start are rounding */
 #define PROBED 1e-12     /* of the extent: where a probed mechanism is back on its joints */
 
-/* A failure where a coupling's own coordinates do not follow from the others. */
+/* Reports a failure where a coupling's own coordinates do not follow from the others. */
 static int lost(fu_run *run, const double *v, const fu_coupling *coupling)
 {
     return fu_fail(run, FU_LOST_RIDER, v, coupling->index);
 }
 
-/* Own coordinates of `next` where the others have them, from what the last step's slope predicts; 0 when they were found */
+/* Finds the couplings' own coordinates of `next` from the others, starting at what the last step's slope predicts. Returns
+ * 0 when they were found. */
 int fu_find_own(fu_run *run)
 {
     fu_state *next = &run->next;
@@ -36,7 +37,8 @@ static void normalise(const fu_model *model, double *q)
     }
 }
 
-/* Positions of a state back onto its joints, and s with them, until a correction is small enough; 0 when that converged */
+/* Brings positions of a state back onto its joints, and s with them, until a correction is small enough. Returns 0 when
+ * that converged. */
 static int close_gaps(fu_run *run, fu_state *state, double enough)
 {
     const fu_model *model = run->model;
@@ -52,7 +54,8 @@ static int close_gaps(fu_run *run, fu_state *state, double enough)
     }
 }
 
-/* A start with small gaps onto its joints, if it is not there; run->closed is how large they are. 0 when that converged. */
+/* Brings a start with small gaps onto its joints, if it is not there; run->closed is how large they are. Returns 0 when
+ * that converged. */
 int fu_close(fu_run *run)
 {
     const double rounding = CLOSED * run->extent;
@@ -61,7 +64,7 @@ int fu_close(fu_run *run)
     return run->closed > rounding && close_gaps(run, &run->now, rounding);
 }
 
-/* a state back onto its joints, after attitudes: positions, s, velocities; 0 when that converged */
+/* Brings a state back onto its joints after attitudes: positions, s, velocities. Returns 0 when that converged. */
 int fu_return_to_joints(fu_run *run, fu_state *state)
 {
     const fu_model *model = run->model;
@@ -73,8 +76,9 @@ int fu_return_to_joints(fu_run *run, fu_state *state)
     return 0;
 }
 
-/* Go from `now` along these dofs, made ones that joints allow and no longer than given, and back onto the joints: what is
- * `left` of the couplings' equations then, redundant ones too, in the places of their forces. Not zero where there is no way back. */
+/* Moves from `now` along these dofs, made ones that joints allow and no longer than given, and back onto the joints. `left`
+ * is what is left of the couplings' equations then, redundant ones too, in the order of their forces. Returns not zero
+ * where there is no way back. */
 int fu_probe_mechanism(fu_run *run, const double *along, double *left)
 {
     const fu_model *model = run->model;
@@ -93,8 +97,8 @@ int fu_probe_mechanism(fu_run *run, const double *along, double *left)
     return 0;
 }
 
-/* Accelerations of a state by eq 38, and with them the couplings' forces; what supports give, in run->force, where something
- * moves them. 0 when that was found. */
+/* Computes accelerations of a state by eq 38, and with them the couplings' forces; what supports give, in run->force, where
+ * something moves them. Returns 0 when that was found. */
 int fu_complete(fu_run *run, fu_state *state)
 {
     const fu_model *model = run->model;
@@ -104,14 +108,15 @@ int fu_complete(fu_run *run, fu_state *state)
     return info;
 }
 
-/* Whether a step is so much shorter than usual, as one to an event or an output time can be, that the rounding of positions
- * would rule a velocity or an acceleration that is made of them. */
+/* Returns whether a step is so much shorter than usual, as one to an event or an output time can be, that the rounding of
+ * positions would dominate a velocity or an acceleration that is made of them. */
 int fu_is_short(const fu_run *run, double h)
 {
     return h < SHORT_STEP * run->usual;
 }
 
-/* Such a step, of any length: `next` from `now` by its accelerations, and back onto the joints; 0 when that converged. */
+/* Makes such a step, of any length: `next` from `now` by its accelerations, and back onto the joints. Returns 0 when that
+ * converged. */
 int fu_coast(fu_run *run, double h)
 {
     const fu_model *model = run->model;

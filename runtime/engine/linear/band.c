@@ -6,7 +6,7 @@
  * number of groups: the columns of a group are eliminated at once. */
 #include "engine.h"
 
-/* A = L D L': L below the diagonal, 1/D on it; not zero where A is not positive definite. */
+/* Factors A = L D L', with L below the diagonal and 1/D on it. Returns not zero where A is not positive definite. */
 int fu_band_factor(const fu_lapack *lapack, int n, int width, double *A)
 {
     int stride = width + 1, info = 0;
@@ -21,7 +21,7 @@ int fu_band_factor(const fu_lapack *lapack, int n, int width, double *A)
     return info;
 }
 
-/* x <- A^-1 x, where x is zero before `first`. Entries of x beyond n are read and left as they are: there must be
+/* Replaces x by A^-1 x, where x is zero before `first`. Entries of x beyond n are read and left as they are: there must be
  * FU_BAND_BEYOND(width) of them, all finite. */
 void fu_band_solve(int n, int width, const double *A, int first, double *x)
 {

@@ -36,13 +36,14 @@ static int size_of(const fu_system *s, int chain)
     return s->chains[chain + 1] - s->chains[chain];
 }
 
-/* a chain's columns of L */
+/* Returns a chain's columns of L. */
 static double *factor_of(const fu_system *s, int chain)
 {
     return s->L + (s->width + 1) * ((long)s->chains[chain] + FU_BAND_GROUP * chain);
 }
 
-/* The lower half of a chain's K as band.c wants it; zero where K is not symmetric or its diagonal not positive. */
+/* Copies the lower half of a chain's K as band.c takes it; returns zero where K is not symmetric or its diagonal not
+ * positive. */
 static int pack(fu_system *s, int chain)
 {
     const int n = size_of(s, chain), width = s->width, rows = 3 * width + 1, stride = width + 1;
@@ -76,7 +77,7 @@ int fu_system_factor_band(fu_system *s, const fu_lapack *lapack)
     return 0;
 }
 
-/* x <- K^-1 x in a chain, where x is zero before the row `first` */
+/* Replaces x by K^-1 x in a chain, where x is zero before the row `first`. */
 static void solve_chain(const fu_system *s, const fu_lapack *lapack, int chain, int first, double *x)
 {
     int n = size_of(s, chain), start = s->chains[chain], width = s->width, rows = 3 * width + 1, one = 1, info;
@@ -86,7 +87,7 @@ static void solve_chain(const fu_system *s, const fu_lapack *lapack, int chain, 
                        x + start, &n, &info);
 }
 
-/* piece of a row of C, times the rows `of` a column */
+/* Returns a piece of a row of C times the rows `of` a column. */
 static double times(const fu_system *s, const fu_piece *p, fu_span of, const double *x)
 {
     const double *row = s->C + (long)p->k * s->n;
@@ -96,8 +97,8 @@ static double times(const fu_system *s, const fu_piece *p, fu_span of, const dou
     return sum;
 }
 
-/* The rows that count of column k of X in a chain, by halves: it fades away from what it touches, in the end to numbers
- * so small that the processor is slow with them. Returns how many pieces that is. */
+/* Finds the rows that count of column k of X in a chain, by halves: the column decays away from what it couples to, in the
+ * end to numbers so small that the processor is slow with them. Returns how many pieces that is. */
 int fu_pieces(const fu_system *s, int k, int chain, const double *x, fu_piece *pieces)
 {
     const int begin = s->chains[chain], end = s->chains[chain + 1], middle = (begin + end) / 2;
@@ -114,7 +115,7 @@ int fu_pieces(const fu_system *s, int k, int chain, const double *x, fu_piece *p
     return n;
 }
 
-/* column k of X = K^-1 B in a chain */
+/* Computes column k of X = K^-1 B in a chain. */
 static void solve_column(fu_system *s, const fu_lapack *lapack, int k, int chain)
 {
     const int begin = s->chains[chain], end = s->chains[chain + 1];
@@ -128,7 +129,7 @@ static void solve_column(fu_system *s, const fu_lapack *lapack, int k, int chain
     s->n_columns += fu_pieces(s, k, chain, x, s->columns + s->n_columns);
 }
 
-/* Columns of X and pieces of C, but those that stay. */
+/* Computes columns of X and pieces of C, but for those that stay. */
 static void couple(fu_system *s, const fu_lapack *lapack)
 {
     s->n_columns = s->constant_columns;
@@ -142,7 +143,7 @@ static void couple(fu_system *s, const fu_lapack *lapack)
         }
 }
 
-/* Let the first columns and rows of the border stay as they are, beside the band, which is factored. */
+/* Lets the first columns and rows of the border stay as they are, beside the band, which is factored. */
 void fu_system_keep_border(fu_system *s, const fu_lapack *lapack, int columns)
 {
     couple(s, lapack);
@@ -151,7 +152,7 @@ void fu_system_keep_border(fu_system *s, const fu_lapack *lapack, int columns)
     s->constant_rows = s->n_rows;
 }
 
-/* Schur complement of the factored band: D <- D - C K^-1 B, factored. */
+/* Factors the Schur complement of the factored band, D - C K^-1 B, in D. */
 int fu_system_factor_border(fu_system *s, const fu_lapack *lapack)
 {
     int m = s->m, info = 0;
@@ -164,8 +165,8 @@ int fu_system_factor_border(fu_system *s, const fu_lapack *lapack)
     return info;
 }
 
-/* In place: right-hand side to solution; x goes on FU_BAND_BEYOND beyond the unknowns. These are made zero here: a step
- * that has overflowed leaves no numbers in them, and no later step would have any. */
+/* Replaces the right-hand side by the solution; x has FU_BAND_BEYOND entries beyond the unknowns. These are made zero here:
+ * a step that has overflowed leaves no numbers in them, and no later step would have any. */
 void fu_system_solve(const fu_system *s, const fu_lapack *lapack, double *x)
 {
     int m = s->m, one = 1, info;

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-/* Rows of the band's storage, as LAPACK wants it for a factorisation with pivots. */
+/* Returns the rows of the band's storage, as LAPACK takes it for a factorisation with pivots. */
 static long storage_rows(const fu_system *s)
 {
     return 3L * s->width + 1;

@@ -16,7 +16,7 @@ static row row_of(const fu_model *model, const int *unknown)
     return (row){start[1] - start[0], model->combination_unknown + start[0], model->combination_value + start[0]};
 }
 
-/* x = T' force, over the band and the border's dofs */
+/* Computes x = T' force, over the band and the border's dofs. */
 void fu_gather(const fu_model *model, const double *force, double *x)
 {
     for (int i = 0; i < model->n_band + model->n_border_dof; ++i) x[i] = 0.0;
@@ -30,7 +30,7 @@ void fu_gather(const fu_model *model, const double *force, double *x)
     }
 }
 
-/* dofs = T x */
+/* Computes dofs = T x. */
 void fu_spread(const fu_model *model, const double *x, double *dofs)
 {
     for (int i = 0; i < model->n_dof; ++i) {
@@ -43,7 +43,7 @@ void fu_spread(const fu_model *model, const double *x, double *dofs)
     }
 }
 
-/* Number under which `fu_add` knows the k-th unknown beyond the dofs. */
+/* Returns the number that `fu_add` takes for the k-th unknown beyond the dofs. */
 int fu_extra(const fu_model *model, int k)
 {
     return model->n_dof + k;
@@ -55,7 +55,7 @@ static void touch(fu_span *span, int row)
     if (row >= span->end) span->end = row + 1;
 }
 
-/* system += value at these places of the unknowns */
+/* Adds a value to the system at these numbers of unknowns. */
 static void add(fu_system *s, int row, int column, double value)
 {
     const int n = s->n;
@@ -72,7 +72,7 @@ static void add(fu_system *s, int row, int column, double value)
         s->D[(long)(column - n) * s->m + row - n] += value;
 }
 
-/* system += value at dofs (or extra unknowns) i, j: T' value T; null: nothing */
+/* Adds a value at dofs (or extra unknowns) i, j to the system, T' value T; does nothing where the system is null. */
 void fu_add(const fu_model *model, fu_system *system, int i, int j, double value)
 {
     if (!system) return;
@@ -89,7 +89,7 @@ void fu_add(const fu_model *model, fu_system *system, int i, int j, double value
             add(system, a.unknown[k], b.unknown[m], value * a.value[k] * b.value[m]);
 }
 
-/* largest of what the dofs move points by, as a length; a NaN where one is */
+/* Returns the largest of what the dofs move points by, as a length; a NaN where one is. */
 double fu_size(const fu_model *model, const double *dofs)
 {
     const double *weight = model->weight;

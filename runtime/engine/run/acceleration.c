@@ -7,7 +7,7 @@
 #define SETTLED 1e-15 /* change of R by a sweep, over the force */
 #define NEARLY 1e-7   /* the same where rounding may rule it */
 
-/* Constraint rows of all couplings. */
+/* Computes the constraint rows of all couplings. */
 static void evaluate(const fu_model *model, const fu_state *state, fu_accelerator *work)
 {
     ++work->evaluated;
@@ -26,7 +26,8 @@ static void evaluate(const fu_model *model, const fu_state *state, fu_accelerato
     }
 }
 
-/* M is constant, that of rigid bodies by body axes: its band is factored once, and its border's columns are solved. */
+/* Factors the band of M once, and solves for the columns of its border. M is constant, that of rigid bodies by body
+ * axes. */
 int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
@@ -40,7 +41,7 @@ int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work)
     return !s->definite; /* else it would be in K, which the Newton matrix takes */
 }
 
-/* The border of M. */
+/* Fills the border of M. */
 static void border(const fu_model *model, const double *q, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
@@ -51,7 +52,7 @@ static void border(const fu_model *model, const double *q, fu_accelerator *work)
     fu_bodies_mass(model, q, 0, s);
 }
 
-/* Border of [M H'; H 0] (eq 11) at a state whose terms are evaluated. */
+/* Fills the border of [M H'; H 0] (eq 11) at a state whose terms are evaluated. */
 static int factor_border(const fu_model *model, const fu_state *state, fu_accelerator *work)
 {
     fu_system *s = &work->mass;
@@ -72,7 +73,7 @@ static int factor_border(const fu_model *model, const fu_state *state, fu_accele
     return fu_system_factor_border(s, model->lapack);
 }
 
-/* Solve [M H'; H 0] with forces on the dofs and right sides of the joints; multipliers are scaled back. */
+/* Solves [M H'; H 0] with forces on the dofs and right sides of the joints; multipliers are scaled back. */
 static void solve(const fu_model *model, fu_accelerator *work, const double *force, double *solution)
 {
     double *x = work->rhs, *lambda = x + model->n_band + model->n_border_dof;
@@ -85,7 +86,7 @@ static void solve(const fu_model *model, fu_accelerator *work, const double *for
         for (int c = 0; c < work->rows[r].max_multipliers; ++c) lambda[work->rows[r].first + c] *= work->rows[r].scale[c];
 }
 
-/* -sum_k H_ck x_k: what the right sides lose to known accelerations or velocities */
+/* Returns -sum_k H_ck x_k: what known accelerations or velocities take off the right sides. */
 static double minus_H(const fu_rows *rows, int c, const double *x)
 {
     double sum = 0.0;
@@ -93,8 +94,8 @@ static double minus_H(const fu_rows *rows, int c, const double *x)
     return sum;
 }
 
-/* Forces that depend on these multipliers, into work->work; null: on those of the state. Returns the largest change over the
- * force, of the coupling that work->self_locking tells. */
+/* Adds the forces that depend on these multipliers, or on those of the state where null, to work->work. Returns the largest
+ * change over the force, of the coupling of index work->self_locking. */
 static double react(const fu_model *model, const fu_state *state, fu_accelerator *work, const double *lambda)
 {
     double largest = 0.0;
@@ -117,9 +118,9 @@ static void reacted(const fu_model *model, const fu_state *state, fu_accelerator
     }
 }
 
-/* Accelerations and multipliers, in work->rhs, by the forces in work->work; by sweeps where friction depends on the
- * multipliers. Not zero where these do not converge: where friction presses the rider on the cable by more than what it
- * comes from, there is no solution (Painleve's). */
+/* Computes accelerations and multipliers, in work->rhs, from the forces in work->work; by sweeps where friction depends on
+ * the multipliers. Returns not zero where these do not converge: where friction presses the rider on the cable by more than
+ * what it comes from, there is no solution (Painleve's paradox). */
 static int solve_friction(const fu_model *model, const fu_state *state, fu_accelerator *work, double *acceleration)
 {
     double *lambda = work->rhs + model->n_band + model->n_border_dof, last = INFINITY;
@@ -140,7 +141,7 @@ static int solve_friction(const fu_model *model, const fu_state *state, fu_accel
     return 0;
 }
 
-/* S = H M^-1 H' (multipliers x multipliers) at a state: singular where joints hold the same. */
+/* Computes S = H M^-1 H' (multipliers x multipliers) at a state: it is singular where joints constrain the same motion. */
 int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *work, double *S)
 {
     fu_system *s = &work->mass;
@@ -167,7 +168,7 @@ int fu_compliance(const fu_model *model, const fu_state *state, fu_accelerator *
     return info;
 }
 
-/* what supports give to each dof, zero to rounding where it is free */
+/* Computes what supports give to each dof, zero to rounding where it is free. */
 static void reactions(const fu_model *model, const fu_state *state, fu_accelerator *work, const double *acceleration,
                       const double *lambda, double *reaction)
 {
@@ -182,7 +183,7 @@ static void reactions(const fu_model *model, const fu_state *state, fu_accelerat
     }
 }
 
-/* Eq 38. `reaction` may be null. */
+/* Computes accelerations and multipliers by eq 38. `reaction` may be null. */
 int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerator *work, double *acceleration,
                      double *reaction)
 {
@@ -208,14 +209,14 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
     return 0;
 }
 
-/* A constraint that has been struck: the rate at which it opens again. */
+/* A constraint that has been struck, and the rate at which it opens again. */
 typedef struct {
     int row, constraint;
     double rate;
 } strike;
 
-/* change = the smallest (in the mass norm) change of the dofs with H change = -C_m, or, of velocities, -H v; of these the
- * constraint that has been `struck`, which may be null, gets its rate */
+/* Computes the smallest (in the mass norm) change of the dofs with H change = -C_m, or, of velocities, -H v; of these the
+ * constraint that has been `struck`, which may be null, gets its rate. */
 static int project(const fu_model *model, const fu_state *state, fu_accelerator *work, int of_velocities,
                    const strike *struck, double *change)
 {
@@ -235,20 +236,20 @@ static int project(const fu_model *model, const fu_state *state, fu_accelerator 
     return 0;
 }
 
-/* change = an increment of the dofs that makes constraints zero, to first order */
+/* Computes an increment of the dofs that makes constraints zero, to first order. */
 int fu_project_positions(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change)
 {
     return project(model, state, work, 0, 0, change);
 }
 
-/* change = a change of v that makes H v = 0, or minus what drives them */
+/* Computes a change of v that makes H v = 0, or minus what drives the constraints. */
 int fu_project_velocities(const fu_model *model, const fu_state *state, fu_accelerator *work, double *change)
 {
     return project(model, state, work, 1, 0, change);
 }
 
-/* change = that of v where a constraint is struck: M change + H' L = 0, so that momentum changes by what the constraints give
- * alone; minus `rate` is what that constraint changes by afterwards */
+/* Computes the change of v where a constraint is struck: M change + H' L = 0, so that momentum changes by what the
+ * constraints give alone; minus `rate` is what that constraint changes by afterwards. */
 int fu_strike(const fu_model *model, const fu_state *state, fu_accelerator *work, int row, int constraint, double rate,
               double *change)
 {

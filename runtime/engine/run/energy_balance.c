@@ -6,7 +6,7 @@
 #define LEAST_MOTION 1e-10 /* of the largest coordinate: less is what step control and rounding leave of rest */
 #define ROUNDING 1e-14     /* of the energies */
 
-/* Power of what drives constraints, by the multipliers that eq 38 left. */
+/* Returns the power of what drives constraints, by the multipliers that eq 38 left, W. */
 static double driving_power(const fu_run *run)
 {
     const fu_accelerator *work = &run->accelerator;
@@ -18,14 +18,15 @@ static double driving_power(const fu_run *run)
     return power;
 }
 
-/* power that goes to heat at a state: in friction by the forces that a Newton method solves for, else by those of eq 38 */
+/* Returns the power that goes to heat at a state, W: in friction by the forces that a Newton method solves for, else by
+ * those of eq 38. */
 double fu_dissipated_power(const fu_run *run, const fu_state *state)
 {
     return fu_dissipation(run->model, state, run->integrator->newton ? 0 : &run->accelerator);
 }
 
-/* power of the loads, of what drives constraints, by the last call of fu_accelerations, and, with the forces that
- * the supports give, of the motions */
+/* Returns the power of the loads, of what drives constraints, by the last call of fu_accelerations, and, with the forces
+ * that the supports give, of the motions, W. */
 double fu_external_power(fu_run *run, const fu_state *state, const double *reaction)
 {
     const fu_model *model = run->model;
@@ -42,9 +43,9 @@ double fu_external_power(fu_run *run, const fu_state *state, const double *react
     return power;
 }
 
-/* What drives give in the step just made: by the force of eq 38, as it is reported, since the multipliers that Newton's
- * method finds are off by h^2 of it, and by the trapezoidal rule less its error, -h^3/12 of the second derivative of the
- * power, which three instants tell. Returns what that is beyond the trapezoidal rule. */
+/* Returns by how much the work of drives in the step just made differs from the trapezoidal rule. It is that of the force
+ * of eq 38, as it is reported, since the multipliers that Newton's method finds are off by h^2 of it. The error of the
+ * rule, -h^3/12 of the second derivative of the power, is estimated from three instants. */
 static double beyond_trapezoid(fu_run *run, double h)
 {
     const double power = driving_power(run);
@@ -60,7 +61,8 @@ static double beyond_trapezoid(fu_run *run, double h)
     return beyond;
 }
 
-/* The step just made, by the trapezoidal rule, as good as a method of order 2; drives better. */
+/* Adds the work of the step just made, by the trapezoidal rule, which is as exact as a method of order 2; that of drives is
+ * more exact. */
 void fu_account_trapezoid(fu_run *run, double h)
 {
     const int driven = run->model->n_driven > 0;
@@ -88,13 +90,14 @@ void fu_impact(fu_run *run, const double *change, double restitution)
     if (model->n_driven || model->n_motions) run->external += fu_kinetic_energy(model, now->q, now->v) - before + lost;
 }
 
-/* Whether anything moves beyond what step control and rounding leave of a scene at rest */
+/* Returns whether anything moves beyond what step control and rounding leave of a scene at rest. */
 int fu_moves(const fu_run *run)
 {
     return run->motion > LEAST_MOTION * run->extent;
 }
 
-/* What rounding may make of the sum of the energies, J: that of coordinates far from the origin under gravity among it */
+/* Returns what rounding may make of the sum of the energies, J: that of coordinates far from the origin under gravity among
+ * it. */
 static double rounding(const fu_run *run, const double energies[FU_ENERGIES])
 {
     double sum = 0.0, weight = 0.0;
@@ -103,8 +106,8 @@ static double rounding(const fu_run *run, const double energies[FU_ENERGIES])
     return ROUNDING * (sum + weight * run->extent);
 }
 
-/* The energy balance at an output: kinetic, elastic, potential, dissipated, and minus external energy. Not zero where
- * energy has come from nowhere, as where an explicit method's step is beyond its limit. */
+/* Computes the energy balance at an output: kinetic, elastic, potential, dissipated, and minus external energy. Returns not
+ * zero where energy has grown without a source, as where an explicit method's step is beyond its limit. */
 int fu_check_energy_balance(fu_run *run, const double energies[FU_ENERGIES], int first)
 {
     fu_energy_balance *balance = &run->balance;

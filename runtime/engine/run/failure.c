@@ -1,7 +1,7 @@
 /* Why a step failed, and where: what a message can name. */
 #include "engine.h"
 
-/* Remember the cause, the dof that moves farthest (or is no number), and the joint; returns 1. */
+/* Records the cause, the dof that moves farthest (or is no number), and the slide; returns 1. */
 int fu_fail(fu_run *run, int cause, const double *dofs, int slide)
 {
     const fu_model *model = run->model;
@@ -17,7 +17,7 @@ int fu_fail(fu_run *run, int cause, const double *dofs, int slide)
     return 1;
 }
 
-/* The same by the unknown at which a matrix is singular. */
+/* Records the same from the unknown at which a matrix is singular. */
 int fu_fail_at(fu_run *run, int cause, int unknown)
 {
     const fu_model *model = run->model;
@@ -30,7 +30,7 @@ int fu_fail_at(fu_run *run, int cause, int unknown)
     return 1;
 }
 
-/* The same where eq 38 has no solution: by friction that jams, or by its matrix. */
+/* Records the same where eq 38 has no solution: because of self-locking friction, or of its matrix. */
 int fu_fail_eq38(fu_run *run)
 {
     const int self_locking = run->accelerator.self_locking;

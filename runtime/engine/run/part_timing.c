@@ -10,7 +10,7 @@
 
 enum { RESIDUAL, TANGENT, ROWS, OWN_COORDINATES, WORKS };
 
-/* An operation of a coupling at `now`, with what it leaves in scratch. */
+/* Runs an operation of a coupling at `now`, with what it leaves in scratch. */
 static void work_of(fu_run *run, const fu_coupling *c, int what)
 {
     const fu_model *model = run->model;
@@ -26,7 +26,7 @@ static void work_of(fu_run *run, const fu_coupling *c, int what)
     }
 }
 
-/* seconds of one call; of many parts each has little time, and the first call tells */
+/* Returns the seconds of one call; where there are many parts each has little time, and the first call decides. */
 static double timed(fu_run *run, const fu_coupling *c, int what, double budget)
 {
     double begin = fu_clock();
@@ -42,7 +42,7 @@ static double timed(fu_run *run, const fu_coupling *c, int what, double budget)
     return fastest;
 }
 
-/* seconds a step, of each coupling */
+/* Computes the seconds a step of each coupling. */
 void fu_part_timing(fu_run *run, double *seconds)
 {
     const fu_model *model = run->model;

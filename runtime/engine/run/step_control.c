@@ -19,14 +19,14 @@
 #define FIXED_PART 1e-2     /* of the last step's error: likewise, with a fixed step */
 #define FIXED_MOST 1e-14    /* of the extent: likewise */
 
-/* The step that ends at the target, or one of equal steps to there, none larger than wanted. */
+/* Returns the step that ends at the target, or one of equal steps to there, none larger than wanted. */
 double fu_fit_step(double remaining, double want)
 {
     const double pieces = ceil(remaining / want * (1.0 - ROUNDED));
     return pieces <= 1.0 ? remaining : remaining / pieces;
 }
 
-/* Tolerances of a step: of its error, of Newton, and where rounding begins. Returns the first, m. */
+/* Sets the tolerances of a step: of its error, of Newton, and where rounding begins. Returns the first, m. */
 double fu_allow(fu_run *run, double h)
 {
     run->round_off = ROUND_OFF * fmax(run->extent, run->motion);
@@ -44,9 +44,9 @@ double fu_allow(fu_run *run, double h)
     return run->allowed = allowed;
 }
 
-/* The next step by the last one's error over what is allowed: the error falls with the power order + 1 of the step,
- * what is allowed with the first. Small changes are not worth a new factorisation. After a step that failed the next ones
- * stay below it for a while. */
+/* Returns the next step from the last one's error over what is allowed: the error falls with the power order + 1 of the
+ * step, what is allowed with the first. Small changes are not worth a new factorisation. After a step that failed the next
+ * ones stay below it for a while. */
 void fu_adapt_step(fu_run *run, double h, double ratio)
 {
     const double factor = fmin(LARGEST_FACTOR, CAUTIOUS * pow(fmax(ratio, LEAST_RATIO), -1.0 / run->order));
@@ -56,7 +56,7 @@ void fu_adapt_step(fu_run *run, double h, double ratio)
     else if (factor < CAUTIOUS) run->h = h * factor;
 }
 
-/* The step after one whose error was too large. */
+/* Returns the step after one whose error was too large. */
 double fu_shrink_step(fu_run *run, double h, double ratio)
 {
     double want = h * fmax(LEAST_FACTOR, CAUTIOUS * pow(ratio, -1.0 / run->order));
@@ -67,7 +67,7 @@ double fu_shrink_step(fu_run *run, double h, double ratio)
     return run->h = want;
 }
 
-/* The step after one that could not be made. */
+/* Returns the step after one that could not be made. */
 double fu_retry_step(fu_run *run, double h)
 {
     const double want = AFTER_FAILURE * h;
