@@ -39,7 +39,7 @@ def test_a_state_without_a_compliance(S):
     engine = failed(model, S, "not_finite")
     assert redundant(model, engine) == ""
     said = stopped(model, engine, "no_convergence", RunSettings(duration=1))
-    assert said.startswith('no step converged at t = 0.5 s of 1 s after 3 steps down to 1e-09 s: body "A" runs away')
+    assert said.startswith('no step converged at t = 0.5 s of 1 s after 3 steps down to 1e-09 s: body "A" diverges')
 
 
 @pytest.mark.parametrize("S", [np.nan, None])

@@ -5,6 +5,7 @@ import re
 import funicular as fu
 import pytest
 from funicular.parts.joint import Joint
+from funicular.parts.support import Clamp
 from funicular.scene_file import loads
 
 NOW = {"second_moment_yy": "second_moment_about_z", "second_moment_zz": "second_moment_about_y",
@@ -47,6 +48,11 @@ def test_attributes_of_a_joint():
     with refused(AttributeError, "'Joint' object has no attribute 'pair': it is called \"joint_kind\" now"):
         _ = joint.pair
     assert joint.joint_kind == "spherical"
+
+
+def test_keywords_of_a_clamp():
+    with refused(fu.SceneError, 'clamp on "wire": "hold" is not known here; it is called "fix" now'):
+        Clamp(cable="wire", s=0, fix="all")
 
 
 @pytest.mark.parametrize("old", NOW)

@@ -1,4 +1,4 @@
-"""Joints that hold or drive what another part holds or drives already."""
+"""Joints that fix or drive what another part fixes or drives already."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..parts.locations import Node, joined, point_of, support_of
 from ..parts.scene_data import SceneData
 from ..parts.support import Motion, Support
 from ..parts.validation import show
-from .placement import HELD
+from .placement import SUPPORTED
 
 
 def check_supports(scene: SceneData, joint: Joint) -> None:
@@ -21,15 +21,15 @@ def check_supports(scene: SceneData, joint: Joint) -> None:
         if (node := _node(scene, end)) is None:
             continue
         support = support_of(scene, node)
-        if other.on is None and support is not None and _holds_position(support):
-            raise SceneError(joint.where, f"holds {called(end)} to the ground, but it is {HELD[support.kind]} already",
-                             "leave one of them out")
+        if other.on is None and support is not None and _fixes_position(support):
+            raise SceneError(joint.where, f"fixes {called(end)} to the ground, but it is {SUPPORTED[support.kind]} "
+                             "already", "leave one of them out")
         if _node(scene, other) in joined(scene, node):
-            raise SceneError(joint.where, f"holds {called(end)} to {called(other)}, but their nodes are joined "
+            raise SceneError(joint.where, f"joins {called(end)} to {called(other)}, but their nodes are joined "
                              "already", "leave one of them out")
 
 
-def _holds_position(support: Support) -> bool:
+def _fixes_position(support: Support) -> bool:
     """Return whether it leaves no direction free."""
     return not isinstance(support, Motion) or (support.displacement is not None and None not in support.displacement)
 
@@ -71,7 +71,7 @@ def _clash(scene: SceneData, joint: Joint, other: Joint, ends: tuple[Attachment,
         if (same_points and kinds == {"distance"}) or (parallel and "distance" not in kinds):
             return f'drives the {DRIVEN[joint.joint_kind]} of {between}, as joint "{other.name}" does'
     if same_points and (kinds <= set(POINTS) or kinds == {"distance"} or (kinds <= set(LINES) and parallel)):
-        return f'holds the same of {between} as joint "{other.name}"'
+        return f'constrains the same motion of {between} as joint "{other.name}"'
     return None
 
 

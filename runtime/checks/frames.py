@@ -80,7 +80,7 @@ def slide_axes(scene: SceneData, slide: Slide) -> JointAxes:
     """Return the axes that a slide of frame "tangent" or "section" keeps together: a in the cable's frame, b in the
     rider's.
 
-    z along the tangent, x along the height, y along the width. With roll "held" the cable's frame is that of
+    z along the tangent, x along the height, y along the width. With roll "fixed" the cable's frame is that of
     `cable_frame` with the slide's up, at every s; with roll "free" the turn about z is free.
     """
     along = scene.cables[slide.along]

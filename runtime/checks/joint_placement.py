@@ -49,7 +49,7 @@ def check_joint(scene: SceneData, joint: Joint) -> None:
     gap, where = _gap(scene, joint)
     most = MOVABLE * scene_size(scene, joint)
     if gap > most:
-        raise SceneError(joint.where, where, "let them start as the joint holds them; only a gap of less than "
+        raise SceneError(joint.where, where, "let them start as the joint needs them; only a gap of less than "
                          f"{most:.3g} m is closed")
 
 
@@ -80,7 +80,7 @@ def _completed(scene: SceneData, joint: Joint) -> dict:
     distance = float(np.linalg.norm(points[1] - points[0]))
     if not distance > 1e-12 * (1 + np.abs(points).max()):
         raise SceneError(joint.where, f"both ends are at {show(points[0], 'm')}: its direction is lost",
-                         'take kind="spherical", or hold them apart at the start')
+                         'take kind="spherical", or draw them apart')
     return {"length": distance} if joint.length is None and joint.distance is None else {}
 
 

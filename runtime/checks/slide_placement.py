@@ -59,7 +59,7 @@ def _check_rider(scene: SceneData, slide: Slide) -> None:
             continue
         if other.rider == slide.rider:
             what = f'body "{slide.body}"' if slide.body_s is None else f'cable "{slide.body}"'
-            raise SceneError(slide.where, f'holds the same point of {what} on cable "{slide.along}" as slide '
+            raise SceneError(slide.where, f'puts the same point of {what} on cable "{slide.along}" as slide '
                              f'"{other.name}"', "leave one of them out, or give them different points "
                              + ("at" if slide.body_s is None else "body_s"))
         both = slide.prescribed is not None and other.prescribed is not None

@@ -9,7 +9,8 @@ from ..errors import SceneError
 from .model import Model
 
 SAME, NEARLY = 1e-12, 1e-8
-"""Of the compliance of an equation: what is left of it where others hold the same; or nearly, if a run failed."""
+"""Of the compliance of an equation: what is left of it where others constrain the same motion; or nearly, if a run
+failed."""
 
 SHARE = 1e-6
 """Of another equation in one that follows: less is none."""
@@ -37,7 +38,7 @@ def drop_redundant_rows(model: Model, engine) -> list[str]:
         return []  # here, too
     spare = _spare(model)
     if locked := [owner[k] for k, own in enumerate(np.diag(S)) if own == 0 and k not in spare]:
-        raise SceneError("scene", f"is over-constrained: {_listed(locked)} between places that supports hold already",
+        raise SceneError("scene", f"is over-constrained: {_listed(locked)} between points that supports fix already",
                          "leave that out, or the supports")
     follows = _following(S)
     if not follows:
@@ -63,12 +64,13 @@ def _left_out(model: Model, row: int, others: list[int], owner: list[str]) -> tu
     """Return the joint and the row of it that others imply; raises SceneError where it has to stay."""
     names = _listed([owner[k] for k in (*others, row)])
     if _driven(model) & {row, *others}:
-        raise SceneError("scene", f"is over-constrained: {names} drive or hold the same", "leave one of them out")
+        raise SceneError("scene", f"is over-constrained: {names} drive or constrain the same motion",
+                         "leave one of them out")
     for k, joint in enumerate(model.joints):
         if 0 <= row - joint.multiplier < joint.rows and joint.slide is None:
             return k, row - joint.multiplier
-    raise SceneError("scene", f"is over-constrained: {names} hold the same",
-                     "leave one of them out, or hold the body at other points")
+    raise SceneError("scene", f"is over-constrained: {names} constrain the same motion",
+                     "leave one of them out, or attach the body at other points")
 
 
 def _check_that_they_follow(model: Model, engine, dropped: list[tuple[int, int]], names: str) -> None:
@@ -79,15 +81,17 @@ def _check_that_they_follow(model: Model, engine, dropped: list[tuple[int, int]]
     at_start, beside = (engine.probe_mechanism(along) for along in (np.zeros(model.n_dof), probe))
     gap, error = (np.inf if left is None else max(abs(left[at]) for at in dropped) for left in (at_start, beside))
     if gap > RETURN * min(size, 1.0):
-        raise SceneError("scene", f"is over-constrained: {names} hold the same, but do not fit together: {gap:.3g} (m "
-                         "or rad) are left between them", "leave one of them out, or draw them without gaps")
+        raise SceneError("scene", f"is over-constrained: {names} constrain the same motion, but do not fit together: "
+                         f"{gap:.3g} (m or rad) are left between them",
+                         "leave one of them out, or draw them without gaps")
     if error > RETURN * min(size, 1.0):
-        raise SceneError("scene", f"starts in a singular position: {names} hold the same there, but not beside it",
+        raise SceneError("scene", f"starts in a singular position: {names} constrain the same motion there, but not "
+                         "beside it",
                          "draw the scene a little away from it")
 
 
 def redundant(model: Model, engine, ratio: float = NEARLY) -> str:
-    """Return names of slides and joints that hold nearly the same at the time reached; empty where there are none."""
+    """Return names of slides and joints that constrain nearly the same motion at the time reached; "" without any."""
     if not model.joints and len(model.slides) < 2:
         return ""
     S = _compliance(engine)

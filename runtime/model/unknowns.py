@@ -242,7 +242,7 @@ def _slope(master: Node, slave: Node, name: str) -> list[dict[int, float]]:
     ratio = float(tangent @ drawn) / square
     if name != "r_x" or np.linalg.norm(np.cross(tangent, drawn)) > PARALLEL * square:
         raise SceneError(slave.where, "cables without a section of their own cannot be joined rigidly at an angle: "
-                         "nothing holds their rotation about the tangent", 'take element="beam24", or rotation="free"')
+                         "nothing fixes their rotation about the tangent", 'take element="beam24", or rotation="free"')
     return [{at[d]: ratio} for d in range(3)]
 
 
@@ -338,7 +338,7 @@ def supports(scene: SceneData, nodes: dict[str, list[Node]], signal) -> Supports
         made.fix(rooted[-1], ["r"])
     for clamp in scene.clamps:
         rooted.append(at(clamp.cable, clamp.s))
-        made.clamp(rooted[-1], clamp.hold == "all")
+        made.clamp(rooted[-1], clamp.fix == "all")
     for motion in scene.motions:
         rooted.append(at(motion.cable, motion.s))
         if motion.displacement is not None:

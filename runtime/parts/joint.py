@@ -75,7 +75,7 @@ class Joint(Part):
     @model_validator(mode="after")
     def _has_what_it_needs(self) -> Joint:
         if self.a.on is None and self.b.on is None:
-            raise ValueError("has both ends on the ground", "let one of them hold a cable or a body")
+            raise ValueError("has both ends on the ground", "put one of them on a cable or a body")
         with_axis = {"axis": (*LINES, "revolute", "universal"), "second_axis": ("universal",)}
         for name, kinds in with_axis.items():
             given, has_one = getattr(self, name) is not None, self.joint_kind in kinds

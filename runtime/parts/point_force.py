@@ -50,5 +50,5 @@ class PointForce(Part):
     @model_validator(mode="after")
     def _acts_on_something(self) -> Self:
         if self.a.on is None and self.b.on is None:
-            raise ValueError("has both ends on the ground", "let one of them hold a cable or a body")
+            raise ValueError("has both ends on the ground", "put one of them on a cable or a body")
         return self

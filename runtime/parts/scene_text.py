@@ -128,7 +128,7 @@ def dumps(scene: SceneData) -> str:
     for kind in PARTS:
         for part in parts:
             if part.kind == kind and isinstance(part, Event) and part.function is not None:
-                lines += ["", f"# {part.where} watches a function, which only Python can hold"]
+                lines += ["", f"# {part.where} watches a function, which a file cannot describe"]
             elif part.kind == kind:
                 lines += ["", f"[[{kind}]]", *_lines(_data(part))]
     for name in SETTINGS:

@@ -54,14 +54,14 @@ class Pin(Support):
 class Clamp(Support):
     """Holds the position of a cable's node at ``s`` (m) and its section, or all of its nodal vectors.
 
-    hold: "section": of cables the direction of the tangent, while its length stays free; of beams the axes of the
+    fix: "section": of cables the direction of the tangent, while its length stays free; of beams the axes of the
     section, r_y and r_z, while r_x stays free, so that shear and stretch are not hindered. "all": every nodal vector.
     """
 
     kind: ClassVar[str] = "clamp"
     group: ClassVar[str] = "clamps"
     positional: ClassVar[tuple[str, ...]] = ("cable",)
-    hold: Annotated[str, one_of(("section", "all"))] = "section"
+    fix: Annotated[str, one_of(("section", "all"))] = "section"
 
 
 class Rotation(Part):

@@ -37,25 +37,26 @@ def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
     if status == "unstable":
         grown, _, exchanged, in_motion, _ = engine.balance
         exchanged = max(exchanged, in_motion)
-        return (f"energy came from nowhere at {when}: {grown:.3g} J, where {exchanged:.3g} J were exchanged; fastest "
-                f"is {where} ({state}); {KEPT}. {_too_large(engine, settings)}")
+        return (f"energy grew without a source at {when}: {grown:.3g} J, where {exchanged:.3g} J were exchanged; "
+                f"fastest is {where} ({state}); {KEPT}. {_too_large(engine, settings)}")
     if cause is None and status == "no_convergence":
         return (f"no step could be made at {when}: to pass an event there it would have to be shorter than 1e-12 of "
                 f"the duration; {KEPT}. Look at slides, stops and events that act at the same instant")
     if doubled := redundant(model, engine):
-        return (f"no step converged at {when}: {doubled} hold nearly the same; {KEPT}. "
-                "Leave one of them out, or hold the body at points farther apart")
+        return (f"no step converged at {when}: {doubled} constrain nearly the same motion; {KEPT}. "
+                "Leave one of them out, or attach the body at points farther apart")
     if status == "singular" or cause == "matrix":
         why, remedy = ("", "Look at its mass and inertia, and at its joints") if of_a_body else (
             ", as where a cable's tangent vanishes or its director lies along it",
             "Look at the masses and at up, or take more elements there")
         return (f"the equations are singular at {when}, first at {where} ({state}): a joint or the mass matrix is "
                 f"degenerate{why}; {KEPT}. {remedy}")
-    what = {"iteration": f"the iteration does not settle, least of all at {where}",
+    what = {"iteration": f"the iteration does not converge, least of all at {where}",
             "error": f"the error stays above what tol allows, most of all at {where}",
-            "lost_rider": f"{where} does not find its place on the cable any more",
-            "not_finite": f"{where} runs away",
-            "self_locking": f"friction jams {where}: the more it holds, the more it is pressed on the cable"}[cause]
+            "lost_rider": f"{where} does not find its point on the cable any more",
+            "not_finite": f"{where} diverges",
+            "self_locking": f"friction is self-locking at {where}: the larger it is, the harder it presses the rider "
+                            "on the cable"}[cause]
     counts = engine.statistics
     gone = f" after {counts['steps']} steps down to {counts['smallest_step_s']:.2g} s" if counts["steps"] else ""
     if settings.step is not None and INTEGRATORS[engine.integrator].stability is not None:

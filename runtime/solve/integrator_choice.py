@@ -30,7 +30,7 @@ def choose(settings: RunSettings, scene: SceneData, model: Model, engine: Engine
         return chosen, "as asked for"
     fixed = stable_at(fixed_step=True).of(settings.spectral_radius)
     if settings.step is not None:
-        return fixed, f"the step is fixed: {fixed.name} holds at any"
+        return fixed, f"the step is fixed: {fixed.name} is stable at any"
     if "spectral_radius" in settings.model_fields_set:
         return fixed, f"spectral_radius is given, which is {fixed.name}'s"
     return cheapest(demands_of(settings, scene, model, engine))

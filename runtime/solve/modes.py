@@ -151,7 +151,7 @@ def _refuse_what_is_out_of_range(scene: SceneData, model, K: csc_array, M: csc_a
         if wrong.any():
             at = int(np.argmax(wrong))
             raise SceneError(f"modes: {_owner(scene, model, at)}", f"its {what} comes to {values[at]:.3g}: the size of "
-                             "its section, its length or its material is beyond what numbers can hold",
+                             "its section, its length or its material is beyond the range of double precision",
                              "take them nearer to each other")
 
 
