@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from ..parts.locations import ends_of, joined, node_of
+from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from ..parts.support import Support, Tie
 from ..rotations import rotate
@@ -137,3 +140,26 @@ def attachment_points(model: Model, attachment, q: np.ndarray) -> np.ndarray:
             arm = spatial(attachment.modal[0] + eta @ attachment.modal[1])
         return state["position"] + rotate(state["orientation"], arm)
     return np.broadcast_to(np.array(attachment.u), (len(q), 3))
+
+
+def connection_states(model: Model, scene: SceneData, q: np.ndarray, reaction: np.ndarray, joints: np.ndarray,
+                      point_forces: np.ndarray) -> dict[str, dict[str, dict[str, np.ndarray]]]:
+    """Return forces and moments of supports, ties, joints and forces between points, by group, label and quantity.
+
+    Of a slide it is the moment that keeps its rider's axes. All arguments have the time first: q (time, n_q), reaction
+    (time, n_dof), joints (time, joints, FU_JOINT_OUTPUTS), point_forces (time, point forces, 3).
+    """
+    def reactions(supports: Iterable[Support]) -> dict[str, dict[str, np.ndarray]]:
+        return {support.label: support_reaction(model, scene, support, reaction, q) for support in supports}
+
+    of_joints = [(joint, joint_state(joint, joints[:, k])) for k, joint in enumerate(model.joints)]
+    return {
+        "slides": {joint.slide: {"moment": state["moment"]} for joint, state in of_joints if joint.slide is not None},
+        "pins": {label: {"force": of["force"]} for label, of in reactions(scene.pins).items()},
+        "clamps": reactions(scene.clamps),
+        "motions": reactions(scene.motions),
+        "ties": {name: tie_force(model, scene, tie, reaction, q) for name, tie in scene.ties.items()},
+        "joints": {joint.name: state for joint, state in of_joints if joint.slide is None},
+        PointForce.group: {force.name: point_force_state(model, force, point_forces[:, k], q)
+                           for k, force in enumerate(model.point_forces)},
+    }

@@ -11,12 +11,9 @@ from ..errors import SceneError, UnknownResultError, near
 from ..model.model import Model
 from ..model.states import (
     body_state,
-    joint_state,
+    connection_states,
     modal_state,
-    point_force_state,
     spatial,
-    support_reaction,
-    tie_force,
 )
 from ..parts.scene_data import SceneData
 from .stability import Stability
@@ -131,7 +128,7 @@ class RestState:
                 slide.element = min(max(int(at), 0), cable.n_elements - 1)
 
     def _quantities(self) -> dict[str, np.ndarray]:
-        model, scene, q, reaction = self.model, self.scene, self.static_state["q"][None], self.reaction[None]
+        model, q = self.model, self.static_state["q"][None]
         found = {}
         for cable in model.cables:
             vectors = spatial(q[0, cable.coordinates].reshape(cable.shape))
@@ -144,16 +141,7 @@ class RestState:
         for k, slide in enumerate(model.slides):
             found[f"{slide.name}.s"] = self.static_state["s"][k]
             found[f"{slide.name}.force"] = self.static_state["force"][k]
-        for joint, numbers in zip(model.joints, self.joint_forces, strict=True):
-            values = joint_state(joint, numbers)
-            found |= {f"{joint.name}.{name}": values[name]
-                      for name in (("force", "moment") if joint.slide is None else ("moment",))}
-        for part in scene.supports:
-            given_ = support_reaction(model, scene, part, reaction, q)
-            found |= {f"{part.label}.{name}": value[0] for name, value in given_.items()}
-        for name, tie in scene.ties.items():
-            found |= {f"{name}.{part}": value[0] for part, value in tie_force(model, scene, tie, reaction, q).items()}
-        for between, force in zip(model.point_forces, self.static_state["point_force"], strict=True):
-            values = point_force_state(model, between, force[None], q)
-            found |= {f"{between.name}.{name}": value[0] for name, value in values.items()}
-        return found
+        forces = connection_states(self.model, self.scene, q, self.reaction[None], self.joint_forces[None],
+                                   self.static_state["point_force"][None])
+        return found | {f"{label}.{name}": value[0] for group in forces.values() for label, values in group.items()
+                        for name, value in values.items() if name != "residual"}
