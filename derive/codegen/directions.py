@@ -135,6 +135,15 @@ class Layout:
                 return None
             if not all(isinstance(k, int) for k in pattern):
                 patterns[symbol] = pattern
+        rest = self._rest(exprs, first, patterns, turns)
+        if rest is None or (rest and (rank == 1 or rest.keys() != {(k, k) for k in range(dim)}
+                                     or any(sp.count_ops(r) > LONGEST_REST for r in rest.values()))):
+            return None
+        return Match(exprs[first], patterns, rest)
+
+    def _rest(self, exprs: Mapping[Index, sp.Expr], first: Index, patterns: Mapping[sp.Symbol, Pattern],
+              turns: Mapping[Index, Mapping[str, int]]) -> dict[Index, sp.Expr] | None:
+        """Return what expressions have besides the image of the first, by turn; None where a symbol has no image."""
         rest = {}
         for turn, expr in exprs.items():
             images = {s: self._image(self.places[s], pattern, turns[turn]) for s, pattern in patterns.items()}
@@ -143,10 +152,7 @@ class Layout:
             image = exprs[first].xreplace(images)
             if image != expr:
                 rest[turn] = expr - image
-        if rest and (rank == 1 or rest.keys() != {(k, k) for k in range(dim)}
-                     or any(sp.count_ops(r) > LONGEST_REST for r in rest.values())):
-            return None
-        return Match(exprs[first], patterns, rest)
+        return rest
 
     def _pattern(self, place: Place, dim: int, first: Mapping[str, int],
                  others: Sequence[tuple[Mapping[str, int], set[sp.Symbol]]]) -> Pattern | None:

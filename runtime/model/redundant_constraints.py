@@ -6,6 +6,7 @@ import numpy as np
 from scipy.linalg import solve_triangular
 
 from ..errors import SceneError
+from .joints import JointModel
 from .model import Model
 
 SAME, NEARLY = 1e-12, 1e-8
@@ -49,15 +50,15 @@ def drop_redundant_rows(model: Model, engine) -> list[str]:
     engine.redundant_rows(dropped)
     _check_that_they_follow(model, engine, dropped,
                             _listed([owner[k] for row in follows for k in (*follows[row], row)]))
-    messages = []
-    for k in dict.fromkeys(k for k, _ in dropped):
-        joint = model.joints[k]
-        own = range(joint.multiplier, joint.multiplier + joint.rows)
-        names = _listed([owner[other] for row in own for other in follows.get(row, ()) if other not in own])
-        messages.append(f"over-constrained: {len(joint.redundant_rows)} of the {joint.rows} equations of "
-                        f"{owner[own[0]]} follow from those of {names} and are left out, without force or moment of "
-                        "their own")
-    return messages
+    return [_message(model.joints[k], follows, owner) for k in dict.fromkeys(k for k, _ in dropped)]
+
+
+def _message(joint: JointModel, follows: dict[int, list[int]], owner: list[str]) -> str:
+    """Return the message about a joint that has lost equations; follows: rows that others imply, and these."""
+    own = range(joint.multiplier, joint.multiplier + joint.rows)
+    names = _listed([owner[other] for row in own for other in follows.get(row, ()) if other not in own])
+    return (f"over-constrained: {len(joint.redundant_rows)} of the {joint.rows} equations of {owner[own[0]]} follow "
+            f"from those of {names} and are left out, without force or moment of their own")
 
 
 def _left_out(model: Model, row: int, others: list[int], owner: list[str]) -> tuple[int, int]:

@@ -9,22 +9,19 @@ the section of one beam the tangent of the other, where a moment shears its last
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.sparse import coo_array, csr_array, triu
-from scipy.sparse.csgraph import reverse_cuthill_mckee
+from scipy.sparse import csr_array
 
 from ..errors import SceneError
 from ..parts.scene_data import SceneData
+from ..parts.signal import Signal
+from .numbering import Numbering, numbered
 
 PARALLEL = 1e-9
 """Tangents whose cross product is smaller than this are parallel."""
-
-SOLVES = 30
-"""That a factored matrix serves: about ten, times three since their numbers come from memory and not from the cache."""
-
 
 @dataclass
 class Prescribed:
@@ -47,20 +44,6 @@ class Row:
 
     free: dict[int, float] = field(default_factory=dict)
     prescribed: list[Prescribed] = field(default_factory=list)
-
-
-@dataclass
-class Numbering:
-    """number[unknown]: first the band, in which unknowns of one element are at most `width` apart, then the border.
-
-    chains: where rows of the band begin that nothing but the border ties to the rows before; and the end.
-    """
-
-    number: np.ndarray
-    n_band: int
-    width: int
-    chains: np.ndarray
-    operations: float
 
 
 @dataclass
@@ -160,6 +143,24 @@ class Supports:
                 for dof, combination in zip(slave.dofs(name), rows, strict=True):
                     self.rows[dof] = self._combined(combination)
 
+    def tie_nodes(self, ties: list[tuple[Node, Node, bool]], supported: list[Node]) -> None:
+        """Join the nodes of ties (node, node, rigid), from the supported ones on and then from others."""
+        done = {node.first for node in supported}
+        # a node with directors can give the slopes of one without, not the other way round
+        starts = sorted((node for tie in ties for node in tie[:2] if node.first not in done),
+                        key=lambda node: -len(node.directors))
+        for root in [*supported, *starts]:
+            waiting = [] if root.first in done and all(root is not node for node in supported) else [root]
+            done.add(root.first)
+            while waiting:
+                node = waiting.pop()
+                for a, b, rigid in ties:
+                    for master, slave in ((a, b), (b, a)):
+                        if master.first == node.first and slave.first not in done:
+                            self.join(master, slave, rigid)
+                            done.add(slave.first)
+                            waiting.append(slave)
+
     def _combined(self, combination: dict[int, float]) -> Row:
         row = Row()
         for dof, factor in combination.items():
@@ -183,12 +184,9 @@ class Supports:
             raise SceneError("scene", "a tie joins a node that moves as prescribed to one that is partly free",
                              "prescribe displacement and rotation there, or tie with rotation = \"free\"")
         made_of = [(dof, drawn[of]) for dof, row in combined.items() for of in row.free]
-        touches = _touches(elements, np.concatenate([np.stack([np.flatnonzero(unknown), np.arange(n)], axis=1),
-                                                     np.array(made_of, dtype=int).reshape(-1, 2)]), (n_dof, n))
-        numbering = _counted(touches, np.arange(n), n)
-        if combined:
-            others = (_counted(touches, *_near(touches)), _counted(touches, *_strung(touches)))
-            numbering = min(numbering, *others, key=lambda one: one.operations)
+        numbering = numbered(elements, np.concatenate([np.stack([np.flatnonzero(unknown), np.arange(n)], axis=1),
+                                                       np.array(made_of, dtype=int).reshape(-1, 2)]), (n_dof, n),
+                             reorder=bool(combined))
         number = numbering.number[drawn.clip(0)] if n else drawn
         unknown_of_dof = np.where(unknown, number, -1)
         rows, columns, values, count = [], [], [], 0
@@ -246,92 +244,22 @@ def _slope(master: Node, slave: Node, name: str) -> list[dict[int, float]]:
     return [{at[d]: ratio} for d in range(3)]
 
 
-def _touches(elements: np.ndarray, made_of: np.ndarray, shape: tuple[int, int]) -> csr_array:
-    """Return (elements, unknowns): 1 where an element has a share of an unknown; made_of (k, 2): a dof, an unknown of
-    it.
-    """
-    counts = elements[:, 1]
-    dofs = np.repeat(elements[:, 0] - np.cumsum(counts) + counts, counts) + np.arange(counts.sum())
-    has = csr_array((np.ones(len(dofs)), dofs, np.append(0, np.cumsum(counts))), shape=(len(elements), shape[0]))
-    touches = has @ coo_array((np.ones(len(made_of)), (made_of[:, 0], made_of[:, 1])), shape=shape).tocsr()
-    touches.data[:] = 1.0
-    return touches
-
-
-def _near(touches: csr_array) -> tuple[np.ndarray, int]:
-    """Return the number of each unknown and size of the band: all in the band, by reverse Cuthill and McKee."""
-    order = reverse_cuthill_mckee((touches.T @ touches).tocsr(), symmetric_mode=True)
-    return np.argsort(order), len(order)
-
-
-def _strung(touches: csr_array) -> tuple[np.ndarray, int]:
-    """Number of each unknown and size of the band: elements strung to chains, those first that share most unknowns.
-
-    Unknowns that are shared by others than two that follow each other in a chain are the border: nodes where more than
-    two ends meet, and one of each ring.
-    """
-    n_elements, n = touches.shape
-    shared = triu(touches @ touches.T, 1).tocoo()
-    beside: list[list[int]] = [[] for _ in range(n_elements)]
-    chain = list(range(n_elements))
-
-    def root(e: int) -> int:
-        while chain[e] != e:
-            chain[e] = e = chain[chain[e]]
-        return e
-
-    for k in np.lexsort((shared.col, shared.row, -shared.data)):
-        a, b = int(shared.row[k]), int(shared.col[k])
-        if len(beside[a]) < 2 and len(beside[b]) < 2 and root(a) != root(b):
-            beside[a].append(b)
-            beside[b].append(a)
-            chain[root(a)] = root(b)
-    string: list[int] = []
-    at = np.full(n_elements, -1)
-    for end in (e for e in range(n_elements) if len(beside[e]) < 2):
-        following = [end] if at[end] < 0 else []
-        while following:
-            at[following[0]] = len(string)
-            string.append(following[0])
-            following = [e for e in beside[string[-1]] if at[e] < 0]
-    entry = touches.tocoo()
-    first, last = np.full(n, n_elements), np.full(n, -1)
-    np.minimum.at(first, entry.col, at[entry.row])
-    np.maximum.at(last, entry.col, at[entry.row])
-    follows = np.array([b in beside[a] for a, b in zip(string, string[1:] + string[:1], strict=True)])
-    border = (last > first + 1) | (last > first) & ~follows[first]
-    return np.argsort(np.lexsort((np.arange(n), first, last, border))), n - int(border.sum())
-
-
-def _counted(touches: csr_array, number: np.ndarray, n_band: int) -> Numbering:
-    """Return a numbering's band, and the operations of its factorisation and solves (engine/linear/bordered.c)."""
-    entry = touches.tocoo()
-    element, at = entry.row, number[entry.col]
-    inside = at < n_band
-    low, high = np.full(touches.shape[0], n_band), np.full(touches.shape[0], -1)
-    np.minimum.at(low, element[inside], at[inside])
-    np.maximum.at(high, element[inside], at[inside])
-    banded = high >= 0
-    ties = np.zeros(n_band + 1, dtype=int)  # elements that tie a row to the one before
-    np.add.at(ties, low[banded] + 1, 1)
-    np.add.at(ties, high[banded] + 1, -1)
-    chains = np.append(np.flatnonzero(np.cumsum(ties[:-1]) == 0), n_band)
-    width = int(np.max(high[banded] - low[banded], initial=0))
-    of = np.searchsorted(chains, low, "right") - 1
-    outside = ~inside & banded[element]
-    columns = np.unique(np.stack([at[outside], of[element[outside]]]), axis=1)  # of the border, by chain
-    coupled, m = float(np.diff(chains)[columns[1]].sum()), len(number) - n_band
-    factor = n_band * width**2 / 2 + 2 * width * coupled + m**3 / 3
-    return Numbering(number, n_band, width, chains, factor + SOLVES * (2 * width * n_band + coupled + m**2))
-
-
-def supports(scene: SceneData, nodes: dict[str, list[Node]], signal) -> Supports:
-    """Return the scene's supports and joins; nodes: of each cable; signal(s): number of a signal."""
+def supports(scene: SceneData, nodes: dict[str, list[Node]], signal: Callable[[Signal], int]) -> Supports:
+    """Return the scene's supports and ties; nodes: of each cable; signal(s): number of a signal."""
     made = Supports()
 
     def at(cable: str, s: float) -> Node:
         return nodes[cable][scene.cables[cable].node(s)]
 
+    supported = _support_nodes(made, scene, at, signal)
+    made.tie_nodes([(at(tie.cable, tie.s), at(tie.to, tie.at), tie.rotation == "rigid")
+                    for tie in scene.ties.values()], supported)
+    return made
+
+
+def _support_nodes(made: Supports, scene: SceneData, at: Callable[[str, float], Node],
+                   signal: Callable[[Signal], int]) -> list[Node]:
+    """Add pins, clamps and motions; at(cable, s): a node. Return the nodes that they support."""
     rooted = []
     for pin in scene.pins:
         rooted.append(at(pin.cable, pin.s))
@@ -345,20 +273,4 @@ def supports(scene: SceneData, nodes: dict[str, list[Node]], signal) -> Supports
             made.displace(rooted[-1], [None if s is None else signal(s) for s in motion.displacement])
         if motion.rotation is not None:
             made.rotate(rooted[-1], np.array(motion.rotation.axis), signal(motion.rotation.angle))
-    ties = [(at(tie.cable, tie.s), at(tie.to, tie.at), tie.rotation == "rigid") for tie in scene.ties.values()]
-    done = {node.first for node in rooted}
-    # a node with directors can give the slopes of one without, not the other way round
-    starts = sorted((node for tie in ties for node in tie[:2] if node.first not in done),
-                    key=lambda node: -len(node.directors))
-    for root in [*rooted, *starts]:
-        waiting = [] if root.first in done and all(root is not r for r in rooted) else [root]
-        done.add(root.first)
-        while waiting:
-            node = waiting.pop()
-            for a, b, rigid in ties:
-                for master, slave in ((a, b), (b, a)):
-                    if master.first == node.first and slave.first not in done:
-                        made.join(master, slave, rigid)
-                        done.add(slave.first)
-                        waiting.append(slave)
-    return made
+    return rooted

@@ -67,14 +67,9 @@ def relax(problem: StaticProblem) -> Stability | None:
     least, descends = LEAST_MASS * problem.fastest, problem.settings.seek_stable
     for _ in range(MOST_RELAXATIONS):
         problem.iterations += 1
-        try:
-            change = problem.solver(mass)(-problem.residual())
-        except RuntimeError:
-            mass *= 10.0
-            continue
-        size = problem.length(change)
-        if not size < LARGEST_MOVE * problem.size or (descends and problem.curvature(change, mass) < 0):
-            mass *= 4.0
+        change, size, heavier = _correction(problem, mass, descends)
+        if change is None:
+            mass *= heavier
             if not mass < 1e30:
                 return None
             continue
@@ -103,6 +98,22 @@ def relax(problem: StaticProblem) -> Stability | None:
         if near < 1e-10:
             return None
     return None
+
+
+def _correction(problem: StaticProblem, mass: float, descends: bool) -> tuple[np.ndarray | None, float, float]:
+    """Return a correction with so much mass, its size in m, and, where there is none, what the mass must grow by.
+
+    There is none where the matrix is singular, the correction is too large or, if it is to descend, goes along a
+    direction of negative curvature.
+    """
+    try:
+        change = problem.solver(mass)(-problem.residual())
+    except RuntimeError:
+        return None, np.inf, 10.0
+    size = problem.length(change)
+    if not size < LARGEST_MOVE * problem.size or (descends and problem.curvature(change, mass) < 0):
+        return None, size, 4.0
+    return change, size, 1.0
 
 
 def stiffen(problem: StaticProblem) -> Stability | None:
