@@ -17,6 +17,7 @@ from functools import cached_property
 
 import numpy as np
 import sympy as sp
+from sympy.polys.rings import PolyElement
 
 from ..codegen.program import Program
 from ..spec import Element, l, x, y, z
@@ -125,7 +126,7 @@ class Gram:
         return self.names[a] + self.names[b]
 
 
-def _antiderivative(p):
+def _antiderivative(p: PolyElement) -> PolyElement:
     """Return the integral from the element's start of a polynomial in X, times dx/dX = l/2."""
     integral = sum((integrals.RING(c / (k[0] + 1)) * integrals.X ** (k[0] + 1) for k, c in p.terms()),
                    integrals.RING(0))
@@ -133,5 +134,5 @@ def _antiderivative(p):
     return (integral - at_start) * integrals.L / 2
 
 
-def _to_sympy(p) -> sp.Expr:
+def _to_sympy(p: PolyElement) -> sp.Expr:
     return p.as_expr(2 * x / l - 1, y, z, l, 1 / l)

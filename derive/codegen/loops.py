@@ -140,8 +140,8 @@ class _Writer:
         """Yield blocks over the `moving` axes; those that are not alike are split again, over fewer axes."""
         dim = self.layout.dim
         for start in product(*(span[::dim] if axis in moving else span for axis, span in enumerate(within))):
-            def index(turn: Sequence, start=start) -> list:
-                at = list(start)
+            def index(turn: Sequence, start: tuple[int, ...] = start) -> list:
+                at: list = list(start)
                 for axis, k in zip(moving, turn, strict=True):
                     at[axis] = k + start[axis] if isinstance(k, int) else (k, start[axis])
                 return at

@@ -8,11 +8,12 @@ from __future__ import annotations
 import hashlib
 import json
 import textwrap
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Hashable, Iterable
 from dataclasses import asdict, dataclass, replace
 from importlib import metadata
 
 import jinja2
+import sympy as sp
 
 from .c_printer import c_expression
 from .family import Family, FamilyError
@@ -195,10 +196,10 @@ def manifest(every: list[Derived], files: dict[str, str], layout_of: dict | None
 class _Numbered:
     """Things in the order in which they came first."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.every: dict = {}
 
-    def number(self, thing) -> int:
+    def number(self, thing: Hashable) -> int:
         """Return the number of a thing among them."""
         return self.every.setdefault(thing, len(self.every))
 
@@ -265,7 +266,7 @@ def block_kernels(derived: Derived) -> list[str]:
             and LEAST_PER_OUTPUT * p.outputs[0].size <= sum(p.operations().values()) <= MOST_OPERATIONS]
 
 
-def _number(expr) -> str:
+def _number(expr: sp.Expr) -> str:
     """Return an expression where a fu_real is assigned: a constant is not one where that is several numbers."""
     return f"FU_NUMBER({c_expression(expr)})" if expr.is_number else c_expression(expr)
 

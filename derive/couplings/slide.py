@@ -146,8 +146,8 @@ def _terms(name: str, element: Element, rider: Rider) -> Program:
     return p
 
 
-def _lagrangian(p: Program, element: Element, rider: Rider):
-    """Return the kernel of phi = r_p, its Jacobian by (e, rider, s), and the gradient of f . phi.
+def _lagrangian(p: Program, element: Element, rider: Rider) -> tuple[Slide, np.ndarray, np.ndarray]:
+    """Stage phi = r_p; return the slide, the Jacobian of phi by (e, rider, s), and the gradient of f . phi.
 
     The integrator carries s and the whole force f on the joint as unknowns instead of C_M and its multipliers:
     f . r_x = 0, the s-entry of the gradient, says that the multiplier of C_L drops out (eq 30), so that there is no

@@ -85,7 +85,7 @@ def moment(element: Element) -> Program:
     return p
 
 
-def _on_one(p: Program, M: np.ndarray, a: np.ndarray):
+def _on_one(p: Program, M: np.ndarray, a: np.ndarray) -> tuple[list[np.ndarray], np.ndarray]:
     """Define, in a stage, the force F on a slope with a x F = M, as far as that can be; return it and its derivative.
     """
     p.stage("force on the slope")
@@ -94,7 +94,7 @@ def _on_one(p: Program, M: np.ndarray, a: np.ndarray):
     return [F], jacobian(p, F, a)
 
 
-def _on_two(p: Program, M: np.ndarray, a: np.ndarray, b: np.ndarray):
+def _on_two(p: Program, M: np.ndarray, a: np.ndarray, b: np.ndarray) -> tuple[list[np.ndarray], np.ndarray]:
     """Define, in a stage, the forces mu x a, mu x b on two slopes with a x F_a + b x F_b = M; return them and their
     derivatives.
 
@@ -119,12 +119,13 @@ def _on_two(p: Program, M: np.ndarray, a: np.ndarray, b: np.ndarray):
     return forces, bent + jacobian(p, np.concatenate(turned), np.concatenate([a, b]))
 
 
-def _generalised(p: Program, element: Element, acting, forces, shapes, by_vectors: np.ndarray) -> None:
+def _generalised(p: Program, element: Element, acting: list[np.ndarray], forces: list[np.ndarray],
+                 shapes: list[np.ndarray], by_vectors: np.ndarray) -> None:
     """Declare the outputs f = acting' forces, and K from the forces' derivatives by the vectors shapes e."""
     p.stage("derivatives of the forces by e")
     force = np.concatenate(forces)
-    acting, shapes = (np.kron(np.array(n), np.eye(element.dim, dtype=int)) for n in (acting, shapes))
+    acts, moved = (np.kron(np.array(n), np.eye(element.dim, dtype=int)) for n in (acting, shapes))
     by_e = np.array([[p.define(f"d{component}_de{m}", entry) for m, entry in enumerate(row)]
-                     for component, row in zip(force, by_vectors.dot(shapes), strict=True)])
-    p.output("f", acting.T.dot(force).reshape(element.n_vectors, element.dim), "N, N m", "generalised force")
-    p.output("K", acting.T.dot(by_e), "N/m, N, N m", "derivatives of f by e, not symmetric")
+                     for component, row in zip(force, by_vectors.dot(moved), strict=True)])
+    p.output("f", acts.T.dot(force).reshape(element.n_vectors, element.dim), "N, N m", "generalised force")
+    p.output("K", acts.T.dot(by_e), "N/m, N, N m", "derivatives of f by e, not symmetric")

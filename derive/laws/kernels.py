@@ -63,7 +63,8 @@ class Kernels:
     def _program(self, kernel: str, doc: str, source: str) -> Program:
         return Program(f"{self.name}_{kernel}", doc, f"{source}; {self.law.source}")
 
-    def _coordinates(self, program: Program, name="e", unit="m, 1", doc="nodal vectors e, eq 1") -> np.ndarray:
+    def _coordinates(self, program: Program, name: str = "e", unit: str = "m, 1",
+                     doc: str = "nodal vectors e, eq 1") -> np.ndarray:
         return program.input(name, (self.element.n_vectors, self.element.dim), unit, doc)
 
     def _strain(self, program: Program) -> tuple:

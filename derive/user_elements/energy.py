@@ -68,7 +68,7 @@ class _Trial:
     def _fail(self, kernel: str, sample: str, cause: str, remedy: str = "") -> None:
         raise SpecError(self.place, f"{cause}: kernel {self.family.name}_{kernel}, at {sample}", remedy)
 
-    def value(self, kernel: str, output: str, s: Any, **changes) -> Any:
+    def value(self, kernel: str, output: str, s: Any, **changes: Any) -> Any:
         """Return an output, None where it is no finite real number."""
         try:
             value = self.k(kernel, s, **changes)[output]
@@ -141,7 +141,7 @@ class _Trial:
                                    f"{float(before):.6g} on one side and {float(after):.6g} on the other",
                                    "make it of squares, or round the corner off")
 
-    def _one_sided(self, sample: str, s, j: int, name: str) -> list[tuple]:
+    def _one_sided(self, sample: str, s: Any, j: int, name: str) -> list[tuple]:
         """Return the first and second differences of the energy by coordinate j, before and after the sample."""
         direction = np.zeros(s["e"].size, dtype=int)
         direction[j] = 1

@@ -21,7 +21,7 @@ WIDE = 220  # columns that the whole table takes
 class Report:
     """Collects findings, prints them."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.findings: list[Finding] = []
         self.invariances: list[tuple[str, str, float, float]] = []
         self.roundings: list[Rounding] = []

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from statistics import median
 
@@ -27,6 +27,7 @@ from ..scene import Scene
 from .outputs import check_output, default_outputs, distance, largest_change, trajectory, unit
 
 TOLS = (1e-2, 1e-3, 1e-4, 1e-5)
+MESHES = ("x1", "x2")
 TIGHTER = (1 / 20, 1 / 80)
 """Tolerances of the two runs that make a mesh's reference, over the smallest of the grid; the last one is it."""
 
@@ -102,9 +103,11 @@ class Grid:
     repetitions: int
 
 
-def grid(scene: Scene, *, integrators=None, elements=("x1", "x2"), tols=TOLS, outputs=None, duration=None,
-         output_step=None, repetitions: int = 5) -> Grid:
-    """Return a checked grid; without integrators all but "auto", which takes one of them. Raises SceneError."""
+def grid(scene: Scene, *, integrators: Sequence[str] | None = None, elements: Sequence[str] | None = None,
+         tols: Sequence[float] = TOLS, outputs: Sequence[str] | None = None, duration: float | None = None,
+         output_step: float | None = None, repetitions: int = 5) -> Grid:
+    """Return a checked grid; without integrators all but "auto", which takes one of them, without elements
+    `MESHES`. Raises SceneError."""
     for name, values in (("integrators", integrators), ("elements", elements), ("tols", tols), ("outputs", outputs)):
         if values is not None and not len(values):
             raise SceneError("bench", f"{name}: the list is empty", "name one, or leave it out")
@@ -126,7 +129,7 @@ def grid(scene: Scene, *, integrators=None, elements=("x1", "x2"), tols=TOLS, ou
     if duration is None:
         raise SceneError("bench", "the scene file gives no duration", "give one: --duration")
     settings = RunSettings(duration=duration, **{} if output_step is None else {"output_step": output_step})
-    return Grid(integrators, tuple(map(Mesh.parse, elements)), tuple(sorted(tols, reverse=True)), outputs,
+    return Grid(integrators, tuple(map(Mesh.parse, elements or MESHES)), tuple(sorted(tols, reverse=True)), outputs,
                 settings.duration, settings.duration / 50 if output_step is None else settings.output_step, repetitions)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -29,7 +30,7 @@ def has_section(cable: Cable) -> bool:
     return cable.dim == 2 or bool(cable.kind_of_element.director)
 
 
-def cable_frame(cable: Cable, s: float, up=None) -> np.ndarray:
+def cable_frame(cable: Cable, s: float, up: Sequence[float] | None = None) -> np.ndarray:
     """Return (3, 3): tangent, height and width at ``s`` as the elements draw them, as columns.
 
     The tangent frame of eq 16 to 18: k square to the tangent and to r_y or, where ``up`` is given, to that (up must be
@@ -61,7 +62,7 @@ def _unit(vector: np.ndarray) -> np.ndarray:
     return vector / np.linalg.norm(vector)
 
 
-def end_frame(scene: SceneData, end: Attachment, up=None) -> np.ndarray:
+def end_frame(scene: SceneData, end: Attachment, up: Sequence[float] | None = None) -> np.ndarray:
     """Return (3, 3): the frame of a complete end; ``up`` completes that of a cable without section axes."""
     if end.on is None:
         return np.eye(3)

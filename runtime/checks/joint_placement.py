@@ -145,7 +145,7 @@ def elements_with_sections() -> str:
     return "element=" + " or ".join(f'"{n}"' for n, kind in built_in().items() if kind.director and kind.dim == 3)
 
 
-def check_up(up, tangent: np.ndarray, what: str, where: str) -> None:
+def check_up(up: tuple[float, ...], tangent: np.ndarray, what: str, where: str) -> None:
     """Raise SceneError where the direction ``up`` lies along the tangent of ``what``: it completes no frame there."""
     if np.linalg.norm(np.cross(tangent, up)) <= UPRIGHT * np.linalg.norm(up):
         raise SceneError(where, f"up {show(up)} is along the tangent of {what}, {show(tangent)}: the frame is lost",

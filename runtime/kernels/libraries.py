@@ -15,6 +15,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from funicular.generated import described as described_kernels
@@ -23,6 +24,9 @@ from pydantic import ValidationError
 from ..errors import FunicularError, SceneError, shown_path
 from . import elements
 from .elements import MANIFEST, ElementKind
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
 
 COMMAND = "`funicular derive --spec {spec} --out {out}`"
 
@@ -94,7 +98,7 @@ class Kernel:
         self._function.argtypes = [*(ctypes.c_void_p if shape else ctypes.c_double for _, shape in self._inputs),
                                    *(ctypes.c_void_p for _ in self._outputs)]
 
-    def __call__(self, *given, **named):
+    def __call__(self, *given: Any, **named: Any) -> np.ndarray | tuple[np.ndarray, ...]:
         """Return the outputs for these inputs: one array, or a tuple of them."""
         names = [name for name, _ in self._inputs]
         named = dict(zip(names, given, strict=False)) | named
@@ -106,7 +110,7 @@ class Kernel:
         self._function(*(v.ctypes.data if isinstance(v, np.ndarray) else v for v in (*values, *outputs)))
         return outputs[0] if len(outputs) == 1 else tuple(outputs)
 
-    def rows(self, n: int, *given):
+    def rows(self, n: int, *given: ArrayLike) -> np.ndarray | tuple[np.ndarray, ...]:
         """Return the outputs (n, ...) of n calls; each argument once, or (n, ...) for each its own."""
         if len(given) != len(self._inputs):
             raise TypeError(f"{self.__name__} takes ({', '.join(name for name, _ in self._inputs)})")
@@ -123,7 +127,7 @@ class Kernel:
                 into[k] = value
         return found[0] if len(found) == 1 else tuple(found)
 
-    def _array(self, value, shape: tuple[int, ...], name: str) -> np.ndarray:
+    def _array(self, value: ArrayLike, shape: tuple[int, ...], name: str) -> np.ndarray:
         array = np.ascontiguousarray(value, dtype=float)
         if array.size != math.prod(shape):
             raise ValueError(f"{self.__name__}: argument {name} must have shape {shape}, got {array.shape}")
@@ -158,7 +162,7 @@ def of_library(library: str | None) -> dict[str, ElementKind]:
     return elements.built_in() if library is None else load(library).elements
 
 
-def kernels_of(library: str | None):
+def kernels_of(library: str | None) -> Any:
     """Return the object whose attributes are the kernels of a library, of this package for None. Raises LibraryError.
     """
     if library is not None:

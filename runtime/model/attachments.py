@@ -58,7 +58,8 @@ class AttachmentBuilder:
         element = min(max(int(s // model.length), 0), model.n_elements - 1)
         return element, s - element * model.length
 
-    def model(self, attachment: Attachment, axes: np.ndarray | None = None, up=None) -> AttachmentModel:
+    def model(self, attachment: Attachment, axes: np.ndarray | None = None,
+              up: tuple[float, ...] | np.ndarray | None = None) -> AttachmentModel:
         """Return the model of a complete attachment, with axes (3, 3) in the frame of what carries it where it has
         some.
         """
@@ -94,7 +95,8 @@ class AttachmentBuilder:
             found.slopes = (0, CARRIED)
         return found
 
-    def _on_cable(self, name: str, s: float, axes: np.ndarray | None, up, section: bool) -> AttachmentModel:
+    def _on_cable(self, name: str, s: float, axes: np.ndarray | None, up: tuple[float, ...] | np.ndarray | None,
+                  section: bool) -> AttachmentModel:
         """Return an attachment with the frame of the section, or of the tangent with the director or up."""
         cable, index = self.scene.cables[name], self.cable_index[name]
         length = self.cables[index].length
@@ -106,9 +108,11 @@ class AttachmentBuilder:
         if section:
             slopes, axes = (1, 2 if cable.dim == 3 else UP), None if axes is None else SECTIONS[cable.dim] @ axes
         return AttachmentModel(index, -1, 0, -1, (0.0,) * 3, np.zeros(0), np.zeros(0), mass, length,
-                               FRAMES[self.scene.dim], slopes, (0.0,) * 3 if up is None else up, axes)
+                               FRAMES[self.scene.dim], slopes, (0.0,) * 3 if up is None else tuple(map(float, up)),
+                               axes)
 
-    def _modal(self, attachment_modes) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def _modal(self, attachment_modes: tuple[np.ndarray, np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray,
+               np.ndarray]:
         dim, (at, displacements, turns) = self.scene.dim, attachment_modes
         return at[:dim], displacements[:, :dim], turns[:, 2:] if dim == 2 else turns
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
@@ -45,7 +45,7 @@ def element_constants(library: str | None, element: str, law: str, length: float
     return getattr(kernels, f"{element}_{law}_stiffness")(length, *([] if e0 is None else [e0]), S)
 
 
-def integral_over_volume(stiffness_at, length: float, e0: np.ndarray | None,
+def integral_over_volume(stiffness_at: Callable, length: float, e0: np.ndarray | None,
                          S: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the kernel `stiffness_at` summed over an element: the form over its Gram products, and those of e0."""
     places, weights = np.polynomial.legendre.leggauss(POINTS)

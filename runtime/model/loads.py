@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +12,7 @@ from ..parts.attachment import Attachment
 from ..parts.load import DistributedForce, Force, Moment
 from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
-from ..parts.signal import Constant, value_at
+from ..parts.signal import Constant, Signal, value_at
 from .attachments import AttachmentBuilder, AttachmentModel
 from .coupling import CouplingModel
 
@@ -89,14 +90,14 @@ class LoadBuilder:
         self.dead: list[DeadLoad] = []
         self.turning: list[LoadModel] = []
 
-    def signal(self, signal) -> int:
+    def signal(self, signal: Signal) -> int:
         """Store a signal and return its number."""
         breaks, coefficients = signal.pieces()
         self.signals.append(SignalModel(np.asarray(breaks, dtype=float), np.asarray(coefficients, dtype=float),
                                         signal.amplitude, signal.angular_frequency, signal.phase))
         return len(self.signals) - 1
 
-    def _scale(self, signal) -> tuple[int, float]:
+    def _scale(self, signal: Signal) -> tuple[int, float]:
         """Return the number and constant factor of a load's scale."""
         return (-1, float(signal.value(0.0))) if isinstance(signal, Constant) else (self.signal(signal), 1.0)
 
@@ -131,7 +132,8 @@ class LoadBuilder:
                            for x, w in zip(*GAUSS, strict=True)]
         self._along_cable(load.cable, number, points, value, load.follower)
 
-    def _along_cable(self, cable: str, number: int, points, value: np.ndarray, follower: bool) -> None:
+    def _along_cable(self, cable: str, number: int, points: Iterable[tuple[int, float, float]], value: np.ndarray,
+                     follower: bool) -> None:
         """Add a distributed load as forces, value times weight, at points (element, x, weight)."""
         if follower:
             self._turning(CABLE_FOLLOWER, number, cable, points, value)
@@ -146,7 +148,8 @@ class LoadBuilder:
         used = np.flatnonzero(total)
         self.dead.append(DeadLoad(number, list(model.first + used), list(total[used])))
 
-    def _turning(self, kind: int, number: int, cable: str, points, value: np.ndarray) -> None:
+    def _turning(self, kind: int, number: int, cable: str, points: Iterable[tuple[int, float, float]],
+                 value: np.ndarray) -> None:
         c = np.array([value[2], 0.0, 0.0]) if kind == CABLE_MOMENT and self.scene.dim == 2 else value
         self.turning += [LoadModel(kind, number, self.cable_index[cable], element, x, (0.0, 0.0, 0.0),
                                    tuple(weight * c)) for element, x, weight in points]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import solve_triangular
 
+from ..engine import Engine
 from ..errors import SceneError
 from .joints import JointModel
 from .model import Model
@@ -20,7 +21,7 @@ PROBE, RETURN = 1e-3, 1e-8
 """How far a mechanism is moved, as a part of its size, to see whether an equation follows there, too; and how well."""
 
 
-def drop_redundant_rows(model: Model, engine) -> list[str]:
+def drop_redundant_rows(model: Model, engine: Engine) -> list[str]:
     """Leave out equations of joints that follow from those of others; for an engine not yet started.
 
     Redundancy is sought where the scene is drawn and at a small displacement from there, since a mechanism may pass a
@@ -74,7 +75,7 @@ def _left_out(model: Model, row: int, others: list[int], owner: list[str]) -> tu
                      "leave one of them out, or attach the body at other points")
 
 
-def _check_that_they_follow(model: Model, engine, dropped: list[tuple[int, int]], names: str) -> None:
+def _check_that_they_follow(model: Model, engine: Engine, dropped: list[tuple[int, int]], names: str) -> None:
     """Raise SceneError unless dropped rows are met where the others are, at the start and beside it."""
     size = engine.extent
     unit = np.where(model.weight == 1, size, np.minimum(size / model.weight, 1.0))
@@ -91,7 +92,7 @@ def _check_that_they_follow(model: Model, engine, dropped: list[tuple[int, int]]
                          "draw the scene a little away from it")
 
 
-def redundant(model: Model, engine, ratio: float = NEARLY) -> str:
+def redundant(model: Model, engine: Engine, ratio: float = NEARLY) -> str:
     """Return names of slides and joints that constrain nearly the same motion at the time reached; "" without any."""
     if not model.joints and len(model.slides) < 2:
         return ""
@@ -107,7 +108,7 @@ def redundant(model: Model, engine, ratio: float = NEARLY) -> str:
                     if part > 1e-3])
 
 
-def _compliance(engine) -> np.ndarray | None:
+def _compliance(engine: Engine) -> np.ndarray | None:
     """Return H M^-1 H'; None where the state is not finite, or the mass matrix is singular there."""
     try:
         S = engine.compliance()

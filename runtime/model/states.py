@@ -11,9 +11,11 @@ from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from ..parts.support import Support, Tie
 from ..rotations import rotate
+from .attachments import AttachmentModel
 from .joints import JointModel
 from .loads import PointForceModel
-from .model import Model
+from .model import BodyModel, Model
+from .unknowns import Node
 
 
 def spatial(vectors: np.ndarray) -> np.ndarray:
@@ -21,7 +23,7 @@ def spatial(vectors: np.ndarray) -> np.ndarray:
     return np.concatenate([vectors, np.zeros((*vectors.shape[:-1], 3 - vectors.shape[-1]))], axis=-1)
 
 
-def force_and_moment(nodes, reaction: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray]:
+def force_and_moment(nodes: Iterable[Node], reaction: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray]:
     """Return the force and moment that supports or joins give to nodes at one place.
 
     reaction, q: (time, dofs) generalised forces and configuration. Returns force, moment (time, 3) in N, N m: the
@@ -57,7 +59,7 @@ def tie_force(model: Model, scene: SceneData, tie: Tie, reaction: np.ndarray, q:
     return {name: sign * value for name, value in found.items()}
 
 
-def body_state(model: Model, body, q: np.ndarray) -> dict[str, np.ndarray]:
+def body_state(model: Model, body: BodyModel, q: np.ndarray) -> dict[str, np.ndarray]:
     """Return position, orientation of a body from configurations (time, n_q)."""
     b = body.configuration
     if model.dim == 3:
@@ -70,7 +72,8 @@ def body_state(model: Model, body, q: np.ndarray) -> dict[str, np.ndarray]:
             "orientation": orientation}
 
 
-def body_rates(model: Model, body, orientation: np.ndarray, v: np.ndarray, a: np.ndarray | None = None) -> dict:
+def body_rates(model: Model, body: BodyModel, orientation: np.ndarray, v: np.ndarray,
+               a: np.ndarray | None = None) -> dict:
     """Return velocity of a body's origin, angular_velocity, and with accelerations theirs, from rates (time, n_dof)."""
     at = slice(body.dof, body.dof + model.dim)
     turn = slice(at.stop, at.stop + (3 if model.dim == 3 else 1))
@@ -86,11 +89,13 @@ def body_rates(model: Model, body, orientation: np.ndarray, v: np.ndarray, a: np
     return found
 
 
-def modal_state(model: Model, body, state: dict[str, np.ndarray], q: np.ndarray, v: np.ndarray | None = None) -> dict:
+def modal_state(model: Model, body: BodyModel, state: dict[str, np.ndarray], q: np.ndarray,
+                v: np.ndarray | None = None) -> dict:
     """Return modal_coordinates (time, mode) and nodes (time, node, 3) of a modal body whose frame's `state` is known.
 
     With v (time, n_dof) modal_velocities, too.
     """
+    assert body.shape is not None, "a rigid body has no modes"
     start = body.configuration + (7 if model.dim == 3 else 4)
     eta, fields = q[:, start : start + body.modes], body.shape.fields
     place = fields.nodes + np.einsum("tk,kni->tni", eta, fields.modes)
@@ -125,7 +130,7 @@ def point_force_state(model: Model, between: PointForceModel, force: np.ndarray,
     return {"force": force, "length": length, "tension": np.sum(force * along, axis=1)}
 
 
-def attachment_points(model: Model, attachment, q: np.ndarray) -> np.ndarray:
+def attachment_points(model: Model, attachment: AttachmentModel, q: np.ndarray) -> np.ndarray:
     """Return (time, 3): where an attachment is."""
     if attachment.cable >= 0:
         cable = model.cables[attachment.cable]

@@ -103,7 +103,7 @@ class Spline:
         self.s = np.concatenate([[0.0], np.cumsum(self._arc(self.t[:-1], self.t[1:]))])
         self.length = float(self.s[-1])
 
-    def _take(self, r) -> None:
+    def _take(self, r: Any) -> None:
         self._r, self._r_t, self._r_tt = r, r.derivative(), r.derivative(2)
 
     def _off_the_chords(self) -> tuple[np.ndarray, np.ndarray]:
@@ -141,10 +141,10 @@ class Spline:
         at = 0.5 * (start + end)[:, None] + half[:, None] * GAUSS
         return half * (np.linalg.norm(self._r_t(at), axis=-1) @ WEIGHTS)
 
-    def _parameter(self, s) -> np.ndarray:
+    def _parameter(self, s: ArrayLike) -> np.ndarray:
         """Return the parameters of arc-lengths, by Newton's method, whose derivative is the speed."""
-        s = np.clip(np.asarray(s, dtype=float), 0, self.length)
-        flat = s.ravel()
+        clipped = np.clip(np.asarray(s, dtype=float), 0, self.length)
+        flat = clipped.ravel()
         k = np.clip(np.searchsorted(self.s, flat, side="right") - 1, 0, len(self.t) - 2)
         low, high = self.t[k], self.t[k + 1]
         t = low + (high - low) * (flat - self.s[k]) / (self.s[k + 1] - self.s[k])
@@ -153,7 +153,7 @@ class Spline:
             t = np.clip(t + step, low, high)
             if np.max(np.abs(step), initial=0.0) <= 1e-14 * self.t[-1]:
                 break
-        return t.reshape(s.shape)
+        return t.reshape(clipped.shape)
 
     def point(self, s: ArrayLike) -> np.ndarray:
         """Return the points at arc-lengths s."""
@@ -258,7 +258,7 @@ def _closer(at: Callable[[float], tuple[float, ...]], u: np.ndarray) -> np.ndarr
         u, known = np.insert(u, places, between[far]), np.insert(known, places, new[far], axis=0)
 
 
-def _distances(spline, low: np.ndarray, high: np.ndarray, points: np.ndarray) -> np.ndarray:
+def _distances(spline: Any, low: np.ndarray, high: np.ndarray, points: np.ndarray) -> np.ndarray:
     """Return (n,): of each point to the spline, whose nearest place is sought between two parameters."""
     t = 0.5 * (low + high)
     for _ in range(6):

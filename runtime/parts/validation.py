@@ -39,7 +39,7 @@ LONGEST_NAME = 100
 class _Short(reprlib.Repr):
     """Values in messages, whatever their size and depth."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         super().__init__()
         self.maxlevel, self.maxstring, self.maxother = 4, 80, 120
         self.maxlist = self.maxtuple = self.maxdict = 12
@@ -247,7 +247,7 @@ class _TranslatingType(ModelMetaclass):
     which knows the path to it.
     """
 
-    def __call__(cls, /, **data):  # noqa: N805  it is a metaclass
+    def __call__(cls, /, **data: Any) -> Any:  # noqa: N805  it is a metaclass
         try:
             return super().__call__(**data)
         except ValidationError as error:

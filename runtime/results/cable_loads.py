@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..kernels.libraries import kernels_of
 from ..model.attachments import CARRIED, UP, AttachmentModel
 from ..model.loads import GAUSS
-from ..model.model import CableModel, Model
+from ..model.model import CableModel, Kernel, Model
 from ..model.states import attachment_points, spatial
 from ..parts.load import DistributedForce, Moment
 from ..parts.scene_data import SceneData
@@ -76,13 +76,13 @@ def element_coordinates(cable: CableModel, values: np.ndarray, element: np.ndarr
     return np.concatenate([nodal[:, :-1], nodal[:, 1:]], axis=2)
 
 
-def shape_on_axis(cable: CableModel, x: np.ndarray) -> np.ndarray:
+def shape_on_axis(cable: CableModel, x: ArrayLike) -> np.ndarray:
     """Return (..., vectors): shape functions at places x of an element's centreline."""
-    x = np.asarray(x, dtype=float)
-    return rows(cable.kernel("on_axis"), x.size, cable.length, x.ravel())[0].reshape(*x.shape, -1)
+    at = np.asarray(x, dtype=float)
+    return rows(cable.kernel("on_axis"), at.size, cable.length, at.ravel())[0].reshape(*at.shape, -1)
 
 
-def rows(kernel, n: int, *given):
+def rows(kernel: Kernel, n: int, *given: ArrayLike) -> Any:
     """Call a kernel n times and return its outputs; each argument has the kernel's shape, or that after n."""
     return kernel.rows(n, *given)
 
@@ -102,9 +102,9 @@ class CableLoads:
         self._joints()
         self._point_forces()
 
-    def _add(self, cable: int, element, x, f: np.ndarray) -> None:
-        element, x = (np.broadcast_to(value, self.times) for value in (element, x))
-        self.points.setdefault(cable, []).append(PointLoad(element, x, f))
+    def _add(self, cable: int, element: ArrayLike, x: ArrayLike, f: np.ndarray) -> None:
+        of, at = (np.broadcast_to(value, self.times) for value in (element, x))
+        self.points.setdefault(cable, []).append(PointLoad(of, at, f))
 
     def _loads(self) -> None:
         for load in self.scene.loads.values():
@@ -125,12 +125,14 @@ class CableLoads:
                 f = self._force(cable, element, x, np.array(load.value), load.follower)
             self._add(self.number[on], element, x, scale[:, None, None] * f)
 
-    def _turning(self, cable: CableModel, kernel: str, element, x, c: np.ndarray) -> np.ndarray:
+    def _turning(self, cable: CableModel, kernel: str, element: np.ndarray | int, x: np.ndarray | float,
+                 c: np.ndarray) -> np.ndarray:
         """Return (T, vectors, dim): of a load that turns with the section."""
         e = element_coordinates(cable, self.at.q, np.broadcast_to(element, self.times))
         return rows(cable.kernel(kernel), self.times, cable.length, x, e, c)[0]
 
-    def _force(self, cable: CableModel, element, x, value: np.ndarray, follower: bool) -> np.ndarray:
+    def _force(self, cable: CableModel, element: np.ndarray | int, x: np.ndarray | float, value: np.ndarray,
+               follower: bool) -> np.ndarray:
         """Return (T, vectors, dim): of a force along the ground's axes, or the local ones."""
         if follower:
             return self._turning(cable, "follower_force", element, x, value[: self._follower_components(cable)])
@@ -219,7 +221,8 @@ class CableLoads:
             f = f + self._couple(cable, end, np.full(self.times, end.element), np.full(self.times, x), moment)
         self._add(end.cable, end.element, x, f)
 
-    def _couple(self, cable: CableModel, end: AttachmentModel, element, x, moment: np.ndarray) -> np.ndarray:
+    def _couple(self, cable: CableModel, end: AttachmentModel, element: np.ndarray, x: np.ndarray,
+                moment: np.ndarray) -> np.ndarray:
         """Return (T, vectors, dim): of a moment (T, 3) on the frame that an end has of its cable, T' m."""
         e = element_coordinates(cable, self.at.q, element)
         S = rows(cable.kernel("slopes"), self.times, cable.length, x)[:, :, 0]  # (T, xyz, vectors)

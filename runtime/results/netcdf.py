@@ -12,6 +12,7 @@ import os
 import struct
 import weakref
 from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -191,7 +192,7 @@ class File:
         self._put(struct.pack(">i", rows), COUNT_AT)
         self.rows = rows
 
-    def _put(self, data, at: int) -> None:
+    def _put(self, data: Any, at: int) -> None:
         left = memoryview(data)
         while len(left):
             done = write_at(self.descriptor, left, at)

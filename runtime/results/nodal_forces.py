@@ -134,7 +134,7 @@ def _mass(cable: CableModel) -> csr_array:
     return kron(m.tocsr(), np.eye(cable.shape[2]), format="csr")
 
 
-def _reduction(model: Model, dofs: np.ndarray):
+def _reduction(model: Model, dofs: np.ndarray) -> csr_array:
     """Return T (dofs, unknowns that they have), sparse: dofs = T unknowns + what is prescribed."""
     unknown, combinations = model.unknown_of_dof[dofs], model.combinations.tocsr()
     free, combined = np.flatnonzero(unknown >= 0), np.flatnonzero(unknown < -1)

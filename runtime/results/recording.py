@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..engine import Engine
 from ..model.model import Model
 from ..model.states import (
     body_rates,
@@ -45,7 +46,7 @@ class Recording(Rows):
     report: dict
 
 
-def named(model: Model, scene: SceneData, engine) -> Rows:
+def named(model: Model, scene: SceneData, engine: Engine) -> Rows:
     """Return the engine's rows by name."""
     rows = engine.rows()
     q, v, a = rows["q"], rows["v"], rows["acceleration"]
@@ -104,7 +105,7 @@ def recorded(simulation: Simulation, scene: SceneData, settings: RunSettings) ->
     )
 
 
-def _costs(model: Model, engine) -> dict[str, float]:
+def _costs(model: Model, engine: Engine) -> dict[str, float]:
     """Return the µs of a step that each slide and joint takes; a slide that ties its rider's axes has both its parts.
     """
     found: dict[str, float] = {}

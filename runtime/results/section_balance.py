@@ -21,7 +21,7 @@ import numpy as np
 from ..model.model import CableModel
 from ..model.states import spatial
 from ..parts.cable import EXACT, Cable
-from .cable_loads import CableLoads, positions, rows, shape_on_axis
+from .cable_loads import CableLoads, Spread, positions, rows, shape_on_axis
 from .nodal_forces import ElementForces
 
 
@@ -97,7 +97,8 @@ def _shape(model: CableModel, x: np.ndarray) -> np.ndarray:
     return shape_on_axis(model, x)
 
 
-def _of_inertia(cable: Cable, model: CableModel, cuts: Cuts, e: np.ndarray, a: np.ndarray):
+def _of_inertia(cable: Cable, model: CableModel, cuts: Cuts, e: np.ndarray, a: np.ndarray) -> tuple[np.ndarray,
+                np.ndarray]:
     """Return the force and moment (T, n, 3) about the element's first node that the element's inertia takes up to the
     cut.
 
@@ -126,7 +127,8 @@ def _at(N: np.ndarray, values: np.ndarray) -> np.ndarray:
     return np.einsum("tnk,tnkd->tnd", np.broadcast_to(N, (len(values), *N.shape[1:])), values)
 
 
-def _of_spread(model: CableModel, spread, x: np.ndarray, e: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _of_spread(model: CableModel, spread: Spread, x: np.ndarray, e: np.ndarray) -> tuple[np.ndarray, np.ndarray,
+               np.ndarray]:
     """Return the force and moment (T, n, 3) about the element's first node of what is spread up to x, and the force a
     length at x.
 
@@ -143,7 +145,7 @@ def _of_spread(model: CableModel, spread, x: np.ndarray, e: np.ndarray) -> tuple
     return force, moment, _density(spread, x)
 
 
-def _density(spread, x: np.ndarray) -> np.ndarray:
+def _density(spread: Spread, x: np.ndarray) -> np.ndarray:
     """Return (T, n, 3): force a length at x (T or 1, n)."""
     weights, times = _lagrange(spread.x, x), len(spread.density)
     return np.einsum("tnp,tpd->tnd", np.broadcast_to(weights, (times, *weights.shape[1:])), spread.density)

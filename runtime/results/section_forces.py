@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -100,7 +100,7 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
     return balanced_components(cable, (balance_force, balance_moment), (force, moment), taut, axes, strain)
 
 
-def of_run(run: Results, name: str, s: np.ndarray, chosen=slice(None), *, method: str = "balance",
+def of_run(run: Results, name: str, s: np.ndarray, chosen: Any = slice(None), *, method: str = "balance",
            side: str = "after") -> dict[str, np.ndarray]:
     """Return `cut_forces` of a run at the chosen times; s: (1 or T, n)."""
     time = run.time[chosen]
@@ -205,7 +205,7 @@ def dataset(state: Results | RestState, cable: Cable | str, s: ArrayLike | Slide
         coords, {"cable": name, "element": drawn.element, "law": drawn.law, "method": method, "side": side})
 
 
-def _places(state: Results | RestState, cable: Cable, s, over_time: bool) -> tuple[np.ndarray, bool]:
+def _places(state: Results | RestState, cable: Cable, s: Any, over_time: bool) -> tuple[np.ndarray, bool]:
     """Return arc-lengths (1 or T, n) from what was asked for, and whether they go with a slide."""
     scene, name = state.scene, cable.name
     if s is None:

@@ -81,7 +81,7 @@ class Stream:
         """Return the stream itself."""
         return self
 
-    def __exit__(self, *exception) -> None:
+    def __exit__(self, *exception: object) -> None:
         """Let other runs have the file."""
         self._let_go()
 

@@ -8,7 +8,7 @@ from scipy.sparse import csc_array
 from ..model.model import Model
 
 
-def fastest(K: csc_array, M: csc_array, unknowns=slice(None)) -> float:
+def fastest(K: csc_array, M: csc_array, unknowns: np.ndarray | slice = slice(None)) -> float:
     """Return about the square of the highest frequency of some unknowns, rad²/s²; M may have more after those of K."""
     inertia, stiffness = M.diagonal()[: K.shape[0]][unknowns], K.diagonal()[unknowns]
     heavy = inertia > 0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..engine import Engine
 from ..integrators import INTEGRATORS, stable_at
 from ..model.model import CableModel, Model
 from ..model.redundant_constraints import redundant
@@ -27,7 +28,7 @@ QUIET_ERROR, QUIET_LOSS, LOOSE_LOSS = 5e-3, 0.01, 0.05
 these are reported; the last is for loose tolerances, where energy may be off by so much more."""
 
 
-def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
+def stopped(model: Model, engine: Engine, status: str, settings: RunSettings) -> str:
     """Return the message of a run that found no acceptable step, lost a joint or whose energy grew."""
     when = f"t = {engine.time:.6g} s of {settings.duration:.6g} s"
     cause, dof, joint = engine.failure
@@ -51,6 +52,7 @@ def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
             "Look at the masses and at up, or take more elements there")
         return (f"the equations are singular at {when}, first at {where} ({state}): a joint or the mass matrix is "
                 f"degenerate{why}; {KEPT}. {remedy}")
+    assert cause is not None, "a step that failed has a cause"
     what = {"iteration": f"the iteration does not converge, least of all at {where}",
             "error": f"the error stays above what tol allows, most of all at {where}",
             "lost_rider": f"{where} does not find its point on the cable any more",
@@ -71,7 +73,7 @@ def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
     return f"no step converged at {when}{gone}: {what} ({state}); {KEPT}. {remedy}"
 
 
-def _too_large(engine, settings: RunSettings) -> str:
+def _too_large(engine: Engine, settings: RunSettings) -> str:
     size = f"tol {settings.tol:g}" if settings.step is None else f"step {settings.step:g} s"
     others = "" if settings.step is None else ", or none, so that tol chooses it"
     stable = ""
@@ -122,7 +124,7 @@ def _node(model: Model, dof: int) -> tuple[CableModel, int] | None:
     return None
 
 
-def notes(engine, settings: RunSettings) -> list[str]:
+def notes(engine: Engine, settings: RunSettings) -> list[str]:
     """Return what a user should know of a completed run whose results are coarse; empty where they are good."""
     counts, notes = engine.statistics, []
     if settings.step is not None and counts["rejected_steps"]:
@@ -141,7 +143,7 @@ def notes(engine, settings: RunSettings) -> list[str]:
     return notes + unexplained(engine, settings)
 
 
-def unexplained(engine, settings: RunSettings) -> list[str]:
+def unexplained(engine: Engine, settings: RunSettings) -> list[str]:
     """Return a note where energy has come or gone that nothing in the scene explains; empty where the balance closes.
     """
     grown, lost, exchanged, in_motion, rounding = engine.balance

@@ -7,7 +7,7 @@ is zero counts apart and constraints may be redundant; `negatives` is for the sp
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.linalg import eigvalsh, ldl, null_space, qr
@@ -48,7 +48,7 @@ class Inertia(NamedTuple):
     positive: int
 
 
-def inertia(K, C=None, units: np.ndarray | None = None, zero: float = ZERO) -> Inertia:
+def inertia(K: Any, C: Any = None, units: np.ndarray | None = None, zero: float = ZERO) -> Inertia:
     """Return the inertia of K (n, n), symmetric, on the null space of C (m, n); both sparse or dense.
 
     Rows of C may depend on each other. ``inertia(K - shift * M, C)`` counts the eigenvalues of (K, M) below a shift.
@@ -70,7 +70,7 @@ def inertia(K, C=None, units: np.ndarray | None = None, zero: float = ZERO) -> I
     return Inertia(below, at, n - C.shape[0] - below - at)
 
 
-def scaled(K: csc_array, C=None, units: np.ndarray | None = None) -> tuple[csc_array, csr_array, np.ndarray]:
+def scaled(K: csc_array, C: Any = None, units: np.ndarray | None = None) -> tuple[csc_array, csr_array, np.ndarray]:
     """Return D K D with a diagonal of about one, independent rows of C D of unit length, and D's diagonal (n,)."""
     n = K.shape[0]
     C = csr_array((0, n)) if C is None else csr_array(C, dtype=float)

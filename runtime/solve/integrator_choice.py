@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from scipy.sparse.linalg import splu
 
@@ -131,7 +133,7 @@ def fastest_rates(model: Model, engine: Engine) -> tuple[float, float]:
     return np.sqrt(_largest(stiffness, mass)), _largest(damping, mass)
 
 
-def _largest(matrix, mass) -> float:
+def _largest(matrix: Any, mass: Any) -> float:
     """Return about the largest eigenvalue of the symmetric part by the mass, in size, by power iteration: some per cent
     low.
     """

@@ -33,7 +33,7 @@ NEAR = 0.3
 class LongRun:
     """Follows the steps of a run; called with the time reached, s, it passes that on to the progress meter."""
 
-    def __init__(self, model: Model, engine, settings: RunSettings, watcher: EventWatcher, meter: Meter):
+    def __init__(self, model: Model, engine: Engine, settings: RunSettings, watcher: EventWatcher, meter: Meter):
         self._model, self._engine, self._settings = model, engine, settings
         self._watcher, self._meter = watcher, meter
         self._marks: deque[tuple[float, float, int]] = deque([(time.monotonic(), engine.time, self._steps)])

@@ -12,6 +12,7 @@ from scipy.sparse import csc_array, diags_array
 from ..engine import Engine
 from ..errors import FunicularWarning, SceneError, UnknownResultError, near
 from ..model.build import build
+from ..model.model import BodyModel, Model
 from ..model.redundant_constraints import drop_redundant_rows
 from ..model.states import body_state, spatial
 from ..parts.scene_data import SceneData
@@ -105,7 +106,7 @@ def _without_friction(scene: SceneData) -> list[str]:
     return [f"modes leave out the friction of slide{'s' * (len(slides) > 1)} {', '.join(slides)}"] if slides else []
 
 
-def _rounded_shape(engine, model, K: csc_array) -> csc_array:
+def _rounded_shape(engine: Engine, model: Model, K: csc_array) -> csc_array:
     """Return what of the stiffness comes of rounded coordinates, which strain the cables by `ROUNDING`.
 
     A tension of so much of EA is nothing beside EA, but not beside the bending of a long thin cable.
@@ -139,7 +140,7 @@ def _uncertain(modes: Modes, lowest: float) -> list[str]:
     return notes
 
 
-def _refuse_what_is_out_of_range(scene: SceneData, model, K: csc_array, M: csc_array) -> None:
+def _refuse_what_is_out_of_range(scene: SceneData, model: Model, K: csc_array, M: csc_array) -> None:
     """Raise SceneError unless inertia and stiffness are finite, and the inertia positive, but for the arc-lengths of
     slides.
     """
@@ -155,7 +156,7 @@ def _refuse_what_is_out_of_range(scene: SceneData, model, K: csc_array, M: csc_a
                              "take them nearer to each other")
 
 
-def _owner(scene: SceneData, model, unknown: int) -> str:
+def _owner(scene: SceneData, model: Model, unknown: int) -> str:
     """Return the part whose coordinate an unknown is."""
     dof = int(np.argmax(model.unknown_of_dof == unknown))
     for name, nodes in model.nodes.items():
@@ -226,7 +227,7 @@ def _unsymmetric(K: csc_array, M: csc_array, constraints: csc_array, n: int, pen
     return pencil.unit * squares[order], pencil.scale[:, None] * x, pencil.unit * error
 
 
-def _named(model, squares: np.ndarray, dofs: np.ndarray, error: np.ndarray) -> Modes:
+def _named(model: Model, squares: np.ndarray, dofs: np.ndarray, error: np.ndarray) -> Modes:
     roots = np.sqrt(squares.astype(complex))
     size = np.abs(roots)  # sqrt(square + error) - sqrt(square)
     uncertainty = error / (size + np.sqrt(size**2 + error))
@@ -250,8 +251,9 @@ def _named(model, squares: np.ndarray, dofs: np.ndarray, error: np.ndarray) -> M
     return Modes(np.abs(roots.real), np.abs(roots.imag), shapes, uncertainty)
 
 
-def _nodes(model, body, dofs: np.ndarray) -> np.ndarray:
+def _nodes(model: Model, body: BodyModel, dofs: np.ndarray) -> np.ndarray:
     """Return (n, node, 3): what the nodes of a modal body are moved by."""
+    assert body.shape is not None, "a rigid body has no modes"
     at = body.dof + model.dim
     turn = dofs[:, at : at + 3] if model.dim == 3 else np.pad(dofs[:, at : at + 1], ((0, 0), (2, 0)))
     at += 3 if model.dim == 3 else 1

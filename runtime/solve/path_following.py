@@ -7,7 +7,7 @@ which it does is found by bisection along the path.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -111,7 +111,7 @@ def _point(problem: StaticProblem, before: np.ndarray | None, advance: float = 0
                  stability(problem), advance)
 
 
-def _bordered(problem: StaticProblem, heading: np.ndarray):
+def _bordered(problem: StaticProblem, heading: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
     """Return the solver of the tangent with the load as a further unknown, and the advance along the heading as a row.
 
     It is not singular where the load turns. Raises RuntimeError where it is.

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 OnProgress = Callable[[float], None]
 
 
-def _nothing(_) -> None:
+def _nothing(_: float | str) -> None:
     """Show no progress at all."""
 
 

@@ -14,6 +14,7 @@ from scipy.sparse.linalg import splu
 
 from ..engine import Engine
 from ..model.build import build
+from ..model.model import Model
 from ..model.redundant_constraints import drop_redundant_rows
 from ..model.states import attachment_points
 from ..parts.scene_data import SceneData
@@ -172,7 +173,7 @@ class StaticProblem:
         return bool(np.all(past <= self.settings.tolerance * self.size))
 
 
-def _point_entries(model) -> np.ndarray:
+def _point_entries(model: Model) -> np.ndarray:
     """Return the entries of the configuration that are coordinates of points."""
     nodes = [node.dofs("r") for cable in model.nodes.values() for node in cable]
     bodies = [range(body.configuration, body.configuration + model.dim) for body in model.bodies]

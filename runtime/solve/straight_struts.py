@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..engine import Engine
-from ..model.model import Model
+from ..model.model import CableModel, Model
 from ..parts.scene_data import SceneData
 from .condensation import condensed
 from .inertia import inertia
@@ -18,7 +18,7 @@ STRAIGHT = 1e-9
 """Of the length: nodes that are nearer to the line between the ends lie on it."""
 
 
-def notes(scene: SceneData, model: Model, engine) -> list[str]:
+def notes(scene: SceneData, model: Model, engine: Engine) -> list[str]:
     """Return a note for each such strut at the time at which it is compressed most, of those still in memory."""
     rows = engine.rows()
     times, states, arcs = rows["time"], rows["q"], rows["s"]
@@ -74,7 +74,7 @@ def _on_line(r: np.ndarray) -> np.ndarray:
     return (off <= STRAIGHT * length) & np.all(np.diff(along, axis=1) > 0, axis=1)
 
 
-def _unstable(model: Model, cable, t: float, q: np.ndarray, s: np.ndarray) -> int:
+def _unstable(model: Model, cable: CableModel, t: float, q: np.ndarray, s: np.ndarray) -> int:
     """Return how many directions of a cable, all else fixed, lower the energy; joints hold it, with forces left out."""
     engine = Engine(model)
     engine.set_state(t, q=q, s=s)

@@ -48,7 +48,7 @@ class _OneBlasThread:
     work. What the process had before comes back when the last one leaves.
     """
 
-    def __init__(self):
+    def __init__(self) -> None:
         self._reset()
         os.register_at_fork(after_in_child=self._reset)  # what other threads were inside of is not in the child
 
@@ -64,7 +64,7 @@ class _OneBlasThread:
                 self._limiter = blas.limit(limits=1)
             self._inside += 1
 
-    def __exit__(self, *exception) -> None:
+    def __exit__(self, *exception: object) -> None:
         with self._lock:
             self._inside -= 1
             if self._inside == 0:

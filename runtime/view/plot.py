@@ -19,6 +19,7 @@ from ..results.section_forces import even, jumps, of_run, with_sides
 from ..rotations import rotate
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure
     from matplotlib.typing import RcKeyType
@@ -214,7 +215,7 @@ def draw_shape(run: Run) -> Figure | None:
     return figure
 
 
-def _set_scales(axes, view: View) -> None:
+def _set_scales(axes: Axes, view: View) -> None:
     """Set equal scales, or exaggerate the upright one by a round factor that its label states."""
     axes.margins(0.04, 0.12)
     width, height = np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())

@@ -36,7 +36,7 @@ def by_vectors(program: Program, tag: str, names: str, vectors: Sequence[np.ndar
     pairs = {names[i] + names[j]: H[i, j] for i in range(3) for j in range(i, 3)}
     second = {pair: program.define(f"H_{pair}_{tag}", factors[pair] * value) for pair, value in pairs.items()}
 
-    def combined(name, first, last):
+    def combined(name: str, first: np.ndarray, last: np.ndarray) -> np.ndarray:
         return program.vector(f"{name}_{tag}", first * r1 + last * r2)
 
     a1, b1, c1 = (combined(f"{x}1", second[p], second[q]) for x, p, q in

@@ -12,9 +12,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
+from typing import Any
 
 import numpy as np
 import sympy as sp
+from sympy.polys.rings import PolyElement
 
 from ...algebra import section_integrals as integrals
 from ...algebra.discrete_gradient import DiscreteGradient, staged
@@ -168,7 +170,7 @@ class Cable(Damping):
                           list(vectors), [s[g] for s in series]))
         return found
 
-    def _terms(self, program: Program, A, c, w) -> Iterator[Term]:
+    def _terms(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr) -> Iterator[Term]:
         """Yield the energy point by point."""
         program.stage("strain at the quadrature points")
         EA, EI = program.define("EA_l", A[0] / (2 * w)), program.define("EI_l", 2 * A[1] * w)
@@ -298,13 +300,13 @@ def _first(program: Program, term: Term) -> list[sp.Expr]:
     return [program.define(f"D_{s.name}", d) for s, d in zip(term.invariants, gradient, strict=True)]
 
 
-def _number(value) -> sp.Expr:
+def _number(value: Any) -> sp.Expr:
     """Return a double as the kernels will hold it; small integers are exact."""
     value = float(value)
     return sp.Integer(round(value)) if abs(value - round(value)) < 1e-15 else sp.Float(value)
 
 
-def _at(p, x: float):
+def _at(p: PolyElement, x: float) -> sp.Expr:
     """Return the value of a polynomial in X."""
     return sum(float(c) * x ** k[0] for k, c in p.terms())
 

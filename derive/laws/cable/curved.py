@@ -96,7 +96,7 @@ class CurvedCable(Cable):
         return Reference(program.define(f"j0{tag}", sp.sqrt(a)), inverse, k2, rounding, kappa,
                          program.define(f"k0_none{tag}", floor**2 * none * kappa))
 
-    def _terms(self, program: Program, A, c, w) -> Iterator[Term]:
+    def _terms(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr) -> Iterator[Term]:
         """Yield the energy point by point."""
         program.stage("strain at the quadrature points")
         EA, EI = program.define("EA_l", A[0] / (2 * w)), program.define("EI_l", 2 * A[1] * w)

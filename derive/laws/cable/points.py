@@ -6,7 +6,7 @@ and differences do the work of both points of a pair.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -79,7 +79,7 @@ def _alike(series: Series, here: int, there: int) -> list[bool]:
     return [f == g for f, g in zip(series[here], series[there], strict=True)]
 
 
-def _sum(terms) -> np.ndarray:
+def _sum(terms: Iterable[np.ndarray]) -> np.ndarray:
     return sum(terms, np.array(0))
 
 

@@ -190,7 +190,7 @@ class Continuum:
 
     # --- Kelvin-Voigt: stress follows G - G0 + tau dG/dt; what follows is the tau part ----------------------
 
-    def _viscous(self, program, A, tau, c, dc):
+    def _viscous(self, program: Program, A: np.ndarray, tau: sp.Expr, c: np.ndarray, dc: np.ndarray) -> tuple:
         program.stage("rates of the Gram products")
         dG = self.gram.gram_rate(program, c, dc)
         program.stage("u = tau A dG/dt")
@@ -239,7 +239,8 @@ class Continuum:
         u, dG = self._viscous(program, A, tau, c, dc)
         return sum(a * b for a, b in zip(u, dG, strict=True))
 
-    def _times(self, program: Program, moduli: dict, strain, scale=sp.S.One) -> list[sp.Expr]:
+    def _times(self, program: Program, moduli: dict, strain: Sequence[sp.Expr],
+               scale: sp.Expr = sp.S.One) -> list[sp.Expr]:
         u = []
         for p in range(len(self.gram.pairs)):
             alike: dict[sp.Expr, sp.Expr] = {}

@@ -110,8 +110,8 @@ def _measures(program: Program, R: np.ndarray, F: list[Expansion], F0: list[Expa
             change.append(value / 2 if i == j else value)
         parts[power] = dict(zip(voigt(dim), _strain(program, tag, metric, change), strict=True))
 
-    def of(power, *ij):
-        return parts[power].get(ij, sp.S.Zero)
+    def of(power: tuple[int, int], i: int, j: int) -> sp.Expr:
+        return parts[power].get((i, j), sp.S.Zero)
 
     o, y, z = (0, 0), (1, 0), (0, 1)
     return [of(o, 0, 0), of(o, 0, 1), of(o, 0, 2), (of(y, 0, 2) - of(z, 0, 1)) / 2, of(z, 0, 0), -of(y, 0, 0)]

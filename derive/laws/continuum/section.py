@@ -67,8 +67,8 @@ class Resultants:
         """Return strains, axial, shear along y and z, twist, curvatures about y and z: what of the Green strain a
         section that stays plane would have.
         """
-        def of(i, j, *power):
-            return self.E.get((i, j), {}).get(power, sp.S.Zero)
+        def of(i: int, j: int, *power: int) -> sp.Expr:
+            return self.E.get((i, j), {}).get((power[0], power[1]), sp.S.Zero)
 
         return [of(0, 0, 0, 0), of(0, 1, 0, 0), of(0, 2, 0, 0), (of(0, 2, 1, 0) - of(0, 1, 0, 1)) / 2,
                 of(0, 0, 0, 1), -of(0, 0, 1, 0)]

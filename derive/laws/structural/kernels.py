@@ -8,6 +8,8 @@ along x, y, z, and the two frames, turned about their own axes.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import sympy as sp
 
@@ -49,7 +51,8 @@ class Kernels:
     def _tau(self, program: Program) -> sp.Symbol:
         return program.input("tau", (), "s", "retardation time of the Kelvin-Voigt law")
 
-    def _configuration(self, program: Program, e: np.ndarray, length: sp.Symbol, shares) -> Configuration:
+    def _configuration(self, program: Program, e: np.ndarray, length: sp.Symbol,
+                       shares: Sequence[sp.Expr] | np.ndarray) -> Configuration:
         program.stage("frames, strains")
         return Configuration(self.law, program, e, program.define("w", 1 / length), shares)
 
@@ -160,10 +163,11 @@ class Kernels:
         program.stage("stiffness of the element")
         return [program.define(f"S_{i}", scale * A[i]) for i in range(self.law.n_stiffness)]
 
-    def _elastic(self, program: Program, A: np.ndarray, stiffness, configuration: Configuration) -> list[sp.Expr]:
+    def _elastic(self, program: Program, A: np.ndarray, stiffness: Sequence[sp.Expr],
+                 configuration: Configuration) -> list[sp.Expr]:
         return self._resultants(program, stiffness, self.law.from_reference(program, A, configuration.strains))
 
-    def _resultants(self, program: Program, stiffness, strains) -> list[sp.Expr]:
+    def _resultants(self, program: Program, stiffness: Sequence[sp.Expr], strains: Sequence[sp.Expr]) -> list[sp.Expr]:
         program.stage("resultants")
         return [program.define(f"n_{name}", r)
                 for name, r in zip(self.law.names, self.law.resultants(stiffness, strains), strict=True)]

@@ -25,7 +25,7 @@ EA, GA_y, GA_z, GJ, EI_yy, EI_zz, and stiffness against r_y.r_y, r_z.r_z, r_y.r_
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -148,10 +148,10 @@ class Structural:
         """Return the stiffness of the bending that goes with a shear: about z with y, about y with z."""
         return S[len(self.axes) + list(self.spins).index(3 - shear)]
 
-    def _condensed(self, S, shear: int, length: sp.Expr) -> sp.Expr:
+    def _condensed(self, S: Sequence[sp.Expr] | np.ndarray, shear: int, length: sp.Expr) -> sp.Expr:
         return S[shear] ** 2 / self._bubble_stiffness(S, shear, length)
 
-    def _bubble_stiffness(self, S, shear: int, length: sp.Expr) -> sp.Expr:
+    def _bubble_stiffness(self, S: Sequence[sp.Expr] | np.ndarray, shear: int, length: sp.Expr) -> sp.Expr:
         """Return the stiffness of the amplitude beta, over l."""
         return S[shear] * BUBBLE_SQUARED + self.bending(S, shear) * BUBBLE_CURVATURE / length**2
 
@@ -244,7 +244,8 @@ class Configuration:
     `parts` are these scalars and the frames: a motion is known by the rates that it gives to them.
     """
 
-    def __init__(self, law: Structural, program: Program, e: np.ndarray, w: sp.Expr, shares: Sequence[sp.Expr]):
+    def __init__(self, law: Structural, program: Program, e: np.ndarray, w: sp.Expr,
+                 shares: Sequence[sp.Expr] | np.ndarray):
         self.law, self.program, self.w, self.shares = law, program, w, shares
         names = [name.partition("_")[2] for name in law.element.names]  # 1, x1, y1, z1, 2, x2, ...
         at = {name: spatial(e[k]) for k, name in enumerate(names)}
@@ -351,5 +352,5 @@ class Configuration:
         rate = (sign * (unit + g[k] * g) + turned(k, g)) / 2
         return np.array([self.program.define(f"dg{i + 1}_{node + 1}{k + 1}", r) for i, r in enumerate(rate)])
 
-    def _complete(self, rates) -> dict[sp.Symbol, sp.Expr]:
+    def _complete(self, rates: Iterable[tuple[sp.Symbol, sp.Expr]]) -> dict[sp.Symbol, sp.Expr]:
         return dict.fromkeys(self.parts, sp.S.Zero) | {s: v for s, v in rates if sp.sympify(s).is_Symbol}

@@ -98,7 +98,7 @@ class Tangent(Forces):
         self.velocity = velocity
         self._add_across(stiffness, velocity, rate)
 
-    def _add_across(self, stiffness: Sequence[sp.Expr], velocity: Velocity | None, rate) -> None:
+    def _add_across(self, stiffness: Sequence[sp.Expr], velocity: Velocity | None, rate: sp.Expr | None) -> None:
         """Add the strains of the section, which only directors move."""
         terms, dim, directors = across(self.configuration), self.law.element.dim, self.configuration.directors
         for q, own in terms.items():
@@ -116,7 +116,8 @@ class Tangent(Forces):
     def _add(self, of: Slot, to: Slot, block: np.ndarray) -> None:
         self.across[of, to] = self.across.get((of, to), 0) + block
 
-    def _add_form(self, K: np.ndarray, B: np.ndarray, stiffness, columns: np.ndarray, name: str) -> np.ndarray:
+    def _add_form(self, K: np.ndarray, B: np.ndarray, stiffness: Sequence[sp.Expr], columns: np.ndarray,
+                  name: str) -> np.ndarray:
         """Return K + B' C columns, named entry by entry; B' C B is symmetric."""
         C = np.array([[self.program.define("C", r) for r in self.law.resultants(stiffness, column)]
                       for column in columns.T]).T

@@ -49,7 +49,7 @@ def integrals(s: State, **moved: np.ndarray) -> State:
               *(np.tensordot(s[name], s["modes"], 1) for name in RATES[1:])]
     mode, other = s["modes"]
 
-    def second(a, b):
+    def second(a: np.ndarray, b: np.ndarray) -> np.ndarray:
         return (rho[:, None] * a).T.dot(b)
 
     made = {"mass": rho.sum(), "s": rho.dot(mode), "X_kl": second(mode, other),
