@@ -18,7 +18,6 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from funicular.generated import described as described_kernels
 from pydantic import ValidationError
 
 from ..errors import FunicularError, SceneError, shown_path
@@ -178,6 +177,9 @@ def tables_of(library: str | None) -> int:
 
 
 def _open(path: Path, content: dict) -> Library:
+    # not at the top: `funicular derive` has to start where generated/ is missing or broken, to mend it
+    from funicular.generated import described as described_kernels
+
     made, described = content["interface"], content["library"]
     again = "make it anew with " + COMMAND.format(spec=described["spec"], out=path)
     if made != elements.manifest()["interface"]:
