@@ -9,26 +9,29 @@ import numpy as np
 
 from cpython.exc cimport PyErr_CheckSignals
 from cpython.mem cimport PyMem_Calloc, PyMem_Free
-from cpython.pycapsule cimport PyCapsule_GetPointer
-from scipy.linalg cimport cython_lapack
+from cpython.pycapsule cimport PyCapsule_GetName, PyCapsule_GetPointer
 
 from funicular.generated import kernels
 from funicular.operating_system import machine_memory
+from scipy.linalg import cython_lapack
 
 include "engine/cython/engine.pxi"
 
 cdef const fu_tables *TABLES = <const fu_tables *>PyCapsule_GetPointer(kernels.tables,
                                                                       "funicular.generated.kernels.tables")
 cdef fu_lapack LAPACK
-LAPACK.dgbtrf = <void *>cython_lapack.dgbtrf
-LAPACK.dgbtrs = <void *>cython_lapack.dgbtrs
-LAPACK.dpbtrf = <void *>cython_lapack.dpbtrf
-LAPACK.dgetrf = <void *>cython_lapack.dgetrf
-LAPACK.dgetrs = <void *>cython_lapack.dgetrs
-LAPACK.zgbtrf = <void *>cython_lapack.zgbtrf
-LAPACK.zgbtrs = <void *>cython_lapack.zgbtrs
-LAPACK.zgetrf = <void *>cython_lapack.zgetrf
-LAPACK.zgetrs = <void *>cython_lapack.zgetrs
+
+
+cdef _take_lapack():
+    """Fill in the functions of LAPACK that the engine names, as scipy has them."""
+    cdef int k = 0
+    while fu_lapack_name(k) != NULL:
+        function = cython_lapack.__pyx_capi__[fu_lapack_name(k).decode()]
+        fu_lapack_attach(&LAPACK, k, PyCapsule_GetPointer(function, PyCapsule_GetName(function)))
+        k += 1
+
+
+_take_lapack()
 
 STATUS = {FU_DONE: "completed", FU_END_OF_CABLE: "end_of_cable", FU_NO_CONVERGENCE: "no_convergence",
           FU_SINGULAR: "singular", FU_EVENT: "event",

@@ -153,15 +153,9 @@ cdef extern from "engine.h" nogil:
         int dim
         double parameters[8]
     ctypedef struct fu_lapack:
-        void *dgbtrf
-        void *dgbtrs
-        void *dpbtrf
-        void *dgetrf
-        void *dgetrs
-        void *zgbtrf
-        void *zgbtrs
-        void *zgetrf
-        void *zgetrs
+        pass
+    const char *fu_lapack_name(int k)
+    void fu_lapack_attach(fu_lapack *lapack, int k, const void *function)
     ctypedef struct fu_span:
         int first, end
     ctypedef struct fu_piece:
