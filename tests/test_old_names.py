@@ -46,13 +46,13 @@ def test_attributes_of_a_section(old):
 def test_attributes_of_a_joint():
     joint = Joint(kind="spherical", a=("A", (0, 0, 0)), b=(0, 0, 0))
     with refused(AttributeError, "'Joint' object has no attribute 'pair': it is called \"joint_kind\" now"):
-        _ = joint.pair
+        _ = joint.joint_kind
     assert joint.joint_kind == "spherical"
 
 
 def test_keywords_of_a_clamp():
     with refused(fu.SceneError, 'clamp on "wire": "hold" is not known here; it is called "fix" now'):
-        Clamp(cable="wire", s=0, fix="all")
+        Clamp(cable="wire", s=0, hold="all")
 
 
 @pytest.mark.parametrize("old", NOW)
