@@ -46,7 +46,7 @@ def test_attributes_of_a_section(old):
 def test_attributes_of_a_joint():
     joint = Joint(kind="spherical", a=("A", (0, 0, 0)), b=(0, 0, 0))
     with refused(AttributeError, "'Joint' object has no attribute 'pair': it is called \"joint_kind\" now"):
-        _ = joint.joint_kind
+        _ = joint.pair
     assert joint.joint_kind == "spherical"
 
 
