@@ -67,12 +67,12 @@ class Element:
 
     @property
     def is_position(self) -> list[bool]:
-        """For each nodal vector over all nodes, whether it is a position (and not a slope)."""
+        """Return, for each nodal vector over all nodes, whether it is a position (and not a slope)."""
         return [v == "r" for _ in self.nodes for v in self.nodal_vectors]
 
     @cached_property
     def node_ratios(self) -> tuple[sp.Rational, ...]:
-        """Places of the nodes in lengths l."""
+        """Return the places of the nodes in lengths l."""
         return tuple(sp.sympify(node) / l for node in self.nodes)
 
     @property
@@ -97,7 +97,7 @@ class Element:
 
     @cached_property
     def shape_functions(self) -> tuple[sp.Expr, ...]:
-        """N_k(x, y, z; l), from N_k(d_j) = delta_kj on the span of the basis.
+        """Return N_k(x, y, z; l), from N_k(d_j) = delta_kj on the span of the basis.
 
         Raises ValueError where the nodal conditions do not fix the basis.
         """
@@ -140,7 +140,7 @@ class PointLaw:
     measures: Callable[[Stages, np.ndarray, Any], list[sp.Expr]] | None = None
     damping: str = ""
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if self.damping and self.damping not in self.parameters:
             raise ValueError(f'{self.doc}: the damper\'s parameter "{self.damping}" is not among '
                              f"{', '.join(self.parameters)}")

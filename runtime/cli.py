@@ -53,7 +53,7 @@ def _options(
 
 @contextmanager
 def _reported_without_traceback() -> Iterator[None]:
-    """Errors and warnings of funicular become a line on stderr each; an error ends the command with 1."""
+    """Print errors and warnings of funicular as a line on stderr each; an error ends the command with 1."""
     from .errors import FunicularError, FunicularWarning
 
     def tell(message: Warning | str, category: type[Warning], filename: str, lineno: int,

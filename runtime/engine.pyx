@@ -9,32 +9,35 @@ import numpy as np
 
 from cpython.exc cimport PyErr_CheckSignals
 from cpython.mem cimport PyMem_Calloc, PyMem_Free
-from cpython.pycapsule cimport PyCapsule_GetPointer
-from scipy.linalg cimport cython_lapack
+from cpython.pycapsule cimport PyCapsule_GetName, PyCapsule_GetPointer
 
 from funicular.generated import kernels
 from funicular.operating_system import machine_memory
+from scipy.linalg import cython_lapack
 
 include "engine/cython/engine.pxi"
 
 cdef const fu_tables *TABLES = <const fu_tables *>PyCapsule_GetPointer(kernels.tables,
                                                                       "funicular.generated.kernels.tables")
 cdef fu_lapack LAPACK
-LAPACK.dgbtrf = <void *>cython_lapack.dgbtrf
-LAPACK.dgbtrs = <void *>cython_lapack.dgbtrs
-LAPACK.dpbtrf = <void *>cython_lapack.dpbtrf
-LAPACK.dgetrf = <void *>cython_lapack.dgetrf
-LAPACK.dgetrs = <void *>cython_lapack.dgetrs
-LAPACK.zgbtrf = <void *>cython_lapack.zgbtrf
-LAPACK.zgbtrs = <void *>cython_lapack.zgbtrs
-LAPACK.zgetrf = <void *>cython_lapack.zgetrf
-LAPACK.zgetrs = <void *>cython_lapack.zgetrs
+
+
+cdef _take_lapack():
+    """Fill in the functions of LAPACK that the engine names, as scipy has them."""
+    cdef int k = 0
+    while fu_lapack_name(k) != NULL:
+        function = cython_lapack.__pyx_capi__[fu_lapack_name(k).decode()]
+        fu_lapack_attach(&LAPACK, k, PyCapsule_GetPointer(function, PyCapsule_GetName(function)))
+        k += 1
+
+
+_take_lapack()
 
 STATUS = {FU_DONE: "completed", FU_END_OF_CABLE: "end_of_cable", FU_NO_CONVERGENCE: "no_convergence",
           FU_SINGULAR: "singular", FU_EVENT: "event",
           FU_UNSTABLE: "unstable"}
 CAUSES = {FU_NO_FAILURE: None, FU_ITERATION: "iteration", FU_MATRIX: "matrix", FU_ERROR: "error",
-          FU_LOST_RIDER: "lost_rider", FU_NOT_FINITE: "not_finite", FU_JAM: "jam"}
+          FU_LOST_RIDER: "lost_rider", FU_NOT_FINITE: "not_finite", FU_SELF_LOCKING: "self_locking"}
 SLIDE_OUTPUTS = {"s_rate": 1, "s_acceleration": 1, "force": 3, "multiplier": 2, "traction": 1, "residual": 3}
 """Numbers of a slide in a row of output, and how many each has; see fu_slide_output."""
 cdef int TRACTION = sum([SLIDE_OUTPUTS[name] for name in ("s_rate", "s_acceleration", "force", "multiplier")])
@@ -264,7 +267,7 @@ cdef class Engine(Report):
         for joint, row in rows:
             (<fu_joint *>self.couplings[<int>numbers[joint]]).redundant_rows |= 1 << row
 
-    def wander(self, along):
+    def probe_mechanism(self, along):
         """What is left of the joints' equations, (links, 6), after a small way `along` (n_dof,) the freedom that they
         leave; None where no way leads back onto them. See fu_probe_mechanism.
         """
@@ -274,7 +277,7 @@ cdef class Engine(Report):
             return None
         return self._own("joint", left, 6)
 
-    def held(self):
+    def joint_forces(self):
         """(joints, 7): force and moment of joints on their second ends, and residual, in the static state."""
         numbers = self._of("joint")
         out = np.zeros((len(numbers), fu_coupling_type_of(b"joint").n_outputs))

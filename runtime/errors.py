@@ -11,6 +11,7 @@ from typing import Any
 
 RENAMED = {"join": "tie", "joins": "ties", "General": "GeneralSection", "Table": "TableSignal",
            "second_moment_yy": "second_moment_about_z", "second_moment_zz": "second_moment_about_y",
+           "springs": "point_forces", "pair": "joint_kind", "hold": "fix", "held": "fixed",
            "rotary_moment_yy": "rotary_moment_about_z", "rotary_moment_zz": "rotary_moment_about_y"}
 """What older versions called parts, keywords, tables of scene files and attributes, and what they are called now."""
 
@@ -122,7 +123,7 @@ def shown_path(path: str | os.PathLike) -> str:
 
 
 def near(name: str, known: Iterable[str]) -> str:
-    """The remedy for a name that is not known: what it is called now, the nearest known one, or the list of them."""
+    """Return the remedy for an unknown name: what it is called now, the nearest known one, or the list of them."""
     known = list(known)
     if (new := new_name(name)) in known:
         return f'it is called "{new}" now{INTEGRALS.get(new[-7:], "")}'
@@ -132,7 +133,9 @@ def near(name: str, known: Iterable[str]) -> str:
 
 
 def new_name(name: str) -> str:
-    """What an older version's name is now, also where a number, or a quantity of a result, follows it; else itself."""
+    """Return what an older version's name is now, also where a number or a quantity of a result follows it; else
+    itself.
+    """
     if name in RENAMED:
         return RENAMED[name]
     numbered = re.fullmatch(r"([a-z]+)(_\d+(?:\..+)?)", str(name))

@@ -48,13 +48,13 @@ SYNONYMS = {"dt": "step", "time_step": "step", "timestep": "step", "h": "step", 
 class Scene(SceneMethods):
     """Cables, bodies, and what joins, holds and loads them.
 
-    ``gravity`` in m/s²; ``cables``, ``bodies``, ``joints``, ``slides``, ``ties``, ``loads``, ``springs``, ``events``
-    are dicts by name; ``pins``, ``clamps`` and ``motions`` are lists; ``messages`` lists what was adjusted;
+    ``gravity`` in m/s²; ``cables``, ``bodies``, ``joints``, ``slides``, ``ties``, ``loads``, ``point_forces``,
+    ``events`` are dicts by name; ``pins``, ``clamps`` and ``motions`` are lists; ``messages`` lists what was adjusted;
     ``run_settings`` and ``equilibrium_settings`` hold the settings that a scene file gives.
     """
 
     def add(self, part: P) -> P:
-        """Add a part made elsewhere, complete it with what the scene knows; the methods for each kind end here.
+        """Add a part, completed with what the scene knows, and return it; the methods for each kind end here.
 
         Returns the part as it stands in the scene. Raises SceneError.
         """
@@ -236,7 +236,8 @@ class Scene(SceneMethods):
             return equilibrium(self, settings, begin, Equilibrium)
 
     def modes(self, n: int, about: Equilibrium | None = None) -> Modes:
-        """The ``n`` lowest natural frequencies and shapes, about the scene as drawn or a state from `equilibrium`.
+        """Return the ``n`` lowest natural frequencies and shapes, about the scene as drawn or a state from
+        `equilibrium`.
 
         As drawn, joints and slides bear nothing yet: what swings by its weight does so about its equilibrium alone.
         Damping and friction are left out; what rounding hides is reported, as in `Modes`. Raises SceneError.

@@ -71,7 +71,7 @@ class SceneMethods(SceneData):
         cable: Named,
         *,
         s: float,
-        hold: str = "section",
+        fix: str = "section",
     ) -> Clamp:
         """Add a Clamp, which see."""
 

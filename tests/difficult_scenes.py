@@ -151,7 +151,7 @@ def tied() -> Scene:
         scene.pin(name, s=0.0)
     for k, (along, frame, given) in enumerate([
             ("beam", "section", {}), ("beam", "tangent", {"velocity": 2.0}), ("rope", "tangent", {}),
-            ("rope", "tangent", {"roll": "held"}), ("rope", "point", {"velocity": 2.0})]):
+            ("rope", "tangent", {"roll": "fixed"}), ("rope", "point", {"velocity": 2.0})]):
         s = 0.25 + 0.17 * k
         scene.rigid_body(f"A{k}", mass=1.3, inertia=(0.02, 0.03, 0.04), position=(s, -0.1, (along == "rope") + 0.05),
                          velocity=(0.1, 0.2, -0.3), angular_velocity=(3, -2, 4))

@@ -12,6 +12,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
 TOP = Path(__file__).parents[1]
@@ -31,17 +32,26 @@ def installed_tree(directory: Path) -> None:
             (directory / package / file.with_suffix(".py").name).touch()
 
 
-def broken_contracts(directory: Path) -> str:
-    """What import-linter says of the package in a directory, empty where all contracts are kept."""
-    command = [sys.executable, "-c", "from importlinter.cli import lint_imports_command; lint_imports_command()",
-               "--config", str(TOP / "pyproject.toml"), "--no-cache"]
-    found = subprocess.run(command, cwd=directory, capture_output=True, text=True, check=False)
+def complaint(directory: Path, *options: str) -> str:
+    """Run Python with these options in a directory; return what it prints if it fails, else an empty text."""
+    found = subprocess.run([sys.executable, *options], cwd=directory, capture_output=True, text=True, check=False)
     return "" if found.returncode == 0 else found.stdout + found.stderr
 
 
-if __name__ == "__main__":
+def broken_contracts(directory: Path) -> str:
+    """Return what import-linter says of the package in a directory, empty where all contracts are kept."""
+    return complaint(directory, "-c", "from importlinter.cli import lint_imports_command; lint_imports_command()",
+                     "--config", str(TOP / "pyproject.toml"), "--no-cache")
+
+
+def check(errors_in: Callable[[Path], str], passed: str) -> None:
+    """Look for errors in a copy of the package; end the process with them, or print that all is well."""
     with tempfile.TemporaryDirectory() as directory:
         installed_tree(Path(directory))
-        if complaint := broken_contracts(Path(directory)):
-            sys.exit(complaint)
-    print("all contracts on imports are kept")
+        if found := errors_in(Path(directory)):
+            sys.exit(found)
+    print(passed)
+
+
+if __name__ == "__main__":
+    check(broken_contracts, "all contracts on imports are kept")

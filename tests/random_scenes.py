@@ -115,7 +115,7 @@ def supports(draw, cable: str, s: float, numbers: dict):
     turn = {"rotation": ((0, 0, 1), draw(signals(1.0, numbers["time"], True)))} if draw(st.booleans()) else {}
     move = {"displacement": (draw(signals(0.1 * numbers["size"], numbers["time"], True)), 0, 0)}
     return draw(st.sampled_from([
-        [("clamp", {"cable": cable, "s": s, "hold": draw(st.sampled_from(["section", "all"]))})],
+        [("clamp", {"cable": cable, "s": s, "fix": draw(st.sampled_from(["section", "all"]))})],
         [("motion", {"cable": cable, "s": s, **(turn if turn and draw(st.booleans()) else move | turn)})]]))
 
 
@@ -148,7 +148,7 @@ def slides(draw, body: str, s: float, numbers: dict):
                                  velocity=1e-3 * numbers["rate"])}]))
     if not {"drive", "velocity"} & set(more):
         more |= {"at_start": draw(stops), "at_end": draw(stops)}
-    frame = draw(st.sampled_from([{}, {"frame": "tangent"}, {"frame": "tangent", "roll": "held"},
+    frame = draw(st.sampled_from([{}, {"frame": "tangent"}, {"frame": "tangent", "roll": "fixed"},
                                   {"frame": "section"}]))
     return [("slide", {"body": body, "along": "wire", "s": s, "name": f"trolley_{body}", **frame, **more})]
 

@@ -162,7 +162,7 @@ def test_equilibrium_leans_on_a_buffer():
     for k in range(5):
         scene.clamp("wire", s=k)
     scene.rigid_body("A", mass=MASS, inertia=(1e-2,) * 3, position=(3.4, 0, 0))
-    scene.slide("A", along="wire", s=3.4, frame="tangent", roll="held", name="trolley",
+    scene.slide("A", along="wire", s=3.4, frame="tangent", roll="fixed", name="trolley",
                 at_end=Buffer(length=0.5, stiffness=20.0))
     scene.spring("A", (2.4, 0, 0), stiffness=5.0, length=1.0)
     state = scene.equilibrium()

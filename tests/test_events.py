@@ -83,7 +83,7 @@ def test_of_a_scene_file_and_back():
     again = loads(scene.to_toml(), "again")
     assert again.events == scene.events
     scene.event("function", function=lambda time, state: 1.0)
-    assert "only Python can hold" in scene.to_toml()
+    assert "a file cannot describe" in scene.to_toml()
     assert list(loads(scene.to_toml(), "again").events) == ["mid"]
 
 

@@ -72,7 +72,7 @@ CASES = {
     "slide-tangent-over-a-node": lambda: driven_slide("tangent", drive=OVER_A_NODE),
     "slide-velocity": lambda: driven_slide(velocity=Ramp(start=0.0, end=TIME, after=3.0)),
     "slide-tangent": lambda: driven_slide("tangent"),
-    "slide-tangent-held": lambda: driven_slide("tangent", "held"),
+    "slide-tangent-fixed": lambda: driven_slide("tangent", "fixed"),
     "slide-tangent-beam24": lambda: driven_slide("tangent", element="beam24"),
     "slide-section": lambda: driven_slide("section", element="beam24"),
     "slide-tangent-planar": lambda: driven_slide("tangent", element="cable8p"),

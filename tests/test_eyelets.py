@@ -56,7 +56,7 @@ def test_written_to_a_file_and_read_back():
      'cable "wire" at s = 0.5 m; slide from s = 0.5 m'),
     ({"body": (0.5, 0, 0), "at": (0, 1, 0)}, "slide: body is a point of the ground and takes no at; leave at out"),
     ({"body": None}, "slide: body is missing; give a body, (cable, s), or a point (x, y, z) of the ground"),
-    ({"body": (0.5, 0, 0), "name": "twin"}, 'slide "twin": holds the same point of the ground on cable "wire" as slide '
+    ({"body": (0.5, 0, 0), "name": "twin"}, 'slide "twin": puts the same point of the ground on cable "wire" as slide '
      '"eye"; leave one of them out, or give them different points at'),
 ])
 def test_refused(given, message):

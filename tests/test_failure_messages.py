@@ -39,7 +39,7 @@ def test_a_state_without_a_compliance(S):
     engine = failed(model, S, "not_finite")
     assert redundant(model, engine) == ""
     said = stopped(model, engine, "no_convergence", RunSettings(duration=1))
-    assert said.startswith('no step converged at t = 0.5 s of 1 s after 3 steps down to 1e-09 s: body "A" runs away')
+    assert said.startswith('no step converged at t = 0.5 s of 1 s after 3 steps down to 1e-09 s: body "A" diverges')
 
 
 @pytest.mark.parametrize("S", [np.nan, None])
@@ -86,7 +86,7 @@ def test_damping_is_advised_by_the_name_that_the_part_has_for_it():
     ("error", "A", "try a smaller tol", "damping_time"),
     ("matrix", "A", "Look at its mass and inertia, and at its joints", "elements"),
     ("matrix", "wire", "at up, or take more elements there", "inertia"),
-    ("jam", "trolley", "Take a smaller coefficient", "damping_time"),
+    ("self_locking", "trolley", "Take a smaller coefficient", "damping_time"),
     ("error", "trolley", "damping_time in the material", "coefficient"),
 ])
 def test_the_remedy_is_one_for_the_part_that_fails(cause, on, has, has_not):

@@ -146,7 +146,7 @@ def test_friction_follows_the_normal_force_that_it_makes(integrator, ahead, mu):
 
 
 def test_friction_that_has_no_solution_is_reported():
-    with pytest.raises(SceneError, match=r'slide "trolley": friction jams it at the start: .*; take a smaller coeff'):
+    with pytest.raises(SceneError, match=r'slide "trolley": friction is self-locking at the start: .*; take a smal'):
         rod(-0.1, 0.5).run(0.01)
 
 

@@ -87,7 +87,7 @@ def mechanism():
         scene.pin(name, s=s)
     for name, x, y in (("A", 1, 0), ("B", 2, 0), ("door", 4, 0.5)):
         scene.rigid_body(name, mass=1, inertia=(0.01, 0.02, 0.02), position=(x, y, 0))
-    scene.slide("A", along="rope", s=1.0, frame="tangent", roll="held", up=(0, 1, 0), name="tied")
+    scene.slide("A", along="rope", s=1.0, frame="tangent", roll="fixed", up=(0, 1, 0), name="tied")
     scene.slide("B", along="rope", s=2.0, name="trolley")
     for y in (-0.5, 0.5):
         scene.joint("revolute", (4, 0.5 + y, 0), ("door", (0, y, 0)), axis=(0, 1, 0))

@@ -40,7 +40,7 @@ def planar():
 
 def test_ends_and_names_are_completed(scene):
     joint = scene.joint("spherical", "A", (0, 2, 0))
-    assert (joint.pair, joint.name, joint.a, joint.b) == (
+    assert (joint.joint_kind, joint.name, joint.a, joint.b) == (
         "spherical", "joint_1", Attachment(on="A", at=(0, 0, 0)), Attachment(at=(0, 2, 0)))
     assert scene.joint("spherical", ("rope", 2 + 1e-12), (2, 1, 0)).a.s == 2
     assert scene.joint("distance", scene.bodies["B"], (1, 5, 0), name="rod").length == 3
@@ -124,7 +124,7 @@ def test_a_small_gap_is_closed_and_reported():
     assert scene.messages == ['joint "foot": its ends are 0.0005 m apart at the start, a at (0, 0, 0) and b at '
                               "(0, 0.0005, 0) m; they are brought together"]
     with refused('joint "rail": its ends are 0.1 m apart across the axis at the start, a at (1, 0, 0) and b at '
-                 "(5, 0.1, 0) m; let them start as the joint holds them; only a gap of less than 0.004 m is closed"):
+                 "(5, 0.1, 0) m; let them start as the joint needs them; only a gap of less than 0.004 m is closed"):
         scene.joint("prismatic", "A", (5, 0.1, 0), axis=(1, 0, 0), name="rail")
     assert scene.joint("prismatic", "A", (5, 0, 0), axis=(-1, 0, 0)).name == "joint_1"
 
@@ -161,7 +161,7 @@ BARE = ('section axes of cable "rope", but cable12 has a tangent only, (1, 0, 0)
 @pytest.mark.parametrize(("given", "complaint"), [
     ({"kind": "revolut"}, 'joint: kind "revolut" is not known; did you mean "revolute"?'),
     ({"kind": 7}, "joint: kind must be a name, got 7; known: " + ", ".join(KINDS)),
-    ({"kind": "weld", "a": (0, 0, 0)}, "joint: has both ends on the ground; let one of them hold a cable or a body"),
+    ({"kind": "weld", "a": (0, 0, 0)}, "joint: has both ends on the ground; put one of them on a cable or a body"),
     ({"kind": "weld", "a": 3}, 'joint: a must be an end, got 3; give a point (x, y, z), a body, ("body", (x, y, z)) or '
      '("cable", s)'),
     ({"kind": "weld", "a": "C"}, 'joint "joint_1": a: there is no cable or body "C"; known: beam, rope, A, B'),
@@ -189,12 +189,12 @@ BARE = ('section axes of cable "rope", but cable12 has a tangent only, (1, 0, 0)
     ({"kind": "weld", "a": ("beam", 1), "b": ("beam", 1)},
      'joint "joint_1": joins cable "beam" at s = 1 m to itself; give it two ends'),
     ({"kind": "spherical", "b": "B"}, 'joint "joint_1": its ends are 1 m apart at the start, a at (0, 2, 0) and b at '
-     "(1, 2, 0) m; let them start as the joint holds them; only a gap of less than 0.00216 m is closed"),
+     "(1, 2, 0) m; let them start as the joint needs them; only a gap of less than 0.00216 m is closed"),
     ({"kind": "distance", "b": "B", "length": 0.8}, 'joint "joint_1": its ends are 1 m apart at the start, and not '
-     "0.8 m, a at (0, 2, 0) and b at (1, 2, 0) m; let them start as the joint holds them; only a gap of less than "
+     "0.8 m, a at (0, 2, 0) and b at (1, 2, 0) m; let them start as the joint needs them; only a gap of less than "
      "0.00216 m is closed"),
     ({"kind": "distance"}, 'joint "joint_1": both ends are at (0, 2, 0) m: its direction is lost; take '
-     'kind="spherical", or hold them apart at the start'),
+     'kind="spherical", or draw them apart'),
     (ROPE | {"kind": "weld"}, f'joint "joint_1": a: a weld joint needs {BARE}'),
     (ROPE | {"kind": "prismatic", "axis": (1, 0, 0)}, f'joint "joint_1": a: a prismatic joint needs {BARE}'),
     (ROPE | {"kind": "revolute", "axis": (0, 0, 1)},
@@ -223,7 +223,8 @@ Z = {"axis": (0, 0, 1)}
      'is a distance joint between body "A" and the ground, but joint "first" welds them, too'),
     ({"kind": "spherical"}, {"kind": "weld", "a": (0, 2, 0), "b": "A"},
      'welds the ground and body "A", but joint "first" is a spherical joint between them, too'),
-    ({"kind": "revolute", **Z}, {"kind": "spherical"}, 'holds the same of body "A" and the ground as joint "first"'),
+    ({"kind": "revolute", **Z}, {"kind": "spherical"},
+     'constrains the same motion of body "A" and the ground as joint "first"'),
     ({"kind": "revolute", **Z, "angle": RISE}, {"kind": "revolute", "axis": (0, 0, -1), "velocity": 1},
      'drives the angle of body "A" and the ground, as joint "first" does'),
     ({"kind": "distance", "b": (5, 2, 0), "velocity": 1}, {"kind": "distance", "a": (5, 2, 0), "b": "A", "velocity": 2},
@@ -232,9 +233,9 @@ Z = {"axis": (0, 0, 1)}
      {"kind": "cylindrical", **Z, "a": ("A", (1, 0, 0)), "b": (-0.28, 2, 9), "velocity": 1},
      'drives the angle of body "A" and the ground, as joint "first" does'),
     ({"kind": "distance", "b": (5, 2, 0)}, {"kind": "distance", "b": (5, 2, 0), "velocity": 2},
-     'holds the same of body "A" and the ground as joint "first"'),
+     'constrains the same motion of body "A" and the ground as joint "first"'),
     ({"kind": "cylindrical", **Z}, {"kind": "prismatic", **Z},
-     'holds the same of body "A" and the ground as joint "first"'),
+     'constrains the same motion of body "A" and the ground as joint "first"'),
 ])
 def test_contradictory_joints_are_named(scene, one, other, complaint):
     common = {"a": "A", "b": (0, 2, 0)}
@@ -256,15 +257,15 @@ def test_joints_that_get_along(scene):
 def test_supports_and_joins_hold_already(scene):
     scene.pin("beam", s=0)
     scene.joint("spherical", ("rope", 0), (0, 1, 0))
-    with refused('joint "joint_2": holds cable "beam" at s = 0 m to the ground, but it is pinned already; leave one of '
+    with refused('joint "joint_2": fixes cable "beam" at s = 0 m to the ground, but it is pinned already; leave one of '
                  "them out"):
         scene.joint("weld", ("beam", 0), (0, 0, 0))
     scene.pin("rope", s=0)
-    with pytest.raises(SceneError, match=r'joint "joint_1": holds cable "rope" at s = 0 m to the ground, but'):
+    with pytest.raises(SceneError, match=r'joint "joint_1": fixes cable "rope" at s = 0 m to the ground, but'):
         scene.check()
     scene.cable("tail", start=(2, 1, 0), end=(4, 1, 0), elements=2, element="cable12", **THIN)
     scene.tie("rope", s=2, to="tail", at=0)
-    with refused('joint "joint_2": holds cable "rope" at s = 2 m to cable "tail" at s = 0 m, but their nodes are '
+    with refused('joint "joint_2": joins cable "rope" at s = 2 m to cable "tail" at s = 0 m, but their nodes are '
                  "joined already; leave one of them out"):
         scene.joint("spherical", ("rope", 2), ("tail", 0))
 

@@ -6,7 +6,7 @@ from difficult_scenes import SCENES as DIFFICULT
 from funicular import Circle, Material, Scene
 from funicular.engine import Engine
 from funicular.integrators import GeneralisedAlpha
-from funicular.model import unknowns as reduction
+from funicular.model import numbering
 from funicular.model.build import build
 from linear_cost import SCENES, ladder, scene
 from shared_scenes import cable_scene
@@ -78,7 +78,7 @@ def test_a_border_changes_nothing_but_rounding(name, integrator, monkeypatch):
         return np.concatenate([run[f"{cable}.nodal_vectors"][-1] for cable in run.scene.cables])
 
     with_border = motion()
-    monkeypatch.setattr(reduction, "_strung", lambda touches: (np.arange(touches.shape[1]), touches.shape[1]))
+    monkeypatch.setattr(numbering, "_strung", lambda touches: (np.arange(touches.shape[1]), touches.shape[1]))
     np.testing.assert_allclose(motion(), with_border, rtol=0, atol=1e-13)
 
 

@@ -22,11 +22,11 @@ def left_over(scene: Scene, state) -> float:
     model = build(scene)
     engine = Engine(model)
     drop_redundant_rows(model, engine)
-    engine.place(0.0, **state.placed)
+    engine.set_state(0.0, **state.static_state)
     residual, n = engine.static_residual(), model.n_band + model.n_border_dof
     units = np.ones(len(residual))
-    free = model.place >= 0
-    units[model.place[free]] = model.weight[free]
+    free = model.unknown_of_dof >= 0
+    units[model.unknown_of_dof[free]] = model.weight[free]
     largest = np.abs(engine.reaction() / model.weight).max() + np.abs(model.gravity / model.weight).max()
     return max(np.abs(residual / units)[:n].max() / largest, np.abs(residual[n:]).max(initial=0.0))
 

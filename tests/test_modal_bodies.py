@@ -160,7 +160,7 @@ def test_attachments_are_derivatives_of_points_and_axes(tmp_path):
         q[:3] += motion[:3]
         q[3:7] = _product(b[3:7], turn)
         q[7:] += motion[6:]
-        return engine.anchor(0, *place, q, rates, f, m)
+        return engine.modal_attachment(0, *place, q, rates, f, m)
 
     here = at(np.zeros(9))
     for k, unit in enumerate(np.eye(9)):

@@ -111,15 +111,15 @@ def test_what_does_not_know_modal_bodies_says_so():
 
 def test_a_point_is_a_node_or_goes_with_its_section(tmp_path):
     bar = Scene().modal_body("bar", **BEAM, boundary="attached")
-    at, phi, psi = bar.spot((0.5, 0.015, 0))
+    at, phi, psi = bar.attachment_modes((0.5, 0.015, 0))
     np.testing.assert_allclose(phi, bar.shape.modes[:, -1] + np.cross(psi, (0, 0.015, 0)))
     np.testing.assert_allclose(bar.point(at), (0.5, 0.015, 0), atol=1e-15)
     with pytest.raises(ValueError, match=r"\(0.47, 0, 0\) m is no node of the body"):
-        bar.spot((0.47, 0, 0))
+        bar.attachment_modes((0.47, 0, 0))
     box = added(tmp_path).bodies["box"]
-    np.testing.assert_array_equal(box.spot((1, 1, 1))[1], box.shape.modes[:, 7])
+    np.testing.assert_array_equal(box.attachment_modes((1, 1, 1))[1], box.shape.modes[:, 7])
     with pytest.raises(ValueError, match="is no node of the body"):
-        box.spot((1, 1, 0.9))
+        box.attachment_modes((1, 1, 0.9))
 
 
 def test_in_a_planar_scene_modes_must_stay_in_the_plane():

@@ -79,7 +79,7 @@ CASES = {
     "cable-weld": lambda: chain("weld", "cable"),
     "rider": rider,
     "rider-tangent": lambda: rider("tangent"),
-    "rider-tangent-held": lambda: rider("tangent", "held"),
+    "rider-tangent-fixed": lambda: rider("tangent", "fixed"),
     "rider-section": lambda: rider("section", element="beam24"),
     "rider-driven": lambda: rider(velocity=1.0),
     "planar": planar,

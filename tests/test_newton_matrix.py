@@ -58,9 +58,9 @@ def welded() -> Scene:
 def moved(engine, forces: float) -> dict:
     """A static state off the drawn one, with multipliers and forces of about this size."""
     rng = np.random.default_rng(2)
-    engine.place(0.3)
+    engine.set_state(0.3)
     engine.move(1e-3 * rng.standard_normal(engine.unknowns))
-    kept = engine.placed()
+    kept = engine.state()
     for name in ("force", "multipliers"):
         kept[name] = forces * rng.standard_normal(kept[name].shape)
     return kept
@@ -71,7 +71,7 @@ def test_static_matrix_is_the_derivative_of_the_static_residual(scene):
     engine = Engine(build(scene()))
     n, kept = engine.unknowns, None
     kept = moved(engine, 1e3)
-    engine.place(0.3, **kept)
+    engine.set_state(0.3, **kept)
     matrix = engine.matrix(0.0, 0.0, 1.0).toarray()
     # a unit of each unknown, in residuals of very different sizes
     worst = []
@@ -80,7 +80,7 @@ def test_static_matrix_is_the_derivative_of_the_static_residual(scene):
         for d in step * np.eye(n):
             ends = []
             for sign in (1, -1):
-                engine.place(0.3, **kept)
+                engine.set_state(0.3, **kept)
                 engine.move(sign * d)
                 ends.append(engine.static_residual())
             columns.append((ends[0] - ends[1]) / (2 * step))

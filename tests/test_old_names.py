@@ -4,6 +4,8 @@ import re
 
 import funicular as fu
 import pytest
+from funicular.parts.joint import Joint
+from funicular.parts.support import Clamp
 from funicular.scene_file import loads
 
 NOW = {"second_moment_yy": "second_moment_about_z", "second_moment_zz": "second_moment_about_y",
@@ -22,7 +24,7 @@ def test_attributes_of_the_package():
 
 
 def test_attributes_of_a_scene():
-    for old, new in (("join", "tie"), ("joins", "ties")):
+    for old, new in (("join", "tie"), ("joins", "ties"), ("springs", "point_forces")):
         with refused(AttributeError, f"'Scene' object has no attribute '{old}': it is called \"{new}\" now"):
             getattr(fu.Scene(), old)
     with refused(AttributeError, "'Scene' object has no attribute 'cabel'"):
@@ -39,6 +41,18 @@ def test_attributes_of_a_section(old):
         2 / 12)
     with pytest.raises(AttributeError, match="heigth"):
         _ = section.heigth
+
+
+def test_attributes_of_a_joint():
+    joint = Joint(kind="spherical", a=("A", (0, 0, 0)), b=(0, 0, 0))
+    with refused(AttributeError, "'Joint' object has no attribute 'pair': it is called \"joint_kind\" now"):
+        _ = joint.pair
+    assert joint.joint_kind == "spherical"
+
+
+def test_keywords_of_a_clamp():
+    with refused(fu.SceneError, 'clamp on "wire": "hold" is not known here; it is called "fix" now'):
+        Clamp(cable="wire", s=0, hold="all")
 
 
 @pytest.mark.parametrize("old", NOW)

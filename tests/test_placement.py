@@ -29,7 +29,7 @@ def test_supports_are_kept_with_their_labels(scene):
     clamp = scene.clamp("beam", s=0)
     motion = scene.motion(scene.cables["rope"], s=2, displacement=(0, Ramp(start=0, end=1), 0),
                           rotation=((0, 0, 2), Ramp(start=0, end=3)))
-    assert (clamp.hold, clamp.label, motion.label) == ("section", "beam@0", "rope@2")
+    assert (clamp.fix, clamp.label, motion.label) == ("section", "beam@0", "rope@2")
     assert motion.displacement == (Constant(constant=0.0), Ramp(start=0, end=1), Constant(constant=0.0))
     assert (motion.rotation.axis, motion.rotation.angle) == ((0, 0, 1), Ramp(start=0, end=3))
     assert scene.supports == [clamp, motion]
@@ -59,21 +59,21 @@ def test_springs_know_their_ends_and_length(scene):
     assert (spring.a, spring.b) == (Attachment(on="A", at=(0, 0, 0)), Attachment(on="beam", s=1))
     assert_allclose(spring.length, np.sqrt(2), rtol=1e-15)
     assert scene.spring(("A", (0, 1, 0)), (0, 5, 0), stiffness=5, damping=1, length=0).length == 0
-    assert scene.springs["spring_2"].b == Attachment(at=(0, 5, 0))
+    assert scene.point_forces["spring_2"].b == Attachment(at=(0, 5, 0))
 
 
-@pytest.mark.parametrize(("held", "complaint"), [
+@pytest.mark.parametrize(("fixed", "complaint"), [
     (("pin", "beam", 0.0), "pin on \"beam\": the node at s = 0 m is already clamped"),
     (("clamp", "rope", 0.0),
      'clamp on "rope": the node at s = 0 m is joined to that at beam@2, which is already pinned'),
     (("clamp", "rope", 2.0), 'clamp on "rope": the node at s = 2 m is already moved as prescribed'),
 ])
-def test_two_supports_on_one_node(scene, held, complaint):
+def test_two_supports_on_one_node(scene, fixed, complaint):
     scene.clamp("beam", s=0)
     scene.tie("beam", s=2, to="rope", at=0)
     scene.pin("beam", s=2)
     scene.motion("rope", s=2, displacement=(0, 0, 0))
-    kind, cable, s = held
+    kind, cable, s = fixed
     with refused(complaint):
         getattr(scene, kind)(cable, s=s)
 
@@ -92,7 +92,7 @@ def test_joins_that_hold_what_is_held(scene):
                 up=(1, 0, 0))
     scene.pin("rope", s=0)
     scene.pin("third", s=0)
-    with refused('tie "tie_2": both nodes are held already, by the pin on "rope" and the pin on "third"; '
+    with refused('tie "tie_2": both nodes are fixed already, by the pin on "rope" and the pin on "third"; '
                  "leave one of them out"):
         scene.tie("beam", s=2, to="third", at=0)
 
@@ -100,8 +100,8 @@ def test_joins_that_hold_what_is_held(scene):
 @pytest.mark.parametrize(("make", "complaint"), [
     (lambda s: s.clamp("beam", s=0.3),
      'clamp on "beam": s must be a node of the cable, got 0.3 m; nodes are at 0, 1, 2 m'),
-    (lambda s: s.clamp("beam", s=0, hold="sektion"),
-     'clamp on "beam": hold "sektion" is not known; did you mean "section"?'),
+    (lambda s: s.clamp("beam", s=0, fix="sektion"),
+     'clamp on "beam": fix "sektion" is not known; did you mean "section"?'),
     (lambda s: s.motion("beam", s=0),
      'motion on "beam": has neither displacement nor rotation; give one of them, or both'),
     (lambda s: s.motion("beam", s=0, displacement=(0, 1)),
@@ -150,9 +150,9 @@ def test_joins_that_hold_what_is_held(scene):
      "tangent (0, 0, 1), but cable12 has no torsion; give a moment across the tangent, or take element=\"beam24\""),
     (lambda s: s.spring("A", (0, 1, 0), stiffness=1),
      'spring "spring_1": both ends are at (0, 1, 0) m: its direction is lost; '
-     "join the points, hold them apart at the start, or give a spring length=0"),
+     "join the points, draw them apart, or give a spring length=0"),
     (lambda s: s.spring((0, 0, 0), (0, 1, 0), stiffness=1),
-     "spring: has both ends on the ground; let one of them hold a cable or a body"),
+     "spring: has both ends on the ground; put one of them on a cable or a body"),
     (lambda s: s.spring("A", (0, 0, 0), stiffness=-1), "spring: stiffness must not be negative, got -1 N/m"),
     (lambda s: s.spring("A", (0, 0, 0), stiffness=1, damping=-2), "spring: damping must not be negative, got -2 N s/m"),
     (lambda s: s.spring("A", (0, 0, 0), stiffness=0),

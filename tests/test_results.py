@@ -171,7 +171,7 @@ def test_work_from_outside_is_no_residual():
 def test_supports_joins_and_springs_have_results(recording):
     turn = {"force": np.ones((101, 3)), "moment": np.full((101, 3), 2.0)}
     recording.parts |= {"clamps": {"wire@0.5": turn}, "motions": {"wire@1": turn}, "ties": {"corner": turn},
-                        "springs": {"tie": {"tension": np.zeros(101), "length": np.ones(101)}}}
+                        "point_forces": {"tie": {"tension": np.zeros(101), "length": np.ones(101)}}}
     recording.energy["external"] = np.zeros(101)
     run = Run.from_recording(recording, load_scene("paper51"), RunSettings(duration=1.0), Scene.from_toml)
     units = {name: run.variables[name].units for name in run.keys() if name not in recording.energy}

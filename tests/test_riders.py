@@ -43,7 +43,7 @@ def hung(element="cable12", s=0.0, link=None, frame="point", **given) -> Scene:
 TIED = {
     "tangent": lambda: trolley(),
     "tangent-beam24": lambda: trolley(element="beam24"),
-    "tangent-held": lambda: trolley(roll="held"),
+    "tangent-fixed": lambda: trolley(roll="fixed"),
     "tangent-planar": lambda: trolley(element="cable8p"),
     "section": lambda: trolley("section", "beam24"),
     "section-planar": lambda: trolley("section", "beam12p"),
@@ -87,14 +87,14 @@ def tangent(run, s) -> np.ndarray:
 
 
 @pytest.mark.filterwarnings("ignore:initial velocities broke a joint")
-@pytest.mark.parametrize("roll", ["free", "held"])
+@pytest.mark.parametrize("roll", ["free", "fixed"])
 def test_a_trolley_keeps_its_floor_along_the_cable(roll):
     run = trolley(roll=roll).run(0.3, output_step=0.01, tol=1e-6)
     along = tangent(run, run["trolley.s"])
     floor = np.array([rotate(q, (1, 0, 0)) for q in run["A.orientation"]])
     side = np.array([rotate(q, (0, 0, 1)) for q in run["A.orientation"]])
     assert_allclose(floor, along, atol=1e-9)
-    if roll == "held":  # its side stays level
+    if roll == "fixed":  # its side stays level
         assert largest(side[:, 1]) < 1e-9
         assert largest(np.einsum("td,td->t", run["trolley.moment"], along)) > 0.1
     else:

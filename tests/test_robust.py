@@ -58,7 +58,7 @@ def test_velocities_that_break_a_joint_are_reported():
 
 def test_two_slides_of_one_point_are_refused():
     scene = one_rider()
-    with pytest.raises(SceneError, match=r'holds the same point of body "A" on cable "wire" as slide "trolley"'):
+    with pytest.raises(SceneError, match=r'puts the same point of body "A" on cable "wire" as slide "trolley"'):
         scene.slide("A", along="wire", s=0.25, name="again")
 
 

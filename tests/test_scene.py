@@ -127,10 +127,10 @@ def test_a_free_name_is_found_in_few_looks(scene, monkeypatch):
 
 
 def test_supports_look_only_at_what_is_on_their_cable(scene, monkeypatch):
-    from funicular.parts import places
+    from funicular.parts import locations
 
-    looks, look = [], places.node_of
-    monkeypatch.setattr(places, "node_of", lambda *a: (looks.append(a), look(*a))[1])
+    looks, look = [], locations.node_of
+    monkeypatch.setattr(locations, "node_of", lambda *a: (looks.append(a), look(*a))[1])
     wire = scene.cables["wire"]
     for k in range(50):
         scene.add(wire.model_copy(update={"name": f"wire_{k}"}))

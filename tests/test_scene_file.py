@@ -85,7 +85,7 @@ def test_round_trip_of_shapes_supports_loads_and_springs():
                 rest="straight", section=Circle(radius=0.01), **common)
     scene.cable("bar", start=(1, 0, 0), end=(2, 0, 0), law="poisson_split",
                 section=Rectangle(height=0.1, width=0.2, torsion_constant=1e-5), **common)
-    scene.clamp("ring", s=1.1, hold="all")
+    scene.clamp("ring", s=1.1, fix="all")
     scene.motion("bar", s=0, displacement=(TableSignal(time=[0, 1, 2], value=[0, 1 / 3, 1]), 0, Ramp(start=0, end=0.1)),
                  rotation=((1, 2, 2), Pulse(start=0, end=1, height=-2)))
     scene.motion("bar", s=1, rotation=((1, 0, 0), 0))
@@ -141,7 +141,7 @@ initial = "equilibrium"
 """, "x.toml")
     assert scene.motions[0].displacement[1] == Ramp(start=0, end=1, after=0.1)
     assert scene.loads["push"].scale == TableSignal(time=[0, 1, 2], value=[0, 1, 0])
-    assert scene.springs["spring_1"].length == 2
+    assert scene.point_forces["spring_1"].length == 2
     assert (scene.equilibrium_settings, scene.run_settings) == (
         {"load_steps": 3}, {"duration": 1.0, "initial": "equilibrium"})
 

@@ -37,7 +37,7 @@ def test_a_cable_rides(scene):
     slide = scene.slide((scene.cables["link"], 1e-13), along="beam", s=1.0, frame="section")
     assert (slide.name, slide.body, slide.body_s, slide.rider) == ("link_on_beam", "link", 1e-13,
                                                                    Attachment(on="link", s=1e-13))
-    with refused('slide "t": holds the same point of cable "link" on cable "beam" as slide "link_on_beam"; leave one '
+    with refused('slide "t": puts the same point of cable "link" on cable "beam" as slide "link_on_beam"; leave one '
                  "of them out, or give them different points body_s"):
         scene.slide(("link", 1e-13), along="beam", s=1.0, name="t")
 
@@ -52,8 +52,8 @@ def test_two_wheels_on_one_cable_and_one_body_between_two(scene):
 
 
 @pytest.mark.parametrize(("given", "up"), [
-    ({"frame": "tangent"}, None), ({"frame": "section"}, None), ({"frame": "tangent", "roll": "held"}, (0, 0, 1)),
-    ({"frame": "tangent", "roll": "held", "up": (1, 2, 0)}, (1, 2, 0))])
+    ({"frame": "tangent"}, None), ({"frame": "section"}, None), ({"frame": "tangent", "roll": "fixed"}, (0, 0, 1)),
+    ({"frame": "tangent", "roll": "fixed", "up": (1, 2, 0)}, (1, 2, 0))])
 def test_the_orientation_is_kept_as_it_starts(scene, given, up):
     for name, s in ("beam", 0.5), ("rope", 0.7):
         if name == "rope" and given["frame"] == "section":
@@ -73,7 +73,7 @@ def test_without_gravity_up_is_the_cables():
     scene = Scene(gravity=(0, 0, 0))
     scene.cable("rope", start=(0, 0, 0), end=(2, 0, 0), elements=2, element="cable12", up=(0, 1, 1), **THIN)
     scene.rigid_body("A", position=(1, 0, 0), **BODY)
-    assert scene.slide("A", along="rope", s=1, frame="tangent", roll="held").up == (0, 1, 1)
+    assert scene.slide("A", along="rope", s=1, frame="tangent", roll="fixed").up == (0, 1, 1)
 
 
 def test_drives(scene):
@@ -142,21 +142,22 @@ VERTICAL = {"body": "B", "along": "link", "s": 0.5}
     ({"frame": "tangnt"}, 'frame "tangnt" is not known; did you mean "tangent"?'),
     ({"along": "rope", "frame": "section"}, 'frame "section" needs section axes (r_y) of cable "rope", but cable12 has '
      'a tangent only; take frame="tangent", or element="beam24"'),
-    ({"frame": "tangent", "roll": "fixed"}, 'roll "fixed" is not known; known: free, held'),
-    ({"roll": "held"}, 'roll "held" is for frame "tangent", got frame "point"; leave it out, or take frame="tangent"'),
-    ({"roll": "held", "frame": "section"}, 'roll "held" is for frame "tangent", got frame "section"; section axes hold '
-     "the roll of themselves"),
-    ({"frame": "tangent", "up": (0, 0, 1)}, 'up is given, but roll is free; leave it out, or take roll="held"'),
-    ({"frame": "tangent", "roll": "held", "up": (0, 0, 0)}, "up must not be zero"),
-    ({"frame": "tangent", "roll": "held", "up": (2, 0, 0)}, 'up (2, 0, 0) is along the tangent of cable "beam", '
+    ({"frame": "tangent", "roll": "held"}, 'roll "held" is not known; it is called "fixed" now'),
+    ({"roll": "fixed"},
+     'roll "fixed" is for frame "tangent", got frame "point"; leave it out, or take frame="tangent"'),
+    ({"roll": "fixed", "frame": "section"}, 'roll "fixed" is for frame "tangent", got frame "section"; section axes '
+     "fix the roll already"),
+    ({"frame": "tangent", "up": (0, 0, 1)}, 'up is given, but roll is free; leave it out, or take roll="fixed"'),
+    ({"frame": "tangent", "roll": "fixed", "up": (0, 0, 0)}, "up must not be zero"),
+    ({"frame": "tangent", "roll": "fixed", "up": (2, 0, 0)}, 'up (2, 0, 0) is along the tangent of cable "beam", '
      "(1, 0, 0): the frame is lost; give a direction across it"),
-    (VERTICAL | {"frame": "tangent", "roll": "held"}, 'up (0, 0, 1) is along the tangent of cable "link", (0, 0, -1): '
+    (VERTICAL | {"frame": "tangent", "roll": "fixed"}, 'up (0, 0, 1) is along the tangent of cable "link", (0, 0, -1): '
      "the frame is lost; give a direction across it"),
     ({"drive": 0.5, "velocity": 1}, "drive and velocity are given; give one of the two"),
     ({"drive": 3}, "drive is 3 m at t = 0, off the cable, [0, 2] m; let it start at s = 0.5 m"),
     ({"drive": Ramp(start=0, end=1)}, "drive is 0 m at t = 0, but the slide starts at s = 0.5 m; let both start at one "
      "place"),
-    ({"velocity": 1, "at_end": HardStop(restitution=0)}, "is driven, and a stop at_end would hold against that; leave "
+    ({"velocity": 1, "at_end": HardStop(restitution=0)}, "is driven, and a stop at_end would act against that; leave "
      "one of them out"),
     ({"velocity": "t"}, "velocity must be a number or a signal such as Ramp(start=0, end=1), got 't'"),
     ({"friction": 0.3}, "friction must be a Friction or a table of its values, got 0.3"),
@@ -184,7 +185,7 @@ def test_in_the_plane():
     for name, element in ("thin", "cable8p"), ("thick", "beam12p"):
         scene.cable(name, start=(0, 0, 0), end=(2, 0, 0), elements=2, element=element, **THIN)
     scene.rigid_body("A", position=(1, 0, 0), **BODY)
-    assert scene.slide("A", along="thin", s=1, frame="tangent", roll="held").up is None  # the plane holds it
+    assert scene.slide("A", along="thin", s=1, frame="tangent", roll="fixed").up is None  # the plane holds it
     scene.slide("A", along="thick", s=1, frame="section")
     with refused('slide "t": frame "section" needs section axes (r_y) of cable "thin", but cable8p has a tangent only; '
                  'take frame="tangent", or element="beam12p"'):
@@ -203,7 +204,7 @@ def test_a_flexible_rider_with_a_small_gap(scene):
 
 
 def test_round_trip(scene):
-    scene.slide("A", along="beam", s=0.5, frame="tangent", roll="held", velocity=Ramp(start=0, end=1 / 3),
+    scene.slide("A", along="beam", s=0.5, frame="tangent", roll="fixed", velocity=Ramp(start=0, end=1 / 3),
                 friction=Friction(coefficient=0.1, model="stick"), at_end="leave")
     scene.slide(("link", 0), along="beam", s=1, frame="section", friction={"viscous": 1 / 7},
                 at_start=HardStop(restitution=0.5), at_end=Buffer(length=0.1, stiffness=1e3, damping=1 / 3))

@@ -7,25 +7,16 @@ The folders runtime, derive and generated are one package only then, so mypy get
 
 from __future__ import annotations
 
-import subprocess
-import sys
-import tempfile
 from pathlib import Path
 
-from import_contracts import TOP, installed_tree
+from import_contracts import TOP, check, complaint
 
 
 def type_errors(directory: Path) -> str:
     """Return what mypy says of the package in a directory, empty where its types are right."""
-    command = [sys.executable, "-m", "mypy", "--config-file", str(TOP / "pyproject.toml"), "--cache-dir",
-               str(TOP / ".mypy_cache"), "--no-error-summary", "--package", "funicular"]
-    found = subprocess.run(command, cwd=directory, capture_output=True, text=True, check=False)
-    return "" if found.returncode == 0 else found.stdout + found.stderr
+    return complaint(directory, "-m", "mypy", "--config-file", str(TOP / "pyproject.toml"), "--cache-dir",
+                     str(TOP / ".mypy_cache"), "--no-error-summary", "--package", "funicular")
 
 
 if __name__ == "__main__":
-    with tempfile.TemporaryDirectory() as directory:
-        installed_tree(Path(directory))
-        if complaint := type_errors(Path(directory)):
-            sys.exit(complaint)
-    print("all types are right")
+    check(type_errors, "all types are right")

@@ -25,7 +25,7 @@ class Axis:
         return self.program.input("e", (self.element.n_vectors, self.element.dim), "m, 1", "nodal vectors e, eq 1")
 
     def shape(self, by: str = "") -> np.ndarray:
-        """N_k(x, 0, 0), or derivatives there by the coordinates `by`: powers of l times polynomials in x/l."""
+        """Return N_k(x, 0, 0), or derivatives there by the coordinates `by`: powers of l times polynomials in x/l."""
         return np.array([self._function(f"N{by}_{name}", sp.diff(f, *map(COORDINATES.get, by)) if by else f,
                                         name.count("x") - by.count("x"))
                          for name, f in zip(self.element.names, self.element.shape_functions, strict=True)])

@@ -45,13 +45,13 @@ class DiscreteGradient:
                      for state, value in zip(STATES, (now, then), strict=True))
 
     def pair(self, expr: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
-        """Its values at the two states."""
+        """Return the values of an expression at the two states."""
         expr = sp.sympify(expr)
         known = [(s, self._pairs[s]) for s in expr.free_symbols if s in self._pairs]
         return tuple(expr.xreplace({s: pair[k] for s, pair in known}) for k in (0, 1))
 
     def mean(self, expr: sp.Expr) -> sp.Expr:
-        """Half the sum of its values."""
+        """Return half the sum of the values of an expression at the two states."""
         now, then = self.pair(expr)
         return now if now == then else (now + then) / 2
 
@@ -60,7 +60,7 @@ class DiscreteGradient:
         return self.program.vector(name, [self.mean(x) for x in vector])
 
     def gradient(self, expr: sp.Expr, by: Sequence[sp.Symbol], constant: Sequence[sp.Symbol] = ()) -> list[sp.Expr]:
-        """D with the difference of expr = sum D times the differences of the symbols `by`.
+        """Return D with the difference of expr = sum D times the differences of the symbols `by`.
 
         Definitions in `constant` stand for their mean values: a factor x of them contributes x~ dy to d(x y).
         """
@@ -113,7 +113,9 @@ class _Along:
         return change
 
     def _power(self, expr: sp.Expr, now: sp.Expr, then: sp.Expr) -> sp.Expr:
-        """Of a power n/2, or n, of a base; now and then: the values of its root, or of the base."""
+        """Return the discrete derivative of a power n/2, or n, of a base; now and then: the values of its root, or of
+        the base.
+        """
         moved = self(expr.base)
         if moved == 0:
             return moved

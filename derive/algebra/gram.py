@@ -17,6 +17,7 @@ from functools import cached_property
 
 import numpy as np
 import sympy as sp
+from sympy.polys.rings import PolyElement
 
 from ..codegen.program import Program
 from ..spec import Element, l, x, y, z
@@ -47,25 +48,27 @@ class Gram:
 
     @cached_property
     def pairs(self) -> list[tuple[int, int]]:
-        """Pairs m <= n of strain vectors."""
+        """Return the pairs m <= n of strain vectors."""
         n = len(self.psi)
         return [(a, b) for a in range(n) for b in range(a, n)]
 
     @cached_property
     def transform(self) -> sp.Matrix:
-        """T with c = T d over nodal vectors d (rows: strain vectors), exact in l."""
+        """Return T with c = T d over nodal vectors d (rows: strain vectors), exact in l."""
         functions = [_to_sympy(p) for p in self.all_psi]
         return self.element.nodal_conditions(functions).inv().applyfunc(sp.cancel)[1:, :]
 
     @cached_property
     def gradient(self) -> list[list]:
-        """F = sum_m c_m (x) gradient[m]: derivatives of psi_m by x, y, z in the ring."""
+        """Return gradient with F = sum_m c_m (x) gradient[m]: derivatives of psi_m by x, y, z in the ring of
+        polynomials.
+        """
         by = [integrals.d_dx, lambda p: p.diff(integrals.Y), lambda p: p.diff(integrals.Z)]
         return [[by[i](p) for i in range(self.element.dim)] for p in self.psi]
 
     @cached_property
     def reference(self) -> list[int]:
-        """G0 over the pairs: the straight reference r = (x, y, z) has c = unit axes, the rest zero."""
+        """Return G0 over the pairs: the straight reference r = (x, y, z) has c = unit axes, the rest zero."""
         axis = {name: i for i, name in enumerate(("t0", "y0", "z0")[: self.element.dim])}
         return [int(a == b and self.names[a] in axis) for a, b in self.pairs]
 
@@ -89,7 +92,7 @@ class Gram:
                 for p, (a, b) in enumerate(self.pairs)]
 
     def by_vector(self, c: np.ndarray, p: int, m: int) -> np.ndarray | None:
-        """dG_p/dc_m, a vector, or None where it is zero."""
+        """Return dG_p/dc_m, a vector, or None where it is zero."""
         a, b = self.pairs[p]
         if a == b == m:
             return 2 * c[m]
@@ -112,7 +115,7 @@ class Gram:
 
     @cached_property
     def scaled(self) -> list[list[sp.Expr]]:
-        """T with positions measured in lengths l: plain rationals."""
+        """Return T with positions measured in lengths l: plain rationals."""
         scale = [l if p else 1 for p in self.element.is_position]
         return [[sp.cancel(self.transform[m, k] * scale[k]) for k in range(self.element.n_vectors)]
                 for m in range(len(self.names))]
@@ -123,13 +126,13 @@ class Gram:
         return self.names[a] + self.names[b]
 
 
-def _antiderivative(p):
-    """Integral from the element's start of a polynomial in X, times dx/dX = l/2."""
+def _antiderivative(p: PolyElement) -> PolyElement:
+    """Return the integral from the element's start of a polynomial in X, times dx/dX = l/2."""
     integral = sum((integrals.RING(c / (k[0] + 1)) * integrals.X ** (k[0] + 1) for k, c in p.terms()),
                    integrals.RING(0))
     at_start = sum((c * (-1) ** k[0] for k, c in integral.terms()), integrals.RING(0))
     return (integral - at_start) * integrals.L / 2
 
 
-def _to_sympy(p) -> sp.Expr:
+def _to_sympy(p: PolyElement) -> sp.Expr:
     return p.as_expr(2 * x / l - 1, y, z, l, 1 / l)

@@ -21,18 +21,18 @@ SECTION_DOC = "section moments: integrals over A of 1, y^2, z^2, y^4, y^2 z^2, z
 
 
 def legendre(n: int) -> Any:
-    """Legendre polynomial P_n(X) in the ring."""
+    """Return the Legendre polynomial P_n(X) in the ring of polynomials."""
     p = sp.Poly(sp.legendre(n, sp.Symbol("X")), sp.Symbol("X"))
     return sum((RING(sp.QQ.from_sympy(c)) * X**k for (k,), c in p.terms()), RING(0))
 
 
 def d_dx(p: Any) -> Any:
-    """Derivative by x = l (1 + X)/2."""
+    """Return the derivative by x = l (1 + X)/2."""
     return 2 * W * p.diff(X)
 
 
 def over_element(p: Any) -> dict[tuple[int, int], sp.QQ]:
-    """Integral over the volume: {(section moment, power of l): rational}."""
+    """Return the integral over the volume: {(section moment, power of l): rational}."""
     total: dict[tuple[int, int], sp.QQ] = {}
     for (ex, ey, ez, el, ew), c in p.terms():
         if ex % 2 or ey % 2 or ez % 2:

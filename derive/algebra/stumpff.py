@@ -24,7 +24,7 @@ def stumpff(p: Program, name: str, k: int, x: sp.Expr, root: sp.Expr) -> sp.Expr
 
 
 def _series(k: int, x: sp.Expr) -> sp.Expr:
-    """By Horner's rule, so many terms that the first left out is below rounding of the first."""
+    """Return the series by Horner's rule, with so many terms that the first left out is below rounding of the first."""
     terms = next(j for j in count() if SERIES_BELOW[k]**j * sp.factorial(k) / sp.factorial(2 * j + k) < ROUNDING)
     value = sp.S.Zero
     for j in reversed(range(terms)):

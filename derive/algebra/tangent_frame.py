@@ -17,7 +17,9 @@ def unit(program: Program, name: str, vector: np.ndarray) -> np.ndarray:
 
 
 def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Vector product; for b in the plane, a is the component along z: (a,) times b turned by +90 degrees."""
+    """Return the vector product a x b; for b in the plane, a is the component along z: (a,) times b turned by +90
+    degrees.
+    """
     if len(b) == 2:
         return a[0] * np.array([-b[1], b[0]])
     return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])

@@ -18,7 +18,7 @@ class Rider(Protocol):
 
     @property
     def NAME(self) -> str:  # noqa: N802
-        """Its name, part of the names of its kernels."""
+        """Return its name, part of the names of its kernels."""
 
     @property
     def DIM(self) -> int:  # noqa: N802

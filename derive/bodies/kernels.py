@@ -5,7 +5,10 @@ A body (bodies/) gives its configuration and the derivations along its velocitie
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+import sympy as sp
 
 from ..algebra.tangent_frame import cross
 from ..codegen.program import DirectionalDerivative, Program
@@ -19,7 +22,8 @@ def build(body: Body) -> list[Program]:
             kinetic_energy(body), discrete_point(body), *load_kernels.build(body), *moves.build(body)]
 
 
-def _position(p: Program, body: Body, b: np.ndarray, u: np.ndarray):
+def _position(p: Program, body: Body, b: np.ndarray, u: np.ndarray) -> tuple[Any, np.ndarray,
+              list[DirectionalDerivative]]:
     """Return A (dim, dim), the position p of the point u (dim,) in m, and the derivatives by translation and rotation.
     """
     p.stage("position")
@@ -93,7 +97,7 @@ class Step:
         self.theta, self.axes = body.step_turn(p, b, self.ends[0], self.b_next)
 
     def jacobian(self, arm: np.ndarray) -> np.ndarray:
-        """By translation and Cayley vector, of a point on this arm."""
+        """Return the Jacobian, by translation and Cayley vector, of a point on this arm."""
         turns = np.array([cross(axis, arm) for axis in self.axes.T], dtype=object).reshape(-1, len(arm)).T
         return np.concatenate([np.eye(len(arm), dtype=int), turns], axis=1)
 
@@ -112,13 +116,13 @@ def discrete_point(body: Body) -> Program:
     return p
 
 
-def _inertia(p: Program, body: Body):
+def _inertia(p: Program, body: Body) -> tuple[sp.Symbol, np.ndarray]:
     mass = p.input("mass", (), "kg", "mass")
     J = p.input("J", (3, 3), "kg m^2", "inertia about the mass centre in body axes, symmetric")
     return mass, body.turning_inertia(J)
 
 
-def _mass_matrix(body: Body, mass, J: np.ndarray) -> np.ndarray:
+def _mass_matrix(body: Body, mass: sp.Expr, J: np.ndarray) -> np.ndarray:
     M = np.zeros((body.N_VELOCITY, body.N_VELOCITY), dtype=object)
     M[: body.DIM, : body.DIM], M[body.DIM :, body.DIM :] = mass * np.eye(body.DIM, dtype=int), J
     return M

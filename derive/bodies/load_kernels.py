@@ -27,13 +27,13 @@ class _Load:
         self.turns = body.N_VELOCITY - body.DIM
 
     def axes(self) -> np.ndarray:
-        """Stage: A."""
+        """Define A in a stage of its own and return it."""
         self.program.stage("axes")
         self.A = self.body.axes(self.program, self.b)
         return self.A
 
     def outputs(self, force: np.ndarray, moment: np.ndarray) -> Program:
-        """Outputs g and K of a force in global axes and a moment about body axes."""
+        """Declare the outputs g and K of a force in global axes and a moment about body axes."""
         p = self.program
         p.stage("generalised force and its derivatives")
         g = np.array([p.define(f"g{k}", x) for k, x in enumerate([*force, *moment])])

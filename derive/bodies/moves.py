@@ -25,7 +25,7 @@ def _step(p: Program, body: Body, turn: str) -> np.ndarray:
 
 
 def _normalised(p: Program, attitude: np.ndarray) -> np.ndarray:
-    """Stage: an attitude of unit size."""
+    """Define an attitude of unit size in a stage of its own and return it."""
     p.stage("attitude of unit size")
     parts = [p.define(f"part{k}", x) for k, x in enumerate(attitude)]
     inverse = p.define("inv_size", 1 / p.define("size", sp.sqrt(sum(x * x for x in parts))))
@@ -94,7 +94,7 @@ def halfway(body: Body) -> Program:
 
 
 def _turning(body: Body, b: np.ndarray) -> np.ndarray:
-    """Derivatives of the attitude by small turns about body axes times WINDING, a column for each."""
+    """Return the derivatives of the attitude by small turns about body axes times WINDING, a column for each."""
     half = sp.symbols(f"half:{body.N_VELOCITY - body.DIM}")
     moved = body.product(b[body.DIM :], body.cayley(np.array(half)))
     still = dict.fromkeys(half, 0)

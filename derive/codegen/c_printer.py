@@ -8,6 +8,8 @@ that the same text serves double and complex.
 
 from __future__ import annotations
 
+from typing import Any
+
 import sympy as sp
 from sympy.printing.c import C99CodePrinter
 from sympy.printing.precedence import PRECEDENCE
@@ -21,23 +23,23 @@ _ADD, _MUL, _ATOM = PRECEDENCE["Add"], PRECEDENCE["Mul"], PRECEDENCE["Atom"]
 class KernelPrinter(C99CodePrinter):
     """C99 with products for powers; raises on anything but plain arithmetic, sine, cosine, a choice of two."""
 
-    def _print_Symbol(self, expr):
+    def _print_Symbol(self, expr: sp.Symbol) -> str:
         return expr.name
 
-    def _print_Integer(self, expr):
+    def _print_Integer(self, expr: sp.Integer) -> str:
         return f"{int(expr)}.0"
 
-    def _print_Rational(self, expr):
+    def _print_Rational(self, expr: sp.Rational) -> str:
         return repr(float(expr)) if _is_short(expr) else f"{int(expr.p)}.0/{int(expr.q)}.0"
 
-    def parenthesize(self, item, level, strict=False):
+    def parenthesize(self, item: sp.Expr, level: int, strict: bool = False) -> str:
         """Return the text of a part of an expression, in brackets where it needs them: a short decimal does not."""
         return self._print(item) if _is_short(item) else super().parenthesize(item, level, strict)
 
-    def _print_Float(self, expr):
+    def _print_Float(self, expr: sp.Float) -> str:
         return repr(float(expr))
 
-    def _print_Add(self, expr):
+    def _print_Add(self, expr: sp.Add) -> str:
         text = ""
         for term in self._as_ordered_terms(expr):
             negative = term.as_coeff_Mul()[0].is_negative
@@ -45,7 +47,7 @@ class KernelPrinter(C99CodePrinter):
             text += (" - " if negative else " + ") + body if text else ("-" if negative else "") + body
         return text
 
-    def _print_Pow(self, expr):
+    def _print_Pow(self, expr: sp.Pow) -> str:
         base, exponent = expr.base, expr.exp
         if exponent == sp.Rational(1, 2):
             return f"FU_SQRT({self._print(base)})"
@@ -58,7 +60,7 @@ class KernelPrinter(C99CodePrinter):
             return f"1.0/{text}"
         raise ValueError(f"power {exponent} of {base} has no kernel form")
 
-    def _print_Mul(self, expr):
+    def _print_Mul(self, expr: sp.Mul) -> str:
         if expr.as_coeff_Mul()[0].is_negative:
             return "-" + self.parenthesize(-expr, _MUL)
         above, below = [], []
@@ -73,18 +75,18 @@ class KernelPrinter(C99CodePrinter):
             text += f"/({denominator})" if len(below) > 1 or "*" in denominator else f"/{denominator}"
         return text
 
-    def _print_sin(self, expr):
+    def _print_sin(self, expr: sp.Expr) -> str:
         return f"FU_SIN({self._print(expr.args[0])})"
 
-    def _print_cos(self, expr):
+    def _print_cos(self, expr: sp.Expr) -> str:
         return f"FU_COS({self._print(expr.args[0])})"
 
-    def _print_Piecewise(self, expr):
+    def _print_Piecewise(self, expr: sp.Piecewise) -> str:
         below, above, condition = two_cases(expr)
         return (f"(FU_REAL({self._print(condition.lhs)}) < {self._print(condition.rhs)} ? {self._print(below)} "
                 f": {self._print(above)})")
 
-    def _print(self, expr, **kwargs):
+    def _print(self, expr: Any, **kwargs: Any) -> str:
         # SymPy's printer knows many functions and constants; the kernels must not
         if not isinstance(expr, _PRINTED):
             raise ValueError(f"{type(expr).__name__} has no kernel form: {expr}")

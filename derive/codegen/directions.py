@@ -41,7 +41,7 @@ class Array:
     symmetric: bool = False
 
     def entry(self, index: Sequence[int | str | tuple[str, int]]) -> str:
-        """C text of an entry; the index has numbers, loop variables, and pairs (loop variable, offset)."""
+        """Return the C text of an entry; the index has numbers, loop variables, and pairs (loop variable, offset)."""
         if not self.flat:
             return self.name + "".join(f"[{k}]" for k in index)
         offset, terms = 0, []
@@ -122,7 +122,7 @@ class Layout:
                 del self.places[symbol]
 
     def match(self, exprs: Mapping[Index, sp.Expr], dim: int) -> Match | None:
-        """The one expression for all of these, by turn; None where there is none."""
+        """Return the one expression for all of these, by turn; None where there is none."""
         rank = len(next(iter(exprs)))
         first = tuple(range(rank))
         turns: dict[Index, Mapping[str, int]] = {turn: dict(zip(self.variables, turn, strict=False)) for turn in exprs}
@@ -135,6 +135,15 @@ class Layout:
                 return None
             if not all(isinstance(k, int) for k in pattern):
                 patterns[symbol] = pattern
+        rest = self._rest(exprs, first, patterns, turns)
+        if rest is None or (rest and (rank == 1 or rest.keys() != {(k, k) for k in range(dim)}
+                                     or any(sp.count_ops(r) > LONGEST_REST for r in rest.values()))):
+            return None
+        return Match(exprs[first], patterns, rest)
+
+    def _rest(self, exprs: Mapping[Index, sp.Expr], first: Index, patterns: Mapping[sp.Symbol, Pattern],
+              turns: Mapping[Index, Mapping[str, int]]) -> dict[Index, sp.Expr] | None:
+        """Return what expressions have besides the image of the first, by turn; None where a symbol has no image."""
         rest = {}
         for turn, expr in exprs.items():
             images = {s: self._image(self.places[s], pattern, turns[turn]) for s, pattern in patterns.items()}
@@ -143,14 +152,11 @@ class Layout:
             image = exprs[first].xreplace(images)
             if image != expr:
                 rest[turn] = expr - image
-        if rest and (rank == 1 or rest.keys() != {(k, k) for k in range(dim)}
-                     or any(sp.count_ops(r) > LONGEST_REST for r in rest.values())):
-            return None
-        return Match(exprs[first], patterns, rest)
+        return rest
 
     def _pattern(self, place: Place, dim: int, first: Mapping[str, int],
                  others: Sequence[tuple[Mapping[str, int], set[sp.Symbol]]]) -> Pattern | None:
-        """The index with most loop variables whose images are in the other expressions."""
+        """Return the index with most loop variables whose images are in the other expressions."""
         choices: list[list[int | str]] = [
             [*(name for name, at in first.items() if size == dim and at == k), k]
             for size, k in zip(place.array.sizes, place.index, strict=True)]
@@ -164,14 +170,18 @@ class Layout:
         return self._symbol.get((place.array.name, tuple(sorted(index)) if place.array.symmetric else index))
 
     def text(self, expr: sp.Expr, patterns: Mapping[sp.Symbol, Pattern], number: Callable[[sp.Expr], str]) -> str:
-        """C text of an expression over the arrays; terms and factors stand in the order of the symbols' own names."""
+        """Return the C text of an expression over the arrays; terms and factors stand in the order of the symbols' own
+        names.
+        """
         entries = {s.name: self.places[s].array.entry(patterns.get(s, self.places[s].index))
                    for s in expr.free_symbols & self.places.keys()}
         return SYMBOL.sub(lambda found: entries.get(found[0], found[0]), number(expr))
 
 
 def _sizes(indices: set[Index]) -> Index | None:
-    """Sizes of the array that has these entries, or these on and above its diagonal; None where some are missing."""
+    """Return the sizes of the array that has these entries, or these on and above its diagonal; None where some are
+    missing.
+    """
     for dim in (3, 2):
         pairs = set(product(range(dim), repeat=2))
         if indices == set(product(range(dim))):

@@ -6,7 +6,6 @@ import difflib
 import json
 import re
 from collections.abc import Mapping
-from importlib import resources
 from pathlib import Path
 
 from . import rendering as emit
@@ -14,12 +13,18 @@ from . import sharing
 from .family import Family
 
 MANIFEST = "manifest.json"
+PARTS = ("tools", "families", "files", "kernels")
+"""Of a manifest: what says which files are up to date."""
+
 BYTECODE = "__pycache__"
 
 
 def folder() -> Path:
-    """Return the folder of this installation's generated files."""
-    return Path(str(resources.files("funicular.generated")))
+    """Return the folder of this installation's generated files, found without importing what may be broken there.
+
+    It stands beside the folder of this package, in the repository as in an installation.
+    """
+    return Path(__file__).resolve().parents[2] / "generated"
 
 
 def current(name: str) -> str | None:
@@ -31,13 +36,16 @@ def current(name: str) -> str | None:
 def record() -> dict:
     """Return the manifest, empty where it is missing or broken."""
     try:
-        return json.loads(current(MANIFEST) or "{}")
+        found = json.loads(current(MANIFEST) or "{}")
     except json.JSONDecodeError:
         return {}
+    whole = isinstance(found, dict) and all(isinstance(found.get(part), dict) for part in PARTS)
+    return found if whole else {}
 
 
 def write(files: dict[str, str]) -> list[str]:
     """Write the files that differ from what stands in the folder, and return their names."""
+    folder().mkdir(exist_ok=True)
     changed = [name for name, text in files.items() if current(name) != text]
     for name in changed:
         (folder() / name).write_text(files[name], encoding="utf-8", newline="\n")

@@ -56,7 +56,7 @@ class Block:
 
 
 def sections(program: Program, number: Callable[[sp.Expr], str] = c_expression) -> list[Section]:
-    """The stages of a program and its outputs, as lines of C.
+    """Return the stages of a program and its outputs, as lines of C.
 
     number: C text of an expression that is assigned.
     """
@@ -83,7 +83,7 @@ class _Writer:
         self.stages = [(stage.title, stage.definitions) for stage in program.stages] + [("outputs", [])]
 
     def sections(self) -> list[Section]:
-        """Stage by stage, then the outputs."""
+        """Return the sections, stage by stage, then the outputs."""
         written: set[sp.Symbol] = set()
         stages = []
         for title, definitions in self.stages:
@@ -108,7 +108,7 @@ class _Writer:
     # --- what is a loop -------------------------------------------------------------------------------------------
 
     def _matched(self, base: str, group: Mapping[Index, sp.Symbol]) -> Match | None:
-        """The one expression of a group, where all of its definitions can stand at the place of the first."""
+        """Return the one expression of a group, where all of its definitions can stand at the place of the first."""
         first = min(self.at[s] for s in group.values())
         if any(self.at.get(s, -1) >= first for symbol in group.values() for s in self.exprs[symbol].free_symbols):
             return None
@@ -116,20 +116,20 @@ class _Writer:
                                  self.layout.array[base].sizes[0])
 
     def _worth_it(self) -> bool:
-        """Whether loops leave few enough assignments."""
+        """Return whether loops leave few enough assignments."""
         before = len(self.exprs) + sum(len(block.exprs) for block in self.blocks)
         saved = sum(len(self.layout.groups[base]) - 1 for base in self.matches)
         saved += sum(len(block.exprs) - 1 for block in self.blocks)
         return before - saved <= before * next(share for most, share in MOST_LEFT.items() if before < most)
 
     def _entries(self, name: str) -> list[Block]:
-        """An output, every entry by itself."""
+        """Return an output in blocks of one entry each."""
         values = self.program.values[name]
         array = Array(name, values.shape, flat=True)
         return [Block(array, at, partial(_fixed, at), {(): values[at]}, None) for at in np.ndindex(*values.shape)]
 
     def _blocks(self, name: str) -> list[Block]:
-        """An output in blocks of directions along its last axes."""
+        """Return an output in blocks of directions along its last axes."""
         values, dim = self.program.values[name], self.layout.dim
         array = Array(name, values.shape, flat=True)
         moving = [axis for axis, size in enumerate(values.shape) if dim and size % dim == 0][-2:]
@@ -137,11 +137,11 @@ class _Writer:
         return sorted(found, key=lambda block: block.start)
 
     def _split(self, array: Array, values: np.ndarray, moving: list[int], within: list[range]) -> Iterator[Block]:
-        """Blocks over the `moving` axes; those that are not alike again, over fewer axes."""
+        """Yield blocks over the `moving` axes; those that are not alike are split again, over fewer axes."""
         dim = self.layout.dim
         for start in product(*(span[::dim] if axis in moving else span for axis, span in enumerate(within))):
-            def index(turn: Sequence, start=start) -> list:
-                at = list(start)
+            def index(turn: Sequence, start: tuple[int, ...] = start) -> list:
+                at: list = list(start)
                 for axis, k in zip(moving, turn, strict=True):
                     at[axis] = k + start[axis] if isinstance(k, int) else (k, start[axis])
                 return at
@@ -155,7 +155,9 @@ class _Writer:
                 yield from self._split(array, values, moving[1:], spans)
 
     def _in_place(self) -> dict[str, list[Block]]:
-        """By group, the blocks of outputs that copy it and are written where it is computed: no input is read later."""
+        """Return, by group, the blocks of outputs that copy it and are written where it is computed: no input is read
+        later.
+        """
         inputs = {s for a in self.program.inputs for s in np.ravel(self.program.symbols[a.name])}
         last = max((self.at[s] for s, expr in self.exprs.items() if expr.free_symbols & inputs), default=-1)
         found: dict[str, list[Block]] = {}
@@ -170,7 +172,7 @@ class _Writer:
         return found
 
     def _local(self) -> set[str]:
-        """Groups that are more than outputs: an expression or another output takes them."""
+        """Return the groups that are more than outputs: an expression or another output takes them."""
         copied = {block for blocks in self.in_place.values() for block in blocks}
         used = {s for expr in self.exprs.values() for s in expr.free_symbols}
         used |= {s for b in self.blocks if b not in copied for e in b.exprs.values() for s in e.free_symbols}
@@ -178,8 +180,8 @@ class _Writer:
                 if base not in self.in_place or self.matches[base].rest or not used.isdisjoint(group.values())}
 
     def _mirrored(self) -> set[str]:
-        """Symmetric groups of which entries below the diagonal are used, by a loop that is not over pairs i <= j, and
-        their like at other points.
+        """Return the symmetric groups of which entries below the diagonal are used, by a loop that is not over pairs i
+        <= j, and their like at other points.
         """
         found = set()
         uses = [(match, self.layout.array[base].symmetric) for base, match in self.matches.items()]
@@ -197,7 +199,7 @@ class _Writer:
         return self.layout.variables[:rank]
 
     def _define(self, symbol: sp.Symbol, expr: sp.Expr) -> set[sp.Symbol]:
-        """A definition, or the loop that its group is; returns the symbols that have their values now."""
+        """Print a definition, or the loop that its group is; returns the symbols that have their values now."""
         place = self.layout.places.get(symbol)
         if place is None:
             self.items.append(Item(f"{symbol.name} = {self.layout.text(expr, {}, self.number)}", symbol.name))
@@ -216,7 +218,7 @@ class _Writer:
         return f"{array.entry((j, i))} = {array.entry((i, j))};"
 
     def _loop(self, array: Array, match: Match) -> None:
-        """A group as a loop."""
+        """Print a group as a loop."""
         rank, dim = len(array.sizes), array.sizes[0]
         turn = self._turn(rank)
         targets = [array.entry(turn)] if array.name in self.local else []
@@ -233,7 +235,7 @@ class _Writer:
         self._repeat(dim, rank, array.symmetric, [*assigned, *mirror])
 
     def _sorted(self, symbol: sp.Symbol, pattern: Pattern, upper: bool) -> Pattern:
-        """In a loop over pairs i <= j the entry [i][j] of a symmetric array stands for [j][i]."""
+        """Return the index of a symbol in a loop over pairs i <= j: of a symmetric array [i][j] stands for [j][i]."""
         both = upper and self.layout.places[symbol].array.symmetric and set(pattern) == set(self._turn(2))
         return self._turn(2) if both else pattern
 
@@ -248,7 +250,7 @@ class _Writer:
         return [f"{targets[0]} = {text};", *(f"{target} = {targets[0]};" for target in targets[1:])]
 
     def _targets(self, block: Block, array: Array) -> list[str]:
-        """Entries of an output that a turn of a group's loop writes."""
+        """Return the entries of an output that a turn of a group's loop writes."""
         rank = len(array.sizes)
         turn = self._turn(rank)
         if array.symmetric:
@@ -257,7 +259,7 @@ class _Writer:
         return [block.array.entry(block.index(turn if block.match.patterns[block.match.expr] == turn else turn[::-1]))]
 
     def _diagonal(self, array: Array, match: Match, dim: int) -> None:
-        """What entries on the diagonal have besides."""
+        """Print what entries on the diagonal have besides."""
         i, = self._turn(1)
         found = self.layout.match({(k,): match.rest[k, k] for k in range(dim)}, dim)
         if found:
@@ -270,12 +272,12 @@ class _Writer:
         self.items.append(Item(f"{target} {sign} {self.layout.text(expr, {}, self.number)};"))
 
     def _repeat(self, dim: int, rank: int, upper: bool, lines: list[str]) -> None:
-        """Lines for each direction, each pair of them, or each pair i <= j."""
+        """Print lines for each direction, each pair of them, or each pair i <= j."""
         variables = ", ".join(self.layout.variables[:rank])
         self.items.append(Item(f"{HEADS[rank, upper]}({variables}, {dim}, {' '.join(lines)})"))
 
     def _output(self, block: Block) -> None:
-        """Entries of an output that are not written elsewhere."""
+        """Print the entries of an output that no loop has written."""
         if block.match is None:
             self._plain(block.array.entry(block.index(())), block.exprs[()])
             return
@@ -287,7 +289,7 @@ class _Writer:
             self._plain(block.array.entry(block.index((k, k))), block.match.rest[k, k], "+=")
 
     def _declared(self, items: Iterable[Item], sizes: Mapping[str, str], arrays: Arrays) -> list[str]:
-        """Declaration of the arrays that are used here first."""
+        """Return the declaration of the arrays that are used here first."""
         named = dict.fromkeys(name for item in items for text in (item.text, *(i.text for i in item.block))
                               for name in NAME.findall(text))
         found = []
@@ -301,7 +303,7 @@ class _Writer:
 
     @staticmethod
     def _lines(items: Iterable[Item]) -> list[str]:
-        """Constants in lists, all else line by line."""
+        """Return the lines of C, constants in lists, all else line by line."""
         lines: list[str] = []
         for constant, run in groupby(items, key=lambda item: bool(item.constant)):
             texts = [item.text for item in run] if constant else []
@@ -315,10 +317,10 @@ class _Writer:
 
 
 def _fixed(at: Index, turn: Sequence) -> list:
-    """The index `at`, whatever the turn."""
+    """Return the index `at` for any turn."""
     return list(at)
 
 
 def _kind(name: str) -> str:
-    """A name without its numbers."""
+    """Return a name without its numbers."""
     return re.sub(r"\d+", "#", name)

@@ -9,6 +9,7 @@ import os
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
 from setuptools.command.build_ext import build_ext
 from setuptools.errors import CompileError, LinkError
@@ -62,7 +63,7 @@ class ParallelBuild(build_ext):
         compile_in_turn = self.compiler.compile
         with ThreadPoolExecutor(os.cpu_count()) as pool:
 
-            def compile_side_by_side(sources: list[str], *args, **kwargs) -> list[str]:
+            def compile_side_by_side(sources: list[str], *args: Any, **kwargs: Any) -> list[str]:
                 largest_first = sorted(sources, key=lambda path: -os.path.getsize(path))
                 done = dict(zip(largest_first, pool.map(lambda path: compile_in_turn([path], *args, **kwargs),
                                                         largest_first), strict=True))

@@ -110,8 +110,8 @@ class Program:
         self._taken.add(name)
 
     def operations(self) -> dict[str, int]:
-        """Arithmetic operations of one call: additions, multiplications, divisions, square roots; sines and cosines
-        where there are any. Of a choice both cases count.
+        """Return the arithmetic operations of one call: additions, multiplications, divisions, square roots; sines and
+        cosines where there are any. Of a choice both cases count.
         """
         exprs = [e for s in self.stages for _, e in s.definitions]
         exprs += [e for v in self.values.values() for e in v.ravel()]
@@ -232,7 +232,7 @@ class DirectionalDerivative:
 
 def jacobian(program: Program, values: np.ndarray, wrt: Sequence[sp.Symbol] | np.ndarray,
              constant: Sequence[sp.Symbol] = ()) -> np.ndarray:
-    """Partial derivatives of `values` (n,) by the symbols `wrt` (m,) taken as independent -> (n, m).
+    """Return the partial derivatives of `values` (n,) by the symbols `wrt` (m,) taken as independent -> (n, m).
 
     Definitions in `constant` count as constants, whatever they depend on.
     """

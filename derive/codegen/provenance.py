@@ -27,7 +27,7 @@ def deciding(roots: Iterable[str]) -> tuple[str, ...]:
 
 
 def spec_hash(files: Iterable[str], spec: Path | None = None) -> str:
-    """SHA-256 over the text of files here and of the user's file, shortened."""
+    """Return the SHA-256 over the text of files here and of the user's file, shortened."""
     digest = hashlib.sha256()
     for file in files:
         digest.update(_read(file))
@@ -42,7 +42,9 @@ def _imports(module: str) -> tuple[str, ...]:
 
 
 def _named(node: ast.AST, module: str) -> Iterator[str]:
-    """Modules of this package that a relative import in `module` names; absolute imports are of other packages."""
+    """Return the modules of this package that a relative import in `module` names; absolute imports are of other
+    packages.
+    """
     if isinstance(node, ast.ImportFrom) and node.level:
         path = module.split(".")
         depth = len(path) - node.level + _file(module).endswith("__init__.py")

@@ -8,11 +8,12 @@ from __future__ import annotations
 import hashlib
 import json
 import textwrap
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Hashable, Iterable
 from dataclasses import asdict, dataclass, replace
 from importlib import metadata
 
 import jinja2
+import sympy as sp
 
 from .c_printer import c_expression
 from .family import Family, FamilyError, PointLawFamily
@@ -46,7 +47,7 @@ class Recorded:
     count: dict[str, int]
 
     def operations(self) -> dict[str, int]:
-        """Arithmetic operations of one call."""
+        """Return the arithmetic operations of one call."""
         return self.count
 
 
@@ -66,19 +67,19 @@ def derive(family: Family) -> Derived:
 
 
 def derived(family: Family, programs: list[Program]) -> Derived:
-    """A family with its programs, pruned, and where they came from."""
+    """Return a family with its programs, pruned, and where they came from."""
     return Derived(family, [p.prune() for p in programs], *came_from(family))
 
 
 def came_from(family: Family) -> tuple[list[str], str]:
-    """The files that decide a family, and their hash."""
+    """Return the files that decide a family, and their hash."""
     files = list(deciding(family.modules))
     own = [family.spec.name] if family.spec else []
     return own + files, spec_hash(files, family.spec)
 
 
 def recorded(family: Family, manifest: dict) -> Derived | None:
-    """A family as the manifest has it, without a derivation; None where it has not."""
+    """Return a family as the manifest has it, without a derivation; None where it has not."""
     if family.name not in manifest.get("families", {}):
         return None
     entry = manifest["families"][family.name]
@@ -99,7 +100,7 @@ class Table:
 
 
 def tables(every: list[Derived], layout: dict | None = None) -> dict[str, Table]:
-    """The engine's tables by role: laid out as these families allow, or as a manifest's "tables" has them.
+    """Return the engine's tables by role: laid out as these families allow, or as a manifest's "tables" has them.
 
     Raises FamilyError for a family without a kernel that the layout asks for.
     """
@@ -120,21 +121,22 @@ def tables(every: list[Derived], layout: dict | None = None) -> dict[str, Table]
 
 
 def layout(of: dict[str, Table]) -> dict[str, dict]:
-    """What a manifest keeps of tables, so that a library of the user's is laid out alike."""
+    """Return what a manifest keeps of tables, so that a library of the user's has the same layout."""
     return {role: {"facts": table.facts, "kernels": table.kernels} for role, table in of.items()}
 
 
 def interface(of: dict[str, dict]) -> str:
-    """Hash of a layout: engine and library fit each other where it is the same."""
+    """Return the hash of a layout: engine and library fit each other where it is the same."""
     return hashlib.sha256(json.dumps(of).encode()).hexdigest()[:16]
 
 
 def render(every: list[Derived], wanted: Iterable[str], done: Callable[[str], None],
-           like: dict | None = None) -> dict[str, str]:
-    """Text of the wanted families' files, of the headers of their groups and of the files common to all, by name; calls
-    done(name) for each family. Of a group all families are wanted, or none.
+           layout_of: dict | None = None) -> dict[str, str]:
+    """Return the text of the wanted families' files, of the headers of their groups and of the common files, by name.
 
-    like: the "tables" of the manifest whose layout a library of the user's must have; the Python face is left out.
+    Calls done(name) for each family. Of a group all families are wanted, or none.
+
+    layout_of: the "tables" of the manifest whose layout a library of the user's must have; the Python face is left out.
     """
     environment = jinja2.Environment(loader=jinja2.PackageLoader("funicular.derive.codegen"), trim_blocks=True,
                                      lstrip_blocks=True, keep_trailing_newline=True,
@@ -153,10 +155,10 @@ def render(every: list[Derived], wanted: Iterable[str], done: Callable[[str], No
         files[header(group)] = environment.get_template("stages.h.jinja").render(group=group,
                                                                                  stages=shared[header(group)])
     blocks = {name for derived in every for name in block_kernels(derived)}
-    common = {"every": every, "tables": tables(every, like), "signature": signature, "call": _call, "blocks": blocks,
-              "about": _about, "entry": _entry,
+    common = {"every": every, "tables": tables(every, layout_of), "signature": signature, "call": _call,
+              "blocks": blocks, "about": _about, "entry": _entry,
               "laws": [derived for derived in every if block_kernels(derived)], "kernels": BLOCKS}
-    for name in COMMON if like is None else (HEADER, REGISTRY):
+    for name in COMMON if layout_of is None else (HEADER, REGISTRY):
         files[name] = environment.get_template(f"{name}.jinja").render(**common)
     return files
 
@@ -169,17 +171,19 @@ def _sections(derived: Derived) -> Sections:
 
 
 def digest(text: str) -> str:
-    """Hash of a file's text as the manifest keeps it."""
+    """Return the hash of a file's text as the manifest keeps it."""
     return hashlib.sha256(text.encode()).hexdigest()
 
 
 def tools() -> dict[str, str]:
-    """Versions of what decides the generated text."""
+    """Return the versions of what decides the generated text."""
     return {name: metadata.version(name) for name in TOOLS}
 
 
-def manifest(every: list[Derived], files: dict[str, str], like: dict | None = None, more: dict | None = None) -> str:
-    """What was generated, from what, with which tools; `like` as in `render`, `more` is added.
+def manifest(every: list[Derived], files: dict[str, str], layout_of: dict | None = None,
+             more: dict | None = None) -> str:
+    """Return the manifest: what was generated, from what, with which tools; `layout_of` as in `render`, `more` is
+    added.
 
     "arguments" and "sources" are listed once; kernels and families have their numbers in these lists.
     """
@@ -189,7 +193,7 @@ def manifest(every: list[Derived], files: dict[str, str], like: dict | None = No
                         "inputs": [arguments.number(a) for a in p.inputs],
                         "outputs": [arguments.number(a) for a in p.outputs], "operations": p.operations()}
                for d in every for p in d.programs}
-    laid_out = layout(tables(every, like))
+    laid_out = layout(tables(every, layout_of))
     content = {"tools": tools(),
                "interface": interface(laid_out),
                "tables": laid_out,
@@ -209,16 +213,16 @@ def manifest(every: list[Derived], files: dict[str, str], like: dict | None = No
 class _Numbered:
     """Things in the order in which they came first."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.every: dict = {}
 
-    def number(self, thing) -> int:
-        """Its place among them."""
+    def number(self, thing: Hashable) -> int:
+        """Return the number of a thing among them."""
         return self.every.setdefault(thing, len(self.every))
 
 
 def json_text(content: dict) -> str:
-    """JSON with a line for each entry of each part."""
+    """Return JSON text with a line for each entry of each part."""
     parts = []
     for name, part in content.items():
         rows = part if isinstance(part, list) else [part]
@@ -259,7 +263,7 @@ def signature(program: Program | Recorded) -> str:
 
 
 def _about(program: Program | Recorded) -> list[str]:
-    """Comment on a kernel: what it gives, shapes and units of its arguments."""
+    """Return the comment on a kernel: what it gives, shapes and units of its arguments."""
     def shown(arguments: list[Argument]) -> str:
         return "; ".join(f"{a.name} {'x'.join(map(str, a.shape))}[{a.unit}]" if a.shape else f"{a.name} [{a.unit}]"
                          for a in arguments)
@@ -270,14 +274,14 @@ def _about(program: Program | Recorded) -> list[str]:
 
 
 def _entry(derived: Derived, table: Table) -> list[str]:
-    """A family's entry in the table of its role."""
+    """Return a family's entry in the table of its role."""
     values = [f'"{derived.family.name}"', *map(str, derived.family.facts.values()),
               *(derived.family.kernel(suffix) for suffix in table.kernels)]
     return textwrap.wrap(f"{{{', '.join(values)}}},", WIDTH - 4, subsequent_indent=" ", break_long_words=False)
 
 
 def block_kernels(derived: Derived) -> list[str]:
-    """Names of a law's kernels that are compiled for several elements at once as well."""
+    """Return the names of a law's kernels that are compiled for several elements at once as well."""
     if derived.family.role != "law":
         return []
     hot = {f"{derived.family.name}_{kernel}" for kernel in BLOCKS}
@@ -285,8 +289,8 @@ def block_kernels(derived: Derived) -> list[str]:
             and LEAST_PER_OUTPUT * p.outputs[0].size <= sum(p.operations().values()) <= MOST_OPERATIONS]
 
 
-def _number(expr) -> str:
-    """An expression where a fu_real is assigned: a constant is not one where that is several numbers."""
+def _number(expr: sp.Expr) -> str:
+    """Return an expression where a fu_real is assigned: a constant is not one where that is several numbers."""
     return f"FU_NUMBER({c_expression(expr)})" if expr.is_number else c_expression(expr)
 
 
@@ -295,7 +299,7 @@ def _operations_text(program: Program) -> str:
 
 
 def _shared(members: list[Derived]) -> dict[str, str]:
-    """Kernels of a role by suffix, with their parameters, but for each family's own.
+    """Return the kernels of a role by suffix, with their parameters, but for each family's own.
 
     Raises FamilyError where two families do not agree on them.
     """
@@ -314,12 +318,12 @@ def _shared(members: list[Derived]) -> dict[str, str]:
 
 
 def _signatures(derived: Derived) -> dict[str, str]:
-    """C parameters by kernel, of those that belong in the table."""
+    """Return the C parameters by kernel, of those that belong in the table."""
     every = {p.name.removeprefix(derived.family.name + "_"): signature(p) for p in derived.programs}
     return {suffix: text for suffix, text in every.items() if suffix not in derived.family.outside_table}
 
 
 def _call(program: Program | Recorded) -> str:
-    """The arguments of a C call, from arrays of pointers `a` and `out`."""
+    """Return the arguments of a C call, from arrays of pointers `a` and `out`."""
     inputs = [f"*a[{i}]" if a.shape == () else f"a[{i}]" for i, a in enumerate(program.inputs)]
     return ", ".join([*inputs, *(f"out[{i}]" for i in range(len(program.outputs)))])

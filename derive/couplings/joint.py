@@ -64,7 +64,9 @@ def _moved(axis: str) -> Callable:
 
 
 def _turned(p: TwoFrames) -> list[sp.Expr]:
-    """Sine of the second frame's angle, from x of the first towards y, less c: one solution within half a turn."""
+    """Return the sine of the second frame's angle, from x of the first towards y, less c: one solution within half a
+    turn.
+    """
     x = p.A2[:, 0]
     return [p.A1[:, 1].dot(x) * p.c[1] - p.A1[:, 0].dot(x) * p.c[2]]
 

@@ -146,8 +146,8 @@ def _terms(name: str, element: Element, rider: Rider) -> Program:
     return p
 
 
-def _lagrangian(p: Program, element: Element, rider: Rider):
-    """phi = r_p, its Jacobian by (e, rider, s), and the gradient of f . phi.
+def _lagrangian(p: Program, element: Element, rider: Rider) -> tuple[Slide, np.ndarray, np.ndarray]:
+    """Stage phi = r_p; return the slide, the Jacobian of phi by (e, rider, s), and the gradient of f . phi.
 
     The integrator carries s and the whole force f on the joint as unknowns instead of C_M and its multipliers:
     f . r_x = 0, the s-entry of the gradient, says that the multiplier of C_L drops out (eq 30), so that there is no
@@ -183,7 +183,8 @@ def _tangent(name: str, element: Element, rider: Rider) -> Program:
 
 
 def _discrete_gradient(name: str, element: Element, rider: Rider) -> Program:
-    """G (de, psi, ds) = phi_next - phi - theta x (phi_next + phi)/2, theta the rider's turn: zero on the joint.
+    """Return the kernel of G (de, psi, ds) = phi_next - phi - theta x (phi_next + phi)/2, theta the rider's turn: zero
+    on the joint.
 
     With N~ = (N(s) + N(s_next))/2 and the divided difference D = N[s, s_next] of the shape functions
 

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
+from sympy.polys.rings import PolyElement
 
 from ..algebra import section_integrals as integrals
 from ..codegen.program import Program
@@ -13,8 +14,8 @@ from ..spec import Element, l, x, y, z
 from . import load_kernels
 
 
-def _ring(expr: sp.Expr):
-    """A polynomial in x, y, z, 1/l of the spec, in the ring of `moments`."""
+def _ring(expr: sp.Expr) -> PolyElement:
+    """Return a polynomial in x, y, z, 1/l of the spec, in the ring of polynomials of `section_integrals`."""
     w = sp.Symbol("w", positive=True)
     poly = sp.Poly(sp.expand(expr.subs(l, 1 / w)), x, y, z, w, 1 / w)
     xi = integrals.L * (1 + integrals.X) / 2
@@ -22,7 +23,7 @@ def _ring(expr: sp.Expr):
                 for (a, b, d, n, m), c in poly.terms()), integrals.RING(0))
 
 
-def _integral(p, length, section) -> sp.Expr:
+def _integral(p: PolyElement, length: sp.Symbol, section: np.ndarray) -> sp.Expr:
     """Return the integral of a ring polynomial over the element, in the kernel's symbols."""
     return sum((sp.Rational(int(c.numerator), int(c.denominator)) * length**power * section[m]
                 for (m, power), c in sorted(integrals.over_element(p).items())), sp.S.Zero)
@@ -47,7 +48,8 @@ def _section(program: Program) -> np.ndarray:
     return program.input("section", len(integrals.SECTION), integrals.SECTION_UNITS, integrals.SECTION_DOC)
 
 
-def _coordinates(program: Program, element: Element, name="e", unit="m, 1", doc="nodal vectors e, eq 1"):
+def _coordinates(program: Program, element: Element, name: str = "e", unit: str = "m, 1",
+                 doc: str = "nodal vectors e, eq 1") -> np.ndarray:
     return program.input(name, (element.n_vectors, element.dim), unit, doc)
 
 

@@ -65,7 +65,7 @@ def turning_slopes(element: Element) -> list[str]:
 
 
 def moment(element: Element) -> Program:
-    """f from M . omega = f . v, omega the rotation rate of the section.
+    """Return the kernel of f from M . omega = f . v, omega the rotation rate of the section.
 
     It is the one that fits the rates of the section's slopes best: sum |a' - omega x a|^2 is least. A tangent alone in
     space turns across itself only: the moment along it does no work.
@@ -85,16 +85,18 @@ def moment(element: Element) -> Program:
     return p
 
 
-def _on_one(p: Program, M: np.ndarray, a: np.ndarray):
-    """Stage: the force F on a slope with a x F = M, as far as that can be, and its derivative."""
+def _on_one(p: Program, M: np.ndarray, a: np.ndarray) -> tuple[list[np.ndarray], np.ndarray]:
+    """Define, in a stage, the force F on a slope with a x F = M, as far as that can be; return it and its derivative.
+    """
     p.stage("force on the slope")
     F = p.vector("F", cross(p.define("inv_T", 1 / p.define("T", a.dot(a))) * M, a))
     p.stage("derivatives of the force by the slope")
     return [F], jacobian(p, F, a)
 
 
-def _on_two(p: Program, M: np.ndarray, a: np.ndarray, b: np.ndarray):
-    """Stage: the forces mu x a, mu x b on two slopes with a x F_a + b x F_b = M, and their derivatives by both.
+def _on_two(p: Program, M: np.ndarray, a: np.ndarray, b: np.ndarray) -> tuple[list[np.ndarray], np.ndarray]:
+    """Define, in a stage, the forces mu x a, mu x b on two slopes with a x F_a + b x F_b = M; return them and their
+    derivatives.
 
     The plane's normal n = a x b is a principal axis of this system: along it both slopes turn alike, across it M is
     the sum of two couples of forces along n. Derivatives of the latter in the dual basis of a, b, n: the change of
@@ -117,12 +119,13 @@ def _on_two(p: Program, M: np.ndarray, a: np.ndarray, b: np.ndarray):
     return forces, bent + jacobian(p, np.concatenate(turned), np.concatenate([a, b]))
 
 
-def _generalised(p: Program, element: Element, acting, forces, shapes, by_vectors: np.ndarray) -> None:
-    """Output f = acting' forces, and K from the forces' derivatives by the vectors shapes e."""
+def _generalised(p: Program, element: Element, acting: list[np.ndarray], forces: list[np.ndarray],
+                 shapes: list[np.ndarray], by_vectors: np.ndarray) -> None:
+    """Declare the outputs f = acting' forces, and K from the forces' derivatives by the vectors shapes e."""
     p.stage("derivatives of the forces by e")
     force = np.concatenate(forces)
-    acting, shapes = (np.kron(np.array(n), np.eye(element.dim, dtype=int)) for n in (acting, shapes))
+    acts, moved = (np.kron(np.array(n), np.eye(element.dim, dtype=int)) for n in (acting, shapes))
     by_e = np.array([[p.define(f"d{component}_de{m}", entry) for m, entry in enumerate(row)]
-                     for component, row in zip(force, by_vectors.dot(shapes), strict=True)])
-    p.output("f", acting.T.dot(force).reshape(element.n_vectors, element.dim), "N, N m", "generalised force")
-    p.output("K", acting.T.dot(by_e), "N/m, N, N m", "derivatives of f by e, not symmetric")
+                     for component, row in zip(force, by_vectors.dot(moved), strict=True)])
+    p.output("f", acts.T.dot(force).reshape(element.n_vectors, element.dim), "N, N m", "generalised force")
+    p.output("K", acts.T.dot(by_e), "N/m, N, N m", "derivatives of f by e, not symmetric")

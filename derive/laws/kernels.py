@@ -79,11 +79,12 @@ class Kernels:
     def _program(self, kernel: str, doc: str, source: str) -> Program:
         return Program(f"{self.name}_{kernel}", doc, f"{source}; {self.law.source}")
 
-    def _coordinates(self, program: Program, name="e", unit="m, 1", doc="nodal vectors e, eq 1") -> np.ndarray:
+    def _coordinates(self, program: Program, name: str = "e", unit: str = "m, 1",
+                     doc: str = "nodal vectors e, eq 1") -> np.ndarray:
         return program.input(name, (self.element.n_vectors, self.element.dim), unit, doc)
 
     def _strain(self, program: Program) -> tuple:
-        """Inputs l, e, A and the stage of the strain vectors."""
+        """Declare the inputs l, e, A, open the stage of the strain vectors, and return what they make."""
         length = program.input("l", (), "m", "length of the element")
         e, A = self._coordinates(program), self.law.constants(program)
         program.stage("strain vectors")
@@ -91,7 +92,9 @@ class Kernels:
         return w, A, self.gram.differences(program, e, w)
 
     def _ends(self, program: Program) -> tuple:
-        """Inputs l, e, e_next, A and the stage of the strain vectors at both ends of a step."""
+        """Declare the inputs l, e, e_next, A, open the stage of the strain vectors at both ends of a step, and return
+        what they make.
+        """
         length = program.input("l", (), "m", "length of the element")
         e = self._coordinates(program)
         e_next = self._coordinates(program, "e_next", doc="nodal vectors at the end of the step")
@@ -103,7 +106,9 @@ class Kernels:
         return w, A, *c
 
     def _rates(self, program: Program, *factors: tuple[str, tuple, str, str]) -> tuple:
-        """Inputs l, e, v, A, factors and the stages up to the rates of the strain vectors."""
+        """Declare the inputs l, e, v, A, factors, open the stages up to the rates of the strain vectors, and return
+        what they make.
+        """
         length = program.input("l", (), "m", "length of the element")
         e = self._coordinates(program)
         v = self._coordinates(program, "v", "m/s, 1/s", "rates of the nodal vectors")
@@ -134,7 +139,9 @@ class Kernels:
         return p
 
     def discrete_force(self) -> Program:
-        """Between two configurations: conserves energy and momenta in a step from one to the other."""
+        """Return the kernel of the force between two configurations that conserves energy and momenta in a step from
+        one to the other.
+        """
         p = self._program("discrete_force", "discrete gradient of the energy, f . (e_next - e) = U_next - U", "eq 8")
         w, A, *c = self._ends(p)
         f = self.law.discrete_forces(p, A, *c, w)
@@ -142,7 +149,7 @@ class Kernels:
         return p
 
     def step_stiffness(self) -> Program:
-        """For the Newton matrix of a step with discrete_force."""
+        """Return the kernel of what the Newton matrix of discrete_force has besides the tangent half-way."""
         p = self._program("step_stiffness", "k: elastic_tangent half-way + k (x) I has the mean stress", "eq 8")
         w, A, *c = self._ends(p)
         change = [p.vector(f"change_{name}", b - a) for name, a, b in zip(self.gram.names, *c, strict=True)]
@@ -159,14 +166,14 @@ class Kernels:
         return p
 
     def damping_force(self) -> Program:
-        """Q_d of eq 9, its sign turned."""
+        """Return the kernel of Q_d of eq 9, its sign turned."""
         p = self._program("damping_force", "minus the Kelvin-Voigt damping force Q_d", "Q_d of eq 9")
         w, A, tau, c, dc = self._rates(p)
         p.output("f", self._nodal(p, self.law.damping_forces(p, A, tau, c, dc, w), w), "N, N m", "-Q_d")
         return p
 
     def damping_tangent(self) -> Program:
-        """df/de + rate df/dv of the damping force f."""
+        """Return the kernel of df/de + rate df/dv of the damping force f."""
         p = self._program("damping_tangent", "df/de + rate df/dv of the damping force f = -Q_d",
                           "derivative of Q_d of eq 9")
         w, A, tau, c, dc = self._rates(p)
@@ -176,14 +183,16 @@ class Kernels:
         return p
 
     def dissipation(self) -> Program:
-        """Return the power that the damping force takes out."""
+        """Return the kernel of the power that the damping force takes out."""
         p = self._program("dissipation", "power dissipated by the damping force", "v . Q_d of eq 9")
         w, A, tau, c, dc = self._rates(p)
         p.output("P", [sp.sympify(self.law.dissipation(p, A, tau, c, dc, w))], "W", "dissipated power, never negative")
         return p
 
     def algorithmic_force(self) -> Program:
-        """Of a step with algorithmic dissipation: of stresses that its integrator makes of changes of strain."""
+        """Return the kernel of the forces of a step with algorithmic dissipation: stresses that its integrator makes of
+        changes of strain.
+        """
         p = self._program("algorithmic_force",
                           "force of the stress D (weight dE - relaxed_strain), dE the strain that v makes",
                           "D of Q_d of eq 9")
@@ -196,7 +205,7 @@ class Kernels:
         return p
 
     def section_forces(self) -> Program:
-        """Return what passes through the section at x from the side of greater x."""
+        """Return the kernel of what passes through the section at x from the side of greater x."""
         p = self._program("section_forces", "force and moment resultants of a section", "eq 6-8 at a section")
         length, x = p.input("l", (), "m", "length of the element"), p.input("x", (), "m", "arc-length from its start")
         e, S = self._coordinates(p), self.law.section_stiffness(p)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import keyword
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
+from typing import Any
 
 import sympy as sp
 from funicular.errors import near
@@ -202,7 +203,7 @@ def _conditions(element: Element) -> Iterator[tuple[str, str]]:
                "as many nodal vectors over the two nodes as functions in the basis, each fixing one of its own")
 
 
-def _combination(vector: sp.Matrix, of) -> str:
+def _combination(vector: sp.Matrix, of: Sequence[Any]) -> str:
     """Return the sum of a null vector's entries times what they stand for."""
     terms = [(sp.factor(c), name) for c, name in zip(vector, of, strict=True) if c != 0]
     lead = terms[0][0]

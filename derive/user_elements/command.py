@@ -27,7 +27,7 @@ ROUNDS = 5  # of timing; the least counts
 
 
 def main(spec: Path, out: Path) -> None:
-    """The command. Raises SpecError, also for a compiler that is missing."""
+    """Run the command. Raises SpecError, also for a compiler that is missing."""
     begin = time.perf_counter()
     console = Console(highlight=False, markup=False, soft_wrap=True)
     if not console.is_terminal:

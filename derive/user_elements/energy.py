@@ -68,7 +68,7 @@ class _Trial:
     def _fail(self, kernel: str, sample: str, cause: str, remedy: str = "") -> None:
         raise SpecError(self.place, f"{cause}: kernel {self.family.name}_{kernel}, at {sample}", remedy)
 
-    def value(self, kernel: str, output: str, s: Any, **changes) -> Any:
+    def value(self, kernel: str, output: str, s: Any, **changes: Any) -> Any:
         """Return an output, None where it is no finite real number."""
         try:
             value = self.k(kernel, s, **changes)[output]
@@ -80,7 +80,7 @@ class _Trial:
         return value
 
     def _scale(self) -> float:
-        """Energy of a strain of order one."""
+        """Return the energy of a strain of order one."""
         bent = [self.value("energy", "U", s) for s in self.states[:2]]
         for sample, U in zip(SAMPLES, bent, strict=False):
             if U is None:
@@ -88,7 +88,7 @@ class _Trial:
         return max(float(abs(U[0])) for U in bent) or 1.0
 
     def run(self) -> None:
-        """Every property in turn."""
+        """Check every property in turn."""
         self._objective()
         self._stress_free()
         self._smooth()
@@ -129,7 +129,8 @@ class _Trial:
                        f"{float(max(map(abs, f.ravel()))):.6g} N")
 
     def _smooth(self) -> None:
-        """Slope and curvature of the energy are the same to either side, along every coordinate."""
+        """Raise SpecError unless slope and curvature of the energy are the same to either side, along every coordinate.
+        """
         names = [f"{name}[{axis}]" for name in self.family.element.names for axis in "xyz"[: self.family.element.dim]]
         for sample, s in zip(SAMPLES, self.states, strict=True):
             for j, name in enumerate(names):
@@ -140,7 +141,7 @@ class _Trial:
                                    f"{float(before):.6g} on one side and {float(after):.6g} on the other",
                                    "make it of squares, or round the corner off")
 
-    def _one_sided(self, sample: str, s, j: int, name: str) -> list[tuple]:
+    def _one_sided(self, sample: str, s: Any, j: int, name: str) -> list[tuple]:
         """Return the first and second differences of the energy by coordinate j, before and after the sample."""
         direction = np.zeros(s["e"].size, dtype=int)
         direction[j] = 1

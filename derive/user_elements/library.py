@@ -56,7 +56,7 @@ def is_current(out: Path, families: list[Family]) -> bool:
 
 def render(every: list[Derived]) -> dict[str, str]:
     """Return the text of a library's C files and header by name."""
-    return emit.render(every, [d.family.name for d in every], lambda _: None, like=manifest()["tables"])
+    return emit.render(every, [d.family.name for d in every], lambda _: None, layout_of=manifest()["tables"])
 
 
 def link_shared(units: list[Path], folder: Path) -> Path:
@@ -73,7 +73,7 @@ def write_manifest(every: list[Derived], files: dict[str, str], spec: Path, shar
     """Write the manifest next to the shared library; returns it."""
     more = {"library": {"spec": str(spec), "file": shared.name, "sha256": _digest(shared),
                         "compiler": " ".join([*compiler(), *FLAGS])}}
-    content = json.loads(emit.manifest(every, files, like=manifest()["tables"], more=more))
+    content = json.loads(emit.manifest(every, files, layout_of=manifest()["tables"], more=more))
     content["library"]["digest"] = manifest_digest(content)
     (shared.parent / MANIFEST).write_text(emit.json_text(content), encoding="utf-8", newline="\n")
     return content

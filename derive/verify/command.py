@@ -69,7 +69,9 @@ def uncovered(family: Family, programs: list[Program]) -> list[str]:
 
 
 def verify(subject: Subject) -> Iterator[Item]:
-    """Findings of a family's relations, rounding of its kernels, its invariances: the worst over the sample states."""
+    """Return the findings of a family's relations, rounding of its kernels, its invariances: the worst over the sample
+    states.
+    """
     kinds = subject.kinds()
     samples = states(subject.family, kinds["exact"])
     for relation in relations(subject.family):
@@ -108,7 +110,9 @@ Catalogue = Callable[[], dict[str, Family]]
 
 
 def examined(wanted: list[Family], generated: Path, catalogue: Catalogue = families) -> Report:
-    """Everything found about families whose C is in `generated`; `catalogue` finds them by name in other processes."""
+    """Return everything found about families whose C is in `generated`; `catalogue` finds them by name in other
+    processes.
+    """
     report = Report()
     with report.progress(len(wanted)) as progress:
         for name, (outputs, items) in _results(wanted, generated, catalogue, progress).items():

@@ -38,7 +38,9 @@ def compiler() -> list[str]:
 
 
 def compile_units(sources: Iterable[Path], flags: Iterable[str], work: Path) -> list[Path]:
-    """Object files in a folder from C files, compiled side by side. Raises CompilerError with the first messages."""
+    """Return the object files in a folder from C files, compiled side by side. Raises CompilerError with the first
+    messages.
+    """
     def start(source: Path) -> subprocess.CompletedProcess:
         command = [*compiler(), *flags, "-c", str(source), "-o", str(work / f"{source.stem}.o")]
         return subprocess.run(command, stderr=subprocess.PIPE, text=True)

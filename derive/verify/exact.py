@@ -14,7 +14,7 @@ DIGITS = 50
 
 
 def source(expr: sp.Expr) -> str:
-    """Python text of plain arithmetic; every rational is a quotient q(p, q) of the number type."""
+    """Return the Python text of plain arithmetic; every rational is a quotient q(p, q) of the number type."""
     if expr.is_Symbol:
         return expr.name
     if expr.is_Integer:

@@ -79,7 +79,7 @@ class Finding:
 
     @property
     def failed(self) -> list[str]:
-        """Methods whose error is above its ceiling, or not a number."""
+        """Return the methods whose error is above its ceiling, or not a number."""
         return [m for m, error in self.errors.items() if not error <= self.ceiling(m)]
 
     def plain(self) -> Finding:
@@ -88,7 +88,7 @@ class Finding:
 
     @property
     def worst_entry(self) -> int:
-        """Entry of the worst error by the first method that failed, else at 50 digits."""
+        """Return the entry of the worst error by the first method that failed, else at 50 digits."""
         return self.samples[(self.failed or ["50 digits"])[0]][0][0]
 
     def place(self, entry: int) -> str:

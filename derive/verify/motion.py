@@ -14,7 +14,7 @@ from ..bodies.point import POINTS
 
 
 def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Vector product in any kind of number."""
+    """Return the vector product in any kind of number."""
     return np.array([a[i - 2] * b[i - 1] - a[i - 1] * b[i - 2] for i in range(3)])
 
 
@@ -24,7 +24,7 @@ def complex_product(p: np.ndarray, q: np.ndarray) -> np.ndarray:
 
 
 def quaternion_product(p: np.ndarray, q: np.ndarray) -> np.ndarray:
-    """Hamilton's product p o q, scalar first."""
+    """Return Hamilton's product p o q, scalar first."""
     return np.concatenate([[p[0] * q[0] - p[1:].dot(q[1:])], p[0] * q[1:] + q[0] * p[1:] + cross(p[1:], q[1:])])
 
 
@@ -134,7 +134,9 @@ class Rigid:
 
     @staticmethod
     def bracket(g: np.ndarray) -> np.ndarray:
-        """K - K' of second derivatives by rotations about body axes: (j, i) differs from (i, j) by g along j x i."""
+        """Return K - K' of second derivatives by rotations about body axes: (j, i) differs from (i, j) by g along j x
+        i.
+        """
         units = np.eye(3)
         return np.array([[g @ cross(units[j], units[i]) for j in range(3)] for i in range(3)])
 
@@ -248,7 +250,7 @@ def spin(w: np.ndarray, dim: int) -> np.ndarray:
 
 
 def swung(theta: np.ndarray, vector: np.ndarray) -> np.ndarray:
-    """theta x vector, the vector in the plane or in space."""
+    """Return theta x vector, the vector in the plane or in space."""
     return cross(theta, np.concatenate([vector, vector[:1] * 0])[:3])[: len(vector)]
 
 
@@ -268,7 +270,7 @@ def frame(numbers: Any, tangent: np.ndarray, director: np.ndarray | None) -> np.
 
 
 def spatial(vector: np.ndarray) -> np.ndarray:
-    """In three dimensions: a rotation about z where it is one number."""
+    """Return a rotation in three dimensions: about z where it is one number."""
     zero = 0 * vector[:1]
     return {1: lambda: np.concatenate([zero, zero, vector]), 2: lambda: np.concatenate([vector, zero]),
             3: lambda: vector}[len(vector)]()

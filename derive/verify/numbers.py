@@ -40,7 +40,7 @@ class Numbers:
         """Return an array of floats in this kind of number, exactly."""
         return self._convert(np.asarray(values))
 
-    def __call__(self, kernel: str, state: State, **changes) -> dict[str, np.ndarray]:
+    def __call__(self, kernel: str, state: State, **changes: Any) -> dict[str, np.ndarray]:
         """Return the outputs of a kernel at a state, some of its values changed."""
         program = self.programs[kernel]
         return self._call(program.name, [changes.get(a.name, state.get(a.name)) for a in program.inputs])

@@ -21,7 +21,7 @@ WIDE = 220  # columns that the whole table takes
 class Report:
     """Collects findings, prints them."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.findings: list[Finding] = []
         self.invariances: list[tuple[str, str, float, float]] = []
         self.roundings: list[Rounding] = []
@@ -39,7 +39,7 @@ class Report:
             yield lambda: bar.advance(task)
 
     def add(self, family: str, item: Finding | Rounding | tuple[str, float, float]) -> None:
-        """One finding, rounding or invariance of a family."""
+        """Add one finding, rounding or invariance of a family."""
         if isinstance(item, Finding):
             self.findings.append(item)
         elif isinstance(item, Rounding):
@@ -48,7 +48,7 @@ class Report:
             self.invariances.append((family, *item))
 
     def missing(self, outputs: list[str]) -> None:
-        """Outputs without a relation."""
+        """Note outputs that have no relation."""
         self.uncovered += outputs
 
     @property

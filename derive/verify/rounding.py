@@ -69,7 +69,7 @@ def roundings(family: Family, kinds: dict[str, Numbers], samples: list[State]) -
 
 
 def measure(program: Program, kernel: str, kinds: dict[str, Numbers], given: Input) -> Rounding:
-    """Rounding of a kernel at one input."""
+    """Return the rounding of a kernel at one input."""
     real, exact = kinds["real"], kinds["exact"]
     computed, truth = real(kernel, real.state(given.state)), exact(kernel, exact.state(given.state))
     allowed = _allowed(program, kernel, kinds["complex"], given)
@@ -93,7 +93,7 @@ def _distance(computed: float, truth: mpmath.mpf) -> float:
 
 
 def _allowed(program: Program, kernel: str, complex_: Numbers, given: Input) -> dict[str, np.ndarray]:
-    """sum_j |dy/dx_j| |x_j| for every output."""
+    """Return sum_j |dy/dx_j| |x_j| for every output."""
     state = complex_.state(given.state)
     total = {a.name: np.zeros(a.shape) for a in program.outputs}
     for argument in program.inputs:

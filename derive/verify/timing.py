@@ -97,7 +97,7 @@ def sample(family: Family, programs: Sequence[Program | Recorded], kernels: Any)
     """Return the first state on which the family is verified; its constants from the compiled kernels."""
     outputs = {p.name: [a.name for a in p.outputs] for p in programs}
 
-    def call(name, inputs):
+    def call(name: str, inputs: Sequence[np.ndarray]) -> Any:
         results = getattr(kernels, name)(*inputs)
         return dict(zip(outputs[name], results if isinstance(results, tuple) else (results,), strict=True))
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from statistics import median
 
@@ -27,6 +27,7 @@ from ..scene import Scene
 from .outputs import check_output, default_outputs, distance, largest_change, trajectory, unit
 
 TOLS = (1e-2, 1e-3, 1e-4, 1e-5)
+MESHES = ("x1", "x2")
 TIGHTER = (1 / 20, 1 / 80)
 """Tolerances of the two runs that make a mesh's reference, over the smallest of the grid; the last one is it."""
 
@@ -48,7 +49,7 @@ class Mesh:
 
     @classmethod
     def parse(cls, text: str) -> Mesh:
-        """From x2 (a factor) or 24 (a number of elements). Raises SceneError."""
+        """Return the mesh that x2 (a factor) or 24 (a number of elements) stands for. Raises SceneError."""
         if (match := re.fullmatch(r"(x?)(\d+(?:\.\d*)?|\.\d+)", text.strip())) is None:
             raise SceneError("bench", f'elements: "{text}" is neither a factor nor a number of elements',
                              "write x2 for twice the scene's elements, or 24 for 24 in each cable")
@@ -60,7 +61,7 @@ class Mesh:
         return mesh
 
     def __str__(self) -> str:
-        """As it is written on the command line."""
+        """Return the mesh as it is written on the command line."""
         return f"{'x' * self.factor}{self.count:g}"
 
     def elements(self, cable: Cable) -> int:
@@ -102,9 +103,11 @@ class Grid:
     repetitions: int
 
 
-def grid(scene: Scene, *, integrators=None, elements=("x1", "x2"), tols=TOLS, outputs=None, duration=None,
-         output_step=None, repetitions: int = 5) -> Grid:
-    """Return a checked grid; without integrators all but "auto", which takes one of them. Raises SceneError."""
+def grid(scene: Scene, *, integrators: Sequence[str] | None = None, elements: Sequence[str] | None = None,
+         tols: Sequence[float] = TOLS, outputs: Sequence[str] | None = None, duration: float | None = None,
+         output_step: float | None = None, repetitions: int = 5) -> Grid:
+    """Return a checked grid; without integrators all but "auto", which takes one of them, without elements
+    `MESHES`. Raises SceneError."""
     for name, values in (("integrators", integrators), ("elements", elements), ("tols", tols), ("outputs", outputs)):
         if values is not None and not len(values):
             raise SceneError("bench", f"{name}: the list is empty", "name one, or leave it out")
@@ -126,7 +129,7 @@ def grid(scene: Scene, *, integrators=None, elements=("x1", "x2"), tols=TOLS, ou
     if duration is None:
         raise SceneError("bench", "the scene file gives no duration", "give one: --duration")
     settings = RunSettings(duration=duration, **{} if output_step is None else {"output_step": output_step})
-    return Grid(integrators, tuple(map(Mesh.parse, elements)), tuple(sorted(tols, reverse=True)), outputs,
+    return Grid(integrators, tuple(map(Mesh.parse, elements or MESHES)), tuple(sorted(tols, reverse=True)), outputs,
                 settings.duration, settings.duration / 50 if output_step is None else settings.output_step, repetitions)
 
 
@@ -221,7 +224,9 @@ def bench(scene: Scene, grid: Grid, tell: Callable[[str], None] = lambda text: N
 
 def _run(scene: Scene, grid: Grid, integrator: str, tol: float,
          finer: int = 1) -> tuple[Run, dict[str, np.ndarray]]:
-    """A run and its outputs; finer: with so many times the output times, of which those of the grid are given."""
+    """Return a run and its outputs; finer: how many times the output times are taken, of which those of the grid are
+    given.
+    """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", FunicularWarning)  # the same notes for every run of the grid
         run = scene.run(grid.duration, tol=tol, output_step=grid.output_step / finer, integrator=integrator,
@@ -239,7 +244,7 @@ def _reference(scene: Scene, mesh: Mesh, grid: Grid) -> Reference:
 
 
 def _compare_meshes(result: Bench, tell: Callable[[str], None]) -> None:
-    """Mesh errors, from a mesh with every element of the finest one halved."""
+    """Add the errors of the meshes, from a mesh with every element of the finest one halved."""
     if not result.references or not result.scene.cables:
         return
     mesh = max(result.references, key=lambda mesh: _total(mesh, result.scene)).twice()

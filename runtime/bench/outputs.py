@@ -35,7 +35,8 @@ def check_output(scene: SceneData, name: str) -> None:
 
 def known_outputs(scene: SceneData) -> list[str]:
     """Return the names of outputs, but for places of cables given by their arc-length."""
-    parts: dict[str, Iterable[str]] = {"bodies": scene.bodies, "slides": scene.slides, "springs": scene.springs}
+    parts: dict[str, Iterable[str]] = {"bodies": scene.bodies, "slides": scene.slides,
+                                       "point_forces": scene.point_forces}
     results = [f"{name}.{quantity}" for group, named in parts.items() for name in named
                for quantity in QUANTITIES[group] if quantity not in ("orientation", "multiplier")]
     return results + [f"{name}.{place}" for name in scene.cables for place in PLACES] + list(ENERGIES)

@@ -75,7 +75,7 @@ def _number(value: float) -> str:
 
 
 def record(result: Bench, row: Row) -> dict[str, object]:
-    """A row as it stands in the CSV file."""
+    """Return a row as it stands in the CSV file."""
     reference = result.references.get(row.mesh)
     errors = {f"time error {name} / {unit(result.scene, name)}": row.errors.get(name, "") for name in
               result.grid.outputs}
@@ -107,7 +107,7 @@ def save(result: Bench, directory: Path, name: str) -> list[Path]:
 
 
 def draw(result: Bench, path: Path) -> None:
-    """The picture of a result."""
+    """Write the picture of a result to a PNG file."""
     from matplotlib import rc_context  # for those who want the picture
     from matplotlib.figure import Figure
 
@@ -120,7 +120,7 @@ def draw(result: Bench, path: Path) -> None:
 
 
 def draw_on(axes: Axes, result: Bench) -> None:
-    """Time error over CPU seconds, a colour an integrator and a line style a mesh; mesh errors across."""
+    """Draw the time error over CPU seconds, a colour an integrator and a line style a mesh; mesh errors go across."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter  # as above
 
     meshes = list(result.references)

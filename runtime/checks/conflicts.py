@@ -1,4 +1,4 @@
-"""Joints that hold or drive what another part holds or drives already."""
+"""Joints that fix or drive what another part fixes or drives already."""
 
 from __future__ import annotations
 
@@ -8,28 +8,28 @@ from ..errors import SceneError
 from ..parts.attachment import Attachment
 from ..parts.cable import EXACT
 from ..parts.joint import DRIVEN, LINES, POINTS, Joint
-from ..parts.places import Node, joined, point_of, support_of
+from ..parts.locations import Node, joined, point_of, support_of
 from ..parts.scene_data import SceneData
 from ..parts.support import Motion, Support
 from ..parts.validation import show
-from .placement import HELD
+from .placement import SUPPORTED
 
 
 def check_supports(scene: SceneData, joint: Joint) -> None:
-    """No support or tie may hold a node to what the joint holds it to."""
+    """Raise SceneError where a support or a tie fixes a node to what the joint fixes it to."""
     for end, other in ((joint.a, joint.b), (joint.b, joint.a)):
         if (node := _node(scene, end)) is None:
             continue
         support = support_of(scene, node)
-        if other.on is None and support is not None and _holds_position(support):
-            raise SceneError(joint.where, f"holds {called(end)} to the ground, but it is {HELD[support.kind]} already",
-                             "leave one of them out")
+        if other.on is None and support is not None and _fixes_position(support):
+            raise SceneError(joint.where, f"fixes {called(end)} to the ground, but it is {SUPPORTED[support.kind]} "
+                             "already", "leave one of them out")
         if _node(scene, other) in joined(scene, node):
-            raise SceneError(joint.where, f"holds {called(end)} to {called(other)}, but their nodes are joined "
+            raise SceneError(joint.where, f"joins {called(end)} to {called(other)}, but their nodes are joined "
                              "already", "leave one of them out")
 
 
-def _holds_position(support: Support) -> bool:
+def _fixes_position(support: Support) -> bool:
     """Return whether it leaves no direction free."""
     return not isinstance(support, Motion) or (support.displacement is not None and None not in support.displacement)
 
@@ -41,7 +41,7 @@ def _node(scene: SceneData, end: Attachment) -> Node | None:
 
 
 def check_other_joints(scene: SceneData, joint: Joint, near: float) -> None:
-    """Of joints between the same two bodies none is beside a weld, and no two hold or drive the same.
+    """Raise SceneError where two joints between the same bodies conflict: one is a weld, or both fix or drive the same.
 
     near: points nearer than this, in m, are the same.
     """
@@ -55,20 +55,23 @@ def check_other_joints(scene: SceneData, joint: Joint, near: float) -> None:
 
 def _clash(scene: SceneData, joint: Joint, other: Joint, ends: tuple[Attachment, Attachment],
            near: float) -> str | None:
-    """What is wrong with two joints between the same two bodies; ``ends`` are the other's, in the order of joint's."""
+    """Return what is wrong with two joints between the same two bodies; ``ends`` are the other's, in the order of
+    joint's.
+    """
     between = f"{called(joint.a)} and {called(joint.b)}"
-    if "weld" in (joint.pair, other.pair):
-        verbs = ["welds" if each.pair == "weld" else f"is a {each.pair} joint between" for each in (joint, other)]
+    if "weld" in (joint.joint_kind, other.joint_kind):
+        verbs = ["welds" if each.joint_kind == "weld" else f"is a {each.joint_kind} joint between"
+                 for each in (joint, other)]
         return f'{verbs[0]} {between}, but joint "{other.name}" {verbs[1]} them, too'
-    pairs = {joint.pair, other.pair}
+    kinds = {joint.joint_kind, other.joint_kind}
     parallel = np.linalg.norm(np.cross(joint.axes[:, 2], other.axes[:, 2])) <= 1e-9
     same_points = all(np.linalg.norm(point_of(scene, one) - point_of(scene, end)) <= near
                       for one, end in zip((joint.a, joint.b), ends, strict=True))
-    if joint.is_driven and other.is_driven and DRIVEN[joint.pair] == DRIVEN[other.pair]:
-        if (same_points and pairs == {"distance"}) or (parallel and "distance" not in pairs):
-            return f'drives the {DRIVEN[joint.pair]} of {between}, as joint "{other.name}" does'
-    if same_points and (pairs <= set(POINTS) or pairs == {"distance"} or (pairs <= set(LINES) and parallel)):
-        return f'holds the same of {between} as joint "{other.name}"'
+    if joint.is_driven and other.is_driven and DRIVEN[joint.joint_kind] == DRIVEN[other.joint_kind]:
+        if (same_points and kinds == {"distance"}) or (parallel and "distance" not in kinds):
+            return f'drives the {DRIVEN[joint.joint_kind]} of {between}, as joint "{other.name}" does'
+    if same_points and (kinds <= set(POINTS) or kinds == {"distance"} or (kinds <= set(LINES) and parallel)):
+        return f'constrains the same motion of {between} as joint "{other.name}"'
     return None
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -29,7 +30,7 @@ def has_section(cable: Cable) -> bool:
     return cable.dim == 2 or bool(cable.kind_of_element.director)
 
 
-def cable_frame(cable: Cable, s: float, up=None) -> np.ndarray:
+def cable_frame(cable: Cable, s: float, up: Sequence[float] | None = None) -> np.ndarray:
     """Return (3, 3): tangent, height and width at ``s`` as the elements draw them, as columns.
 
     The tangent frame of eq 16 to 18: k square to the tangent and to r_y or, where ``up`` is given, to that (up must be
@@ -47,7 +48,8 @@ def draws_section(cable: Cable) -> bool:
 
 
 def section_frame(cable: Cable, s: float) -> np.ndarray:
-    """(3, 3): normal, height and width of the section at ``s`` as the elements draw it, as columns; height along r_y.
+    """Return (3, 3): normal, height and width of the section at ``s`` as the elements draw it, as columns; height along
+    r_y.
 
     What a joint holds: a moment on r_x alone bends a beam that shears sharply there, the more the finer its elements.
     """
@@ -60,7 +62,7 @@ def _unit(vector: np.ndarray) -> np.ndarray:
     return vector / np.linalg.norm(vector)
 
 
-def end_frame(scene: SceneData, end: Attachment, up=None) -> np.ndarray:
+def end_frame(scene: SceneData, end: Attachment, up: Sequence[float] | None = None) -> np.ndarray:
     """Return (3, 3): the frame of a complete end; ``up`` completes that of a cable without section axes."""
     if end.on is None:
         return np.eye(3)
@@ -76,9 +78,10 @@ def joint_axes(scene: SceneData, joint: Joint) -> JointAxes:
 
 
 def slide_axes(scene: SceneData, slide: Slide) -> JointAxes:
-    """The axes that a slide of frame "tangent" or "section" keeps together: a in the cable's frame, b in the rider's.
+    """Return the axes that a slide of frame "tangent" or "section" keeps together: a in the cable's frame, b in the
+    rider's.
 
-    z along the tangent, x along the height, y along the width. With roll "held" the cable's frame is that of
+    z along the tangent, x along the height, y along the width. With roll "fixed" the cable's frame is that of
     `cable_frame` with the slide's up, at every s; with roll "free" the turn about z is free.
     """
     along = scene.cables[slide.along]

@@ -12,8 +12,8 @@ from ..kernels.elements import built_in
 from ..parts.attachment import Attachment
 from ..parts.cable import EXACT, Cable
 from ..parts.load import DistributedForce, Force, Moment
+from ..parts.locations import Node, joined, node_of, point_of, support_of
 from ..parts.modal_body import ModalBody
-from ..parts.places import Node, joined, node_of, point_of, support_of
 from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from ..parts.support import Support, Tie
@@ -21,7 +21,7 @@ from ..parts.validation import Part, show
 
 P = TypeVar("P", bound=Part)
 
-HELD = {"pin": "pinned", "clamp": "clamped", "motion": "moved as prescribed"}
+SUPPORTED = {"pin": "pinned", "clamp": "clamped", "motion": "moved as prescribed"}
 
 
 def cable_at(scene: SceneData, name: str, place: str, s: float, keyword: str = "s") -> Cable:
@@ -56,9 +56,9 @@ def placed_support(scene: SceneData, support: Support) -> Support:
     if (other := support_of(scene, node)) is None:
         return support
     if node_of(scene, other) == node:
-        raise SceneError(support.where, f"the node at s = {show(support.s, 'm')} is already {HELD[other.kind]}")
+        raise SceneError(support.where, f"the node at s = {show(support.s, 'm')} is already {SUPPORTED[other.kind]}")
     raise SceneError(support.where, f"the node at s = {show(support.s, 'm')} is joined to that at {other.label}, which "
-                     f"is already {HELD[other.kind]}")
+                     f"is already {SUPPORTED[other.kind]}")
 
 
 def placed_tie(scene: SceneData, tie: Tie) -> Tie:
@@ -74,7 +74,7 @@ def placed_tie(scene: SceneData, tie: Tie) -> Tie:
                          f"{show(b.point(tie.at), 'm')}", "draw both cables through the same point")
     first, second = support_of(scene, one), support_of(scene, other)
     if first is not None and second is not None:
-        raise SceneError(tie.where, f"both nodes are held already, by the {first.where} and the {second.where}",
+        raise SceneError(tie.where, f"both nodes are fixed already, by the {first.where} and the {second.where}",
                          "leave one of them out")
     if tie.rotation == "rigid" and _shears_the_end(a, tie.s, b, tie.at):
         message = (f"{tie.where}: the tie shares the slopes of both cables, so that a moment on one shears the last "
@@ -123,7 +123,7 @@ def placed_load(scene: SceneData, load: Force | DistributedForce | Moment) -> Pa
 
 
 def _check_without_section(load: Force | DistributedForce | Moment, cable: Cable) -> None:
-    """Without axes of the section there is nothing to turn about the tangent, and no direction across it."""
+    """Raise SceneError for a load that needs the axes of the section, where the elements have none."""
     with_axes = "element=" + " or ".join(f'"{n}"' for n, kind in built_in().items() if kind.director and kind.dim == 3)
     if isinstance(load, Moment):
         assert load.s is not None, f"{load.where} is not complete"
@@ -154,7 +154,7 @@ def placed_attachment(scene: SceneData, end: Attachment, where: str, prefix: str
         if isinstance(body := scene.bodies[end.on], ModalBody):
             try:
                 at = body.located(end.at, end.s)
-                body.spot(at)
+                body.attachment_modes(at)
             except ValueError as error:
                 cause, *remedy = error.args
                 raise SceneError(where, f'{prefix}modal_body "{end.on}": {cause}', *remedy) from None
@@ -181,5 +181,5 @@ def placed_point_force(scene: SceneData, force: PointForce) -> PointForce:
     distance = float(np.linalg.norm(points[1] - points[0]))
     if force.loses_direction and not distance > 1e-12 * (1 + np.abs(points).max()):
         raise SceneError(force.where, f"both ends are at {show(points[0], 'm')}: its direction is lost",
-                         "join the points, hold them apart at the start, or give a spring length=0")
+                         "join the points, draw them apart, or give a spring length=0")
     return force.at_distance(distance)

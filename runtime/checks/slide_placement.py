@@ -9,7 +9,7 @@ import numpy as np
 from ..errors import FunicularWarning, SceneError
 from ..parts.cable import EXACT, Cable
 from ..parts.end_stops import Buffer
-from ..parts.places import point_of
+from ..parts.locations import point_of
 from ..parts.rigid_body import RigidBody
 from ..parts.scene_data import SceneData
 from ..parts.slide import Slide
@@ -44,7 +44,7 @@ def placed_slide(scene: SceneData, slide: Slide) -> Slide:
 
 
 def check_on_cable(scene: SceneData, slide: Slide) -> None:
-    """A rider has to be on its cable still, after others moved it."""
+    """Raise SceneError where a rider is not on its cable any more, since others moved it."""
     gap, where = _gap(scene, slide)
     if gap > (EXACT if slide.body_s is None else MOVABLE) * scene.cables[slide.along].length:
         raise SceneError(slide.where, where,
@@ -59,7 +59,7 @@ def _check_rider(scene: SceneData, slide: Slide) -> None:
             continue
         if other.rider == slide.rider:
             raise SceneError(slide.where,
-                             f'holds the same point of {_carrier(slide)} on cable "{slide.along}" as slide '
+                             f'puts the same point of {_carrier(slide)} on cable "{slide.along}" as slide '
                              f'"{other.name}"', "leave one of them out, or give them different points "
                              + ("at" if slide.body_s is None else "body_s"))
         both = slide.prescribed is not None and other.prescribed is not None
@@ -98,7 +98,7 @@ def _framed(scene: SceneData, slide: Slide, cable: Cable) -> Slide:
 
 
 def _check_drive(slide: Slide, cable: Cable) -> None:
-    """A driven slide starts where it is, on the cable."""
+    """Raise SceneError unless a driven slide starts where it is, on the cable."""
     if slide.drive is None:
         return
     start = float(slide.drive.value(0.0))

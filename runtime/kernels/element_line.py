@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from .libraries import kernels_of
@@ -32,5 +34,5 @@ class ElementLine:
         element = int(np.clip(np.floor(s / self.length), 0, len(self.nodal_vectors) - 2))
         return s - element * self.length, np.concatenate(self.nodal_vectors[element : element + 2])
 
-    def _kernel(self, name: str):
+    def _kernel(self, name: str) -> Callable:
         return getattr(kernels_of(self.library), f"{self.element}_{name}")

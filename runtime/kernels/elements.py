@@ -83,7 +83,7 @@ def built_in_laws() -> dict[str, LawTraits]:
 
 
 def gauge(vectors: tuple[str, ...], length: float, y: float, z: float) -> Iterator[float]:
-    """How far, in m, a unit of each nodal vector moves a point of an element of that length.
+    """Return how far, in m, a unit of each nodal vector moves a point of an element of that length.
 
     1 for positions; a unit of r_x moves the middle of an element by l/8, of r_xx by about l²/64; one of r_y or r_z
     moves the surface by the section's radius of gyration ``y`` or ``z``.

@@ -15,14 +15,17 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from funicular.generated import described as described_kernels
 from pydantic import ValidationError
 
 from ..errors import FunicularError, SceneError, shown_path
 from . import elements
 from .elements import MANIFEST, ElementKind
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike  # 9 ms, and for type checkers alone
 
 COMMAND = "`funicular derive --spec {spec} --out {out}`"
 
@@ -60,7 +63,7 @@ def check_allowed(asked: str, allowed: Iterable[str | os.PathLike], place: str) 
 
 
 def manifest_digest(content: dict) -> str:
-    """sha256 of a library's manifest, but for the digest in it."""
+    """Return sha256 of a library's manifest, but for the digest in it."""
     bare = content | {"library": {name: value for name, value in content["library"].items() if name != "digest"}}
     return hashlib.sha256(json.dumps(bare, sort_keys=True).encode()).hexdigest()
 
@@ -94,8 +97,8 @@ class Kernel:
         self._function.argtypes = [*(ctypes.c_void_p if shape else ctypes.c_double for _, shape in self._inputs),
                                    *(ctypes.c_void_p for _ in self._outputs)]
 
-    def __call__(self, *given, **named):
-        """The outputs for these inputs: one array, or a tuple of them."""
+    def __call__(self, *given: Any, **named: Any) -> np.ndarray | tuple[np.ndarray, ...]:
+        """Return the outputs for these inputs: one array, or a tuple of them."""
         names = [name for name, _ in self._inputs]
         named = dict(zip(names, given, strict=False)) | named
         if len(given) > len(names) or set(named) != set(names):
@@ -106,8 +109,8 @@ class Kernel:
         self._function(*(v.ctypes.data if isinstance(v, np.ndarray) else v for v in (*values, *outputs)))
         return outputs[0] if len(outputs) == 1 else tuple(outputs)
 
-    def rows(self, n: int, *given):
-        """The outputs (n, ...) of n calls; each argument once, or (n, ...) for each its own."""
+    def rows(self, n: int, *given: ArrayLike) -> np.ndarray | tuple[np.ndarray, ...]:
+        """Return the outputs (n, ...) of n calls; each argument once, or (n, ...) for each its own."""
         if len(given) != len(self._inputs):
             raise TypeError(f"{self.__name__} takes ({', '.join(name for name, _ in self._inputs)})")
         arrays = [np.asarray(value, dtype=float) for value in given]
@@ -123,7 +126,7 @@ class Kernel:
                 into[k] = value
         return found[0] if len(found) == 1 else tuple(found)
 
-    def _array(self, value, shape: tuple[int, ...], name: str) -> np.ndarray:
+    def _array(self, value: ArrayLike, shape: tuple[int, ...], name: str) -> np.ndarray:
         array = np.ascontiguousarray(value, dtype=float)
         if array.size != math.prod(shape):
             raise ValueError(f"{self.__name__}: argument {name} must have shape {shape}, got {array.shape}")
@@ -158,8 +161,9 @@ def of_library(library: str | None) -> dict[str, ElementKind]:
     return elements.built_in() if library is None else load(library).elements
 
 
-def kernels_of(library: str | None):
-    """Where the kernels of a library are, of this package for None, as attributes by name. Raises LibraryError."""
+def kernels_of(library: str | None) -> Any:
+    """Return the object whose attributes are the kernels of a library, of this package for None. Raises LibraryError.
+    """
     if library is not None:
         return load(library).kernels
     from funicular.generated import kernels  # machine code of 2 MB: a scene may be described without it
@@ -168,11 +172,14 @@ def kernels_of(library: str | None):
 
 
 def tables_of(library: str | None) -> int:
-    """Address of a library's fu_all for the engine, 0 for this package's own. Raises LibraryError."""
+    """Return the address of a library's fu_all for the engine, 0 for this package's own. Raises LibraryError."""
     return load(library).tables if library is not None else 0
 
 
 def _open(path: Path, content: dict) -> Library:
+    # not at the top: `funicular derive` has to start where generated/ is missing or broken, to mend it
+    from funicular.generated import described as described_kernels
+
     made, described = content["interface"], content["library"]
     again = "make it anew with " + COMMAND.format(spec=described["spec"], out=path)
     if made != elements.manifest()["interface"]:

@@ -25,7 +25,7 @@ SECTIONS = {2: np.array([[0.0, 1.0], [-1.0, 0.0]]), 3: np.eye(3)[:, [2, 0, 1]]}
 class AttachmentModel:
     """fu_attachment of engine.h: -1 for what it is not on; mass and length are scales of it, kg and m.
 
-    spot: of a modal body's node, where it is undeformed, and its displacements and turns by modes.
+    modal: of a modal body's node, where it is undeformed, and its displacements and turns by modes.
     """
 
     cable: int
@@ -41,7 +41,7 @@ class AttachmentModel:
     slopes: tuple[int, int] = (0, UP)
     up: tuple[float, ...] = (0.0, 0.0, 0.0)
     axes: np.ndarray | None = None
-    spot: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
+    modal: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
 
 
 class AttachmentBuilder:
@@ -58,8 +58,11 @@ class AttachmentBuilder:
         element = min(max(int(s // model.length), 0), model.n_elements - 1)
         return element, s - element * model.length
 
-    def model(self, attachment: Attachment, axes: np.ndarray | None = None, up=None) -> AttachmentModel:
-        """The model of a complete attachment, with axes (3, 3) in the frame of what carries it where it has some."""
+    def model(self, attachment: Attachment, axes: np.ndarray | None = None,
+              up: tuple[float, ...] | np.ndarray | None = None) -> AttachmentModel:
+        """Return the model of a complete attachment, with axes (3, 3) in the frame of what carries it where it has
+        some.
+        """
         none = np.zeros(0)
         axes = self._axes(axes)
         if attachment.on is None:
@@ -70,7 +73,7 @@ class AttachmentBuilder:
             part = self.scene.bodies[attachment.on]
             if isinstance(part, ModalBody):
                 return AttachmentModel(-1, self.body_index[attachment.on], 0, -1, (0.0,) * 3, none, none, body.mass,
-                                       length, axes=axes, spot=self._spot(part.spot(attachment.point)))
+                                       length, axes=axes, modal=self._modal(part.attachment_modes(attachment.point)))
             return AttachmentModel(-1, self.body_index[attachment.on], 0, -1, part.arm(attachment.point), none, none,
                                    body.mass, length, axes=axes)
         found = self._on_cable(attachment.on, attachment.arc_length, axes, up,
@@ -92,7 +95,8 @@ class AttachmentBuilder:
             found.slopes = (0, CARRIED)
         return found
 
-    def _on_cable(self, name: str, s: float, axes: np.ndarray | None, up, section: bool) -> AttachmentModel:
+    def _on_cable(self, name: str, s: float, axes: np.ndarray | None, up: tuple[float, ...] | np.ndarray | None,
+                  section: bool) -> AttachmentModel:
         """Return an attachment with the frame of the section, or of the tangent with the director or up."""
         cable, index = self.scene.cables[name], self.cable_index[name]
         length = self.cables[index].length
@@ -104,14 +108,18 @@ class AttachmentBuilder:
         if section:
             slopes, axes = (1, 2 if cable.dim == 3 else UP), None if axes is None else SECTIONS[cable.dim] @ axes
         return AttachmentModel(index, -1, 0, -1, (0.0,) * 3, np.zeros(0), np.zeros(0), mass, length,
-                               FRAMES[self.scene.dim], slopes, (0.0,) * 3 if up is None else up, axes)
+                               FRAMES[self.scene.dim], slopes, (0.0,) * 3 if up is None else tuple(map(float, up)),
+                               axes)
 
-    def _spot(self, spot) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        dim, (at, displacements, turns) = self.scene.dim, spot
+    def _modal(self, attachment_modes: tuple[np.ndarray, np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray,
+               np.ndarray]:
+        dim, (at, displacements, turns) = self.scene.dim, attachment_modes
         return at[:dim], displacements[:, :dim], turns[:, 2:] if dim == 2 else turns
 
     def _axes(self, axes: np.ndarray | None) -> np.ndarray | None:
-        """In the plane x is the joint's axis if that lies in it, y square to it; see derive/couplings/joint.py."""
+        """Return the axes for the scene's dimension: in the plane x is the joint's axis if that lies in it, y square to
+        it. See derive/couplings/joint.py.
+        """
         if axes is None or self.scene.dim == 3:
             return axes
         x = axes[:2, 2] if np.linalg.norm(axes[:2, 2]) > 0.5 else axes[:2, 0]

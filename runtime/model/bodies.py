@@ -65,7 +65,9 @@ def velocity_of(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
 
 
 def body_weights(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
-    """1 for the origin, the largest radius of gyration for turns, the root mean square of displacement for modes."""
+    """Return (dofs,): 1 for the origin, the largest radius of gyration for turns, the root mean square of displacement
+    for modes.
+    """
     inertia = np.array(body.inertia)
     largest = inertia[2, 2] if dim == 2 else np.max(np.linalg.eigvalsh(inertia))
     modes = np.sqrt(np.diag(body.shape.modal_mass) / body.mass) if isinstance(body, ModalBody) else np.zeros(0)
@@ -73,7 +75,9 @@ def body_weights(body: RigidBody | ModalBody, dim: int) -> np.ndarray:
 
 
 def body_gravity(body: BodyModel, gravity: np.ndarray) -> np.ndarray:
-    """Of a modal body nothing: its weight turns and deforms with it, and is among its forces."""
+    """Return the weight (dofs,) of a body in N; of a modal body nothing, since its weight turns and deforms with it and
+    is among its forces.
+    """
     weight = np.zeros(dofs_of(body, len(gravity)))
     if not body.modes:
         weight[: len(gravity)] = body.mass * gravity

@@ -10,7 +10,7 @@ from .attachments import AttachmentBuilder
 from .bodies import body_gravity, body_models, body_weights, configuration_of, dofs_of, velocity_of
 from .cables import cable_gravity, cable_model, cable_rates, cable_weights
 from .coupling import number
-from .joints import frame_joint_model, joint_model
+from .joints import JointModel, frame_joint_model, joint_model
 from .loads import LoadBuilder
 from .model import CableModel, Model, MotionModel
 from .slides import slide_model
@@ -32,16 +32,12 @@ def build(scene: SceneData) -> Model:
              for model, vectors in zip(cables, nodal, strict=True)}
     attachments = AttachmentBuilder(scene, cables, bodies)
     loads = LoadBuilder(scene, attachments)
-    elements = np.array([(node.first, 2 * node.vectors.size) for each in nodes.values() for node in each[:-1]],
-                        dtype=int).reshape(-1, 2)
-    reduction = supports(scene, nodes, loads.signal).reduce(n_flexible, elements)
+    reduction = supports(scene, nodes, loads.signal).reduce(n_flexible, _elements(nodes))
     for load in scene.loads.values():
         loads.load(load)
     slides = [slide_model(slide, scene, attachments, loads.signal) for slide in scene.slides.values()]
-    joints = [frame_joint_model(attachments, slide, k) for k, slide in enumerate(scene.slides.values())
-              if slide.frame != "point"]
-    joints += [joint_model(attachments, joint, loads.signal) for joint in scene.joints.values()]
-    point_forces = [loads.point_force(force) for force in scene.springs.values()]
+    joints = _joints(scene, attachments, loads)
+    point_forces = [loads.point_force(force) for force in scene.point_forces.values()]
     n_extra, n_multipliers = number([*loads.dead, *loads.turning, *slides, *joints, *point_forces])
     n_of_bodies = sum(dofs_of(body, dim) for body in bodies)
     numbering = reduction.numbering
@@ -54,7 +50,7 @@ def build(scene: SceneData) -> Model:
         weight=_joined(*map(cable_weights, drawn), *(body_weights(body, dim) for body in described)),
         gravity=_joined(*(cable_gravity(model, cable, gravity) for model, cable in zip(cables, drawn, strict=True)),
                         *(body_gravity(body, gravity) for body in bodies)),
-        place=np.concatenate([reduction.place, reduction.n_unknowns + np.arange(n_of_bodies)]).astype(int),
+        unknown_of_dof=np.append(reduction.unknown_of_dof, reduction.n_unknowns + np.arange(n_of_bodies)).astype(int),
         combinations=reduction.combinations,
         n_band=numbering.n_band,
         n_border_dof=reduction.n_unknowns - numbering.n_band + n_of_bodies,
@@ -65,6 +61,19 @@ def build(scene: SceneData) -> Model:
         nodes=nodes,
         tables=[tables_of(name) for name in scene.libraries],
     )
+
+
+def _elements(nodes: dict[str, list[Node]]) -> np.ndarray:
+    """Return (elements, 2): the first dof of each element of these nodes, by cable, and how many dofs it has."""
+    return np.array([(node.first, 2 * node.vectors.size) for each in nodes.values() for node in each[:-1]],
+                    dtype=int).reshape(-1, 2)
+
+
+def _joints(scene: SceneData, attachments: AttachmentBuilder, loads: LoadBuilder) -> list[JointModel]:
+    """Return the joints: first those that keep a rider's axes to its cable, then those of the scene."""
+    of_slides = [frame_joint_model(attachments, slide, k) for k, slide in enumerate(scene.slides.values())
+                 if slide.frame != "point"]
+    return of_slides + [joint_model(attachments, joint, loads.signal) for joint in scene.joints.values()]
 
 
 def _joined(*arrays: np.ndarray) -> np.ndarray:

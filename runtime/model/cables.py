@@ -37,11 +37,12 @@ def cable_gravity(model: CableModel, cable: Cable, gravity: np.ndarray) -> np.nd
 def cable_rates(scene: SceneData, reduction: Reduction) -> np.ndarray:
     """Return the rates of the cables' nodal vectors at the start, but for what supports hold."""
     asked = np.concatenate([*(cable.nodal_rates[..., : scene.dim].ravel() for cable in scene.cables.values()), []])
-    unknowns, free, tied = np.zeros(reduction.combinations.shape[1]), reduction.place >= 0, reduction.place < -1
-    unknowns[reduction.place[free]] = asked[free]
+    unknown = reduction.unknown_of_dof
+    unknowns, free, tied = np.zeros(reduction.combinations.shape[1]), unknown >= 0, unknown < -1
+    unknowns[unknown[free]] = asked[free]
     given = np.zeros(len(asked))
-    given[free] = unknowns[reduction.place[free]]
-    given[tied] = (reduction.combinations @ unknowns)[-2 - reduction.place[tied]]
+    given[free] = unknowns[unknown[free]]
+    given[tied] = (reduction.combinations @ unknowns)[-2 - unknown[tied]]
     return given
 
 

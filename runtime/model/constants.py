@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
@@ -20,8 +20,8 @@ PLANAR = 4
 
 
 def constants(cable: Cable, axial: float = 1.0) -> np.ndarray:
-    """(1, n), or (elements, n) where they differ because the stress-free shape is curved; axial: a factor of EA, of a
-    cable's law alone.
+    """Return (1, n), or (elements, n) where they differ because the stress-free shape is curved; axial: a factor of EA,
+    of a cable's law alone.
     """
     length = cable.length / cable.elements
     S = section_stiffness(cable.stiffness_law, cable.section, cable.material, cable.dim)
@@ -34,8 +34,8 @@ def constants(cable: Cable, axial: float = 1.0) -> np.ndarray:
 
 def element_constants(library: str | None, element: str, law: str, length: float, S: np.ndarray,
                       e0: np.ndarray | None = None) -> np.ndarray:
-    """(n,): A of one element of a library, or of this package; e0 (nodal vectors, dim) is its stress-free shape, for
-    laws that take it.
+    """Return (n,): A of one element of a library, or of this package; e0 (nodal vectors, dim) is its stress-free shape,
+    for laws that take it.
     """
     kernels, traits = kernels_of(library), of_library(library)[element].laws[law]
     if traits.kind == "continuum" and traits.straight:
@@ -45,7 +45,7 @@ def element_constants(library: str | None, element: str, law: str, length: float
     return getattr(kernels, f"{element}_{law}_stiffness")(length, *([] if e0 is None else [e0]), S)
 
 
-def integral_over_volume(stiffness_at, length: float, e0: np.ndarray | None,
+def integral_over_volume(stiffness_at: Callable, length: float, e0: np.ndarray | None,
                          S: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the kernel `stiffness_at` summed over an element: the form over its Gram products, and those of e0."""
     places, weights = np.polynomial.legendre.leggauss(POINTS)
@@ -56,7 +56,8 @@ def integral_over_volume(stiffness_at, length: float, e0: np.ndarray | None,
 
 
 def section_points(S: np.ndarray) -> Iterator[tuple[float, float, np.ndarray]]:
-    """Nine points of a section (three of a planar one) that have its table S, as the kernels of its stress have them.
+    """Return the nine points of a section (three of a planar one) that have its table S, as the kernels of its stress
+    have them.
 
     S: (9, 6) or, planar, (4, 6), see `section_stiffness`. Yields y, z in m and the elastic constants there, times the
     part of the section that it stands for, in N.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from ..parts.cable import Cable
 from ..parts.modal_body import ModalBody
 from ..parts.rigid_body import RigidBody
 from ..parts.scene_data import SceneData
-from ..parts.validation import EXACT, show, shown
+from ..parts.validation import EXACT, Part, show, shown
 from .bodies import configuration_of, velocity_of
 from .model import BodyModel, CableModel, Model
 
@@ -117,7 +117,7 @@ class InitialState(Mapping[str, np.ndarray]):
         model.v[body.dof : body.dof + len(v)] = v
 
 
-def _groups(scene: SceneData):
+def _groups(scene: SceneData) -> Iterator[tuple[Iterable[Part], tuple[str, ...]]]:
     """Yield parts with the names of what a state says of them."""
     yield scene.cables.values(), CABLE
     for body in scene.bodies.values():
@@ -173,7 +173,7 @@ def _check_supports(model: Model, change: np.ndarray, does: str, unit: str) -> N
     if not model.cables:
         return
     cables = slice(0, model.cables[-1].coordinates.stop)
-    change, place = change[cables], model.place[cables]
+    change, place = change[cables], model.unknown_of_dof[cables]
     unknowns = np.zeros(model.combinations.shape[1])
     free = place >= 0
     unknowns[place[free]] = change[free]

@@ -10,7 +10,7 @@ import numpy as np
 from ..checks.frames import has_section, joint_axes, slide_axes
 from ..kernels.libraries import kernels_of
 from ..parts.joint import DRIVEN, Joint
-from ..parts.places import point_of
+from ..parts.locations import point_of
 from ..parts.signal import Signal
 from ..parts.slide import Slide
 from .attachments import AttachmentBuilder, AttachmentModel
@@ -25,7 +25,7 @@ class JointModel(CouplingModel):
     """
 
     kernel: str
-    ends: tuple[AttachmentModel, AttachmentModel]
+    attachments: tuple[AttachmentModel, AttachmentModel]
     base: float
     slide: str | None = None
     reversed: bool = False
@@ -40,23 +40,23 @@ def joint_model(attachments: AttachmentBuilder, joint: Joint, signal: Callable[[
     """Return the model of a joint; signal(s): number of a signal."""
     scene = attachments.scene
     at = joint_axes(scene, joint)
-    needs = joint.pair not in ("spherical", "distance")
+    needs = joint.joint_kind not in ("spherical", "distance")
     ends = [attachments.model(attachment, axes if needs else None, None if attachment.on not in scene.cables
                             or has_section(scene.cables[attachment.on]) else joint.up)
             for attachment, axes in zip((joint.a, joint.b), at, strict=True)]
-    kind, driven, turned = joint.pair, joint.is_driven, False
+    kind, driven, turned = joint.joint_kind, joint.is_driven, False
     if scene.dim == 2:
         kind = {"revolute": "revolute" if driven else "spherical", "cylindrical": "prismatic"}.get(kind, kind)
-    if driven and joint.pair != "distance":
-        kind += f"_{DRIVEN[joint.pair]}"
+    if driven and joint.joint_kind != "distance":
+        kind += f"_{DRIVEN[joint.joint_kind]}"
         if scene.dim == 2 and joint.axes[2, 2] < -0.5:  # about -z: what a sees of b is what b sees of a about z
             ends.reverse()
             turned = True
     base = 0.0
-    if joint.pair == "distance":
+    if joint.joint_kind == "distance":
         assert driven or joint.length is not None, f"{joint.where} is not complete"
         base = 0.0 if driven else joint.length or 0.0
-    elif driven and DRIVEN[joint.pair] == "distance":
+    elif driven and DRIVEN[joint.joint_kind] == "distance":
         base = float(joint.axes[:, 2] @ (point_of(scene, joint.b) - point_of(scene, joint.a)))
     model = _model(joint.name or "", kind, scene.dim, ends,
                    -1 if joint.prescribed is None else signal(joint.prescribed), base)

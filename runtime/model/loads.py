@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +13,7 @@ from ..parts.attachment import Attachment
 from ..parts.load import DistributedForce, Force, Moment
 from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
-from ..parts.signal import Constant, value_at
+from ..parts.signal import Constant, Signal, value_at
 from .attachments import AttachmentBuilder, AttachmentModel
 from .coupling import CouplingModel
 
@@ -53,7 +54,7 @@ class DeadLoadModel(CouplingModel):
 class LoadModel(CouplingModel):
     """A load that turns with what it acts on, or whose lever does.
 
-    kind: cable_follower, cable_moment, body_force, body_follower or body_moment; spot: of a modal body, as of an
+    kind: cable_follower, cable_moment, body_force, body_follower or body_moment; modal: of a modal body, as of an
     `AttachmentModel`.
     """
 
@@ -64,7 +65,7 @@ class LoadModel(CouplingModel):
     x: float
     u: tuple[float, ...]
     c: tuple[float, float, float]
-    spot: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
+    modal: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
 
 
 @dataclass
@@ -75,7 +76,7 @@ class PointForceModel(CouplingModel):
     """
 
     law: str
-    ends: list[AttachmentModel]
+    attachments: list[AttachmentModel]
     dim: int
     parameters: tuple[float, ...]
 
@@ -90,14 +91,14 @@ class LoadBuilder:
         self.dead: list[DeadLoadModel] = []
         self.turning: list[LoadModel] = []
 
-    def signal(self, signal) -> int:
+    def signal(self, signal: Signal) -> int:
         """Store a signal and return its number."""
         breaks, coefficients = signal.pieces()
         self.signals.append(SignalModel(np.asarray(breaks, dtype=float), np.asarray(coefficients, dtype=float),
                                         signal.amplitude, signal.angular_frequency, signal.phase))
         return len(self.signals) - 1
 
-    def _scale(self, signal) -> tuple[int, float]:
+    def _scale(self, signal: Signal) -> tuple[int, float]:
         """Return the number and constant factor of a load's scale."""
         return (-1, float(signal.value(0.0))) if isinstance(signal, Constant) else (self.signal(signal), 1.0)
 
@@ -118,7 +119,7 @@ class LoadBuilder:
             kind = "body_moment" if isinstance(load, Moment) else "body_follower" if load.follower else "body_force"
             attachment = Attachment(on=load.on, s=load.s, at=getattr(load, "at", None))
             on = self.attachments.model(placed_attachment(self.scene, attachment, load.where))
-            self.turning.append(LoadModel(kind, number, on.body, 0, 0.0, on.u, (value[0], value[1], value[2]), on.spot,
+            self.turning.append(LoadModel(kind, number, on.body, 0, 0.0, on.u, (value[0], value[1], value[2]), on.modal,
                                           type="load"))
 
     def _distributed(self, load: DistributedForce, number: int, value: np.ndarray) -> None:
@@ -132,8 +133,9 @@ class LoadBuilder:
                            for x, w in zip(*GAUSS, strict=True)]
         self._along_cable(load.cable, number, points, value, load.follower)
 
-    def _along_cable(self, cable: str, number: int, points, value: np.ndarray, follower: bool) -> None:
-        """Forces value times weight at points (element, x, weight)."""
+    def _along_cable(self, cable: str, number: int, points: Iterable[tuple[int, float, float]], value: np.ndarray,
+                     follower: bool) -> None:
+        """Add a distributed load as forces, value times weight, at points (element, x, weight)."""
         if follower:
             self._turning("cable_follower", number, cable, points, value)
             return
@@ -147,7 +149,8 @@ class LoadBuilder:
         used = np.flatnonzero(total)
         self.dead.append(DeadLoadModel(number, list(model.first + used), list(total[used]), type="dead load"))
 
-    def _turning(self, kind: str, number: int, cable: str, points, value: np.ndarray) -> None:
+    def _turning(self, kind: str, number: int, cable: str, points: Iterable[tuple[int, float, float]],
+                 value: np.ndarray) -> None:
         c = np.array([value[2], 0.0, 0.0]) if kind == "cable_moment" and self.scene.dim == 2 else value
         self.turning += [LoadModel(kind, number, self.cable_index[cable], element, x, (0.0, 0.0, 0.0),
                                    tuple(weight * c), type="load") for element, x, weight in points]

@@ -52,7 +52,7 @@ class CableModel:
 
     @property
     def coordinates(self) -> slice:
-        """Its part of q, v and the dofs."""
+        """Return the part of q, v and the dofs that is the cable's."""
         return slice(self.first, self.first + int(np.prod(self.shape)))
 
     def kernel(self, name: str) -> Kernel:
@@ -165,7 +165,7 @@ class Model:
     v: np.ndarray
     weight: np.ndarray
     gravity: np.ndarray
-    place: np.ndarray
+    unknown_of_dof: np.ndarray
     combinations: csr_array
     n_band: int
     n_border_dof: int

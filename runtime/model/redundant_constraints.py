@@ -5,11 +5,14 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import solve_triangular
 
+from ..engine import Engine
 from ..errors import SceneError
+from .joints import JointModel
 from .model import Model
 
 SAME, NEARLY = 1e-12, 1e-8
-"""Of the compliance of an equation: what is left of it where others hold the same; or nearly, if a run failed."""
+"""Of the compliance of an equation: what is left of it where others constrain the same motion; or nearly, if a run
+failed."""
 
 SHARE = 1e-6
 """Of another equation in one that follows: less is none."""
@@ -18,7 +21,7 @@ PROBE, RETURN = 1e-3, 1e-8
 """How far a mechanism is moved, as a part of its size, to see whether an equation follows there, too; and how well."""
 
 
-def drop_redundant_rows(model: Model, engine) -> list[str]:
+def drop_redundant_rows(model: Model, engine: Engine) -> list[str]:
     """Leave out equations of joints that follow from those of others; for an engine not yet started.
 
     Redundancy is sought where the scene is drawn and at a small displacement from there, since a mechanism may pass a
@@ -37,7 +40,7 @@ def drop_redundant_rows(model: Model, engine) -> list[str]:
         return []  # here, too
     spare = _spare(model)
     if locked := [owner[k] for k, own in enumerate(np.diag(S)) if own == 0 and k not in spare]:
-        raise SceneError("scene", f"is over-constrained: {_listed(locked)} between places that supports hold already",
+        raise SceneError("scene", f"is over-constrained: {_listed(locked)} between points that supports fix already",
                          "leave that out, or the supports")
     follows = _following(S)
     if not follows:
@@ -48,46 +51,49 @@ def drop_redundant_rows(model: Model, engine) -> list[str]:
     engine.redundant_rows(dropped)
     _check_that_they_follow(model, engine, dropped,
                             _listed([owner[k] for row in follows for k in (*follows[row], row)]))
-    messages = []
-    for k in dict.fromkeys(k for k, _ in dropped):
-        joint = model.joints[k]
-        own = range(joint.multiplier, joint.multiplier + joint.rows)
-        names = _listed([owner[other] for row in own for other in follows.get(row, ()) if other not in own])
-        messages.append(f"over-constrained: {len(joint.redundant_rows)} of the {joint.rows} equations of "
-                        f"{owner[own[0]]} follow from those of {names} and are left out, without force or moment of "
-                        "their own")
-    return messages
+    return [_message(model.joints[k], follows, owner) for k in dict.fromkeys(k for k, _ in dropped)]
+
+
+def _message(joint: JointModel, follows: dict[int, list[int]], owner: list[str]) -> str:
+    """Return the message about a joint that has lost equations; follows: rows that others imply, and these."""
+    own = range(joint.multiplier, joint.multiplier + joint.rows)
+    names = _listed([owner[other] for row in own for other in follows.get(row, ()) if other not in own])
+    return (f"over-constrained: {len(joint.redundant_rows)} of the {joint.rows} equations of {owner[own[0]]} follow "
+            f"from those of {names} and are left out, without force or moment of their own")
 
 
 def _left_out(model: Model, row: int, others: list[int], owner: list[str]) -> tuple[int, int]:
     """Return the joint and the row of it that others imply; raises SceneError where it has to stay."""
     names = _listed([owner[k] for k in (*others, row)])
     if _driven(model) & {row, *others}:
-        raise SceneError("scene", f"is over-constrained: {names} drive or hold the same", "leave one of them out")
+        raise SceneError("scene", f"is over-constrained: {names} drive or constrain the same motion",
+                         "leave one of them out")
     for k, joint in enumerate(model.joints):
         if 0 <= row - joint.multiplier < joint.rows and joint.slide is None:
             return k, row - joint.multiplier
-    raise SceneError("scene", f"is over-constrained: {names} hold the same",
-                     "leave one of them out, or hold the body at other points")
+    raise SceneError("scene", f"is over-constrained: {names} constrain the same motion",
+                     "leave one of them out, or attach the body at other points")
 
 
-def _check_that_they_follow(model: Model, engine, dropped: list[tuple[int, int]], names: str) -> None:
+def _check_that_they_follow(model: Model, engine: Engine, dropped: list[tuple[int, int]], names: str) -> None:
     """Raise SceneError unless dropped rows are met where the others are, at the start and beside it."""
     size = engine.extent
     unit = np.where(model.weight == 1, size, np.minimum(size / model.weight, 1.0))
     probe = PROBE * unit * np.random.default_rng(0).uniform(-1, 1, model.n_dof)
-    at_start, beside = (engine.wander(along) for along in (np.zeros(model.n_dof), probe))
+    at_start, beside = (engine.probe_mechanism(along) for along in (np.zeros(model.n_dof), probe))
     gap, error = (np.inf if left is None else max(abs(left[at]) for at in dropped) for left in (at_start, beside))
     if gap > RETURN * min(size, 1.0):
-        raise SceneError("scene", f"is over-constrained: {names} hold the same, but do not fit together: {gap:.3g} (m "
-                         "or rad) are left between them", "leave one of them out, or draw them without gaps")
+        raise SceneError("scene", f"is over-constrained: {names} constrain the same motion, but do not fit together: "
+                         f"{gap:.3g} (m or rad) are left between them",
+                         "leave one of them out, or draw them without gaps")
     if error > RETURN * min(size, 1.0):
-        raise SceneError("scene", f"starts in a singular position: {names} hold the same there, but not beside it",
+        raise SceneError("scene", f"starts in a singular position: {names} constrain the same motion there, but not "
+                         "beside it",
                          "draw the scene a little away from it")
 
 
-def redundant(model: Model, engine, ratio: float = NEARLY) -> str:
-    """Return names of slides and joints that hold nearly the same at the time reached; empty where there are none."""
+def redundant(model: Model, engine: Engine, ratio: float = NEARLY) -> str:
+    """Return names of slides and joints that constrain nearly the same motion at the time reached; "" without any."""
     if not model.joints and len(model.slides) < 2:
         return ""
     S = _compliance(engine)
@@ -102,8 +108,8 @@ def redundant(model: Model, engine, ratio: float = NEARLY) -> str:
                     if part > 1e-3])
 
 
-def _compliance(engine) -> np.ndarray | None:
-    """H M^-1 H'; None where the state has none: it is not finite, or the mass matrix is singular there."""
+def _compliance(engine: Engine) -> np.ndarray | None:
+    """Return H M^-1 H'; None where the state is not finite, or the mass matrix is singular there."""
     try:
         S = engine.compliance()
     except ArithmeticError:
@@ -162,7 +168,7 @@ def _driven(model: Model) -> set[int]:
 
 
 def _listed(names: list[str]) -> str:
-    """Slides first, each once: slides "a" and "b", or joint "c", or both."""
+    """Return the names in words, slides first, each once: slides "a" and "b", or joint "c", or both."""
     parts = []
     for kind in ("slide", "joint"):
         own = [name.split(" ", 1)[1] for name in dict.fromkeys(names) if name.startswith(kind)]

@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
-from ..parts.places import ends_of, joined, node_of
+from ..parts.locations import ends_of, joined, node_of
+from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from ..parts.support import Support, Tie
 from ..rotations import rotate
+from .attachments import AttachmentModel
 from .joints import JointModel
 from .loads import PointForceModel
-from .model import Model
+from .model import BodyModel, Model
+from .unknowns import Node
 
 
 def spatial(vectors: np.ndarray) -> np.ndarray:
-    """(..., 2 or 3) -> (..., 3)."""
+    """Return vectors (..., 2 or 3) as spatial ones, (..., 3)."""
     return np.concatenate([vectors, np.zeros((*vectors.shape[:-1], 3 - vectors.shape[-1]))], axis=-1)
 
 
-def force_and_moment(nodes, reaction: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray]:
+def force_and_moment(nodes: Iterable[Node], reaction: np.ndarray, q: np.ndarray) -> dict[str, np.ndarray]:
     """Return the force and moment that supports or joins give to nodes at one place.
 
     reaction, q: (time, dofs) generalised forces and configuration. Returns force, moment (time, 3) in N, N m: the
@@ -54,8 +59,8 @@ def tie_force(model: Model, scene: SceneData, tie: Tie, reaction: np.ndarray, q:
     return {name: sign * value for name, value in found.items()}
 
 
-def body_state(model: Model, body, q: np.ndarray) -> dict[str, np.ndarray]:
-    """position, orientation of a body from configurations (time, n_q)."""
+def body_state(model: Model, body: BodyModel, q: np.ndarray) -> dict[str, np.ndarray]:
+    """Return position, orientation of a body from configurations (time, n_q)."""
     b = body.configuration
     if model.dim == 3:
         centre, orientation = q[:, b : b + 3], q[:, b + 3 : b + 7]
@@ -67,8 +72,9 @@ def body_state(model: Model, body, q: np.ndarray) -> dict[str, np.ndarray]:
             "orientation": orientation}
 
 
-def body_rates(model: Model, body, orientation: np.ndarray, v: np.ndarray, a: np.ndarray | None = None) -> dict:
-    """velocity of a body's origin, angular_velocity, and with accelerations theirs, from rates (time, n_dof)."""
+def body_rates(model: Model, body: BodyModel, orientation: np.ndarray, v: np.ndarray,
+               a: np.ndarray | None = None) -> dict:
+    """Return velocity of a body's origin, angular_velocity, and with accelerations theirs, from rates (time, n_dof)."""
     at = slice(body.dof, body.dof + model.dim)
     turn = slice(at.stop, at.stop + (3 if model.dim == 3 else 1))
     velocity, omega = spatial(v[:, at]), _turning(v[:, turn])
@@ -83,11 +89,13 @@ def body_rates(model: Model, body, orientation: np.ndarray, v: np.ndarray, a: np
     return found
 
 
-def modal_state(model: Model, body, state: dict[str, np.ndarray], q: np.ndarray, v: np.ndarray | None = None) -> dict:
-    """modal_coordinates (time, mode) and nodes (time, node, 3) of a modal body whose frame's `state` is known.
+def modal_state(model: Model, body: BodyModel, state: dict[str, np.ndarray], q: np.ndarray,
+                v: np.ndarray | None = None) -> dict:
+    """Return modal_coordinates (time, mode) and nodes (time, node, 3) of a modal body whose frame's `state` is known.
 
     With v (time, n_dof) modal_velocities, too.
     """
+    assert body.shape is not None, "a rigid body has no modes"
     start = body.configuration + (7 if model.dim == 3 else 4)
     eta, fields = q[:, start : start + body.modes], body.shape.fields
     place = fields.nodes + np.einsum("tk,kni->tni", eta, fields.modes)
@@ -98,27 +106,31 @@ def modal_state(model: Model, body, state: dict[str, np.ndarray], q: np.ndarray,
 
 
 def joint_state(joint: JointModel, numbers: np.ndarray) -> dict[str, np.ndarray]:
-    """Force and moment on the end b, and residual, from the engine's numbers (..., FU_JOINT_OUTPUTS) of a joint."""
+    """Return the force and moment on the end b, and residual, from the engine's numbers (..., FU_JOINT_OUTPUTS) of a
+    joint.
+    """
     sign = -1.0 if joint.reversed else 1.0  # that has its ends at one point
     return {"force": sign * numbers[..., :3], "moment": sign * numbers[..., 3:6], "residual": numbers[..., 6]}
 
 
 def _turning(rates: np.ndarray) -> np.ndarray:
-    """Rotation about three axes, or about z alone."""
+    """Return the spatial vector (time, 3) of turns about three axes, or about z alone."""
     return rates if rates.shape[1] == 3 else np.concatenate([np.zeros((len(rates), 2)), rates], axis=1)
 
 
 def point_force_state(model: Model, between: PointForceModel, force: np.ndarray,
                       q: np.ndarray) -> dict[str, np.ndarray]:
-    """Force on the first end, (time, 3) in N; length between the ends, in m; tension, in N, negative in compression."""
-    a, b = (attachment_points(model, each, q) for each in between.ends)
+    """Return the force on the first end, (time, 3) in N; length between the ends, in m; tension, in N, negative in
+    compression.
+    """
+    a, b = (attachment_points(model, each, q) for each in between.attachments)
     gap, force = b - a, spatial(force)
     length = np.linalg.norm(gap, axis=1)
     along = gap / np.where(length > 0, length, 1.0)[:, None]
     return {"force": force, "length": length, "tension": np.sum(force * along, axis=1)}
 
 
-def attachment_points(model: Model, attachment, q: np.ndarray) -> np.ndarray:
+def attachment_points(model: Model, attachment: AttachmentModel, q: np.ndarray) -> np.ndarray:
     """Return (time, 3): where an attachment is."""
     if attachment.cable >= 0:
         cable = model.cables[attachment.cable]
@@ -128,8 +140,31 @@ def attachment_points(model: Model, attachment, q: np.ndarray) -> np.ndarray:
     if attachment.body >= 0:
         body = model.bodies[attachment.body]
         state, arm = body_state(model, body, q), body.centre + attachment.u
-        if attachment.spot is not None:
+        if attachment.modal is not None:
             eta = modal_state(model, body, state, q)["modal_coordinates"]
-            arm = spatial(attachment.spot[0] + eta @ attachment.spot[1])
+            arm = spatial(attachment.modal[0] + eta @ attachment.modal[1])
         return state["position"] + rotate(state["orientation"], arm)
     return np.broadcast_to(np.array(attachment.u), (len(q), 3))
+
+
+def connection_states(model: Model, scene: SceneData, q: np.ndarray, reaction: np.ndarray, joints: np.ndarray,
+                      point_forces: np.ndarray) -> dict[str, dict[str, dict[str, np.ndarray]]]:
+    """Return forces and moments of supports, ties, joints and forces between points, by group, label and quantity.
+
+    Of a slide it is the moment that keeps its rider's axes. All arguments have the time first: q (time, n_q), reaction
+    (time, n_dof), joints (time, joints, FU_JOINT_OUTPUTS), point_forces (time, point forces, 3).
+    """
+    def reactions(supports: Iterable[Support]) -> dict[str, dict[str, np.ndarray]]:
+        return {support.label: support_reaction(model, scene, support, reaction, q) for support in supports}
+
+    of_joints = [(joint, joint_state(joint, joints[:, k])) for k, joint in enumerate(model.joints)]
+    return {
+        "slides": {joint.slide: {"moment": state["moment"]} for joint, state in of_joints if joint.slide is not None},
+        "pins": {label: {"force": of["force"]} for label, of in reactions(scene.pins).items()},
+        "clamps": reactions(scene.clamps),
+        "motions": reactions(scene.motions),
+        "ties": {name: tie_force(model, scene, tie, reaction, q) for name, tie in scene.ties.items()},
+        "joints": {joint.name: state for joint, state in of_joints if joint.slide is None},
+        PointForce.group: {force.name: point_force_state(model, force, point_forces[:, k], q)
+                           for k, force in enumerate(model.point_forces)},
+    }

@@ -9,22 +9,19 @@ the section of one beam the tangent of the other, where a moment shears its last
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.sparse import coo_array, csr_array, triu
-from scipy.sparse.csgraph import reverse_cuthill_mckee
+from scipy.sparse import csr_array
 
 from ..errors import SceneError
 from ..parts.scene_data import SceneData
+from ..parts.signal import Signal
+from .numbering import Numbering, numbered
 
 PARALLEL = 1e-9
 """Tangents whose cross product is smaller than this are parallel."""
-
-SOLVES = 30
-"""That a factored matrix serves: about ten, times three since their numbers come from memory and not from the cache."""
-
 
 @dataclass
 class Prescribed:
@@ -50,24 +47,12 @@ class Row:
 
 
 @dataclass
-class Numbering:
-    """number[unknown]: first the band, in which unknowns of one element are at most `width` apart, then the border.
-
-    chains: where rows of the band begin that nothing but the border ties to the rows before; and the end.
+class Reduction:
+    """How dofs are made of unknowns: `unknown_of_dof` has the number of its unknown, -1 where the dof is fixed, and
+    -2 - k where it is the k-th row of `combinations`; `prescribed` lists the parts that signals add to a dof.
     """
 
-    number: np.ndarray
-    n_band: int
-    width: int
-    chains: np.ndarray
-    operations: float
-
-
-@dataclass
-class Reduction:
-    """place[dof]: its unknown, -1 fixed, -2 - k the k-th row of `combinations`; the prescribed parts by dof."""
-
-    place: np.ndarray
+    unknown_of_dof: np.ndarray
     combinations: csr_array
     n_unknowns: int
     numbering: Numbering
@@ -130,14 +115,14 @@ class Supports:
                     self.rows[dof] = Row({node.dofs("r_x")[unknown]: ratio} if ratio else {})
 
     def displace(self, node: Node, signals: Iterable[int | None]) -> None:
-        """Position as drawn plus a signal an axis; None leaves it free."""
+        """Prescribe the position as drawn plus a signal an axis; None leaves it free."""
         for dof, start, signal in zip(node.dofs("r"), node.vector("r"), signals, strict=False):
             if signal is None:
                 continue
             self.rows[dof] = Row(prescribed=[Prescribed(signal, base=float(start), linear=1.0)])
 
     def rotate(self, node: Node, axis: np.ndarray, signal: int) -> None:
-        """Section, or slope where there is none, turned about an axis."""
+        """Prescribe a turn of the section, or of the slope where there is none, about an axis."""
         for name in node.directors or ["r_x"]:
             drawn = np.zeros(3)
             drawn[: node.dim] = node.vector(name)
@@ -148,13 +133,33 @@ class Supports:
                                                             float(turned[d]))])
 
     def join(self, master: Node, slave: Node, rigid: bool) -> None:
-        """Positions equal; rigid: slopes too, or what turns with the section, as they stand at the start."""
+        """Join the positions of two nodes; rigid: also the slopes, or what turns with the section, as they stand at the
+        start.
+        """
         for dof, of in zip(slave.dofs("r"), master.dofs("r"), strict=True):
             self.rows[dof] = self._combined({of: 1.0})
         if rigid:
             for name, rows in _shared(master, slave).items():
                 for dof, combination in zip(slave.dofs(name), rows, strict=True):
                     self.rows[dof] = self._combined(combination)
+
+    def tie_nodes(self, ties: list[tuple[Node, Node, bool]], supported: list[Node]) -> None:
+        """Join the nodes of ties (node, node, rigid), from the supported ones on and then from others."""
+        done = {node.first for node in supported}
+        # a node with directors can give the slopes of one without, not the other way round
+        starts = sorted((node for tie in ties for node in tie[:2] if node.first not in done),
+                        key=lambda node: -len(node.directors))
+        for root in [*supported, *starts]:
+            waiting = [] if root.first in done and all(root is not node for node in supported) else [root]
+            done.add(root.first)
+            while waiting:
+                node = waiting.pop()
+                for a, b, rigid in ties:
+                    for master, slave in ((a, b), (b, a)):
+                        if master.first == node.first and slave.first not in done:
+                            self.join(master, slave, rigid)
+                            done.add(slave.first)
+                            waiting.append(slave)
 
     def _combined(self, combination: dict[int, float]) -> Row:
         row = Row()
@@ -179,31 +184,28 @@ class Supports:
             raise SceneError("scene", "a tie joins a node that moves as prescribed to one that is partly free",
                              "prescribe displacement and rotation there, or tie with rotation = \"free\"")
         made_of = [(dof, drawn[of]) for dof, row in combined.items() for of in row.free]
-        touches = _touches(elements, np.concatenate([np.stack([np.flatnonzero(unknown), np.arange(n)], axis=1),
-                                                     np.array(made_of, dtype=int).reshape(-1, 2)]), (n_dof, n))
-        numbering = _counted(touches, np.arange(n), n)
-        if combined:
-            others = (_counted(touches, *_near(touches)), _counted(touches, *_strung(touches)))
-            numbering = min(numbering, *others, key=lambda one: one.operations)
+        numbering = numbered(elements, np.concatenate([np.stack([np.flatnonzero(unknown), np.arange(n)], axis=1),
+                                                       np.array(made_of, dtype=int).reshape(-1, 2)]), (n_dof, n),
+                             reorder=bool(combined))
         number = numbering.number[drawn.clip(0)] if n else drawn
-        place = np.where(unknown, number, -1)
+        unknown_of_dof = np.where(unknown, number, -1)
         rows, columns, values, count = [], [], [], 0
         for dof, row in sorted(combined.items()):
             if list(row.free.values()) == [1.0]:
-                place[dof] = number[next(iter(row.free))]
+                unknown_of_dof[dof] = number[next(iter(row.free))]
                 continue
-            place[dof] = -2 - count
+            unknown_of_dof[dof] = -2 - count
             rows += [count] * len(row.free)
             columns += [int(number[of]) for of in row.free]
             values += list(row.free.values())
             count += 1
         combinations = csr_array((values, (rows, columns)), shape=(count, max(n, 1)))
         prescribed = [(dof, part) for dof, row in self.rows.items() for part in row.prescribed]
-        return Reduction(place.astype(int), combinations, n, numbering, prescribed)
+        return Reduction(unknown_of_dof.astype(int), combinations, n, numbering, prescribed)
 
 
 def _shared(master: Node, slave: Node) -> dict[str, list[dict[int, float]]]:
-    """Of rigidly joined nodes: rows over the master's slopes, component by component, by the slave's nodal vector."""
+    """Return, for rigidly joined nodes, rows over the master's slopes, by the slave's nodal vector and component."""
     names = [name for name in slave.names if name in ("r_x", "r_y", "r_z")]
     if master.dim == 3 or (master.directors and slave.directors and _in_line(master, slave)):
         return {name: _slope(master, slave, name) for name in names}
@@ -225,7 +227,8 @@ def _turned(vector: np.ndarray, at: range, drawn: np.ndarray) -> list[dict[int, 
 
 
 def _slope(master: Node, slave: Node, name: str) -> list[dict[int, float]]:
-    """Rows over the master's slopes of the slave's nodal vector `name`: the gradient of the deformation is one."""
+    """Return rows over the master's slopes of the slave's nodal vector `name`: the gradient of the deformation is one.
+    """
     drawn = slave.vector(name)
     slopes = [n for n in ("r_x", "r_y", "r_z") if n in master.names]
     if len(slopes) == master.dim:
@@ -237,121 +240,37 @@ def _slope(master: Node, slave: Node, name: str) -> list[dict[int, float]]:
     ratio = float(tangent @ drawn) / square
     if name != "r_x" or np.linalg.norm(np.cross(tangent, drawn)) > PARALLEL * square:
         raise SceneError(slave.where, "cables without a section of their own cannot be joined rigidly at an angle: "
-                         "nothing holds their rotation about the tangent", 'take element="beam24", or rotation="free"')
+                         "nothing fixes their rotation about the tangent", 'take element="beam24", or rotation="free"')
     return [{at[d]: ratio} for d in range(3)]
 
 
-def _touches(elements: np.ndarray, made_of: np.ndarray, shape: tuple[int, int]) -> csr_array:
-    """(elements, unknowns): 1 where an element has a share of an unknown; made_of (k, 2): a dof, an unknown of it."""
-    counts = elements[:, 1]
-    dofs = np.repeat(elements[:, 0] - np.cumsum(counts) + counts, counts) + np.arange(counts.sum())
-    has = csr_array((np.ones(len(dofs)), dofs, np.append(0, np.cumsum(counts))), shape=(len(elements), shape[0]))
-    touches = has @ coo_array((np.ones(len(made_of)), (made_of[:, 0], made_of[:, 1])), shape=shape).tocsr()
-    touches.data[:] = 1.0
-    return touches
-
-
-def _near(touches: csr_array) -> tuple[np.ndarray, int]:
-    """Return the number of each unknown and size of the band: all in the band, by reverse Cuthill and McKee."""
-    order = reverse_cuthill_mckee((touches.T @ touches).tocsr(), symmetric_mode=True)
-    return np.argsort(order), len(order)
-
-
-def _strung(touches: csr_array) -> tuple[np.ndarray, int]:
-    """Number of each unknown and size of the band: elements strung to chains, those first that share most unknowns.
-
-    Unknowns that are shared by others than two that follow each other in a chain are the border: nodes where more than
-    two ends meet, and one of each ring.
-    """
-    n_elements, n = touches.shape
-    shared = triu(touches @ touches.T, 1).tocoo()
-    beside: list[list[int]] = [[] for _ in range(n_elements)]
-    chain = list(range(n_elements))
-
-    def root(e: int) -> int:
-        while chain[e] != e:
-            chain[e] = e = chain[chain[e]]
-        return e
-
-    for k in np.lexsort((shared.col, shared.row, -shared.data)):
-        a, b = int(shared.row[k]), int(shared.col[k])
-        if len(beside[a]) < 2 and len(beside[b]) < 2 and root(a) != root(b):
-            beside[a].append(b)
-            beside[b].append(a)
-            chain[root(a)] = root(b)
-    string: list[int] = []
-    at = np.full(n_elements, -1)
-    for end in (e for e in range(n_elements) if len(beside[e]) < 2):
-        following = [end] if at[end] < 0 else []
-        while following:
-            at[following[0]] = len(string)
-            string.append(following[0])
-            following = [e for e in beside[string[-1]] if at[e] < 0]
-    entry = touches.tocoo()
-    first, last = np.full(n, n_elements), np.full(n, -1)
-    np.minimum.at(first, entry.col, at[entry.row])
-    np.maximum.at(last, entry.col, at[entry.row])
-    follows = np.array([b in beside[a] for a, b in zip(string, string[1:] + string[:1], strict=True)])
-    border = (last > first + 1) | (last > first) & ~follows[first]
-    return np.argsort(np.lexsort((np.arange(n), first, last, border))), n - int(border.sum())
-
-
-def _counted(touches: csr_array, number: np.ndarray, n_band: int) -> Numbering:
-    """Return a numbering's band, and the operations of its factorisation and solves (engine/linear/bordered.c)."""
-    entry = touches.tocoo()
-    element, at = entry.row, number[entry.col]
-    inside = at < n_band
-    low, high = np.full(touches.shape[0], n_band), np.full(touches.shape[0], -1)
-    np.minimum.at(low, element[inside], at[inside])
-    np.maximum.at(high, element[inside], at[inside])
-    banded = high >= 0
-    ties = np.zeros(n_band + 1, dtype=int)  # elements that tie a row to the one before
-    np.add.at(ties, low[banded] + 1, 1)
-    np.add.at(ties, high[banded] + 1, -1)
-    chains = np.append(np.flatnonzero(np.cumsum(ties[:-1]) == 0), n_band)
-    width = int(np.max(high[banded] - low[banded], initial=0))
-    of = np.searchsorted(chains, low, "right") - 1
-    outside = ~inside & banded[element]
-    columns = np.unique(np.stack([at[outside], of[element[outside]]]), axis=1)  # of the border, by chain
-    coupled, m = float(np.diff(chains)[columns[1]].sum()), len(number) - n_band
-    factor = n_band * width**2 / 2 + 2 * width * coupled + m**3 / 3
-    return Numbering(number, n_band, width, chains, factor + SOLVES * (2 * width * n_band + coupled + m**2))
-
-
-def supports(scene: SceneData, nodes: dict[str, list[Node]], signal) -> Supports:
-    """Return the scene's supports and joins; nodes: of each cable; signal(s): number of a signal."""
+def supports(scene: SceneData, nodes: dict[str, list[Node]], signal: Callable[[Signal], int]) -> Supports:
+    """Return the scene's supports and ties; nodes: of each cable; signal(s): number of a signal."""
     made = Supports()
 
     def at(cable: str, s: float) -> Node:
         return nodes[cable][scene.cables[cable].node(s)]
 
+    supported = _support_nodes(made, scene, at, signal)
+    made.tie_nodes([(at(tie.cable, tie.s), at(tie.to, tie.at), tie.rotation == "rigid")
+                    for tie in scene.ties.values()], supported)
+    return made
+
+
+def _support_nodes(made: Supports, scene: SceneData, at: Callable[[str, float], Node],
+                   signal: Callable[[Signal], int]) -> list[Node]:
+    """Add pins, clamps and motions; at(cable, s): a node. Return the nodes that they support."""
     rooted = []
     for pin in scene.pins:
         rooted.append(at(pin.cable, pin.s))
         made.fix(rooted[-1], ["r"])
     for clamp in scene.clamps:
         rooted.append(at(clamp.cable, clamp.s))
-        made.clamp(rooted[-1], clamp.hold == "all")
+        made.clamp(rooted[-1], clamp.fix == "all")
     for motion in scene.motions:
         rooted.append(at(motion.cable, motion.s))
         if motion.displacement is not None:
             made.displace(rooted[-1], [None if s is None else signal(s) for s in motion.displacement])
         if motion.rotation is not None:
             made.rotate(rooted[-1], np.array(motion.rotation.axis), signal(motion.rotation.angle))
-    ties = [(at(tie.cable, tie.s), at(tie.to, tie.at), tie.rotation == "rigid") for tie in scene.ties.values()]
-    done = {node.first for node in rooted}
-    # a node with directors can give the slopes of one without, not the other way round
-    starts = sorted((node for tie in ties for node in tie[:2] if node.first not in done),
-                    key=lambda node: -len(node.directors))
-    for root in [*rooted, *starts]:
-        waiting = [] if root.first in done and all(root is not r for r in rooted) else [root]
-        done.add(root.first)
-        while waiting:
-            node = waiting.pop()
-            for a, b, rigid in ties:
-                for master, slave in ((a, b), (b, a)):
-                    if master.first == node.first and slave.first not in done:
-                        made.join(master, slave, rigid)
-                        done.add(slave.first)
-                        waiting.append(slave)
-    return made
+    return rooted

@@ -34,7 +34,7 @@ class Attachment(Part):
         return self.at
 
     def data(self) -> Any:
-        """As a scene file has it: [x, y, z], "A", ["A", [x, y, z]] or ["wire", s]."""
+        """Return it as a scene file has it: [x, y, z], "A", ["A", [x, y, z]] or ["wire", s]."""
         place = self.s if self.s is not None else self.at
         return place if self.on is None else self.on if place is None else [self.on, place]
 

@@ -182,14 +182,16 @@ class Cable(Part):
 
     @property
     def height_direction(self) -> Vector:
-        """``up``; where that lies along the axis of a round section, the ground's axis most nearly across it."""
+        """Return ``up``; where that lies along the axis of a round section, the ground's axis most nearly across it."""
         if self._has_up:
             return self.up
         least = int(np.argmin(np.abs(self._shape.tangent(0.0))))
         return float(least == 0), float(least == 1), float(least == 2)
 
     def _refuse_coarse_elements(self) -> None:
-        """An element whose slope loses the direction of the curve could not even be drawn."""
+        """Raise ValueError where elements are too coarse to be drawn: the slope of one loses the direction of the
+        curve.
+        """
         if self._shape.straight:
             return
         xi, length = np.linspace(0, 1, 17)[:, None, None], self.drawn_length / self.elements
@@ -285,20 +287,24 @@ class Cable(Part):
         return self._as_drawn.slope(s)
 
     def height(self, s: float) -> np.ndarray:
-        """(3,): along the section's height at ``s``: r_y as the elements draw it, the axis there if they have none."""
+        """Return (3,): along the section's height at ``s``: r_y as the elements draw it, the axis there if they have
+        none.
+        """
         if self._shape.straight or not self.kind_of_element.director:
             return self.axes_at(s)[1]
         return self._as_drawn.point(s, y=1.0) - self._as_drawn.point(s)
 
     def width(self, s: float) -> np.ndarray:
-        """(3,): along the section's width at ``s``: r_z as the elements draw it, the axis there if they have none."""
+        """Return (3,): along the section's width at ``s``: r_z as the elements draw it, the axis there if they have
+        none.
+        """
         if self._shape.straight or "r_z" not in self.kind_of_element.nodal_vectors:
             return self.axes_at(s)[2]
         return self._as_drawn.point(s, z=1.0) - self._as_drawn.point(s)
 
     @property
     def _as_drawn(self) -> ElementLine:
-        """Its elements at the start, which know what is between the nodes."""
+        """Return the elements at the start, which interpolate between the nodes."""
         return ElementLine(self.library, self.element, self.length / self.elements,
                            self.nodal_vectors[..., : self.dim])
 
@@ -336,7 +342,8 @@ class Cable(Part):
 
     @property
     def reference(self) -> np.ndarray | None:
-        """(elements, 2 vectors, dim): stress-free nodal vectors of each element; None where the law takes none."""
+        """Return (elements, 2 vectors, dim): stress-free nodal vectors of each element; None where the law takes none.
+        """
         if not self.traits.takes_shape:
             return None
         rest = self.rest_nodal_vectors[..., : self.dim]
@@ -344,7 +351,8 @@ class Cable(Part):
 
     @property
     def rest_nodal_vectors(self) -> np.ndarray:
-        """(nodes, vectors, 3): those of the stress-free cable, with the drawn one's start and direction there."""
+        """Return (nodes, vectors, 3): those of the stress-free cable, with the drawn one's start and direction there.
+        """
         start = self._shape.point(0.0)
         if self.rest == "straight":
             axes = np.broadcast_to(self.axes, (self.elements + 1, 3, 3))

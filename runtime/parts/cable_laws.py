@@ -77,13 +77,15 @@ def chosen(kind: ElementKind, data: dict) -> str | None:
         if law not in (None, by_measures):
             raise ValueError(f'law "{law}" disagrees with strain, curvature and membrane', "give the one or the others")
         law = by_measures
-    if law not in possible:
-        known = ({strain or "green", curvature or "exact"} <= {"green", "engineering", "exact", "linear"}
-                 and (membrane or "full") in MEMBRANES)
-        if not known:  # the checks of strain and curvature say it better
-            return law
+    if law not in possible and _are_measures(strain, curvature, membrane):  # else the checks of these say it better
         raise ValueError(f'law "{law}" is not possible for {element}', "possible: " + ", ".join(possible))
     return law
+
+
+def _are_measures(strain: str | None, curvature: str | None, membrane: str | None) -> bool:
+    """Return whether these are names of measures of strain and curvature, as far as they are given."""
+    return (strain in (None, "", "green", "engineering") and curvature in (None, "", "exact", "linear")
+            and membrane in (None, "", *MEMBRANES))
 
 
 def name_of_kernels(kind: ElementKind, law: str, curved: bool) -> str:
@@ -104,7 +106,12 @@ def check(cable: Described) -> None:
     if cable.dim == 3 and kernel_law(cable.stiffness_law) == "continuum" and cable.material.is_incompressible:
         raise ValueError(f'law "{cable.law}" needs a poisson_ratio below 0.5, at which Lamé\'s λ is infinite, got '
                          f"{cable.material.poisson():.9g}", 'take law="structural", which needs E and G alone')
-    section = cable.section
+    _check_section(cable)
+
+
+def _check_section(cable: Described) -> None:
+    """Raise ValueError(cause, remedy) where the law of a cable needs more of its section, or less, than that gives."""
+    kind, section = cable.kind_of_element, cable.section
     given = {keyword for keyword in ("torsion_constant", "shear_factors")
              if getattr(section, f"given_{keyword}") is not None}
     if kind.is_cable:

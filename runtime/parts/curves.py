@@ -103,11 +103,11 @@ class Spline:
         self.s = np.concatenate([[0.0], np.cumsum(self._arc(self.t[:-1], self.t[1:]))])
         self.length = float(self.s[-1])
 
-    def _take(self, r) -> None:
+    def _take(self, r: Any) -> None:
         self._r, self._r_t, self._r_tt = r, r.derivative(), r.derivative(2)
 
     def _off_the_chords(self) -> tuple[np.ndarray, np.ndarray]:
-        """Parameters (intervals, FINE), and there the cosine of the angle between the curve and its chord."""
+        """Return parameters (intervals, FINE), and there the cosine of the angle between the curve and its chord."""
         inside = self.t[:-1, None] + np.diff(self.t)[:, None] * np.linspace(0, 1, FINE)
         slope = self._r_t(inside)
         chord = np.diff(self.points, axis=0) / np.diff(self.t)[:, None]
@@ -123,7 +123,7 @@ class Spline:
         return bool(np.any(off > LOOSE * np.maximum(np.append(turns, 0), np.append(0, turns)) + LITTLE))
 
     def _refuse_folds(self) -> None:
-        """Between two points the curve must go on in the direction of the next one."""
+        """Raise ValueError where the curve, between two points, does not go on in the direction of the next one."""
         inside, turn = self._off_the_chords()
         interval, where = np.unravel_index(np.argmin(turn), turn.shape)
         if turn[interval, where] > 0:
@@ -141,10 +141,10 @@ class Spline:
         at = 0.5 * (start + end)[:, None] + half[:, None] * GAUSS
         return half * (np.linalg.norm(self._r_t(at), axis=-1) @ WEIGHTS)
 
-    def _parameter(self, s) -> np.ndarray:
-        """Parameters of arc-lengths, by Newton, whose derivative is the speed."""
-        s = np.clip(np.asarray(s, dtype=float), 0, self.length)
-        flat = s.ravel()
+    def _parameter(self, s: ArrayLike) -> np.ndarray:
+        """Return the parameters of arc-lengths, by Newton's method, whose derivative is the speed."""
+        clipped = np.clip(np.asarray(s, dtype=float), 0, self.length)
+        flat = clipped.ravel()
         k = np.clip(np.searchsorted(self.s, flat, side="right") - 1, 0, len(self.t) - 2)
         low, high = self.t[k], self.t[k + 1]
         t = low + (high - low) * (flat - self.s[k]) / (self.s[k + 1] - self.s[k])
@@ -153,7 +153,7 @@ class Spline:
             t = np.clip(t + step, low, high)
             if np.max(np.abs(step), initial=0.0) <= 1e-14 * self.t[-1]:
                 break
-        return t.reshape(s.shape)
+        return t.reshape(clipped.shape)
 
     def point(self, s: ArrayLike) -> np.ndarray:
         """Return the points at arc-lengths s."""
@@ -178,7 +178,7 @@ class Spline:
 
 
 def points(value: Any) -> tuple[tuple[float, ...], ...]:
-    """Two points or more, (x, y, z) in m each, neighbours different; else ValueError."""
+    """Return two points or more, (x, y, z) in m each, neighbours different. Raises ValueError for anything else."""
     rows = value.tolist() if isinstance(value, np.ndarray) else value
     if not isinstance(rows, list | tuple) or len(rows) < 2:
         raise ValueError(f"must be a list of 2 points or more, got {shown(rows)}")
@@ -196,7 +196,8 @@ def points(value: Any) -> tuple[tuple[float, ...], ...]:
 
 
 def sample(curve: Callable[[float], Iterable[float]], least: int) -> np.ndarray:
-    """Points (n, 3) of a function of u from 0 to 1, so many that their spline is the curve to 1e-9 of its extent.
+    """Return points (n, 3) of a function of u from 0 to 1, so many that their spline is the curve to 1e-9 of its
+    extent.
 
     Evenly spaced where it is smooth; else closer where its curvature or its speed jumps. ValueError where it has no
     tangent.
@@ -257,7 +258,7 @@ def _closer(at: Callable[[float], tuple[float, ...]], u: np.ndarray) -> np.ndarr
         u, known = np.insert(u, places, between[far]), np.insert(known, places, new[far], axis=0)
 
 
-def _distances(spline, low: np.ndarray, high: np.ndarray, points: np.ndarray) -> np.ndarray:
+def _distances(spline: Any, low: np.ndarray, high: np.ndarray, points: np.ndarray) -> np.ndarray:
     """Return (n,): of each point to the spline, whose nearest place is sought between two parameters."""
     t = 0.5 * (low + high)
     for _ in range(6):
@@ -268,7 +269,7 @@ def _distances(spline, low: np.ndarray, high: np.ndarray, points: np.ndarray) ->
 
 
 def _refuse_a_jump(at: Callable, low: float, high: float, far: float) -> None:
-    """What lies between the ends of an interval becomes small with it, but for a jump."""
+    """Raise ValueError where a curve jumps: a gap that does not shrink with the interval of u is a jump."""
     for _ in range(50):
         middle = 0.5 * (low + high)
         start, point, end = (np.array(at(v)) for v in (low, middle, high))
@@ -279,7 +280,9 @@ def _refuse_a_jump(at: Callable, low: float, high: float, far: float) -> None:
 
 
 def _refuse_a_kink(at: Callable, low: float, high: float, point: np.ndarray, gap: float, chord: float) -> None:
-    """A bend is the less of an angle, the shorter the piece that is looked at; a kink is all of it at one point."""
+    """Raise ValueError where a curve has a kink: a bend's angle shrinks with the piece that is looked at, a kink's does
+    not.
+    """
 
     def angle(step: float) -> float:
         ends = [np.array(at(v)) for v in (max(low - step, 0.0), low, high, min(high + step, 1.0))]
@@ -337,7 +340,8 @@ def transported(points: tuple[tuple[float, ...], ...], up: tuple[float, ...], pl
 
 
 def _reflected(height: np.ndarray, tangent: np.ndarray, step: np.ndarray, onward: np.ndarray) -> np.ndarray:
-    """The height axis after a step: mirrored in the plane between the points, then in that between the tangents."""
+    """Return the height axis after a step: mirrored in the plane between the points, then in that between the tangents.
+    """
     if not step.any():
         return height
     mirror = 2 / np.dot(step, step) * step

@@ -49,7 +49,9 @@ STOPS = {stop.stop: stop for stop in (HardStop, Buffer)}
 
 
 def _end(value: Any) -> str | Stop:
-    """One of the words, a stop, or a table such as {stop="hard", restitution=0.5}; else ValueError."""
+    """Return one of the words, a stop, or what a table such as {stop="hard", restitution=0.5} describes. Raises
+    ValueError.
+    """
     if isinstance(value, Stop):
         return value
     if isinstance(value, str):

@@ -36,7 +36,7 @@ class Friction(Part):
 
     @property
     def sticks(self) -> bool:
-        """Return whether it holds at rest."""
+        """Return whether it keeps a rider at rest."""
         return self.model == "stick"
 
     @property
@@ -46,7 +46,7 @@ class Friction(Part):
 
     @property
     def static_friction(self) -> float:
-        """Return the same at rest; nothing where it does not stick."""
+        """Return what the normal force is multiplied by at rest; 0 where it does not stick."""
         return self.static + self.rolling if self.sticks else 0.0
 
     @property

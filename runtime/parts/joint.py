@@ -60,7 +60,7 @@ class Joint(Part):
         "moment": vector_of_time("N m", "moment on what carries the end b, about that end"),
         "residual": of_time("1", "largest of its equations, in m or of cosines"),
     }
-    pair: Annotated[str, one_of(KINDS)] = Field(alias="kind")
+    joint_kind: Annotated[str, one_of(KINDS)] = Field(alias="kind")
     name: Name | None = None
     a: AnyAttachment
     b: AnyAttachment
@@ -75,20 +75,21 @@ class Joint(Part):
     @model_validator(mode="after")
     def _has_what_it_needs(self) -> Joint:
         if self.a.on is None and self.b.on is None:
-            raise ValueError("has both ends on the ground", "let one of them hold a cable or a body")
+            raise ValueError("has both ends on the ground", "put one of them on a cable or a body")
         with_axis = {"axis": (*LINES, "revolute", "universal"), "second_axis": ("universal",)}
-        for name, pairs in with_axis.items():
-            if getattr(self, name) is not None and self.pair not in pairs:
-                raise ValueError(f"{name} is given, but a {self.pair} joint has none", "leave it out")
-            if getattr(self, name) is None and self.pair in pairs and self.pair != "revolute":  # in the plane it is z
-                raise ValueError(f"{name} is missing: a {self.pair} joint needs it")
-        if self.length is not None and self.pair != "distance":
-            raise ValueError(f"length is given, but a {self.pair} joint has none", "leave it out")
+        for name, kinds in with_axis.items():
+            given, has_one = getattr(self, name) is not None, self.joint_kind in kinds
+            if given and not has_one:
+                raise ValueError(f"{name} is given, but a {self.joint_kind} joint has none", "leave it out")
+            if has_one and not given and self.joint_kind != "revolute":  # in the plane it is z
+                raise ValueError(f"{name} is missing: a {self.joint_kind} joint needs it")
+        if self.length is not None and self.joint_kind != "distance":
+            raise ValueError(f"length is given, but a {self.joint_kind} joint has none", "leave it out")
         return self
 
     @model_validator(mode="after")
     def _has_axes_square_to_each_other(self) -> Joint:
-        if self.pair == "universal" and self.axis is not None and self.second_axis is not None:
+        if self.joint_kind == "universal" and self.axis is not None and self.second_axis is not None:
             cosine = np.dot(self.axis, self.second_axis) / np.linalg.norm(self.axis) / np.linalg.norm(self.second_axis)
             if abs(cosine) > 1e-6:
                 raise ValueError("axis and second_axis must be perpendicular, got "
@@ -100,9 +101,9 @@ class Joint(Part):
         given = [name for name in ("angle", "distance", "velocity") if getattr(self, name) is not None]
         if len(given) > 1:
             raise ValueError(f"{' and '.join(given)} are given", "give one of them")
-        possible = [DRIVEN[self.pair], "velocity"] if self.pair in DRIVEN else []
+        possible = [DRIVEN[self.joint_kind], "velocity"] if self.joint_kind in DRIVEN else []
         if given and given[0] not in possible:
-            raise ValueError(f"{given[0]} is given, but a {self.pair} joint is driven by "
+            raise ValueError(f"{given[0]} is given, but a {self.joint_kind} joint is driven by "
                              + (" or ".join(possible) or "nothing"), "leave it out")
         if self.distance is not None and self.length is not None:
             raise ValueError("distance and length are given", "give one of the two")
@@ -115,7 +116,7 @@ class Joint(Part):
 
     @property
     def prescribed(self) -> Signal | None:
-        """Its angle (rad) or distance (m) over time, see `DRIVEN`, where it is driven."""
+        """Return its angle (rad) or distance (m) over time, see `DRIVEN`, where it is driven."""
         if self.velocity is not None:
             return Integral(rate=self.velocity, start=self.length or 0.0)
         return self.distance if self.angle is None else self.angle
@@ -139,11 +140,11 @@ class Joint(Part):
     def off_plane(self) -> Iterator[str]:
         """Yield its quantities that leave the plane z = 0, see `Part.off_plane`."""
         yield from super().off_plane()
-        if self.pair == "universal":
+        if self.joint_kind == "universal":
             yield "a universal joint"
-        elif self.pair in LINES:
+        elif self.joint_kind in LINES:
             yield from across("axis", self.axis)
-            if self.pair == "cylindrical" and self.is_driven:
+            if self.joint_kind == "cylindrical" and self.is_driven:
                 yield "a turn about the axis"
         elif self.axis is not None:
             yield from in_plane("axis", self.axis, self.axis)

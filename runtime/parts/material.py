@@ -63,7 +63,7 @@ class Material(Part):
         return self.poisson() >= INCOMPRESSIBLE - (ROUNDED if self.poisson_ratio is None else 0.0)
 
     def lame(self) -> tuple[float, float]:
-        """Lamé's constants (λ, μ) in Pa; λ is infinite where the volume cannot change."""
+        """Return the lamé's constants (λ, μ) in Pa; λ is infinite where the volume cannot change."""
         E, nu = self.youngs_modulus, self.poisson()
         if self.is_incompressible:
             return inf, E / (2 * (1 + nu))

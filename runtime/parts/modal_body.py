@@ -114,7 +114,8 @@ class ModalBody(Part):
 
     @cached_property
     def shape(self) -> Shape:
-        """Its modes and inertia: those of its file, or of its mesh, which a scene has made when it is asked for them.
+        """Return its modes and inertia: those of its file, or of its mesh, which a scene has made when it is asked for
+        them.
 
         Raises SceneError for a mesh of a body that is in no scene.
         """
@@ -151,8 +152,9 @@ class ModalBody(Part):
         axes = self._drawn.axes.T
         return np.array(self.start) + self.offset * axes[:, 0], quaternion(axes)
 
-    def spot(self, at: Vector) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """The point ``at`` (m, body axes) as the engine knows it: undeformed (3,), and there modes and turns (n, 3).
+    def attachment_modes(self, at: Vector) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return the point ``at`` (m, body axes) as the engine has it: undeformed (3,), and there modes and turns (n,
+        3).
 
         It is a node, or goes with a node's section, where sections turn: of a beam any point across its axis there.
         Raises ValueError(cause, remedy).
@@ -178,7 +180,8 @@ class ModalBody(Part):
         return rotate(self.frame[1], np.eye(3)).T
 
     def located(self, at: Vector | None = None, s: float | None = None) -> Vector:
-        """The point ``at`` or, of a beam, the one at the arc-length s (m), in body axes; the first end without either.
+        """Return the point ``at`` or, of a beam, the one at the arc-length s (m), in body axes; the first end without
+        either.
 
         Raises ValueError(cause, remedy).
         """
@@ -195,7 +198,7 @@ class ModalBody(Part):
 
     @property
     def inertia(self) -> np.ndarray:
-        """(3, 3) in kg m², about the frame's origin, undeformed."""
+        """Return (3, 3) in kg m², about the frame's origin, undeformed."""
         X = self.shape.X[0, 0]
         return X.trace() * np.eye(3) - X
 

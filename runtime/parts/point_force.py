@@ -18,7 +18,7 @@ class PointForce(Part):
     kinds.py, and its law in derive/couplings/point_laws.
     """
 
-    group: ClassVar[str] = "springs"
+    group: ClassVar[str] = "point_forces"
     positional: ClassVar[tuple[str, ...]] = ("a", "b")
     quantities: ClassVar[dict[str, Quantity]] = {
         "force": vector_of_time("N", "force on the first end"),
@@ -46,5 +46,5 @@ class PointForce(Part):
     @model_validator(mode="after")
     def _acts_on_something(self) -> Self:
         if self.a.on is None and self.b.on is None:
-            raise ValueError("has both ends on the ground", "let one of them hold a cable or a body")
+            raise ValueError("has both ends on the ground", "put one of them on a cable or a body")
         return self

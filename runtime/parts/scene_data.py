@@ -40,7 +40,7 @@ class SceneData:
     joints: dict[str, Joint]
     slides: dict[str, Slide]
     loads: dict[str, Force | DistributedForce | Moment]
-    springs: dict[str, PointForce]
+    point_forces: dict[str, PointForce]
     events: dict[str, Event]
 
     def __init__(self, gravity: Any = (0, -9.81, 0)):
@@ -62,12 +62,12 @@ class SceneData:
 
     @property
     def dim(self) -> int:
-        """2 if its cables are planar, else 3."""
+        """Return 2 if its cables are planar, else 3."""
         return min((cable.dim for cable in self.cables.values()), default=3)
 
     @property
     def libraries(self) -> tuple[str, ...]:
-        """Directories of the libraries that its cables' elements are from."""
+        """Return the directories of the libraries that its cables' elements are from."""
         return tuple(sorted({cable.library for cable in self.cables.values() if cable.library is not None}))
 
     @property
@@ -119,7 +119,7 @@ class SceneData:
             raise SceneError(part.where, "that name is taken by the results", "give another one")
 
     def free_name(self, part: type[Part]) -> str:
-        """A name with a number that no part has: the least one where those below it are taken one after the other.
+        """Return the least free name with a number, where those below it are taken one after the other.
 
         Found by doubling and bisection, so that a thousand unnamed parts do not cost a million look-ups.
         """

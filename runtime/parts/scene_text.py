@@ -156,7 +156,7 @@ def _check_libraries(tables: dict, directory: str | os.PathLike, allowed: list[s
     for kind, part in PARTS.items():
         for index, table in enumerate(_array(tables, kind), start=1):
             if isinstance(library := table.get("library"), str):
-                place = part.place(table) if isinstance(table.get("name"), str) else f"[[{kind}]] {index}"
+                place = part.title(table) if isinstance(table.get("name"), str) else f"[[{kind}]] {index}"
                 try:
                     asked = resolved(os.path.join(directory, library))
                 except ValueError as error:
@@ -199,7 +199,7 @@ def dumps(scene: SceneData) -> str:
     for kind in PARTS:
         for part in parts:
             if part.kind == kind and isinstance(part, Event) and part.function is not None:
-                lines += ["", f"# {part.where} watches a function, which only Python can hold"]
+                lines += ["", f"# {part.where} watches a function, which a file cannot describe"]
             elif part.kind == kind:
                 lines += ["", f"[[{kind}]]", *_lines(_data(part))]
     for name in SETTINGS:

@@ -11,7 +11,7 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from pydantic import Field, model_validator
 
-from ..errors import SceneError, check_renamed
+from ..errors import SceneError
 from .schemas import checked, list_schema, tagged
 from .validation import Part, part_of_table, positive, show, shown, vector
 
@@ -42,11 +42,6 @@ class Section(Part):
     given_torsion_constant: TorsionConstant | None = Field(None, alias="torsion_constant")
     given_shear_factors: ShearFactors | None = Field(None, alias="shear_factors")
 
-    def __getattr__(self, name: str) -> Any:
-        """Refuse an attribute that there is not; of an older version's, say what it is called now."""
-        check_renamed(f"{type(self).__name__!r} object", name, dir(type(self)))
-        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
-
     def moments(self) -> np.ndarray:
         """Return the even moments up to order 4.
 
@@ -55,16 +50,16 @@ class Section(Part):
         raise NotImplementedError
 
     def mass_moments(self) -> np.ndarray:
-        """`moments` as the inertia takes them: density times these is mass and rotary inertia per length."""
+        """Return `moments` as the inertia takes them: density times these is mass and rotary inertia per length."""
         return self.moments()
 
     @property
     def torsion_constant(self) -> float:
-        """St Venant's J in m⁴: torque = G J times the twist per length."""
+        """Return St Venant's J in m⁴: torque = G J times the twist per length."""
         return self._shape_torsion_constant() if self.given_torsion_constant is None else self.given_torsion_constant
 
     def shear_factors(self, poisson_ratio: float) -> tuple[float, float]:
-        """Timoshenko's (ky, kz): shear force = k G A times the mean shear angle, along y and z."""
+        """Return Timoshenko's (ky, kz): shear force = k G A times the mean shear angle, along y and z."""
         given = self.given_shear_factors
         return self._shape_shear_factors(poisson_ratio) if given is None else given
 
@@ -81,12 +76,12 @@ class Section(Part):
 
     @property
     def second_moment_about_z(self) -> float:
-        """∫y²dA in m⁴: resists bending in the plane of the axis and ``up``."""
+        """Return ∫y²dA in m⁴: resists bending in the plane of the axis and ``up``."""
         return float(self.moments()[1])
 
     @property
     def second_moment_about_y(self) -> float:
-        """∫z²dA in m⁴: resists bending out of the plane of the axis and ``up``."""
+        """Return ∫z²dA in m⁴: resists bending out of the plane of the axis and ``up``."""
         return float(self.moments()[2])
 
 
@@ -105,7 +100,7 @@ class Rectangle(Section):
         return area * np.array([1, yy, zz, h**4 / 80, yy * zz, w**4 / 80])
 
     def _shape_torsion_constant(self) -> float:
-        """St Venant's series (Timoshenko & Goodier, Theory of Elasticity, art. 109), to rounding.
+        """Return J by St Venant's series (Timoshenko & Goodier, Theory of Elasticity, art. 109), to rounding.
 
         J = long short³ / 3 (1 - 192/π⁵ short/long Σ tanh(nπ long / 2 short) / n⁵), n odd. Summed as Σ 1/n⁵, which is
         31/32 ζ(5), less Σ (1 - tanh) / n⁵, whose terms fall like exp(-nπ).
@@ -115,7 +110,7 @@ class Rectangle(Section):
         return long * short**3 / 3 * (1 - 192 / pi**5 * short / long * (31 / 32 * ZETA_5 - less))
 
     def _shape_shear_factors(self, poisson_ratio: float) -> tuple[float, float]:
-        """Cowper, J. Appl. Mech. 33 (1966) 335-340."""
+        """Return the shear factors of the shape (Cowper, J. Appl. Mech. 33 (1966) 335-340)."""
         factor = 10 * (1 + poisson_ratio) / (12 + 11 * poisson_ratio)
         return factor, factor
 
@@ -185,7 +180,7 @@ class GeneralSection(Section):
 
     @model_validator(mode="after")
     def _twists_less_than_a_disc(self) -> GeneralSection:
-        """Warping only ever lowers J below the polar moment."""
+        """Check that J is not above the polar moment: warping only ever lowers it. Raises ValueError."""
         constant, polar = self.given_torsion_constant, self.about_z + self.about_y
         if constant is not None and constant > polar * (1 + 1e-9):
             raise ValueError("torsion_constant must not exceed second_moment_about_z + second_moment_about_y = "
@@ -210,7 +205,7 @@ class GeneralSection(Section):
 
 
 def _ring_shear_factors(poisson_ratio: float, inner: float) -> tuple[float, float]:
-    """Cowper, J. Appl. Mech. 33 (1966) 335-340; inner: the ratio of the radii."""
+    """Return the shear factors of a ring (Cowper, J. Appl. Mech. 33 (1966) 335-340); inner: the ratio of the radii."""
     nu, square = poisson_ratio, (1 + inner**2) ** 2
     factor = 6 * (1 + nu) * square / ((7 + 6 * nu) * square + (20 + 12 * nu) * inner**2)
     return factor, factor

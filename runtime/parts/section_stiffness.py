@@ -17,7 +17,7 @@ from .section import Section
 
 
 def section_stiffness(law: str, section: Section, material: Material, dim: int = 3) -> np.ndarray:
-    """S of an elastic law.
+    """Return S of an elastic law, see the module docstring.
 
     law: of this package, or one of `variants`; dim: 2 for a planar element, else 3.
     Returns, in N times even powers of m: (2,) [EA, EI] for cables, (3,) with an assumed axial strain, see `_assumed`;
@@ -75,7 +75,7 @@ def _cable(section: Section, material: Material, dim: int) -> np.ndarray:
 
 
 def _assumed(section: Section, material: Material, dim: int) -> np.ndarray:
-    """EA, EI, and EA of the modes of the axial strain that the lengths of the slopes alone govern."""
+    """Return EA, EI, and EA of the modes of the axial strain that the lengths of the slopes alone govern."""
     EA, EI = _cable(section, material, dim)
     return np.array([EA, EI, EA])
 
@@ -87,7 +87,7 @@ def _reduced(section: Section, material: Material, dim: int) -> np.ndarray:
 
 
 def _continuum(section: Section, material: Material, dim: int) -> np.ndarray:
-    """St. Venant-Kirchhoff, alike over the section."""
+    """Return S of the St. Venant-Kirchhoff law, the same all over the section."""
     return np.outer(_elasticity(material, dim), section.moments())
 
 
@@ -113,7 +113,8 @@ def _poisson_split(section: Section, material: Material, dim: int) -> np.ndarray
 
 
 def _structural(section: Section, material: Material, dim: int) -> np.ndarray:
-    """EA, GA_y, GA_z, GJ, EI about y and about z, and of the section's own strains those of its height, width, angle.
+    """Return EA, GA_y, GA_z, GJ, EI about y and about z, and of the section's own strains those of its height, width,
+    angle.
 
     Shears with the shear factors. The section's own strains have no part in the bending of beams; their stiffness is
     that of the material under one stress alone. Planar: EA, GA_y, EI about z, and that of the height.
@@ -128,7 +129,7 @@ def _structural(section: Section, material: Material, dim: int) -> np.ndarray:
 
 
 def _elasticity(material: Material, dim: int) -> np.ndarray:
-    """D11, D22, ... of the material; planar: of plane stress, for the width of a beam is free to change."""
+    """Return D11, D22, ... of the material; planar: of plane stress, for the width of a beam is free to change."""
     if dim == 3:
         return material.elasticity()
     lam, mu = material.lame()

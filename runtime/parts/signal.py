@@ -99,7 +99,9 @@ def value_at(signal: Sine, breaks: np.ndarray, coefficients: np.ndarray, time: A
 
 
 def _steps(times: list[float], values: list[float]) -> tuple[np.ndarray, np.ndarray]:
-    """Constant before the first time and after the last, smooth rises from value to value between the times."""
+    """Return breaks and polynomials: constant before the first time and after the last, smooth rises from value to
+    value between.
+    """
     breaks = np.array([times[0] - 1, *times, times[-1] + 1])
     coefficients = np.zeros((len(breaks) - 1, DEGREE + 1))
     coefficients[:, 0] = [values[0], *values]
@@ -109,7 +111,7 @@ def _steps(times: list[float], values: list[float]) -> tuple[np.ndarray, np.ndar
 
 
 def _check_apart(times: Iterable[float]) -> None:
-    """ValueError where two times (s) that follow on each other are as good as one."""
+    """Raise ValueError where two times (s) that follow on each other are as good as one."""
     for one, other in itertools.pairwise(times):
         least = max(SHORTEST[0], SHORTEST[1] * max(abs(one), abs(other)))
         if not other - one >= least:

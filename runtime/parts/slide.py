@@ -27,7 +27,7 @@ class Slide(Part):
     frame: "point", the rider turns freely; "tangent", it keeps the angle to the cable's tangent that it starts with,
     so that a trolley's floor stays along the cable; "section", the whole orientation to the cable's section that it
     starts with, which transmits torsion and needs an element with section axes. roll, with frame "tangent": "free", or
-    "held": the turn about the tangent is kept against the direction ``up``, fixed in the ground, by default the one
+    "fixed": the turn about the tangent is kept against the direction ``up``, fixed in the ground, by default the one
     against gravity, else the cable's own.
 
     drive: s over time as a signal, in m, or ``velocity``, its rate, in m/s: the slide follows it, whatever the force.
@@ -55,7 +55,7 @@ class Slide(Part):
     at: Annotated[Vector, xyz("m")] = (0.0, 0.0, 0.0)
     name: Name = Field(default_factory=lambda data: f"{data['body'] or 'ground'}_on_{data['along']}")
     frame: Annotated[str, one_of(("point", "tangent", "section"))] = "point"
-    roll: Annotated[str, one_of(("free", "held"))] = "free"
+    roll: Annotated[str, one_of(("free", "fixed"))] = "free"
     up: Annotated[Vector | None, direction()] = None
     drive: AnySignal | None = None
     velocity: AnySignal | None = None
@@ -86,17 +86,17 @@ class Slide(Part):
     def _is_of_one_mind(self) -> Slide:
         if self.body_s is not None and any(self.at):
             raise ValueError("at is a point in body axes, but body_s one on a cable", "give one of the two")
-        if self.roll == "held" and self.frame != "tangent":
-            raise ValueError(f'roll "held" is for frame "tangent", got frame "{self.frame}"',
-                             "section axes hold the roll of themselves" if self.frame == "section" else
+        if self.roll == "fixed" and self.frame != "tangent":
+            raise ValueError(f'roll "fixed" is for frame "tangent", got frame "{self.frame}"',
+                             "section axes fix the roll already" if self.frame == "section" else
                              'leave it out, or take frame="tangent"')
-        if self.up is not None and self.roll != "held":
-            raise ValueError("up is given, but roll is free", 'leave it out, or take roll="held"')
+        if self.up is not None and self.roll != "fixed":
+            raise ValueError("up is given, but roll is free", 'leave it out, or take roll="fixed"')
         if self.drive is not None and self.velocity is not None:
             raise ValueError("drive and velocity are given", "give one of the two")
         for name in ("at_start", "at_end"):
             if self.prescribed is not None and isinstance(getattr(self, name), Stop):
-                raise ValueError(f"is driven, and a stop {name} would hold against that", "leave one of them out")
+                raise ValueError(f"is driven, and a stop {name} would act against that", "leave one of them out")
         return self
 
     def entries(self) -> dict[str, Any]:
@@ -111,7 +111,7 @@ class Slide(Part):
 
     @property
     def prescribed(self) -> Signal | None:
-        """s over time in m, where it is driven."""
+        """Return s over time in m, where it is driven."""
         return self.drive if self.velocity is None else Integral(rate=self.velocity, start=self.s)
 
     def off_plane(self) -> Iterator[str]:

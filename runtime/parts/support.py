@@ -33,13 +33,13 @@ class Support(Part):
     s: Annotated[float, finite("m")]
 
     @classmethod
-    def place(cls, data: dict) -> str:
+    def title(cls, data: dict) -> str:
         """Return how messages name the support."""
         return f"{cls.kind} on {_called(data.get('cable'))}"
 
     @property
     def label(self) -> str:
-        """Its name in the results, such as ``wire@0``."""
+        """Return the its name in the results, such as ``wire@0``."""
         return f"{self.cable}@{self.s + 0.0:.12g}"
 
 
@@ -55,14 +55,14 @@ class Pin(Support):
 class Clamp(Support):
     """Holds the position of a cable's node at ``s`` (m) and its section, or all of its nodal vectors.
 
-    hold: "section": of cables the direction of the tangent, while its length stays free; of beams the axes of the
+    fix: "section": of cables the direction of the tangent, while its length stays free; of beams the axes of the
     section, r_y and r_z, while r_x stays free, so that shear and stretch are not hindered. "all": every nodal vector.
     """
 
     kind: ClassVar[str] = "clamp"
     group: ClassVar[str] = "clamps"
     positional: ClassVar[tuple[str, ...]] = ("cable",)
-    hold: Annotated[str, one_of(("section", "all"))] = "section"
+    fix: Annotated[str, one_of(("section", "all"))] = "section"
 
 
 class Rotation(Part):
@@ -182,8 +182,8 @@ class Tie(Part):
     rotation: Annotated[str, one_of(("rigid", "free"))] = "rigid"
 
     @classmethod
-    def place(cls, data: dict) -> str:
+    def title(cls, data: dict) -> str:
         """Return how messages name the tie."""
         if data.get("name") is not None:
-            return super().place(data)
+            return super().title(data)
         return f"tie of {_called(data.get('cable'))} and {_called(data.get('to'))}"

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeVar
 import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainValidator, ValidationError, model_validator
 
-from ..errors import SceneError, near
+from ..errors import SceneError, check_renamed, near
 from .quantity import Quantity
 from .schemas import checked, list_schema, number_schema
 
@@ -41,13 +41,13 @@ LONGEST_NAME = 100
 class _Short(reprlib.Repr):
     """Values in messages, whatever their size and depth."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         super().__init__()
         self.maxlevel, self.maxstring, self.maxother = 4, 80, 120
         self.maxlist = self.maxtuple = self.maxdict = 12
 
     def repr_int(self, value: int, level: int) -> str:
-        """Python writes no integers of thousands of digits."""
+        """Return an integer's text; Python writes no integers of thousands of digits."""
         return repr(value) if value.bit_length() < 256 else f"an integer of {value.bit_length()} bits"
 
 
@@ -65,7 +65,8 @@ def _real(value: Any) -> float:
 
 
 def _in_range(numbers: tuple[float, ...], unit: str, got: str) -> None:
-    """ValueError unless all numbers are finite and within the limits of their unit; got: how messages quote them."""
+    """Raise ValueError unless all numbers are finite and within the limits of their unit; got: how messages quote them.
+    """
     if not all(map(math.isfinite, numbers)):
         raise ValueError(f"must be finite, got {got}")
     largest = LIMITS.get(unit, OTHER_LIMITS)[1]
@@ -74,14 +75,16 @@ def _in_range(numbers: tuple[float, ...], unit: str, got: str) -> None:
 
 
 def number(value: Any, unit: str = "") -> float:
-    """``value`` as a finite float within `LIMITS`; ValueError if it is none. Text and booleans are no numbers."""
+    """Return ``value`` as a finite float within `LIMITS`. Raises ValueError if it is none; text and booleans are no
+    numbers.
+    """
     result = _real(value)
     _in_range((result,), unit, show(result, unit))
     return result
 
 
 def vector(value: Any, unit: str = "", size: int = 3) -> tuple[float, ...]:
-    """``value`` as ``size`` finite floats within `LIMITS`; ValueError if it is anything else."""
+    """Return ``value`` as ``size`` finite floats within `LIMITS`. Raises ValueError if it is anything else."""
     if isinstance(value, np.ndarray):
         value = value.tolist()
     if not isinstance(value, list | tuple) or len(value) != size:
@@ -112,7 +115,7 @@ def show(value: float | tuple[float, ...] | np.ndarray, unit: str = "") -> str:
 
 
 def one_of(known: Iterable[str], optional: bool = False) -> PlainValidator:
-    """Check of a name among known ones, or of None where it may be left out; the refusal suggests the near one."""
+    """Return the check of a name among known ones, or of None if optional; a refusal suggests the nearest one."""
     known = tuple(known)
 
     def check(value: Any) -> str | None:
@@ -128,7 +131,7 @@ def one_of(known: Iterable[str], optional: bool = False) -> PlainValidator:
 
 
 def finite(unit: str = "") -> PlainValidator:
-    """Check of a finite number."""
+    """Return the check of a finite number."""
     return checked(lambda value: number(value, unit), number_schema(unit))
 
 
@@ -143,7 +146,7 @@ def _bounded(unit: str, allowed: Callable[[float], bool], rule: str, **bounds: f
 
 
 def positive(unit: str = "") -> PlainValidator:
-    """Check of a finite number above 0 and within `LIMITS`."""
+    """Return the check of a finite number above 0 and within `LIMITS`."""
     least = LIMITS.get(unit, OTHER_LIMITS)[0]
 
     def check(value: Any) -> float:
@@ -158,12 +161,12 @@ def positive(unit: str = "") -> PlainValidator:
 
 
 def not_negative(unit: str = "") -> PlainValidator:
-    """Check of a finite number, 0 or above."""
+    """Return the check of a finite number, 0 or above."""
     return _bounded(unit, lambda x: x >= 0, "not be negative", minimum=0)
 
 
 def within(low: float, high: float, *, ends: bool) -> PlainValidator:
-    """Check of a finite number between ``low`` and ``high``, the ends included or not."""
+    """Return the check of a finite number between ``low`` and ``high``, the ends included or not."""
     if ends:
         return _bounded("", lambda x: low <= x <= high, f"lie in [{low:g}, {high:g}]", minimum=low, maximum=high)
     return _bounded("", lambda x: low < x < high, f"lie inside ({low:g}, {high:g})", exclusiveMinimum=low,
@@ -171,18 +174,18 @@ def within(low: float, high: float, *, ends: bool) -> PlainValidator:
 
 
 def above(low: float, most: float) -> PlainValidator:
-    """Check of a finite number above ``low`` and at most ``most``."""
+    """Return the check of a finite number above ``low`` and at most ``most``."""
     return _bounded("", lambda x: low < x <= most, f"be above {low:g} and at most {most:g}", exclusiveMinimum=low,
                     maximum=most)
 
 
 def xyz(unit: str = "") -> PlainValidator:
-    """Check of three finite numbers."""
+    """Return the check of three finite numbers."""
     return checked(lambda value: vector(value, unit), list_schema(unit))
 
 
 def direction() -> PlainValidator:
-    """Check of three finite numbers that are not all zero; their length is free."""
+    """Return the check of three finite numbers that are not all zero; their length is free."""
     def check(value: Any) -> tuple[float, ...]:
         result = vector(value)
         if not any(result):
@@ -195,7 +198,7 @@ def direction() -> PlainValidator:
 
 
 def list_of(unit: str = "", *, least: int) -> PlainValidator:
-    """Check of a list of at least ``least`` finite numbers."""
+    """Return the check of a list of at least ``least`` finite numbers."""
     def check(value: Any) -> tuple[float, ...]:
         value = value.tolist() if isinstance(value, np.ndarray) else value
         if not isinstance(value, list | tuple) or len(value) < least:
@@ -282,12 +285,12 @@ class _TranslatingType(ModelMetaclass):
     def __signature__(cls, made: Any) -> None:  # noqa: N805
         """Leave out what pydantic makes when it builds a model: annotations with all their validators."""
 
-    def __call__(cls, /, *given, **data):  # noqa: N805  it is a metaclass
+    def __call__(cls, /, *given: Any, **data: Any) -> Any:  # noqa: N805  it is a metaclass
         if given:
             example = ", ".join(f"{name}=..." for name in list(inspect.signature(cls).parameters)[:max(2, len(given))])
             raise SceneError(cls.__name__, f"takes its values by name, got {len(given)} without one",
                              f"write {cls.__name__}({example})")
-        place, known = cls.place(data), cls.keywords()  # type: ignore[attr-defined]  # of its one user, Part
+        place, known = cls.title(data), cls.keywords()  # type: ignore[attr-defined]  # of its one user, Part
         found = [SceneError(place, *_unknown(name, known), entry=name) for name in data if name not in known]
         try:
             made = super().__call__(**{name: value for name, value in data.items() if name in known})
@@ -329,8 +332,13 @@ class Part(BaseModel, metaclass=_TranslatingType):
         """Return what a user may write for it in short: by default the part itself."""
         return self
 
+    def __getattr__(self, name: str) -> Any:
+        """Refuse an attribute that there is not; of an older version's, say what it is called now."""
+        check_renamed(f"{type(self).__name__!r} object", name, [*type(self).model_fields, *dir(type(self))])
+        return super().__getattr__(name)  # type: ignore[misc]  # which pydantic hides from type checkers
+
     @classmethod
-    def place(cls, data: dict) -> str:
+    def title(cls, data: dict) -> str:
         """Return how messages name the part made of ``data``."""
         kind = cls.kind or cls.__name__
         return f'{kind} "{data["name"]}"' if isinstance(data.get("name"), str) else kind
@@ -358,7 +366,7 @@ class Part(BaseModel, metaclass=_TranslatingType):
     @property
     def where(self) -> str:
         """Return how messages name this part."""
-        return self.place(dict(self))
+        return self.title(dict(self))
 
     def off_plane(self) -> Iterator[str]:
         """Yield its quantities that leave the plane z = 0, in words: by default those of the parts in it."""

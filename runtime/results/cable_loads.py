@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..kernels.libraries import kernels_of
 from ..model.attachments import CARRIED, UP, AttachmentModel
 from ..model.loads import GAUSS
-from ..model.model import CableModel, Model
+from ..model.model import CableModel, Kernel, Model
 from ..model.states import attachment_points, spatial
 from ..parts.load import DistributedForce, Moment
 from ..parts.scene_data import SceneData
@@ -66,7 +66,9 @@ def at_element(cable: CableModel, s: ArrayLike) -> tuple[np.ndarray, np.ndarray]
 
 
 def element_coordinates(cable: CableModel, values: np.ndarray, element: np.ndarray | None = None) -> np.ndarray:
-    """(T, elements, vectors, dim) of a cable from (T, n), or with element (T,) those of one each: (T, vectors, dim)."""
+    """Return (T, elements, vectors, dim) of a cable from (T, n), or with element (T,) those of one each: (T, vectors,
+    dim).
+    """
     nodal = values[:, cable.coordinates].reshape(len(values), *cable.shape)
     if element is not None:
         rows = np.arange(len(values))
@@ -74,14 +76,14 @@ def element_coordinates(cable: CableModel, values: np.ndarray, element: np.ndarr
     return np.concatenate([nodal[:, :-1], nodal[:, 1:]], axis=2)
 
 
-def shape_on_axis(cable: CableModel, x: np.ndarray) -> np.ndarray:
+def shape_on_axis(cable: CableModel, x: ArrayLike) -> np.ndarray:
     """Return (..., vectors): shape functions at places x of an element's centreline."""
-    x = np.asarray(x, dtype=float)
-    return rows(cable.kernel("on_axis"), x.size, cable.length, x.ravel())[0].reshape(*x.shape, -1)
+    at = np.asarray(x, dtype=float)
+    return rows(cable.kernel("on_axis"), at.size, cable.length, at.ravel())[0].reshape(*at.shape, -1)
 
 
-def rows(kernel, n: int, *given):
-    """A kernel n times; each argument has the kernel's shape, or that after n."""
+def rows(kernel: Kernel, n: int, *given: ArrayLike) -> Any:
+    """Call a kernel n times and return its outputs; each argument has the kernel's shape, or that after n."""
     return kernel.rows(n, *given)
 
 
@@ -100,9 +102,9 @@ class CableLoads:
         self._joints()
         self._point_forces()
 
-    def _add(self, cable: int, element, x, f: np.ndarray) -> None:
-        element, x = (np.broadcast_to(value, self.times) for value in (element, x))
-        self.points.setdefault(cable, []).append(PointLoad(element, x, f))
+    def _add(self, cable: int, element: ArrayLike, x: ArrayLike, f: np.ndarray) -> None:
+        of, at = (np.broadcast_to(value, self.times) for value in (element, x))
+        self.points.setdefault(cable, []).append(PointLoad(of, at, f))
 
     def _loads(self) -> None:
         for load in self.scene.loads.values():
@@ -123,12 +125,14 @@ class CableLoads:
                 f = self._force(cable, element, x, np.array(load.value), load.follower)
             self._add(self.number[on], element, x, scale[:, None, None] * f)
 
-    def _turning(self, cable: CableModel, kernel: str, element, x, c: np.ndarray) -> np.ndarray:
+    def _turning(self, cable: CableModel, kernel: str, element: np.ndarray | int, x: np.ndarray | float,
+                 c: np.ndarray) -> np.ndarray:
         """Return (T, vectors, dim): of a load that turns with the section."""
         e = element_coordinates(cable, self.at.q, np.broadcast_to(element, self.times))
         return rows(cable.kernel(kernel), self.times, cable.length, x, e, c)[0]
 
-    def _force(self, cable: CableModel, element, x, value: np.ndarray, follower: bool) -> np.ndarray:
+    def _force(self, cable: CableModel, element: np.ndarray | int, x: np.ndarray | float, value: np.ndarray,
+               follower: bool) -> np.ndarray:
         """Return (T, vectors, dim): of a force along the ground's axes, or the local ones."""
         if follower:
             return self._turning(cable, "follower_force", element, x, value[: self._follower_components(cable)])
@@ -156,7 +160,7 @@ class CableLoads:
             self.spreads.setdefault(number, []).append(Spread(element, start, stop, places, density, f))
 
     def _slides(self) -> None:
-        """Riders: their force at s, with the opposite on what rides; and moments of slides that keep axes."""
+        """Add riders: their force at s, with the opposite on what rides; and moments of slides that keep axes."""
         for slide in self.model.slides:
             force, s = self.at.value(f"{slide.name}.force"), self.at.value(f"{slide.name}.s")
             cable = self.model.cables[slide.cable]
@@ -172,16 +176,16 @@ class CableLoads:
             cable = self.model.cables[slide.cable]
             s = np.clip(self.at.value(f"{joint.slide}.s"), 0.0, cable.length * cable.n_elements)
             element, x = at_element(cable, s)
-            f = self._couple(cable, joint.ends[0], element, x, -moment)
+            f = self._couple(cable, joint.attachments[0], element, x, -moment)
             self._add(slide.cable, element, x, f)
-            self._on_end(joint.ends[1], None, moment)
+            self._on_end(joint.attachments[1], None, moment)
 
     def _joints(self) -> None:
         for joint in self.model.joints:
-            if joint.slide is not None or all(end.cable < 0 for end in joint.ends):
+            if joint.slide is not None or all(end.cable < 0 for end in joint.attachments):
                 continue
             force, moment = self.at.value(f"{joint.name}.force"), self.at.value(f"{joint.name}.moment")
-            one, other = joint.ends[::-1] if joint.reversed else joint.ends
+            one, other = joint.attachments[::-1] if joint.reversed else joint.attachments
             self._on_end(other, force, moment)
             if one.cable >= 0:  # its moment balances the other end's, and the forces where these stand apart
                 gap = self._end_point(other) - self._end_point(one)
@@ -193,19 +197,19 @@ class CableLoads:
             return attachment_points(self.model, end, self.at.q)
         body = self.model.bodies[end.body]
         arm = body.centre + end.u
-        if end.spot is not None:
-            arm = spatial(end.spot[0] + self.at.value(f"{body.name}.modal_coordinates") @ end.spot[1])
+        if end.modal is not None:
+            arm = spatial(end.modal[0] + self.at.value(f"{body.name}.modal_coordinates") @ end.modal[1])
         return self.at.value(f"{body.name}.position") + rotate(self.at.value(f"{body.name}.orientation"), arm)
 
     def _point_forces(self) -> None:
         for between in self.model.point_forces:
-            if any(end.cable >= 0 for end in between.ends):
+            if any(end.cable >= 0 for end in between.attachments):
                 force = self.at.value(f"{between.name}.force")
-                self._on_end(between.ends[0], force, None)
-                self._on_end(between.ends[1], -force, None)
+                self._on_end(between.attachments[0], force, None)
+                self._on_end(between.attachments[1], -force, None)
 
     def _on_end(self, end: AttachmentModel, force: np.ndarray | None, moment: np.ndarray | None) -> None:
-        """A force and a moment (T, 3) on what carries an end, where that is a cable."""
+        """Add a force and a moment (T, 3) on what carries an attachment, where that is a cable."""
         if end.cable < 0:
             return
         cable = self.model.cables[end.cable]
@@ -217,7 +221,8 @@ class CableLoads:
             f = f + self._couple(cable, end, np.full(self.times, end.element), np.full(self.times, x), moment)
         self._add(end.cable, end.element, x, f)
 
-    def _couple(self, cable: CableModel, end: AttachmentModel, element, x, moment: np.ndarray) -> np.ndarray:
+    def _couple(self, cable: CableModel, end: AttachmentModel, element: np.ndarray, x: np.ndarray,
+                moment: np.ndarray) -> np.ndarray:
         """Return (T, vectors, dim): of a moment (T, 3) on the frame that an end has of its cable, T' m."""
         e = element_coordinates(cable, self.at.q, element)
         S = rows(cable.kernel("slopes"), self.times, cable.length, x)[:, :, 0]  # (T, xyz, vectors)
@@ -238,7 +243,9 @@ class CableLoads:
         return sum(S[:, slope, :, None] * g[:, k, None] for k, slope in enumerate(end.slopes) if slope >= 0)
 
     def _x_of(self, cable: CableModel, end: AttachmentModel) -> float:
-        """x of an end in its element, from its shape functions: those of positions and slopes weigh a line's points."""
+        """Return x of an attachment in its element, from its shape functions: those of positions and slopes weigh a
+        line's points.
+        """
         straight = np.zeros(len(end.N))
         names = [*cable.vectors, *cable.vectors]
         for k, name in enumerate(names):

@@ -17,12 +17,13 @@ _EMPTY = 0x9E3779B97F4A7C15
 
 
 def text_checksum(data: bytes, before: int = 0) -> int:
-    """CRC-32 of bytes, going on from that of the bytes before."""
+    """Return CRC-32 of bytes, going on from that of the bytes before."""
     return zlib.crc32(data, before)
 
 
 def row_checksums(words: np.ndarray) -> np.ndarray:
-    """(rows,) of (rows, words) unsigned 64-bit words as they stand in the file: 53 bits each, exact as a float."""
+    """Return (rows,) of (rows, words) unsigned 64-bit words as they stand in the file: 53 bits each, exact as a float.
+    """
     mixed = words >> np.uint64(32)
     mixed ^= words  # one to one, and the last bits of what two words' first ones change
     sums = np.einsum("ij,j->i", mixed, _weights(words.shape[1])) + np.uint64(_EMPTY)

@@ -76,7 +76,9 @@ def file_text(report: dict, rows: int | None = None) -> str:
 
 def create_file(path: str | os.PathLike, coords: Mapping[str, Variable], variables: Mapping[str, Variable], scene: str,
                 report: str, spare: int = 0, descriptor: int | None = None) -> File:
-    """A new file of results, without rows; report: from `file_text`; see `funicular.netcdf.create`. Raises OSError."""
+    """Return a new file of results, without rows; report: from `file_text`; see `funicular.netcdf.create`. Raises
+    OSError.
+    """
     return create(path, coords, variables, {"funicular_format": FILE_FORMAT, "scene": scene}, report, spare, descriptor)
 
 

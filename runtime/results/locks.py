@@ -22,13 +22,14 @@ class NoLocks(Exception):  # noqa: N818
 
 
 def created(path: str | os.PathLike) -> int:
-    """A descriptor of a new file, to read and write, in the place of an older one or of a link. Raises OSError."""
+    """Return a descriptor of a new file, to read and write, which replaces an older one or a link. Raises OSError."""
     Path(path).unlink(missing_ok=True)
     return os.open(path, _NEW | os.O_EXCL, _MODE)
 
 
 def claimed(path: str | os.PathLike) -> int:
-    """A descriptor of a file, to read and write, which nobody else can claim until it is closed; new, or as it is.
+    """Return a descriptor of a file, to read and write, which nobody else can claim until it is closed; new, or as it
+    is.
 
     Raises Taken, NoLocks, OSError (ELOOP where it is a link).
     """

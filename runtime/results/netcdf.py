@@ -12,6 +12,7 @@ import os
 import struct
 import weakref
 from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -86,7 +87,9 @@ class File:
         return self._row.itemsize
 
     def read(self, name: str) -> np.ndarray:
-        """All values of a variable, in this machine's order of bytes; texts as str. Not of rows that are left out."""
+        """Return all values of a variable, in this machine's order of bytes, texts as str; without rows that are left
+        out.
+        """
         entry = self.entries[name]
         if not entry.in_rows:
             raw = read_at(self.descriptor, size_of(entry), entry.begin)
@@ -123,7 +126,7 @@ class File:
             yield start, part
 
     def _kept_blocks(self) -> Iterator[np.ndarray]:
-        """Rows that are not left out."""
+        """Yield blocks of rows that are not left out."""
         for start, block in self._blocks(self.rows):
             gone = self.left_out[(self.left_out >= start) & (self.left_out < start + len(block))] - start
             yield np.delete(block, gone) if len(gone) else block
@@ -189,7 +192,7 @@ class File:
         self._put(struct.pack(">i", rows), COUNT_AT)
         self.rows = rows
 
-    def _put(self, data, at: int) -> None:
+    def _put(self, data: Any, at: int) -> None:
         left = memoryview(data)
         while len(left):
             done = write_at(self.descriptor, left, at)
@@ -246,6 +249,6 @@ def create(path: str | os.PathLike, coords: Mapping[str, Variable], variables: M
 
 
 def _texts(characters: np.ndarray) -> np.ndarray:
-    """(..., n) characters -> (...) str."""
+    """Return characters (..., n) as texts (...)."""
     joined = np.ascontiguousarray(characters).view(f"S{characters.shape[-1]}")[..., 0]
     return np.char.decode(joined, "utf-8")

@@ -39,7 +39,9 @@ class Entry(NamedTuple):
 
 
 def header_checksum(head: bytes, places: Mapping[str, tuple[int, int]]) -> str:
-    """Of all before the first row, but for the number of rows, the report's text and the checksum itself."""
+    """Return the checksum of all before the first row, but for the number of rows, the report's text and the checksum
+    itself.
+    """
     checksum, at = 0, 0
     for begin, size in sorted([(COUNT_AT, 4), places[HEADER_CHECKSUM], places.get("report", (COUNT_AT, 0))]):
         checksum, at = text_checksum(head[at:begin], checksum), begin + size

@@ -94,7 +94,8 @@ def _external(model: Model, number: int, at: Instants, loads: CableLoads) -> np.
 
 
 def _accelerations(model: Model, at: Instants, forces: dict[int, np.ndarray]) -> np.ndarray:
-    """(T, n_dof): nodal accelerations of these cables; forces (T, elements, vectors, dim) are internal less outer ones.
+    """Return (T, n_dof): nodal accelerations of these cables; forces (T, elements, vectors, dim) are internal less
+    outer ones.
 
     M a = -forces on what is free, with what supports and joins hold and motions prescribe. Eq 38 gave the same at each
     of the instants: so a run need not keep them.
@@ -133,14 +134,14 @@ def _mass(cable: CableModel) -> csr_array:
     return kron(m.tocsr(), np.eye(cable.shape[2]), format="csr")
 
 
-def _reduction(model: Model, dofs: np.ndarray):
-    """(dofs, unknowns that they have) sparse: dofs = T unknowns + what is prescribed."""
-    place, combinations = model.place[dofs], model.combinations.tocsr()
-    free, combined = np.flatnonzero(place >= 0), np.flatnonzero(place < -1)
-    n = max(combinations.shape[1], int(place.max(initial=-1)) + 1)
-    T = coo_array((np.ones(len(free)), (free, place[free])), shape=(len(dofs), n)).tocsr()
+def _reduction(model: Model, dofs: np.ndarray) -> csr_array:
+    """Return T (dofs, unknowns that they have), sparse: dofs = T unknowns + what is prescribed."""
+    unknown, combinations = model.unknown_of_dof[dofs], model.combinations.tocsr()
+    free, combined = np.flatnonzero(unknown >= 0), np.flatnonzero(unknown < -1)
+    n = max(combinations.shape[1], int(unknown.max(initial=-1)) + 1)
+    T = coo_array((np.ones(len(free)), (free, unknown[free])), shape=(len(dofs), n)).tocsr()
     if len(combined):
-        part = combinations[-2 - place[combined]].tocoo()
+        part = combinations[-2 - unknown[combined]].tocoo()
         T = T + coo_array((part.data, (combined[part.row], part.col)), shape=T.shape).tocsr()
     used = np.flatnonzero(np.diff(T.tocsc().indptr))
     return T.tocsc()[:, used].tocsr()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -33,7 +33,7 @@ ENERGIES = {
 }
 
 
-def labelled(rows) -> tuple[dict[str, Variable], dict[str, Variable]]:
+def labelled(rows: Any) -> tuple[dict[str, Variable], dict[str, Variable]]:
     """Return results of the rows that `funicular.recording` names, with their labels; coordinates."""
     variables = {}
     coords = {

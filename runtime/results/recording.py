@@ -6,20 +6,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..engine import Engine
 from ..model.joints import JointModel
 from ..model.model import Model, SlideModel
 from ..model.states import (
     body_rates,
     body_state,
-    joint_state,
+    connection_states,
     modal_state,
-    point_force_state,
     spatial,
-    support_reaction,
-    tie_force,
 )
 from ..parts.modal_body import ModalBody
-from ..parts.point_force import PointForce
 from ..parts.scene_data import SceneData
 from ..parts.settings import RunSettings
 from ..solve.diagnosis import stopped
@@ -51,7 +48,7 @@ class Recording(Rows):
     report: dict
 
 
-def named(model: Model, scene: SceneData, engine) -> Rows:
+def named(model: Model, scene: SceneData, engine: Engine) -> Rows:
     """Return the engine's rows by name."""
     rows = engine.rows()
     q, v, a = rows["q"], rows["v"], rows["acceleration"]
@@ -70,30 +67,13 @@ def named(model: Model, scene: SceneData, engine) -> Rows:
         bodies[body.name] = state | body_rates(model, body, state["orientation"], v, a)
         if body.modes:
             modal[body.name] = modal_state(model, body, state, q, v)
+    forces = connection_states(model, scene, q, rows["reaction"], rows["joint"], rows["point_force"])
     slides = {}
     for k, slide in enumerate(model.slides):
-        slides[slide.name] = {"s": rows["s"][:, k], **engine.slide_row(rows["slide"][:, k])}
-        slides[slide.name]["residual"] = np.linalg.norm(slides[slide.name]["residual"], axis=-1)
-
-    for k, joint in enumerate(model.joints):
-        if joint.slide is not None:
-            slides[joint.slide]["moment"] = joint_state(joint, rows["joint"][:, k])["moment"]
-
-    def reaction(part) -> dict[str, np.ndarray]:
-        return support_reaction(model, scene, part, rows["reaction"], q)
-
-    parts = {
-        "bodies": bodies,
-        "slides": slides,
-        "pins": {pin.label: {"force": reaction(pin)["force"]} for pin in scene.pins},
-        "clamps": {clamp.label: reaction(clamp) for clamp in scene.clamps},
-        "motions": {motion.label: reaction(motion) for motion in scene.motions},
-        "ties": {name: tie_force(model, scene, tie, rows["reaction"], q) for name, tie in scene.ties.items()},
-        "joints": {joint.name: joint_state(joint, rows["joint"][:, k])
-                   for k, joint in enumerate(model.joints) if joint.slide is None},
-        PointForce.group: {between.name: point_force_state(model, between, rows["point_force"][:, k], q)
-                           for k, between in enumerate(model.point_forces)},
-    }
+        own = {"s": rows["s"][:, k], **engine.slide_row(rows["slide"][:, k])}
+        own["residual"] = np.linalg.norm(own["residual"], axis=-1)
+        slides[slide.name] = own | forces["slides"].get(slide.name, {})
+    parts = {"bodies": bodies, **forces, "slides": slides}
     energy = {name: rows[name] for name in ("kinetic", "elastic", "potential", "dissipated", "external")}
     return Rows(rows["time"], cables, modal, parts, energy)
 
@@ -127,8 +107,9 @@ def recorded(simulation: Simulation, scene: SceneData, settings: RunSettings) ->
     )
 
 
-def _costs(model: Model, engine) -> dict[str, float]:
-    """µs of a step that each slide and joint takes by itself; a slide that ties its rider's axes has both its parts."""
+def _costs(model: Model, engine: Engine) -> dict[str, float]:
+    """Return the µs of a step that each slide and joint takes; a slide that ties its rider's axes has both its parts.
+    """
     found: dict[str, float] = {}
     if model.slides or model.joints:
         for coupling, seconds in zip(model.couplings, engine.costs(), strict=True):
@@ -142,7 +123,7 @@ def _message(simulation: Simulation, scene: SceneData, settings: RunSettings) ->
     when = f"t = {engine.time:.6g} s of {settings.duration:.6g} s"
     match status:
         case "end_of_cable":
-            slide = model.slides[engine.stopped_joint]
+            slide = model.slides[engine.stopped_slide]
             cable = model.cables[slide.cable]
             middle = 0.5 * cable.n_elements * cable.length
             end = "end" if engine.stopped_s > middle else "start"

@@ -94,7 +94,7 @@ class Run:
 
     @property
     def status(self) -> str:
-        """``completed``, ``event`` (stopped by one), ``interrupted``, ``end_of_cable`` or ``no_convergence``.
+        """Return ``completed``, ``event`` (stopped by one), ``interrupted``, ``end_of_cable`` or ``no_convergence``.
 
         ``unfinished`` of a run that goes on, or was killed.
         """
@@ -116,7 +116,7 @@ class Run:
 
     @property
     def libraries(self) -> Iterable[str | os.PathLike]:
-        """Directories of elements that the scene may load when it is read back from its text."""
+        """Return the directories of elements that the scene may load when it is read back from its text."""
         return self._scene_text.libraries
 
     @cached_property
@@ -170,7 +170,8 @@ class Run:
 
     @cached_property
     def _positions(self) -> dict[str, str]:
-        """Cables' positions of nodes, (time, node, 3) in m, by name; each is the first of these nodal vectors."""
+        """Return cables' positions of nodes, (time, node, 3) in m, by name; each is the first of these nodal vectors.
+        """
         suffix = ".nodal_vectors"
         return {name.removesuffix(suffix) + ".position": name for name in self.variables if name.endswith(suffix)}
 
@@ -192,13 +193,13 @@ class Run:
         return InitialState({name: self[name][row] for name in names if name in self}, float(self.time[row]))
 
     def __repr__(self) -> str:
-        """Status, times and number of results."""
+        """Return the status, times and number of results."""
         times = f"{len(self.time)} times to {self.time[-1]:.6g} s" if len(self.time) else "no times"
         return f"<funicular.Run: {self.status}, {times}, {len(self.keys())} results>"
 
     @property
     def dataset(self) -> xarray.Dataset:
-        """All of it as an xarray.Dataset, with units, long names, the report and the scene as attributes."""
+        """Return all of it as an xarray.Dataset, with units, long names, the report and the scene as attributes."""
         import xarray  # 0.5 s, for those who ask for it
 
         from .files import WITH_CHECKSUMS, file_text

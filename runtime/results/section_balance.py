@@ -21,7 +21,7 @@ import numpy as np
 from ..model.model import CableModel
 from ..model.states import spatial
 from ..parts.cable import EXACT, Cable
-from .cable_loads import CableLoads, positions, rows, shape_on_axis
+from .cable_loads import CableLoads, Spread, positions, rows, shape_on_axis
 from .nodal_forces import ElementForces
 
 
@@ -45,7 +45,8 @@ class Cuts:
 
 
 def resultants(f: np.ndarray, e: np.ndarray, is_r: np.ndarray, about: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Force and moment (..., 3) about a point `about` (..., 3) of generalised forces f (..., vectors, dim) on e."""
+    """Return force and moment (..., 3) about a point `about` (..., 3) of generalised forces f (..., vectors, dim) on e.
+    """
     f, e = spatial(f), spatial(e)
     arms = e - np.where(is_r[:, None], about[..., None, :], 0.0)
     return f[..., is_r, :].sum(axis=-2), np.cross(arms, f).sum(axis=-2)
@@ -96,8 +97,10 @@ def _shape(model: CableModel, x: np.ndarray) -> np.ndarray:
     return shape_on_axis(model, x)
 
 
-def _of_inertia(cable: Cable, model: CableModel, cuts: Cuts, e: np.ndarray, a: np.ndarray):
-    """Force and moment (T, n, 3) about the element's first node that the element takes up to the cut.
+def _of_inertia(cable: Cable, model: CableModel, cuts: Cuts, e: np.ndarray, a: np.ndarray) -> tuple[np.ndarray,
+                np.ndarray]:
+    """Return the force and moment (T, n, 3) about the element's first node that the element's inertia takes up to the
+    cut.
 
     Gauss points in as large a number as the product of two shape functions needs.
     """
@@ -120,12 +123,14 @@ def _of_inertia(cable: Cable, model: CableModel, cuts: Cuts, e: np.ndarray, a: n
 
 
 def _at(N: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """(T, n, 3) from shape functions (T or 1, n, vectors) and vectors (T, n, vectors, 3)."""
+    """Return (T, n, 3) from shape functions (T or 1, n, vectors) and vectors (T, n, vectors, 3)."""
     return np.einsum("tnk,tnkd->tnd", np.broadcast_to(N, (len(values), *N.shape[1:])), values)
 
 
-def _of_spread(model: CableModel, spread, x: np.ndarray, e: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Force and moment (T, n, 3) about the element's first node of what is spread up to x, and the force a length at x.
+def _of_spread(model: CableModel, spread: Spread, x: np.ndarray, e: np.ndarray) -> tuple[np.ndarray, np.ndarray,
+               np.ndarray]:
+    """Return the force and moment (T, n, 3) about the element's first node of what is spread up to x, and the force a
+    length at x.
 
     x: (T or 1, n) in m; e: (T, n, vectors, 3).
     """
@@ -140,7 +145,7 @@ def _of_spread(model: CableModel, spread, x: np.ndarray, e: np.ndarray) -> tuple
     return force, moment, _density(spread, x)
 
 
-def _density(spread, x: np.ndarray) -> np.ndarray:
+def _density(spread: Spread, x: np.ndarray) -> np.ndarray:
     """Return (T, n, 3): force a length at x (T or 1, n)."""
     weights, times = _lagrange(spread.x, x), len(spread.density)
     return np.einsum("tnp,tpd->tnd", np.broadcast_to(weights, (times, *weights.shape[1:])), spread.density)

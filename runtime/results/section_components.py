@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ..parts.cable import Cable
+from .section_balance import Cuts
 from .section_layer import Kink, beside, line_bending
 
 SHOWN = 1e-4
@@ -60,9 +61,10 @@ def unresolved(cable: Cable, force: np.ndarray) -> np.ndarray:
     return x**2 / (1 + x**2)
 
 
-def taut_bending(cable: Cable, force: np.ndarray, change: np.ndarray, axes: np.ndarray, cuts,
+def taut_bending(cable: Cable, force: np.ndarray, change: np.ndarray, axes: np.ndarray, cuts: Cuts,
                  kinks: Callable[[], list[Kink]]) -> np.ndarray:
-    """(T, n, 3): the moment of bending that a taut cable has along the line of its force, see results/section_layer.py.
+    """Return (T, n, 3): the moment of bending that a taut cable has along the line of its force, see
+    results/section_layer.py.
 
     Nil where the mesh shows all, and in compression.
     """
@@ -115,7 +117,8 @@ def _not_zero(value: np.ndarray) -> np.ndarray:
     return np.where(value > 0, value, 1.0)
 
 
-def _named(cable: Cable, tension, shear, moment, axes, strain) -> dict[str, np.ndarray]:
+def _named(cable: Cable, tension: np.ndarray, shear: np.ndarray, moment: np.ndarray, axes: np.ndarray,
+           strain: np.ndarray) -> dict[str, np.ndarray]:
     size, strains = np.linalg.norm(shear, axis=-1), np.moveaxis(strain, -1, 0)
     if not cable.kind_of_element.director:
         return {"tension": tension, "shear": size, "strain": strains[0], "curvature": strains[5]}

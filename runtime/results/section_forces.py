@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -100,9 +100,9 @@ def cut_forces(scene: SceneData, model: Model, at: Instants, name: str, s: np.nd
     return balanced_components(cable, (balance_force, balance_moment), (force, moment), taut, axes, strain)
 
 
-def of_run(run: Results, name: str, s: np.ndarray, chosen=slice(None), *, method: str = "balance",
+def of_run(run: Results, name: str, s: np.ndarray, chosen: Any = slice(None), *, method: str = "balance",
            side: str = "after") -> dict[str, np.ndarray]:
-    """`cut_forces` of a run at the chosen times; s: (1 or T, n)."""
+    """Return `cut_forces` of a run at the chosen times; s: (1 or T, n)."""
     time = run.time[chosen]
     numbers = np.arange(len(run.time))[chosen]
     found: list[dict] = []
@@ -132,13 +132,13 @@ def _instants(run: Results, numbers: np.ndarray) -> Instants:
 
 def of_equilibrium(state: RestState, name: str, s: np.ndarray, *, method: str = "balance",
                    side: str = "after") -> dict[str, np.ndarray]:
-    """`cut_forces` of a state of rest: T = 1; s: (1, n)."""
+    """Return `cut_forces` of a state of rest: T = 1; s: (1, n)."""
     return cut_forces(state.scene, state.model, rest_instants(state), name, s, method=method, side=side, at_rest=True)
 
 
 def rest_instants(state: RestState) -> Instants:
     """Return a state of rest as one instant, with as much of the loads as it has."""
-    return Instants(np.zeros(1), state.placed["q"][None], np.zeros((1, state.model.n_dof)),
+    return Instants(np.zeros(1), state.static_state["q"][None], np.zeros((1, state.model.n_dof)),
                     lambda quantity: state[quantity][None], state.load_fraction, state.gravity_fraction)
 
 
@@ -166,7 +166,7 @@ def even(cable: Cable) -> np.ndarray:
 
 
 def with_sides(cable: Cable, s: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """s (n,), in order, with a point on either side of each of the places (..., m): (..., n + 2 m)."""
+    """Return s (n,), in order, with a point on either side of each of the places (..., m): (..., n + 2 m)."""
     beside = BESIDE * cable.length
     sides = np.clip(np.concatenate([places - beside, places + beside], axis=-1), 0.0, cable.length)
     return np.sort(np.concatenate([np.broadcast_to(s, (*sides.shape[:-1], len(s))), sides], axis=-1), axis=-1)
@@ -205,8 +205,8 @@ def dataset(state: Results | RestState, cable: Cable | str, s: ArrayLike | Slide
         coords, {"cable": name, "element": drawn.element, "law": drawn.law, "method": method, "side": side})
 
 
-def _places(state: Results | RestState, cable: Cable, s, over_time: bool) -> tuple[np.ndarray, bool]:
-    """(1 or T, n) arc-lengths from what was asked for, and whether they go with a slide."""
+def _places(state: Results | RestState, cable: Cable, s: Any, over_time: bool) -> tuple[np.ndarray, bool]:
+    """Return arc-lengths (1 or T, n) from what was asked for, and whether they go with a slide."""
     scene, name = state.scene, cable.name
     if s is None:
         places = jumps(scene, name)

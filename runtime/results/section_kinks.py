@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ..model.model import CableModel
@@ -13,6 +15,9 @@ from .cable_loads import CableLoads, positions, shape_on_axis
 from .nodal_forces import ElementForces
 from .section_balance import Cuts, balanced, resultants
 from .section_layer import Kink, fixed_direction
+
+ForceAt = Callable[[np.ndarray, bool], np.ndarray]
+"""The force in sections at s (m), on the side after a jump or before it."""
 
 
 def kinks(scene: SceneData, cable: Cable, model: CableModel, forces: ElementForces, loads: CableLoads,
@@ -26,13 +31,14 @@ def kinks(scene: SceneData, cable: Cable, model: CableModel, forces: ElementForc
             *_of_nodes(scene, cable, model, forces, force_at)]
 
 
-def _of_points(cable, model, forces, loads, number, force_at) -> list[Kink]:
+def _of_points(cable: Cable, model: CableModel, forces: ElementForces, loads: CableLoads, number: int,
+               force_at: ForceAt) -> list[Kink]:
     points, is_r = loads.points.get(number, []), positions(model)
     if not points:
         return []
     s = np.stack([load.element * model.length + load.x for load in points], axis=1)
     inside = (s > 1e-9 * cable.length) & (s < (1 - 1e-9) * cable.length)
-    before, instants, found = force_at(s, after=False), np.arange(len(s)), []
+    before, instants, found = force_at(s, False), np.arange(len(s)), []
     for k, load in enumerate(points):
         e = forces.e[instants, load.element]
         at = spatial(np.einsum("tk,tkd->td", shape_on_axis(model, load.x), e))
@@ -43,8 +49,9 @@ def _of_points(cable, model, forces, loads, number, force_at) -> list[Kink]:
     return found
 
 
-def _of_nodes(scene: SceneData, cable: Cable, model: CableModel, forces: ElementForces, force_at) -> list[Kink]:
-    """Supports and joins; a section that they keep from turning fixes the direction of the line."""
+def _of_nodes(scene: SceneData, cable: Cable, model: CableModel, forces: ElementForces,
+              force_at: ForceAt) -> list[Kink]:
+    """Return the kinks at supports and ties; a section that they keep from turning fixes the direction of the line."""
     found: list[Kink] = []
     directed: dict[int, bool] = {}  # nodes, and whether their section keeps its direction
     ends = [(support.cable, support.s, _keeps_direction(support)) for support in scene.supports]
@@ -70,7 +77,9 @@ def _of_nodes(scene: SceneData, cable: Cable, model: CableModel, forces: Element
 
 
 def _normal(model: CableModel, vectors: np.ndarray) -> np.ndarray:
-    """(T, 3): direction of the section's normal at a node, of its vectors (T, vectors, 3); of a cable the tangent."""
+    """Return (T, 3): the direction of the section's normal at a node, of its vectors (T, vectors, 3); of a cable the
+    tangent.
+    """
     named = dict(zip(model.vectors, np.moveaxis(vectors, 1, 0), strict=True))
     if "r_y" not in named:
         return named["r_x"]

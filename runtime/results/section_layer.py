@@ -78,7 +78,7 @@ def beside(kink: Kink, s: np.ndarray, after: np.ndarray, stiffness: Stiffness, f
 
 
 def _turn(before: np.ndarray, after: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Axis and half of the angle by which directions (T, 3) turn."""
+    """Return the axis and half of the angle by which directions (T, 3) turn."""
     cross = np.cross(before, after)
     sine = np.linalg.norm(cross, axis=-1)
     angle = np.arctan2(sine, np.sum(before * after, axis=-1))

@@ -82,7 +82,7 @@ class Stream:
         """Return the stream itself."""
         return self
 
-    def __exit__(self, *exception) -> None:
+    def __exit__(self, *exception: object) -> None:
         """Let other runs have the file."""
         self._let_go()
 
@@ -192,7 +192,7 @@ class Stream:
                 "messages": self._scene.messages, "settings": self._settings.model_dump()}
 
     def _make(self, arrays: tuple[Mapping[str, Variable], Mapping[str, Variable]]) -> None:
-        """A new file with these rows, in the place of an older one, whose checkpoint goes first."""
+        """Make a new file with these rows, which replaces an older one; the checkpoint of that goes first."""
         variables, coords = arrays
 
         def make() -> None:
@@ -206,7 +206,7 @@ class Stream:
 
     def _replace(self, coords: Mapping[str, Variable], variables: Mapping[str, Variable], report: dict,
                  rows: int | None = None) -> None:
-        """The part file, whole but for its rows."""
+        """Replace the older file by the part file, whole but for its rows."""
         descriptor, self._new = self._new if self._new >= 0 else self._claim(self._part), -1
         self._opened = create_file(self._part, coords, variables, dumps(self._scene), file_text(report, rows),
                                  REPORT_SPARE, descriptor)
@@ -263,7 +263,9 @@ class Stream:
             raise self._unwritable(error) from None
 
     def _claim_older(self) -> int:
-        """A descriptor of the file that is there already, which no other run can then write; -1 where there is none."""
+        """Return a descriptor of the file that is there already, which no other run can then write; -1 where there is
+        none.
+        """
         while self._path.exists():
             try:
                 descriptor = os.open(self._path, os.O_RDWR | BYTES)
@@ -351,7 +353,7 @@ def _digest(*parts: bytes) -> str:
 
 
 def _programs(scene: SceneData) -> str:
-    """Digest of the machine code that computes the run."""
+    """Return the digest of the machine code that computes the run."""
     files = [engine.__file__, kernels.__file__]
     versions = f"{numpy.__version__} {scipy.__version__}"
     return _digest(versions.encode(), *(Path(file).read_bytes() for file in files),
@@ -359,6 +361,6 @@ def _programs(scene: SceneData) -> str:
 
 
 def _start_of(model: Model) -> str:
-    """Digest of the state that a run starts from."""
+    """Return the digest of the state that a run starts from."""
     places = [(slide.s, slide.element, slide.director.tolist()) for slide in model.slides]
     return _digest(model.q.tobytes(), model.v.tobytes(), repr(places).encode())

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..errors import FunicularWarning, enough_memory
 from ..model.build import build
+from ..model.model import CableModel
 from ..parts.body_shape import Shape
 from ..parts.modal_body import ModalBody
 from ..parts.scene_data import SceneData
@@ -53,8 +54,8 @@ def of_mesh(body: ModalBody) -> Shape:
                  stiffness, mass, S, X)
 
 
-def _integrals(model, fields: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """S and X of fields (k, node, vector, 3)."""
+def _integrals(model: CableModel, fields: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return S and X of fields (k, node, vector, 3)."""
     ones = np.array([v == "r" for v in model.vectors] * 2, dtype=float)
     S, X = np.zeros((len(fields), 3)), np.zeros((len(fields), len(fields), 3, 3))
     for element in range(model.n_elements):

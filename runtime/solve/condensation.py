@@ -8,15 +8,15 @@ from scipy.sparse import csc_array
 from ..model.model import Model
 
 
-def fastest(K: csc_array, M: csc_array, unknowns=slice(None)) -> float:
-    """rad²/s², about the square of the highest frequency of some unknowns; M may have more after those of K."""
+def fastest(K: csc_array, M: csc_array, unknowns: np.ndarray | slice = slice(None)) -> float:
+    """Return about the square of the highest frequency of some unknowns, rad²/s²; M may have more after those of K."""
     inertia, stiffness = M.diagonal()[: K.shape[0]][unknowns], K.diagonal()[unknowns]
     heavy = inertia > 0
     return float(np.max(np.abs(stiffness[heavy]) / inertia[heavy], initial=0.0))
 
 
 def condensed(full: csc_array, model: Model) -> tuple[csc_array, csc_array]:
-    """Stiffness over all coordinates, with forces that a law gives eliminated; and the constraints on them."""
+    """Return the stiffness over all coordinates, forces that a law gives eliminated; and the constraints on them."""
     n = model.n_band + model.n_border_dof
     own = [n + k for coupling in model.couplings for k in coupling.free_coordinates]
     forces = [n + k for coupling in model.couplings if not coupling.follows_law for k in coupling.force_unknowns]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..engine import Engine
 from ..integrators import INTEGRATORS, stable_at
 from ..model.model import CableModel, Model, SlideModel
 from ..model.redundant_constraints import redundant
@@ -33,40 +34,42 @@ QUIET_ERROR, QUIET_LOSS, LOOSE_LOSS = 5e-3, 0.01, 0.05
 these are reported; the last is for loose tolerances, where energy may be off by so much more."""
 
 
-def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
+def stopped(model: Model, engine: Engine, status: str, settings: RunSettings) -> str:
     """Return the message of a run that found no acceptable step, lost a joint or whose energy grew."""
     when = f"t = {engine.time:.6g} s of {settings.duration:.6g} s"
     cause, dof, coupling = engine.failure
     _, q, v, _ = engine.now()
-    where, (state, folded) = place(model, dof, coupling), condition(model, dof, q, v)
+    where, (state, folded) = describe_dof(model, dof, coupling), condition(model, dof, q, v)
     of_a_body = coupling is None and _node(model, dof) is None
     if status == "unstable":
         grown, _, exchanged, in_motion, _ = engine.balance
         exchanged = max(exchanged, in_motion)
-        return (f"energy came from nowhere at {when}: {grown:.3g} J, where {exchanged:.3g} J were exchanged; fastest "
-                f"is {where} ({state}); {KEPT}. {_too_large(engine, settings)}")
+        return (f"energy grew without a source at {when}: {grown:.3g} J, where {exchanged:.3g} J were exchanged; "
+                f"fastest is {where} ({state}); {KEPT}. {_too_large(engine, settings)}")
     if cause is None and status == "no_convergence":
         return (f"no step could be made at {when}: to pass an event there it would have to be shorter than 1e-12 of "
                 f"the duration; {KEPT}. Look at slides, stops and events that act at the same instant")
     if doubled := redundant(model, engine):
-        return (f"no step converged at {when}: {doubled} hold nearly the same; {KEPT}. "
-                "Leave one of them out, or hold the body at points farther apart")
+        return (f"no step converged at {when}: {doubled} constrain nearly the same motion; {KEPT}. "
+                "Leave one of them out, or attach the body at points farther apart")
     if status == "singular" or cause == "matrix":
         why, remedy = ("", "Look at its mass and inertia, and at its joints") if of_a_body else (
             ", as where a cable's tangent vanishes or its director lies along it",
             "Look at the masses and at up, or take more elements there")
         return (f"the equations are singular at {when}, first at {where} ({state}): a joint or the mass matrix is "
                 f"degenerate{why}; {KEPT}. {remedy}")
-    what = {"iteration": f"the iteration does not settle, least of all at {where}",
+    assert cause is not None, "a step that failed has a cause"
+    what = {"iteration": f"the iteration does not converge, least of all at {where}",
             "error": f"the error stays above what tol allows, most of all at {where}",
-            "lost_rider": f"{where} does not find its place on the cable any more",
-            "not_finite": f"{where} runs away",
-            "jam": f"friction jams {where}: the more it holds, the more it is pressed on the cable"}[cause]
+            "lost_rider": f"{where} does not find its point on the cable any more",
+            "not_finite": f"{where} diverges",
+            "self_locking": f"friction is self-locking at {where}: the larger it is, the harder it presses the rider "
+                            "on the cable"}[cause]
     counts = engine.statistics
     gone = f" after {counts['steps']} steps down to {counts['smallest_step_s']:.2g} s" if counts["steps"] else ""
     if settings.step is not None and INTEGRATORS[engine.integrator].stability is not None:
         remedy = _too_large(engine, settings)
-    elif cause == "jam":
+    elif cause == "self_locking":
         remedy = "Take a smaller coefficient, or the rider's point nearer to its centre of mass"
     elif folded:
         remedy = f"The cable folds up there: take more elements{damping(model, dof)}"
@@ -76,7 +79,7 @@ def stopped(model: Model, engine, status: str, settings: RunSettings) -> str:
     return f"no step converged at {when}{gone}: {what} ({state}); {KEPT}. {remedy}"
 
 
-def _too_large(engine, settings: RunSettings) -> str:
+def _too_large(engine: Engine, settings: RunSettings) -> str:
     size = f"tol {settings.tol:g}" if settings.step is None else f"step {settings.step:g} s"
     others = "" if settings.step is None else ", or none, so that tol chooses it"
     stable = ""
@@ -88,7 +91,7 @@ def _too_large(engine, settings: RunSettings) -> str:
     return f'The {size} is too large for integrator "{engine.integrator}": take a smaller one{others}{stable}'
 
 
-def place(model: Model, dof: int, coupling: int | None = None) -> str:
+def describe_dof(model: Model, dof: int, coupling: int | None = None) -> str:
     """Return what a dof is of, or what a coupling of this number is."""
     if coupling is not None:
         failed = model.couplings[coupling]
@@ -132,7 +135,7 @@ def _node(model: Model, dof: int) -> tuple[CableModel, int] | None:
     return None
 
 
-def notes(engine, settings: RunSettings) -> list[str]:
+def notes(engine: Engine, settings: RunSettings) -> list[str]:
     """Return what a user should know of a completed run whose results are coarse; empty where they are good."""
     counts, notes = engine.statistics, []
     if settings.step is not None and counts["rejected_steps"]:
@@ -151,7 +154,7 @@ def notes(engine, settings: RunSettings) -> list[str]:
     return notes + unexplained(engine, settings)
 
 
-def trapped(scene: SceneData, engine) -> list[str]:
+def trapped(scene: SceneData, engine: Engine) -> list[str]:
     """Return a note where slides that tie a frame went to and fro over nodes at which the curvature jumps."""
     counts = engine.statistics
     names = [f'"{slide.name}"' for slide in scene.slides.values()
@@ -163,8 +166,9 @@ def trapped(scene: SceneData, engine) -> list[str]:
             f'element="{CONTINUOUS}", whose curvature is continuous, or more elements']
 
 
-def unexplained(engine, settings: RunSettings) -> list[str]:
-    """A note where energy has come or gone that nothing in the scene explains; empty where the balance closes."""
+def unexplained(engine: Engine, settings: RunSettings) -> list[str]:
+    """Return a note where energy has come or gone that nothing in the scene explains; empty where the balance closes.
+    """
     grown, lost, exchanged, in_motion, rounding = engine.balance
     off, fixed = max(grown, lost), settings.step is not None
     quiet = QUIET_LOSS if fixed else min(max(QUIET_LOSS, 100 * settings.tol), LOOSE_LOSS)

@@ -59,8 +59,8 @@ class State:
         self._model, self._q, self._v, self._s = model, q, v, s
 
     def __getitem__(self, name: str) -> np.ndarray | float:
-        """position, orientation, velocity, angular_velocity of a body (3 or 4,); nodal_vectors, nodal_velocity of a
-        cable (nodes, vectors, 3); s of a slide. Raises KeyError.
+        """Return position, orientation, velocity, angular_velocity of a body (3 or 4,); nodal_vectors, nodal_velocity
+        of a cable (nodes, vectors, 3); s of a slide. Raises KeyError.
         """
         of, _, quantity = name.partition(".")
         found = self._all(of)
@@ -121,7 +121,7 @@ class EventWatcher:
         self.happened.append({"name": self.model.couplings[which].name, "time": time, "what": what, "s": s})
 
     def happens(self, which: int, time: float, q: np.ndarray, v: np.ndarray, s: np.ndarray) -> bool:
-        """Note an event; whether the run goes on."""
+        """Note an event; return whether the run goes on."""
         event, state = self.watches[which].event, State(self.model, q, v, s)
         at = {f"{body.name}.{k}": np.asarray(state[f"{body.name}.{k}"]).tolist() for body in self.model.bodies
               for k in ("position", "velocity")}

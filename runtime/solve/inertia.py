@@ -7,7 +7,7 @@ is zero counts apart and constraints may be redundant; `negatives` is for the sp
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.linalg import eigvalsh, ldl, null_space, qr
@@ -48,8 +48,8 @@ class Inertia(NamedTuple):
     positive: int
 
 
-def inertia(K, C=None, units: np.ndarray | None = None, zero: float = ZERO) -> Inertia:
-    """Inertia of K (n, n), symmetric, on the null space of C (m, n); both sparse or dense.
+def inertia(K: Any, C: Any = None, units: np.ndarray | None = None, zero: float = ZERO) -> Inertia:
+    """Return the inertia of K (n, n), symmetric, on the null space of C (m, n); both sparse or dense.
 
     Rows of C may depend on each other. ``inertia(K - shift * M, C)`` counts the eigenvalues of (K, M) below a shift.
     units (n,): how far a unit of each unknown moves a point, which makes all entries of K comparable (N/m); None: they
@@ -70,8 +70,8 @@ def inertia(K, C=None, units: np.ndarray | None = None, zero: float = ZERO) -> I
     return Inertia(below, at, n - C.shape[0] - below - at)
 
 
-def scaled(K: csc_array, C=None, units: np.ndarray | None = None) -> tuple[csc_array, csr_array, np.ndarray]:
-    """D K D with a diagonal of about one, independent rows of C D of unit length, and D's diagonal (n,)."""
+def scaled(K: csc_array, C: Any = None, units: np.ndarray | None = None) -> tuple[csc_array, csr_array, np.ndarray]:
+    """Return D K D with a diagonal of about one, independent rows of C D of unit length, and D's diagonal (n,)."""
     n = K.shape[0]
     C = csr_array((0, n)) if C is None else csr_array(C, dtype=float)
     scale = _scale(K, np.ones(n) if units is None else np.asarray(units, dtype=float))
@@ -118,7 +118,8 @@ def _by_eigenvalues(K: np.ndarray, C: np.ndarray, zero: float) -> Inertia:
 
 
 def negatives(K: csc_array, C: csc_array | csr_array) -> int:
-    """How many eigenvalues of K (n, n), sparse and symmetric, are negative on C x = 0; C (m, n), sparse, of rank m.
+    """Return how many eigenvalues of K (n, n), sparse and symmetric, are negative on C x = 0; C (m, n), sparse, of rank
+    m.
 
     The eigenvalues of [[K, C'], [C, 0]] are counted: m of them are negative, and m positive, of the constraints
     (Gould, Math. Program. 32 (1985) 90-99). Unknowns whose elimination would let entries grow are eliminated last, all
@@ -152,7 +153,8 @@ def negatives(K: csc_array, C: csc_array | csr_array) -> int:
 
 
 def equilibrating(K: csc_array) -> np.ndarray:
-    """(n,): d such that the largest entry of each row of d_i K_ij d_j is about 1; K symmetric (Ruiz, RAL-TR-2001-034).
+    """Return (n,): d such that the largest entry of each row of d_i K_ij d_j is about 1; K symmetric (Ruiz,
+    RAL-TR-2001-034).
     """
     size, scale = abs(K).tocsc(), np.ones(K.shape[0])
     size.eliminate_zeros()
@@ -169,7 +171,8 @@ def equilibrating(K: csc_array) -> np.ndarray:
 
 
 def _eliminated(K: csc_array, border: np.ndarray, growth: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Pivots of K on its diagonal, K^-1 border (n, late), and unknowns that make entries grow more, the worst of them.
+    """Return pivots of K on its diagonal, K^-1 border (n, late), and unknowns that make entries grow more, the worst of
+    them.
 
     K and border have entries of one at most. SuperLU factors without exchange of rows: K = L U with U = D L'. Pivot k
     adds U_kj² / |D_k| to the diagonal entry j of what is left. The pivots are sound where none grows.
@@ -200,7 +203,7 @@ def _eliminated(K: csc_array, border: np.ndarray, growth: float) -> tuple[np.nda
 
 
 def _negatives_of_blocks(K: np.ndarray) -> int:
-    """Negative eigenvalues of a dense matrix, by the pivots of Bunch and Kaufman of one and two rows."""
+    """Return the negative eigenvalues of a dense matrix, by the pivots of Bunch and Kaufman of one and two rows."""
     if not len(K):
         return 0
     scale = 1 / np.sqrt(np.maximum(np.abs(K).max(axis=1), 1e-300))

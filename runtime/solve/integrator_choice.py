@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from scipy.sparse.linalg import splu
 
@@ -30,7 +32,7 @@ def choose(settings: RunSettings, scene: SceneData, model: Model, engine: Engine
         return chosen, "as asked for"
     fixed = stable_at(fixed_step=True).of(settings.spectral_radius)
     if settings.step is not None:
-        return fixed, f"the step is fixed: {fixed.name} holds at any"
+        return fixed, f"the step is fixed: {fixed.name} is stable at any"
     if "spectral_radius" in settings.model_fields_set:
         return fixed, f"spectral_radius is given, which is {fixed.name}'s"
     return cheapest(demands_of(settings, scene, model, engine))
@@ -94,7 +96,9 @@ def _check_gradients(integrator: Integrator, scene: SceneData, model: Model, eng
 
 
 def regularised_decay(scene: SceneData, slide: Slide) -> float:
-    """1/s: how fast a slow rider under its weight comes to the speed at which regularised friction lets it creep."""
+    """Return how fast, in 1/s, a slow rider under its weight comes to the speed at which regularised friction lets it
+    creep.
+    """
     friction = slide.friction
     if friction is None or friction.sticks or slide.prescribed is not None:
         return 0.0
@@ -102,7 +106,9 @@ def regularised_decay(scene: SceneData, slide: Slide) -> float:
 
 
 def slowest_rate(scene: SceneData, model: Model, duration: float) -> float:
-    """rad/s of the motion as a whole: a pendulum as long as the scene, or what crosses it, or the run."""
+    """Return the rate of the motion as a whole in rad/s: a pendulum as long as the scene, or what crosses it, or the
+    run.
+    """
     points = [node.vector("r") for nodes in model.nodes.values() for node in nodes]
     points += [model.q[b.configuration : b.configuration + model.dim] for b in model.bodies]
     size = float(np.max(np.ptp(points, axis=0)))
@@ -113,11 +119,11 @@ def slowest_rate(scene: SceneData, model: Model, duration: float) -> float:
 
 
 def fastest_rates(model: Model, engine: Engine) -> tuple[float, float]:
-    """rad/s and 1/s: the highest frequency and rate of decay of the state at the start, its slides left out.
+    """Return the highest frequency in rad/s and rate of decay in 1/s of the state at the start, its slides left out.
 
     Holding riders on their cables only lowers them.
     """
-    engine.place(0.0)
+    engine.set_state(0.0)
     n = model.n_band + model.n_border_dof
     if n == 0:
         return 0.0, 0.0
@@ -127,8 +133,10 @@ def fastest_rates(model: Model, engine: Engine) -> tuple[float, float]:
     return np.sqrt(_largest(stiffness, mass)), _largest(damping, mass)
 
 
-def _largest(matrix, mass) -> float:
-    """About the largest eigenvalue of the symmetric part by the mass, in size: power iteration, some per cent low."""
+def _largest(matrix: Any, mass: Any) -> float:
+    """Return about the largest eigenvalue of the symmetric part by the mass, in size, by power iteration: some per cent
+    low.
+    """
     symmetric, factors = (matrix + matrix.T) / 2, splu(mass.tocsc())
     x = np.random.default_rng(0).normal(size=mass.shape[0])
     value = 0.0

@@ -11,7 +11,7 @@ from ..errors import FunicularWarning
 from ..integrators import INTEGRATORS, stable_at
 from ..model.model import Model
 from ..parts.settings import RunSettings
-from .diagnosis import damping, place
+from .diagnosis import damping, describe_dof
 from .event_watcher import EventWatcher
 from .integrator_choice import fastest_rates
 from .progress import Meter
@@ -33,7 +33,7 @@ NEAR = 0.3
 class LongRun:
     """Follows the steps of a run; called with the time reached, s, it passes that on to the progress meter."""
 
-    def __init__(self, model: Model, engine, settings: RunSettings, watcher: EventWatcher, meter: Meter):
+    def __init__(self, model: Model, engine: Engine, settings: RunSettings, watcher: EventWatcher, meter: Meter):
         self._model, self._engine, self._settings = model, engine, settings
         self._watcher, self._meter = watcher, meter
         self._marks: deque[tuple[float, float, int]] = deque([(time.monotonic(), engine.time, self._steps)])
@@ -62,7 +62,9 @@ class LongRun:
                           f"present rate of {rate:.2g} a second: {self._why()}", FunicularWarning, stacklevel=6)
 
     def notes(self) -> list[str]:
-        """For the report: how many steps the run has taken or was to take, and why; empty for a run of few steps."""
+        """Return, for the report, how many steps the run has taken or was to take, and why; empty for a run of few
+        steps.
+        """
         if self._steps > MANY_STEPS:
             return [f"the run took {self._steps:.3g} steps: {self._why()}"]
         if self._warned and self._engine.time < self._settings.duration:
@@ -90,7 +92,7 @@ class LongRun:
             return (f"there were {events} events and crossings of elements in {counts['steps']} steps, and a step ends "
                     "at each. Look at the slides that stick, strike or cross nodes")
         _, dof, coupling = engine.failure  # of the last step that was rejected
-        where = f", most of all at {place(self._model, dof, coupling)}" if counts["rejected_steps"] else ""
+        where = f", most of all at {describe_dof(self._model, dof, coupling)}" if counts["rejected_steps"] else ""
         damped = damping(self._model, max(dof, 0), coupling)
         if counts["rejected_steps"] > REJECTED * counts["steps"]:
             return (f"{counts['rejected_steps']} steps were rejected beside {counts['steps']} taken{where}: forces "
@@ -107,7 +109,7 @@ class LongRun:
                 "part there")
 
     def _fastest(self) -> tuple[float, float]:
-        """rad/s and 1/s, of the state at the start."""
+        """Return the highest frequency, rad/s, and rate of decay, 1/s, of the state at the start."""
         return fastest_rates(self._model, Engine(self._model))
 
 

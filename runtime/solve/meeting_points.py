@@ -55,10 +55,12 @@ class MeetingPoints:
 
 def _directed(scene: SceneData, model: Model) -> list[_Directed]:
     """Return the parts whose force has no direction where their points meet."""
-    springs = [(part, of.ends, "keep them apart, or take length=0 where they may meet")
-               for part, of in zip(scene.springs.values(), model.point_forces, strict=True) if part.loses_direction]
-    joints = [(scene.joints[of.name], of.ends, 'keep them apart, or take kind="spherical" for points that stay one')
-              for of in model.joints if of.slide is None and scene.joints[of.name].pair == "distance"]
+    springs = [(part, of.attachments, "keep them apart, or take length=0 where they may meet")
+               for part, of in zip(scene.point_forces.values(), model.point_forces, strict=True)
+               if part.loses_direction]
+    joints = [(scene.joints[of.name], of.attachments,
+               'keep them apart, or take kind="spherical" for points that stay one')
+              for of in model.joints if of.slide is None and scene.joints[of.name].joint_kind == "distance"]
     found = []
     for part, ends, remedy in [*springs, *joints]:
         a, b = (attachment_points(model, end, model.q[None])[0] for end in ends)

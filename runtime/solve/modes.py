@@ -12,7 +12,7 @@ from scipy.sparse import csc_array, diags_array
 from ..engine import Engine
 from ..errors import FunicularWarning, SceneError, UnknownResultError, near
 from ..model.build import build
-from ..model.model import Model
+from ..model.model import BodyModel, Model
 from ..model.redundant_constraints import drop_redundant_rows
 from ..model.states import body_state, spatial
 from ..parts.scene_data import SceneData
@@ -78,7 +78,7 @@ def modes(scene: SceneData, n: int, about: RestState | None = None) -> Modes:
     model = build(scene)
     engine = Engine(model)
     drop_redundant_rows(model, engine)
-    engine.place(0.0, **({} if about is None else about.placed))
+    engine.set_state(0.0, **({} if about is None else about.static_state))
     K, constraints = condensed(engine.matrix(0.0, 0.0, 1.0), model)
     size = K.shape[0]
     M = engine.matrix(1.0, 0.0, 0.0)[:size, :size]
@@ -111,23 +111,25 @@ def _without_friction(scene: SceneData) -> list[str]:
     return [f"modes leave out the friction of slide{'s' * (len(slides) > 1)} {', '.join(slides)}"] if slides else []
 
 
-def _rounded_shape(engine, model, K: csc_array) -> csc_array:
+def _rounded_shape(engine: Engine, model: Model, K: csc_array) -> csc_array:
     """Return what of the stiffness comes of rounded coordinates, which strain the cables by `ROUNDING`.
 
     A tension of so much of EA is nothing beside EA, but not beside the bending of a long thin cable.
     """
-    placed = engine.placed()
-    stretched = placed["q"].copy()
+    undeformed = engine.state()
+    stretched = undeformed["q"].copy()
     for cable in model.cables:
         stretched[cable.coordinates] *= 1 + STRAIN
-    engine.place(0.0, **placed | {"q": stretched})
+    engine.set_state(0.0, **undeformed | {"q": stretched})
     change = condensed(engine.matrix(0.0, 0.0, 1.0), model)[0] - K
-    engine.place(0.0, **placed)
+    engine.set_state(0.0, **undeformed)
     return ROUNDING / STRAIN * change
 
 
 def _uncertain(modes: Modes, lowest: float, fewer: str) -> list[str]:
-    """What rounding of the stiffness leaves unknown; lowest: the angular frequency of the lowest that is not zero."""
+    """Return what rounding of the stiffness leaves unknown; lowest: the angular frequency of the lowest that is not
+    zero.
+    """
     notes, w, error = [], np.maximum(modes.angular_frequency, modes.growth_rate), modes.uncertainty
     zero = (w == 0) & (error > HIDDEN * lowest)
     if zero.any():
@@ -143,8 +145,10 @@ def _uncertain(modes: Modes, lowest: float, fewer: str) -> list[str]:
     return notes
 
 
-def _refuse_what_is_out_of_range(scene: SceneData, model, K: csc_array, M: csc_array) -> None:
-    """Inertia and stiffness must be finite, and the inertia positive, but of the arc-lengths of slides."""
+def _refuse_what_is_out_of_range(scene: SceneData, model: Model, K: csc_array, M: csc_array) -> None:
+    """Raise SceneError unless inertia and stiffness are finite, and the inertia positive, but for the arc-lengths of
+    slides.
+    """
     n = model.n_band + model.n_border_dof
     inertia = M.diagonal()[:n]
     stiffness = np.asarray(abs(K).max(axis=1).todense()).ravel()[:n] if n else np.zeros(0)
@@ -153,13 +157,13 @@ def _refuse_what_is_out_of_range(scene: SceneData, model, K: csc_array, M: csc_a
         if wrong.any():
             at = int(np.argmax(wrong))
             raise SceneError(f"modes: {_owner(scene, model, at)}", f"its {what} comes to {values[at]:.3g}: the size of "
-                             "its section, its length or its material is beyond what numbers can hold",
+                             "its section, its length or its material is beyond the range of double precision",
                              "take them nearer to each other")
 
 
-def _owner(scene: SceneData, model, unknown: int) -> str:
-    """The part whose coordinate an unknown is."""
-    dof = int(np.argmax(model.place == unknown))
+def _owner(scene: SceneData, model: Model, unknown: int) -> str:
+    """Return the part whose coordinate an unknown is."""
+    dof = int(np.argmax(model.unknown_of_dof == unknown))
     for name, nodes in model.nodes.items():
         if dof < model.cables[list(model.nodes).index(name)].coordinates.stop and nodes:
             return scene.cables[name].where
@@ -229,7 +233,7 @@ def _unsymmetric(K: csc_array, M: csc_array, constraints: csc_array, n: int, pen
     return pencil.unit * squares[order], pencil.scale[:, None] * x, pencil.unit * error
 
 
-def _named(model, squares: np.ndarray, dofs: np.ndarray, error: np.ndarray) -> Modes:
+def _named(model: Model, squares: np.ndarray, dofs: np.ndarray, error: np.ndarray) -> Modes:
     roots = np.sqrt(squares.astype(complex))
     size = np.abs(roots)  # sqrt(square + error) - sqrt(square)
     uncertainty = error / (size + np.sqrt(size**2 + error))
@@ -253,8 +257,9 @@ def _named(model, squares: np.ndarray, dofs: np.ndarray, error: np.ndarray) -> M
     return Modes(np.abs(roots.real), np.abs(roots.imag), shapes, uncertainty)
 
 
-def _nodes(model, body, dofs: np.ndarray) -> np.ndarray:
+def _nodes(model: Model, body: BodyModel, dofs: np.ndarray) -> np.ndarray:
     """Return (n, node, 3): what the nodes of a modal body are moved by."""
+    assert body.shape is not None, "a rigid body has no modes"
     at = body.dof + model.dim
     turn = dofs[:, at : at + 3] if model.dim == 3 else np.pad(dofs[:, at : at + 1], ((0, 0), (2, 0)))
     at += 3 if model.dim == 3 else 1

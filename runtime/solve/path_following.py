@@ -7,7 +7,7 @@ which it does is found by bisection along the path.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,7 +62,8 @@ class Critical:
 
 
 def follow(problem: StaticProblem, fraction: float, heading: np.ndarray | None) -> Iterator[Point | Critical]:
-    """Points and critical points from the static state, at rest at this load fraction, until p = 1 or the path ends.
+    """Yield points and critical points from the static state, at rest at this load fraction, until p = 1 or the path
+    ends.
 
     heading: as of a `Point`, the sense in which to go on; None: to higher loads.
     """
@@ -110,7 +111,7 @@ def _point(problem: StaticProblem, before: np.ndarray | None, advance: float = 0
                  stability(problem), advance)
 
 
-def _bordered(problem: StaticProblem, heading: np.ndarray):
+def _bordered(problem: StaticProblem, heading: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
     """Return the solver of the tangent with the load as a further unknown, and the advance along the heading as a row.
 
     It is not singular where the load turns. Raises RuntimeError where it is.
@@ -175,15 +176,15 @@ def _critical(problem: StaticProblem, point: Point, following: Point) -> list[Cr
 
 
 def _sharp(near: Point, far: Point, start: float) -> bool:
-    """Whether two points are so near that what lies between them is one critical point: the load cannot differ by more
-    than the arc-length between them times its rate at either end.
+    """Return whether two points are so near that what lies between them is one critical point: the load cannot differ
+    by more than the arc-length between them times its rate at either end.
     """
     width, rate = far.advance - start, max(abs(near.rate), abs(far.rate))
     return width < SMALLEST_STEP or width * rate <= SHARP * max(abs(far.fraction), SHARP)
 
 
 def _add(found: list[Critical], near: Point, far: Point) -> None:
-    """Two changes at one load are one critical point: at a limit point the load turns and stability changes."""
+    """Add a critical point; two changes at one load are one: at a limit point the load turns and stability changes."""
     turns = near.kind[1] != far.kind[1]
     more = far.stability.unstable - near.stability.unstable
     if found and abs(far.fraction - found[-1].point.fraction) <= 10 * SHARP * abs(far.fraction) and (

@@ -18,7 +18,7 @@ class Pauses(NamedTuple):
 
 
 def pauses(rows: int, row_bytes: int) -> Pauses:
-    """When a run pauses: it must not depend on the clock, nor on whether results are saved."""
+    """Return when a run pauses: it must not depend on the clock, nor on whether results are saved."""
     most = max(1, int(BUFFER // row_bytes))
     every = min(most, -(-rows // PAUSES))
     return Pauses(every, min(rows, most // every * every) + 2)  # the start, and where a run is cut short

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 OnProgress = Callable[[float], None]
 
 
-def _nothing(_) -> None:
+def _nothing(_: float | str) -> None:
     """Show no progress at all."""
 
 
@@ -22,7 +22,7 @@ class Meter:
     tell: Callable[[str], None] = _nothing
 
     def __call__(self, time: float) -> None:
-        """The run has come to this time, s."""
+        """Show that the run has come to this time, s."""
         self.reached(time)
 
 

@@ -11,12 +11,9 @@ from ..errors import SceneError, UnknownResultError, near
 from ..model.model import Model
 from ..model.states import (
     body_state,
-    joint_state,
+    connection_states,
     modal_state,
-    point_force_state,
     spatial,
-    support_reaction,
-    tie_force,
 )
 from ..parts.scene_data import SceneData
 from .stability import Stability
@@ -27,7 +24,7 @@ def layout(scene: SceneData) -> dict[str, list]:
     """Return what must be the same in two scenes for a state of one to be a state of the other."""
     return {"cables": [(c.name, c.element, c.elements, c.length) for c in scene.cables.values()],
             "bodies": list(scene.bodies), "slides": list(scene.slides),
-            "joints": [(j.name, j.pair) for j in scene.joints.values()], "springs": list(scene.springs)}
+            "joints": [(j.name, j.joint_kind) for j in scene.joints.values()], "point_forces": list(scene.point_forces)}
 
 
 @dataclass
@@ -59,7 +56,7 @@ class RestState:
 
     scene: SceneData
     model: Model
-    placed: dict
+    static_state: dict
     reaction: np.ndarray
     joint_forces: np.ndarray
     load_fraction: float
@@ -80,8 +77,8 @@ class RestState:
         left = problem.residual()
         units = np.where(problem.weight > 0, problem.weight, np.inf)
         engine = problem.engine
-        state = cls(problem.scene, problem.model, problem.keep(), engine.reaction(), engine.held(), problem.fraction,
-                    problem.iterations, float(np.max(np.abs(left) / units, initial=0.0)), stability,
+        state = cls(problem.scene, problem.model, problem.keep(), engine.reaction(), engine.joint_forces(),
+                    problem.fraction, problem.iterations, float(np.max(np.abs(left) / units, initial=0.0)), stability,
                     problem.fraction if problem.settings.scale_gravity else 1.0, heading)
         state.quantities = state._quantities()
         state.path, state.layout = [state], layout(problem.scene)
@@ -89,7 +86,8 @@ class RestState:
 
     @property
     def unstable_directions(self) -> int:
-        """How many independent directions lower the energy; of loads that turn: in how many the state diverges."""
+        """Return how many independent directions lower the energy; of loads that turn: in how many the state diverges.
+        """
         return self.stability.unstable
 
     @property
@@ -121,12 +119,12 @@ class RestState:
 
     def start(self, model: Model, scene: SceneData) -> None:
         """Put a freshly built model of the scene into this state."""
-        model.q = self.placed["q"].copy()
-        for slide, s in zip(model.slides, self.placed["s"], strict=True):
+        model.q = self.static_state["q"].copy()
+        for slide, s in zip(model.slides, self.static_state["s"], strict=True):
             slide.place_at(float(s), model.cables[slide.cable])
 
     def _quantities(self) -> dict[str, np.ndarray]:
-        model, scene, q, reaction = self.model, self.scene, self.placed["q"][None], self.reaction[None]
+        model, q = self.model, self.static_state["q"][None]
         found = {}
         for cable in model.cables:
             vectors = spatial(q[0, cable.coordinates].reshape(cable.shape))
@@ -137,18 +135,9 @@ class RestState:
             state |= modal_state(model, body, state, q) if body.modes else {}
             found |= {f"{body.name}.{name}": value[0] for name, value in state.items()}
         for k, slide in enumerate(model.slides):
-            found[f"{slide.name}.s"] = self.placed["s"][k]
-            found[f"{slide.name}.force"] = self.placed["force"][k]
-        for joint, numbers in zip(model.joints, self.joint_forces, strict=True):
-            values = joint_state(joint, numbers)
-            found |= {f"{joint.name}.{name}": values[name]
-                      for name in (("force", "moment") if joint.slide is None else ("moment",))}
-        for part in scene.supports:
-            given_ = support_reaction(model, scene, part, reaction, q)
-            found |= {f"{part.label}.{name}": value[0] for name, value in given_.items()}
-        for name, tie in scene.ties.items():
-            found |= {f"{name}.{part}": value[0] for part, value in tie_force(model, scene, tie, reaction, q).items()}
-        for between, force in zip(model.point_forces, self.placed["point_force"], strict=True):
-            values = point_force_state(model, between, force[None], q)
-            found |= {f"{between.name}.{name}": value[0] for name, value in values.items()}
-        return found
+            found[f"{slide.name}.s"] = self.static_state["s"][k]
+            found[f"{slide.name}.force"] = self.static_state["force"][k]
+        forces = connection_states(self.model, self.scene, q, self.reaction[None], self.joint_forces[None],
+                                   self.static_state["point_force"][None])
+        return found | {f"{label}.{name}": value[0] for group in forces.values() for label, values in group.items()
+                        for name, value in values.items() if name != "residual"}

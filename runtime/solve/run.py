@@ -157,10 +157,11 @@ def _start(scene: SceneData, settings: RunSettings, model: Model, engine: Engine
         knots=knots(model, settings.duration, settings.tol, turns=settings.step is None),
         capacity=capacity,
     )
-    if status == "singular" and engine.jammed >= 0:
-        slide = scene.slides[model.couplings[engine.jammed].name]
-        raise SceneError(slide.where, "friction jams it at the start: the more it holds, the more it presses it on the "
-                         "cable", "take a smaller coefficient, or the rider's point nearer to its centre of mass")
+    if status == "singular" and engine.self_locking >= 0:
+        slide = scene.slides[model.couplings[engine.self_locking].name]
+        raise SceneError(slide.where, "friction is self-locking at the start: the larger it is, the harder it presses "
+                         "the rider on the cable",
+                         "take a smaller coefficient, or the rider's point nearer to its centre of mass")
     if status == "singular":
         raise SceneError("scene", "the equations are singular at the start: a mass is zero, or a cable's director lies "
                          "along its tangent", "look at masses and inertias, and at up")

@@ -32,6 +32,6 @@ class Softening:
         self.factor = min((least for *_, least in self.cables), default=None)
 
     def apply(self, factor: float) -> None:
-        """EA times this factor, or times the least that a cable admits."""
+        """Multiply EA by this factor, or by the least that a cable admits."""
         for k, cable, least in self.cables:
             self.engine.stiffen(k, constants(cable, max(factor, least)))

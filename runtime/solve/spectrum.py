@@ -121,7 +121,8 @@ class Pencil:
         return solve
 
     def lowest(self, n: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
-        """The n smallest eigenvalues or some more, their vectors, and what rounding leaves undecided of eigenvalues.
+        """Return the n smallest eigenvalues or some more, their vectors, and what rounding leaves undecided of
+        eigenvalues.
 
         Returns (n,), (coordinates, n) with x'Mx = 1, (n,), and the eigenvalue that follows, infinite if there is none.
         Raises IncompleteError, ArithmeticError, RuntimeError.
@@ -132,14 +133,15 @@ class Pencil:
         return self.unit * values, self.scale[:, None] * x, self.unit * error, self.unit * after
 
     def _by_lapack(self) -> tuple[np.ndarray, np.ndarray, float, float]:
-        """All pairs of the scaled matrices, infinity, which follows, and the size of the largest."""
+        """Return all pairs of the scaled matrices, infinity, which follows, and the size of the largest."""
         free = basis(self.C)
         k, m = free.T @ (self.K @ free), free.T @ (self.M @ free)
         values, x = eigh((k + k.T) / 2, (m + m.T) / 2)
         return values, free @ x, np.inf, np.abs(values).max(initial=0.0)
 
     def _by_inverse(self, n: int) -> tuple[np.ndarray, np.ndarray, float, float]:
-        """The lowest pairs, n or some more, the eigenvalue that follows, and the scale at which they were found."""
+        """Return the lowest pairs, n or some more, the eigenvalue that follows, and the scale at which they were found.
+        """
         while n + MORE < self.degrees:
             top = self.reaching(n + MORE)
             try:
@@ -151,7 +153,9 @@ class Pencil:
         return self._by_lapack()
 
     def _from_below(self, n: int, top: float) -> tuple[np.ndarray, np.ndarray, float]:
-        """The lowest pairs and what follows by the inverse at a shift below them; at two where some are negative."""
+        """Return the lowest pairs and what follows by the inverse at a shift below them; at two where some are
+        negative.
+        """
         middle = -top / FACTOR
         negative = self.below(middle)
         values, x, after = np.zeros(0), np.zeros((self.K.shape[0], 0)), 0.0
@@ -166,7 +170,8 @@ class Pencil:
 
     def _taken_apart(self, values: np.ndarray, x: np.ndarray, after: float, top: float
                      ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Pairs found at the scale of ``top``, to which much smaller ones are one cluster: these at their own scale.
+        """Return pairs found at the scale of ``top``, to which much smaller ones are one cluster, these at their own
+        scale.
 
         after: the eigenvalue that follows. Returns the pairs, and what is undecided of the eigenvalues.
         """
@@ -217,7 +222,9 @@ class Pencil:
         raise IncompleteError("not all that are counted were found")
 
     def _gap(self, values: np.ndarray, x: np.ndarray, n: int, known: int) -> int | None:
-        """The first of the pairs, behind n of them, that is apart from the one before; all, if there are no more."""
+        """Return the first of the pairs, behind n of them, that is apart from the one before; all, if there are no
+        more.
+        """
         rounding = self.uncertainty(x)
         for at in range(n, len(values)):
             size = max(abs(values[at]), abs(values[at - 1]))
@@ -226,14 +233,15 @@ class Pencil:
         return len(values) if len(values) == self.degrees - known else None
 
     def _sorted(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Rayleigh's quotients of the columns of x, which have x'Mx = 1 then, rising; and the columns."""
+        """Return Rayleigh's quotients of the columns of x, which have x'Mx = 1 then, rising; and the columns."""
         x = x / np.sqrt(np.sum(x * (self.M @ x), axis=0))
         values = np.sum(x * (self.K @ x), axis=0)
         order = np.argsort(values)
         return values[order], x[:, order]
 
     def _nearest(self, solve: Callable, start: np.ndarray, known: np.ndarray, wanted: int) -> np.ndarray:
-        """(n, wanted): vectors of the next eigenvalues above the shift of ``solve``, but for those of known vectors.
+        """Return (n, wanted): vectors of the next eigenvalues above the shift of ``solve``, but for those of known
+        vectors.
 
         A block method: the subspace grows from many vectors at once by the residuals of the inverse (Davidson, J.
         Comput. Phys. 17 (1975) 87-94, there with one vector), so that repeated eigenvalues are found as others are.

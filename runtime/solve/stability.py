@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import eigh, null_space
+from scipy.sparse import csc_array, csr_array
 from scipy.sparse.linalg import ArpackNoConvergence, eigsh
 
 from .inertia import ZERO, inertia, scaled
@@ -60,7 +61,7 @@ def stability(problem: StaticProblem) -> Stability:
         return Stability(0, 0, known=False)
 
 
-def _counted(K, C, units: np.ndarray) -> Stability:
+def _counted(K: csc_array, C: csr_array, units: np.ndarray) -> Stability:
     if abs(K - K.T).max() <= ASYMMETRY * (abs(K).max() or 1.0):
         found = inertia(K, C, units)
         return Stability(found.negative, found.zero)
@@ -75,8 +76,8 @@ def _counted(K, C, units: np.ndarray) -> Stability:
 
 
 def lowest_direction(problem: StaticProblem) -> np.ndarray:
-    """(unknowns,): that of the least curvature of the scaled stiffness' symmetric part, towards the loads if it has a
-    part along them, the largest entry positive if not; its length in m is one.
+    """Return (unknowns,): the direction of the least curvature of the scaled stiffness' symmetric part, towards the
+    loads if it has a part along them, the largest entry positive if not; its length in m is one.
     """
     K, C, units = problem.stiffness()
     n = K.shape[0]
@@ -98,5 +99,5 @@ def lowest_direction(problem: StaticProblem) -> np.ndarray:
         problem.load_vector()) else np.sign(largest)) / problem.length(direction)
 
 
-def _free(C, n: int) -> np.ndarray:
+def _free(C: csr_array, n: int) -> np.ndarray:
     return null_space(C.toarray()) if C.shape[0] else np.eye(n)

@@ -55,8 +55,8 @@ def find_rest(problem: StaticProblem) -> Stability | None:
 
 
 def relax(problem: StaticProblem) -> Stability | None:
-    """Pseudo-transient continuation (Kelley & Keyes 1998): implicit Euler without regard to accuracy, its step growing
-    as the motion fades; to a stable state, or None.
+    """Relax by pseudo-transient continuation (Kelley & Keyes 1998): implicit Euler without regard to accuracy, its step
+    growing as the motion fades; to a stable state, or None.
 
     A step never goes along a direction of negative curvature: it is made shorter until mass outweighs that, so that it
     descends (the test of curvature is that of Chiang & Zavala 2016). A state that its symmetry keeps at rest on an
@@ -67,14 +67,9 @@ def relax(problem: StaticProblem) -> Stability | None:
     least, descends = LEAST_MASS * problem.fastest, problem.settings.seek_stable
     for _ in range(MOST_RELAXATIONS):
         problem.iterations += 1
-        try:
-            change = problem.solver(mass)(-problem.residual())
-        except RuntimeError:
-            mass *= 10.0
-            continue
-        size = problem.length(change)
-        if not size < LARGEST_MOVE * problem.size or (descends and problem.curvature(change, mass) < 0):
-            mass *= 4.0
+        change, size, heavier = _correction(problem, mass, descends)
+        if change is None:
+            mass *= heavier
             if not mass < 1e30:
                 return None
             continue
@@ -105,9 +100,25 @@ def relax(problem: StaticProblem) -> Stability | None:
     return None
 
 
+def _correction(problem: StaticProblem, mass: float, descends: bool) -> tuple[np.ndarray | None, float, float]:
+    """Return a correction with so much mass, its size in m, and, where there is none, what the mass must grow by.
+
+    There is none where the matrix is singular, the correction is too large or, if it is to descend, goes along a
+    direction of negative curvature.
+    """
+    try:
+        change = problem.solver(mass)(-problem.residual())
+    except RuntimeError:
+        return None, np.inf, 10.0
+    size = problem.length(change)
+    if not size < LARGEST_MOVE * problem.size or (descends and problem.curvature(change, mass) < 0):
+        return None, size, 4.0
+    return change, size, 1.0
+
+
 def stiffen(problem: StaticProblem) -> Stability | None:
-    """Cables first so soft along their axis that their loads put all of them in tension, then stiffer in stages, each
-    starting from the one before; the last is the true scene. None where there is no cable to soften.
+    """Make cables first so soft along their axis that their loads put all of them in tension, then stiffer in stages,
+    each starting from the one before; the last is the true scene. None where there is no cable to soften.
 
     A slack cable that is as stiff as it is would fold up in short waves while it falls into its shape.
     """

@@ -34,7 +34,8 @@ MOVED = 1e-9
 
 
 def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestState | None, made: type[S]) -> S:
-    """The scene at rest under gravity, its loads at t = 0 and its springs; start: a state to begin from, else as drawn.
+    """Return the scene at rest under gravity, its loads at t = 0 and its springs; start: a state to begin from, else as
+    drawn.
 
     made: what the states are, of which it returns one.
 
@@ -42,7 +43,7 @@ def equilibrium(scene: SceneData, settings: EquilibriumSettings, start: RestStat
     """
     problem = StaticProblem(scene, settings)
     if start is not None:
-        problem.restore(start.placed)
+        problem.restore(start.static_state)
     search = _Search(problem, made)
     reached = search.along_path(start) if settings.method == "arc_length" else search.in_steps()
     state = search.found
@@ -143,7 +144,9 @@ class _Search(Generic[S]):
         return found is not None
 
     def lightly_loaded(self) -> float:
-        """Where something is free to move without loads, the loads say where it rests: the path begins with a few."""
+        """Begin the path with a few small loads: where something is free to move without loads, the loads say where it
+        rests.
+        """
         problem = self.problem
         free = problem.keep()
         problem.load(FEW)
@@ -156,7 +159,9 @@ class _Search(Generic[S]):
         return FEW
 
     def along_path(self, start: RestState | None) -> float:
-        """The path from rest without loads, or from a state of rest on it; returns the fraction of the load reached."""
+        """Follow the path from rest without loads, or from a state of rest on it; returns the fraction of the load
+        reached.
+        """
         problem = self.problem
         if start is None or start.load_fraction >= 1.0:
             reached, heading = 0.0, None

@@ -14,6 +14,7 @@ from scipy.sparse.linalg import splu
 
 from ..engine import Engine
 from ..model.build import build
+from ..model.model import Model
 from ..model.redundant_constraints import drop_redundant_rows
 from ..model.states import attachment_points
 from ..parts.scene_data import SceneData
@@ -34,13 +35,13 @@ class StaticProblem:
         self.model = build(scene)
         self.engine = Engine(self.model)
         drop_redundant_rows(self.model, self.engine)
-        self.engine.place(0.0)
+        self.engine.set_state(0.0)
         self.load(1.0)
         drawn = self.residual()
-        place = self.model.place
-        free = place >= 0
+        unknown = self.model.unknown_of_dof
+        free = unknown >= 0
         self.weight = np.zeros(len(drawn))  # forces and arc-lengths do not count in the size of a correction
-        self.weight[place[free]] = self.model.weight[free]
+        self.weight[unknown[free]] = self.model.weight[free]
         self.size = self._extent()
         self.mass = self.engine.matrix(1.0, 0.0, 0.0)
         # rad²/s²: what is left free (a rider that may turn about its rope) has no stiffness. Of points, not of
@@ -51,13 +52,14 @@ class StaticProblem:
         n = self.model.n_band + self.model.n_border_dof
         own = [n + k for coupling in self.model.couplings for k in coupling.free_coordinates]
         self.coordinates = np.append(np.arange(n), np.array(own, dtype=int))
-        self.places = _places(self.model)
+        self.point_entries = _point_entries(self.model)
         self.iterations = 0
         self.pushed = False  # off an unstable branch, in a direction that nothing prefers
         self.messages: list[str] = []
 
     def _falls(self, drawn: np.ndarray, points: np.ndarray) -> float:
-        """rad²/s², of pendulums: where nothing is elastic, weight is all that holds."""
+        """Return the square of a pendulum's frequency, rad²/s²: where nothing is elastic, weight is all that restores.
+        """
         inertia = self.mass.diagonal()[points]
         return float(np.max(np.abs(drawn[points]) / inertia, initial=0.0, where=inertia > 0)) / self.size
 
@@ -66,7 +68,7 @@ class StaticProblem:
         model = self.model
         lengths = [cable.length * cable.n_elements for cable in model.cables]
         lengths += [float(np.linalg.norm(model.q[b.configuration : b.configuration + model.dim])) for b in model.bodies]
-        gaps = [np.subtract(*(attachment_points(model, end, model.q[None]) for end in force.ends))
+        gaps = [np.subtract(*(attachment_points(model, end, model.q[None]) for end in force.attachments))
                 for force in model.point_forces]
         return max([*lengths, *(float(np.linalg.norm(gap)) for gap in gaps)], default=0.0) or 1.0
 
@@ -76,7 +78,7 @@ class StaticProblem:
         self.engine.load(fraction, self.settings.scale_gravity)
 
     def residual(self) -> np.ndarray:
-        """R at the static state, under the load that is on: internal less external forces, and constraints."""
+        """Return R at the static state, under the load that is on: internal less external forces, and constraints."""
         return self.engine.static_residual()
 
     def load_vector(self) -> np.ndarray:
@@ -94,19 +96,23 @@ class StaticProblem:
         return self.engine.matrix(0.0, 0.0, 1.0)
 
     def stiffness(self) -> tuple[csc_array, csc_array, np.ndarray]:
-        """K over the coordinates, constraints C on them, and how far a unit of each moves a point (coordinates,)."""
+        """Return K over the coordinates, constraints C on them, and how far a unit of each moves a point
+        (coordinates,).
+        """
         K, C = condensed(self.tangent(), self.model)
         return K, C, np.where(self.weight[self.coordinates] > 0, self.weight[self.coordinates], 1.0)
 
     def curvature(self, change: np.ndarray, mass: float) -> float:
-        """Of the energy along a change, with this much mass, less a tenth of what the mass has in it."""
+        """Return the curvature of the energy along a change, with this much mass, less a tenth of what the mass has in
+        it.
+        """
         along = change[self.coordinates]
         K, _ = condensed(self.tangent(), self.model)
         return float(along @ (K @ along)) + 0.9 * mass * float(change @ (self.mass @ change))
 
     def distance(self, kept: dict) -> float:
         """Return how far the farthest coordinate of a position has moved from a state, in m."""
-        moved = np.abs(self.engine.placed()["q"] - kept["q"])[self.places]
+        moved = np.abs(self.engine.state()["q"] - kept["q"])[self.point_entries]
         return float(np.max(moved, initial=0.0))
 
     def solver(self, inertia: float = 0.0) -> Callable[[np.ndarray], np.ndarray]:
@@ -114,7 +120,7 @@ class StaticProblem:
         return solver(self.regular_tangent() if inertia == 0.0 else self.tangent() + inertia * self.mass)
 
     def regular_tangent(self) -> csc_array:
-        """dR/dx, with as much mass as keeps what is free to move from being singular."""
+        """Return dR/dx, with as much mass as keeps what is free to move from being singular."""
         return self.tangent() + FREE * self.fastest * self.mass
 
     def length(self, change: np.ndarray) -> float:
@@ -124,20 +130,20 @@ class StaticProblem:
 
     def keep(self) -> dict:
         """Return the static state, as `restore` takes it."""
-        return self.engine.placed()
+        return self.engine.state()
 
     def restore(self, kept: dict) -> None:
         """Go back to a state that `keep` returned."""
-        self.engine.place(0.0, **kept)
+        self.engine.set_state(0.0, **kept)
 
     def move(self, change: np.ndarray) -> None:
         """Move the state; slides that leave their element enter the next."""
         self.engine.move(change)
         if self.model.slides:
-            self.engine.place(0.0, **self.engine.placed())
+            self.engine.set_state(0.0, **self.engine.state())
 
     def newton(self) -> bool:
-        """Newton under the load that is on, full steps.
+        """Run Newton's method under the load that is on, with full steps; returns whether it converged.
 
         Corrections may grow for a while: the second order of a turn stretches what is stiff along its axis, and the
         next correction takes that back. A line search makes hundreds of small steps of it; `relax` does better.
@@ -162,20 +168,20 @@ class StaticProblem:
         """Return whether no slide is past an end of its cable, where the last element would go on for ever."""
         ends = np.array([self.model.cables[j.cable].length * self.model.cables[j.cable].n_elements
                          for j in self.model.slides])
-        s = self.engine.placed()["s"]
+        s = self.engine.state()["s"]
         past = np.maximum(-s, s - ends)
         return bool(np.all(past <= self.settings.tolerance * self.size))
 
 
-def _places(model) -> np.ndarray:
-    """Entries of the configuration that are coordinates of points."""
+def _point_entries(model: Model) -> np.ndarray:
+    """Return the entries of the configuration that are coordinates of points."""
     nodes = [node.dofs("r") for cable in model.nodes.values() for node in cable]
     bodies = [range(body.configuration, body.configuration + model.dim) for body in model.bodies]
-    return np.array([place for part in (*nodes, *bodies) for place in part], dtype=int)
+    return np.array([entry for part in (*nodes, *bodies) for entry in part], dtype=int)
 
 
 def solver(matrix: csc_array) -> Callable[[np.ndarray], np.ndarray]:
-    """Of a sparse matrix; raises RuntimeError where it is exactly singular."""
+    """Return the solver of a sparse matrix. Raises RuntimeError where it is exactly singular."""
     if not matrix.shape[0]:
         return lambda right: right
     return splu(matrix.tocsc(), permc_spec="COLAMD").solve

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..engine import Engine
-from ..model.model import Model
+from ..model.model import CableModel, Model
 from ..parts.scene_data import SceneData
 from .condensation import condensed
 from .inertia import inertia
@@ -92,14 +92,14 @@ def _on_line(r: np.ndarray) -> np.ndarray:
     return (off <= STRAIGHT * length) & np.all(np.diff(along, axis=1) > 0, axis=1)
 
 
-def _unstable(model: Model, cable, t: float, q: np.ndarray, s: np.ndarray) -> int:
+def _unstable(model: Model, cable: CableModel, t: float, q: np.ndarray, s: np.ndarray) -> int:
     """Return how many directions of a cable, all else fixed, lower the energy; joints hold it, with forces left out."""
     engine = Engine(model)
-    engine.place(t, q=q, s=s)
+    engine.set_state(t, q=q, s=s)
     K, C = condensed(engine.matrix(0.0, 0.0, 1.0), model)
-    place = model.place[cable.coordinates]
-    own = np.unique(place[place >= 0])
+    unknown = model.unknown_of_dof[cable.coordinates]
+    own = np.unique(unknown[unknown >= 0])
     units = np.ones(K.shape[0])
-    units[place[place >= 0]] = model.weight[cable.coordinates][place >= 0]
+    units[unknown[unknown >= 0]] = model.weight[cable.coordinates][unknown >= 0]
     K = K.tocsr()[own][:, own]
     return inertia((K + K.T) / 2, C.tocsc()[:, own], units[own]).negative

@@ -48,7 +48,7 @@ class _OneBlasThread:
     work. What the process had before comes back when the last one leaves.
     """
 
-    def __init__(self):
+    def __init__(self) -> None:
         self._reset()
         os.register_at_fork(after_in_child=self._reset)  # what other threads were inside of is not in the child
 
@@ -64,7 +64,7 @@ class _OneBlasThread:
                 self._limiter = blas.limit(limits=1)
             self._inside += 1
 
-    def __exit__(self, *exception) -> None:
+    def __exit__(self, *exception: object) -> None:
         with self._lock:
             self._inside -= 1
             if self._inside == 0:
@@ -78,7 +78,9 @@ one_blas_thread = _OneBlasThread()
 
 
 def _let_this_thread_set_limits() -> None:
-    """From 3.8 on threadpoolctl lets only one thread set OpenBLAS's limits, and leaves others without a word."""
+    """Let this thread set OpenBLAS's limits: from 3.8 on threadpoolctl lets only one do so, and leaves others without a
+    word.
+    """
     import threadpoolctl  # for runs alone, not for `import funicular`
 
     controller = getattr(threadpoolctl, "OpenBLASController", None)

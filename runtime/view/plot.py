@@ -19,6 +19,7 @@ from ..results.section_forces import even, jumps, of_run, with_sides
 from ..rotations import rotate
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure
     from matplotlib.typing import RcKeyType
@@ -136,7 +137,9 @@ def attachment_path(run: Run, attachment: Attachment) -> np.ndarray:
 
 
 def attached_points(run: Run) -> dict[str, np.ndarray]:
-    """(time, points, 3) by body: where slides and joints hold it, of those that are attached at more than one point."""
+    """Return (time, points, 3) by body: where slides and joints are attached, of those that are attached at more than
+    one point.
+    """
     paths_of: dict[str, list] = {}
     ends = [slide.rider for slide in run.scene.slides.values()]
     ends += [end for joint in run.scene.joints.values() for end in (joint.a, joint.b)]
@@ -212,8 +215,8 @@ def draw_shape(run: Run) -> Figure | None:
     return figure
 
 
-def _set_scales(axes, view: View) -> None:
-    """Equal scales, or the upright one exaggerated by a round factor that its label states."""
+def _set_scales(axes: Axes, view: View) -> None:
+    """Set equal scales, or exaggerate the upright one by a round factor that its label states."""
     axes.margins(0.04, 0.12)
     width, height = np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim())
     most = 0.42 * width / height  # the height of a picture that the page can take, over its width
@@ -245,7 +248,7 @@ def draw_acceleration(run: Run) -> Figure | None:
 
 
 def draw_slide(run: Run) -> Figure | None:
-    """Place and speed of the riders along their cables over time; None without a slide."""
+    """Draw place and speed of the riders along their cables over time; None without a slide."""
     from matplotlib.figure import Figure
 
     slides = run.scene.slides
@@ -269,7 +272,7 @@ def draw_slide(run: Run) -> Figure | None:
 
 
 def draw_section_forces(run: Run, cable: str) -> Figure:
-    """Tension and size of the moment along a cable, at a few times, coloured by time; both sides of jumps."""
+    """Draw tension and size of the moment along a cable, at a few times, coloured by time, on both sides of jumps."""
     from matplotlib.figure import Figure
 
     described, (shown, colour) = run.scene.cables[cable], _snapshots(run)

@@ -54,12 +54,13 @@ class AssumedCable(Cable):
 
     @property
     def n_full(self) -> int:
-        """Modes that have EA; those above have the stiffness of the upper modes."""
+        """Return the number of modes that have EA; those above have the stiffness of the upper modes."""
         return (self.degree + 1) // 2
 
     @property
     def axial_points(self) -> list[Point]:
-        """Return those of the exact curvature with it; else exact for the modes of the green strain, degree 3(d - 1).
+        """Return the points for the axial strain: see `Cable`; else so many that they are exact for the modes of the
+        green strain, of degree 3(d - 1).
         """
         if self.curvature == "exact" or self.strain == "engineering":
             return super().axial_points
@@ -78,7 +79,7 @@ class AssumedCable(Cable):
         program.input("l", (), "m", "length of the element")
         program.output("A", self.section_stiffness(program), "N, N m^2, N", STIFFNESS_DOC)
 
-    def _terms(self, program: Program, A, c, w) -> Iterator[Term]:
+    def _terms(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr) -> Iterator[Term]:
         """Yield the energy of bending point by point, with strain and stress of the membrane."""
         program.stage("strain at the quadrature points")
         EI = program.define("EI_l", 2 * A[1] * w)
@@ -106,7 +107,7 @@ class AssumedCable(Cable):
 
     # --- the strain by its modes ------------------------------------------------------------------------------
 
-    def _stiffnesses(self, program: Program, A, w) -> list[sp.Expr]:
+    def _stiffnesses(self, program: Program, A: np.ndarray, w: sp.Expr) -> list[sp.Expr]:
         """Return EA_m l/2 of each mode m of the strain, N m."""
         full, upper = (program.define_once(name, value / (2 * w))
                        for name, value in (("EA_l", A[0]), ("EA_up_l", A[2])))
@@ -126,7 +127,8 @@ class AssumedCable(Cable):
                 total[m] += sp.Rational(2 * m + 1, 2) * point.weight * point.value[m] * parts[m % 2]
         return [program.define(f"eps_m{m}", value) for m, value in enumerate(total)]
 
-    def _stresses(self, program: Program, A, w, points: Sequence[Point], strains: Sequence[sp.Expr]) -> list[sp.Expr]:
+    def _stresses(self, program: Program, A: np.ndarray, w: sp.Expr, points: Sequence[Point],
+                  strains: Sequence[sp.Expr]) -> list[sp.Expr]:
         """Return derivatives of twice the membrane energy by the strain at the points."""
         modes = self._modes(program, points, strains)
         program.stage("normal force at the quadrature points")
@@ -144,7 +146,7 @@ class AssumedCable(Cable):
         return found
 
     def _product(self, m: int, i: int, k: int) -> sp.Rational:
-        """(2m + 1)/2 ∫ P_m P_i P_k dX."""
+        """Return (2m + 1)/2 ∫ P_m P_i P_k dX."""
         integrand = integrals.legendre(m) * integrals.legendre(i) * integrals.legendre(k)
         total = sum((c * 2 / (powers[0] + 1) for powers, c in integrand.terms() if powers[0] % 2 == 0), sp.QQ(0))
         return sp.Rational(2 * m + 1, 2) * sp.Rational(int(total.numerator), int(total.denominator))

@@ -20,8 +20,8 @@ PointBlocks = Mapping[tuple[int, int], np.ndarray]
 
 def by_vectors(program: Program, tag: str, names: str, vectors: Sequence[np.ndarray], D: Sequence,
                H: np.ndarray) -> PointBlocks:
-    """From derivatives of twice the energy by invariants, D and H, to those of the energy by the vectors that they are
-    products of.
+    """Return, from derivatives of twice the energy by invariants, D and H, those of the energy by the vectors that they
+    are products of.
 
     names: "a" (r1.r1) or "c" (r2.r2) of the one vector given, or "abc" (r1.r1, r1.r2, r2.r2) of two.
     """
@@ -36,7 +36,7 @@ def by_vectors(program: Program, tag: str, names: str, vectors: Sequence[np.ndar
     pairs = {names[i] + names[j]: H[i, j] for i in range(3) for j in range(i, 3)}
     second = {pair: program.define(f"H_{pair}_{tag}", factors[pair] * value) for pair, value in pairs.items()}
 
-    def combined(name, first, last):
+    def combined(name: str, first: np.ndarray, last: np.ndarray) -> np.ndarray:
         return program.vector(f"{name}_{tag}", first * r1 + last * r2)
 
     a1, b1, c1 = (combined(f"{x}1", second[p], second[q]) for x, p, q in
@@ -101,7 +101,7 @@ def named_block(program: Program, name: str, value: np.ndarray, symmetric: bool 
 
 
 def named_blocks(program: Program, names: Sequence[str], block: np.ndarray, symmetric: bool) -> np.ndarray:
-    """Blocks over the strain vectors with their entries named."""
+    """Return blocks over the strain vectors with their entries named."""
     named = np.array(block, dtype=object)
     for m, k in np.ndindex(block.shape[:2]):
         named[m, k] = (named[k, m].T if symmetric and k < m

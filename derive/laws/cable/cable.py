@@ -12,9 +12,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
+from typing import Any
 
 import numpy as np
 import sympy as sp
+from sympy.polys.rings import PolyElement
 
 from ...algebra import section_integrals as integrals
 from ...algebra.discrete_gradient import DiscreteGradient, staged
@@ -49,7 +51,8 @@ class Term:
 
     @property
     def share(self) -> sp.Expr:
-        """Of twice the energy, that of the form included: half of the stresses times the strains is the form."""
+        """Return the share of twice the energy that the form has: half of the stresses times the strains is the form.
+        """
         return self.twice + self.stress * self.strain / 2
 
     @property
@@ -103,14 +106,14 @@ class Cable(Damping):
 
     @property
     def axial_points(self) -> list[Point]:
-        """Return those of the exact curvature with it; else exact for the green strain, whose square has degree 4(d -
-        1).
+        """Return the points for the axial strain: with the exact curvature those for bending; else so many that they
+        are exact for the green strain, whose square has degree 4(d - 1).
         """
         return self.points(2 * self.degree - 1) if self.curvature == "linear" else self.bending_points
 
     @property
     def bending_points(self) -> list[Point]:
-        """Exact for the linear curvature; five, or the degree, where it is a quotient.
+        """Return the points for bending: exact for the linear curvature; five, or the degree, where it is a quotient.
 
         Against converged quadrature, the tip of the pendulum D0 (8 elements, t = 1) is off by 5e-5 with four points
         and by 2e-6 with five on cubic elements, where the mesh is off by 4e-3; by 4e-6 with five on quintic ones (with
@@ -137,13 +140,15 @@ class Cable(Damping):
         return resultants(self, program, S, c, X, w, c0)
 
     def membrane(self, program: Program, S: np.ndarray, c: np.ndarray, X: sp.Expr, strain: sp.Expr) -> tuple:
-        """Energy per length whose derivative is the membrane's force at X, what is constant in it, and the strain."""
+        """Return the energy per length whose derivative is the membrane's force at X, what is constant in it, and the
+        strain.
+        """
         return S[0] * strain**2 / 2, [], strain
 
     # --- the energy through the invariants ------------------------------------------------------------------
 
     def _axial_strain(self, program: Program, tag: str, a1: sp.Expr) -> sp.Expr:
-        """From a - 1, without losing the digits of a small strain."""
+        """Return the axial strain from a - 1, without losing the digits of a small strain."""
         if self.strain == "green":
             return program.define(f"eps{tag}", a1 / 2)
         length = program.define_once(f"len{tag}", sp.sqrt(1 + a1))
@@ -151,7 +156,7 @@ class Cable(Damping):
         return program.define(f"eps{tag}", a1 / (1 + length), derivative_of=length)  # |r'| - 1
 
     def _at_points(self, program: Program, rule: str, names: str, points: list[Point], c: np.ndarray) -> list[tuple]:
-        """Invariants, vectors and series at each point: a - 1, b, c of r' and (l/2) r'', as far as named."""
+        """Return invariants, vectors and series at each point: a - 1, b, c of r' and (l/2) r'', as far as named."""
         kinds = {"a": ["value"], "c": ["slope"], "abc": ["value", "slope"]}[names]
         series = [[getattr(point, kind) for point in points] for kind in kinds]
         along = [c[m] for m in self.axis_indices]
@@ -165,7 +170,7 @@ class Cable(Damping):
                           list(vectors), [s[g] for s in series]))
         return found
 
-    def _terms(self, program: Program, A, c, w) -> Iterator[Term]:
+    def _terms(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr) -> Iterator[Term]:
         """Yield the energy point by point."""
         program.stage("strain at the quadrature points")
         EA, EI = program.define("EA_l", A[0] / (2 * w)), program.define("EI_l", 2 * A[1] * w)
@@ -188,13 +193,13 @@ class Cable(Damping):
             yield Term("c", self._weighted(program, points, g, "EI", EI) * invariants[0], invariants, *at)
 
     def _weighted(self, program: Program, points: list[Point], g: int, name: str, stiffness: sp.Expr) -> sp.Expr:
-        """Weight of a point times a stiffness; points that mirror each other share it."""
+        """Return the weight of a point times a stiffness; points that mirror each other share it."""
         first = min(g, len(points) - 1 - g)
         return program.define_once(f"{name}{len(points)}_{first}", points[first].weight * stiffness)
 
     def measures(self, program: Program, tag: str, invariants: Sequence[sp.Expr], factor: sp.Expr = sp.S.One) -> tuple:
-        """Axial strain, factor times the squared curvature, and what leads to that from |r' x r''|^2; None where it is
-        |r''|^2.
+        """Return axial strain, factor times the squared curvature, and what leads to that from |r' x r''|^2; None where
+        it is |r''|^2.
         """
         a1, b, c = invariants
         strain = self._axial_strain(program, tag, a1)
@@ -295,13 +300,13 @@ def _first(program: Program, term: Term) -> list[sp.Expr]:
     return [program.define(f"D_{s.name}", d) for s, d in zip(term.invariants, gradient, strict=True)]
 
 
-def _number(value) -> sp.Expr:
+def _number(value: Any) -> sp.Expr:
     """Return a double as the kernels will hold it; small integers are exact."""
     value = float(value)
     return sp.Integer(round(value)) if abs(value - round(value)) < 1e-15 else sp.Float(value)
 
 
-def _at(p, x: float):
-    """Value of a ring polynomial in X."""
+def _at(p: PolyElement, x: float) -> sp.Expr:
+    """Return the value of a polynomial in X."""
     return sum(float(c) * x ** k[0] for k, c in p.terms())
 

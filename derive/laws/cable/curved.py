@@ -85,7 +85,7 @@ class CurvedCable(Cable):
         program.output("A", found, "N, N m^2, 1", "EA, EI, and the stress-free shape at each Gauss point")
 
     def reference(self, program: Program, tag: str, r1: np.ndarray, r2: np.ndarray, floor: sp.Expr) -> Reference:
-        """From r0' and r0''; floor is FLOOR in the units of r0''."""
+        """Return the reference from r0' and r0''; floor is FLOOR in the units of r0''."""
         a, b, c = (program.define(f"{name}0{tag}", value) for name, value in
                    (("a", r1.dot(r1)), ("b", r1.dot(r2)), ("c", r2.dot(r2))))
         inverse = program.define(f"inv_a0{tag}", 1 / a)
@@ -96,7 +96,7 @@ class CurvedCable(Cable):
         return Reference(program.define(f"j0{tag}", sp.sqrt(a)), inverse, k2, rounding, kappa,
                          program.define(f"k0_none{tag}", floor**2 * none * kappa))
 
-    def _terms(self, program: Program, A, c, w) -> Iterator[Term]:
+    def _terms(self, program: Program, A: np.ndarray, c: np.ndarray, w: sp.Expr) -> Iterator[Term]:
         """Yield the energy point by point."""
         program.stage("strain at the quadrature points")
         EA, EI = program.define("EA_l", A[0] / (2 * w)), program.define("EI_l", 2 * A[1] * w)
@@ -108,7 +108,7 @@ class CurvedCable(Cable):
 
     def curved_density(self, program: Program, tag: str, EA: sp.Expr, EI: sp.Expr, invariants: Any,
                        at: Reference) -> tuple:
-        """Energy per x, axial strain, and what leads from |r' x r''|^2 to the squared curvature."""
+        """Return energy per x, axial strain, and what leads from |r' x r''|^2 to the squared curvature."""
         a1, b, c = invariants
         relative = program.define(f"a1r{tag}", a1 * at.inverse + (at.inverse - 1))  # r'.r' / r0'.r0' - 1
         strain = self._axial_strain(program, tag, relative)

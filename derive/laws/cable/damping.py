@@ -68,7 +68,8 @@ class Damping:
                                      self._at_point(program, f"b{g}", "2", point.slope, c, dc))
                         for g, point in enumerate(self.points(self.degree - 1))]
 
-    def _at_point(self, program: Program, tag: str, order: str, series, c, dc) -> Pair:
+    def _at_point(self, program: Program, tag: str, order: str, series: Sequence[sp.Expr], c: np.ndarray,
+                  dc: np.ndarray) -> Pair:
         """Return the sum of a series of strain vectors at a point, and that of their rates."""
         r, d = (program.vector(f"{name}{order}_{tag}",
                                np.asarray(sum(series[k] * v[m] for k, m in enumerate(self.axis_indices))))

@@ -6,7 +6,7 @@ and differences do the work of both points of a pair.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -75,14 +75,14 @@ def _pairs(series: Series) -> list[tuple[int, int]]:
 
 
 def _alike(series: Series, here: int, there: int) -> list[bool]:
-    """Of every strain vector, whether its factor is the same at both points; else it is opposite."""
+    """Return, for every strain vector, whether its factor is the same at both points; else it is opposite."""
     return [f == g for f, g in zip(series[here], series[there], strict=True)]
 
 
-def _sum(terms) -> np.ndarray:
+def _sum(terms: Iterable[np.ndarray]) -> np.ndarray:
     return sum(terms, np.array(0))
 
 
 def _vector(program: Program, name: str, value: np.ndarray) -> np.ndarray:
-    """Named, where it is one."""
+    """Return a vector with its entries named, where it is one."""
     return program.vector(name, value) if value.ndim else value

@@ -58,5 +58,5 @@ def _along_x(r: list[np.ndarray]) -> dict[sp.Symbol, sp.Expr]:
 
 
 def _size(program: Program, tag: str, normal: np.ndarray, scale: sp.Expr) -> sp.Expr:
-    """Curvature from r' x r'': a sum of squares, never below zero by rounding."""
+    """Return the curvature from r' x r'': a sum of squares, never below zero by rounding."""
     return sp.sqrt(program.define(f"size2{tag}", normal.dot(normal) * scale))

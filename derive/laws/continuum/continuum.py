@@ -41,7 +41,7 @@ class Form:
 
     @cached_property
     def elasticity(self) -> dict[tuple, int]:
-        """Row of the section stiffness S of the law D E, by (ij, kl); orthotropic, axes x, y, z."""
+        """Return the row of the section stiffness S of the law D E, by (ij, kl); orthotropic, axes x, y, z."""
         normal = [(i, i) for i in range(self.gram.element.dim)]
         shear = [ij for ij in self.strain if ij[0] != ij[1]]
         off = [(a, b) for k, a in enumerate(normal) for b in normal[k + 1:]]
@@ -104,7 +104,9 @@ class Continuum:
                              f"elastic constants from {self.gram.element.name}_{NAME}_stiffness")
 
     def section_stiffness(self, program: Program) -> np.ndarray:
-        """Input S: elastic constants integrated over the section, times even powers of y and z."""
+        """Declare the input S, elastic constants integrated over the section times even powers of y and z, and return
+        it.
+        """
         rows = ROWS[self.gram.element.dim]
         return program.input("S", (len(rows), len(integrals.SECTION)), "N, N m^2, N m^2, N m^4, N m^4, N m^4",
                              f"section stiffness: integrals over A of {', '.join(rows)} (rows; orthotropic, axes x, y, "
@@ -188,7 +190,7 @@ class Continuum:
 
     # --- Kelvin-Voigt: stress follows G - G0 + tau dG/dt; what follows is the tau part ----------------------
 
-    def _viscous(self, program, A, tau, c, dc):
+    def _viscous(self, program: Program, A: np.ndarray, tau: sp.Expr, c: np.ndarray, dc: np.ndarray) -> tuple:
         program.stage("rates of the Gram products")
         dG = self.gram.gram_rate(program, c, dc)
         program.stage("u = tau A dG/dt")
@@ -224,7 +226,7 @@ class Continuum:
 
     def damping_blocks(self, program: Program, A: np.ndarray, tau: sp.Expr, c: np.ndarray, dc: np.ndarray,
                        rate: sp.Expr, w: sp.Expr) -> np.ndarray:
-        """df/dc + rate df/d(dc) over strain vectors."""
+        """Return df/dc + rate df/d(dc) over strain vectors."""
         u, _ = self._viscous(program, A, tau, c, dc)
         program.stage("b = tau (dc/dt + rate c)")
         b = np.array([program.vector(f"b_{name}", tau * (dc[m] + rate * c[m]))
@@ -237,7 +239,8 @@ class Continuum:
         u, dG = self._viscous(program, A, tau, c, dc)
         return sum(a * b for a, b in zip(u, dG, strict=True))
 
-    def _times(self, program: Program, moduli: dict, strain, scale=sp.S.One) -> list[sp.Expr]:
+    def _times(self, program: Program, moduli: dict, strain: Sequence[sp.Expr],
+               scale: sp.Expr = sp.S.One) -> list[sp.Expr]:
         u = []
         for p in range(len(self.gram.pairs)):
             alike: dict[sp.Expr, sp.Expr] = {}

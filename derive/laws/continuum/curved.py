@@ -61,7 +61,7 @@ class CurvedContinuum(Continuum):
                              f"{element}_{NAME}_stiffness_at; its G0")
 
     def set_up(self, program: Program) -> None:
-        """Inputs l, e0, at, D and outputs A, G0: what a point of the volume adds."""
+        """Declare the inputs l, e0, at, D and the outputs A, G0: what a point of the volume adds."""
         length = program.input("l", (), "m", "length of the element")
         e0 = stress_free.shape(program, self.gram.element)
         at = program.input("at", 3, "m", "local coordinates x, y, z of a point")
@@ -88,7 +88,7 @@ class CurvedContinuum(Continuum):
         program.output("G0", [c0[a].dot(c0[b]) - self.gram.reference[p] for p, (a, b) in enumerate(self.gram.pairs)],
                        "1", "Gram products of e0, less those of a straight element")
 
-    def _rows(self, program: Program, X, y, z, w) -> list[list[sp.Expr]]:
+    def _rows(self, program: Program, X: sp.Expr, y: sp.Expr, z: sp.Expr, w: sp.Expr) -> list[list[sp.Expr]]:
         """Return the coefficients over the pairs of (F'F)_ii/2 and (F'F)_ij, in Voigt's order."""
         rows: list = []
         known: dict = {}

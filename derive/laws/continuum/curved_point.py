@@ -14,7 +14,7 @@ from ...codegen.program import Program
 
 
 def voigt(dim: int) -> list[tuple[int, int]]:
-    """Order of components: normal, then shear."""
+    """Return the order of components: normal, then shear."""
     return [(i, i) for i in range(dim)] + [(i, j) for i in range(dim) for j in range(i + 1, dim)]
 
 
@@ -24,7 +24,7 @@ def columns(gram: Gram, c: np.ndarray, X: sp.Expr, w: sp.Expr) -> list[Expansion
 
 
 def at_point(program: Program, name: str, F: list[Expansion], y: sp.Expr, z: sp.Expr) -> list[np.ndarray]:
-    """F there, column by column."""
+    """Return F at a point, column by column."""
     return [program.vector(f"{name}{DIRECTIONS[i]}", sum(v * y**a * z**b for (a, b), v in column.items()))
             for i, column in enumerate(F)]
 
@@ -53,7 +53,7 @@ class Metric:
         self.N = np.array([program.vector(f"N{DIRECTIONS[i]}{tag}", inverse * row) for i, row in enumerate(adjugate)])
 
     def transform(self) -> list[list[sp.Expr]]:
-        """T: from (F'F - F0'F0)_ii/2, (F'F - F0'F0)_ij to E_ii, 2 E_ij in the tangent frame."""
+        """Return T: from (F'F - F0'F0)_ii/2, (F'F - F0'F0)_ij to E_ii, 2 E_ij in the tangent frame."""
         N, order = self.N, voigt(self.dim)
         T = []
         for a, b in order:
@@ -68,7 +68,7 @@ class Metric:
         return T
 
     def pulled(self, D: np.ndarray, elasticity: Mapping) -> list[list[sp.Expr]]:
-        """T' D T det J0, symmetric."""
+        """Return T' D T det J0, symmetric."""
         T, order, n = self.transform(), voigt(self.dim), range(len(voigt(self.dim)))
         right = [[self.program.define(f"DT{i}_{k}", self.det * sum(
             D[elasticity[order[i], order[j]]] * T[j][k] for j in n if (order[i], order[j]) in elasticity))

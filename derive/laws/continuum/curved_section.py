@@ -52,7 +52,7 @@ def _named(program: Program, name: str, parts: list[Expansion]) -> list[Expansio
 
 
 def _points(program: Program, S: np.ndarray, dim: int) -> list[tuple]:
-    """y, z and the elastic constants times the share of the section."""
+    """Return y, z and the elastic constants times the share of the section, for each point."""
     program.stage("points of the section")
     (y, per_y), (z, per_z) = (_place(program, name, S[0, second], S[0, fourth])
                               for name, second, fourth in (("y", 1, 3), ("z", 2, 5)))
@@ -80,12 +80,12 @@ def _place(program: Program, name: str, second: sp.Expr, fourth: sp.Expr) -> tup
 
 
 def _green(F: list[np.ndarray], F0: list[np.ndarray]) -> list[sp.Expr]:
-    """(F'F - F0'F0)_ii/2 and (F'F - F0'F0)_ij."""
+    """Return (F'F - F0'F0)_ii/2 and (F'F - F0'F0)_ij."""
     return [(F[i].dot(F[j]) - F0[i].dot(F0[j])) * (sp.Rational(1, 2) if i == j else 1) for i, j in voigt(len(F))]
 
 
 def _strain(program: Program, tag: str, metric: Metric, change: list[sp.Expr]) -> list[sp.Expr]:
-    """E_ii and 2 E_ij in the tangent frame: N' change N."""
+    """Return E_ii and 2 E_ij in the tangent frame: N' change N."""
     dim, order = metric.dim, voigt(metric.dim)
     half = {}
     for (i, j), value in zip(order, change, strict=True):
@@ -98,7 +98,8 @@ def _strain(program: Program, tag: str, metric: Metric, change: list[sp.Expr]) -
 
 
 def _measures(program: Program, R: np.ndarray, F: list[Expansion], F0: list[Expansion]) -> list[sp.Expr]:
-    """Strain on the axis, and what varies along y and z of F'F - F0'F0, per length of the stress-free axis."""
+    """Return the strain on the axis, and what varies along y and z of F'F - F0'F0, per length of the stress-free axis.
+    """
     program.stage("strain on the axis")
     metric = Metric(program, "_axis", R, [column[0, 0] for column in F0])
     dim, parts = metric.dim, {}
@@ -109,14 +110,14 @@ def _measures(program: Program, R: np.ndarray, F: list[Expansion], F0: list[Expa
             change.append(value / 2 if i == j else value)
         parts[power] = dict(zip(voigt(dim), _strain(program, tag, metric, change), strict=True))
 
-    def of(power, *ij):
-        return parts[power].get(ij, sp.S.Zero)
+    def of(power: tuple[int, int], i: int, j: int) -> sp.Expr:
+        return parts[power].get((i, j), sp.S.Zero)
 
     o, y, z = (0, 0), (1, 0), (0, 1)
     return [of(o, 0, 0), of(o, 0, 1), of(o, 0, 2), (of(y, 0, 2) - of(z, 0, 1)) / 2, of(z, 0, 0), -of(y, 0, 0)]
 
 
 def _coefficient(F: list[Expansion], i: int, j: int, power: tuple[int, int]) -> sp.Expr:
-    """Of a power of y and z in (F'F)_ij."""
+    """Return the coefficient of a power of y and z in (F'F)_ij."""
     return sum((u.dot(v) for (a, b), u in F[i].items() for (c, d), v in F[j].items() if (a + c, b + d) == power),
                sp.S.Zero)

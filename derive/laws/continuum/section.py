@@ -36,7 +36,7 @@ class Resultants:
         return {power: self.program.vector(name + _suffix(power), v) for power, v in sorted(parts.items())}
 
     def _strain(self, i: int, j: int) -> dict[tuple[int, int], sp.Expr]:
-        """E_ii, and gamma_ij = 2 E_ij."""
+        """Return E_ii, and gamma_ij = 2 E_ij."""
         total: dict[tuple[int, int], sp.Expr] = {}
         for (a, b), u in self.F[i].items():
             for (c, d), v in self.F[j].items():
@@ -48,7 +48,7 @@ class Resultants:
                 for power, value in sorted(total.items())}
 
     def stress(self, j: int, power: tuple[int, int]) -> sp.Expr:
-        """Integral over A of S_xj times powers of y and z."""
+        """Return the integral over A of S_xj times powers of y and z."""
         if (j, power) not in self._moments:
             total = sp.S.Zero
             for kl, strain in self.E.items():
@@ -64,23 +64,23 @@ class Resultants:
         return self._moments[j, power]
 
     def strain(self) -> list[sp.Expr]:
-        """Axial, shear along y and z, twist, curvatures about y and z: what of the Green strain a section that stays
-        plane would have.
+        """Return strains, axial, shear along y and z, twist, curvatures about y and z: what of the Green strain a
+        section that stays plane would have.
         """
-        def of(i, j, *power):
-            return self.E.get((i, j), {}).get(power, sp.S.Zero)
+        def of(i: int, j: int, *power: int) -> sp.Expr:
+            return self.E.get((i, j), {}).get((power[0], power[1]), sp.S.Zero)
 
         return [of(0, 0, 0, 0), of(0, 1, 0, 0), of(0, 2, 0, 0), (of(0, 2, 1, 0) - of(0, 1, 0, 1)) / 2,
                 of(0, 0, 0, 1), -of(0, 0, 1, 0)]
 
     def force(self) -> np.ndarray:
-        """Integral of P e_x."""
+        """Return the integral of P e_x."""
         self.program.stage("moments of the stress over the section")
         return spatial(sum((self.stress(j, power) * v for j, column in enumerate(self.F)
                             for power, v in column.items()), np.zeros(self.dim, dtype=object)))
 
     def moment(self) -> np.ndarray:
-        """Integral of the arm times P e_x."""
+        """Return the integral of the arm times P e_x."""
         total = np.full(3, sp.S.Zero)
         for (a, b), arm in self.arm.items():
             for j, column in enumerate(self.F):

@@ -83,7 +83,7 @@ class Forces:
         return {r: ZERO for r in self.resultants if r.is_Symbol}
 
     def _by_part(self) -> dict[sp.Symbol, sp.Expr]:
-        """dV by each scalar part."""
+        """Return dV by each scalar part."""
         configuration, n = self.configuration, len(self.law.axes)
         by_scalar = dict(zip(self.midspan.scalars, self.midspan.gradient, strict=True))
         values: dict[sp.Symbol, sp.Expr] = {}

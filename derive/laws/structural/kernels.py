@@ -8,6 +8,8 @@ along x, y, z, and the two frames, turned about their own axes.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import sympy as sp
 
@@ -39,7 +41,7 @@ class Kernels:
         return Program(f"{self.element.name}_{self.law.name}_{kernel}", doc, self.law.source)
 
     def _inputs(self, program: Program, *names: str) -> tuple:
-        """Inputs l, e, A, or l, e, v, A, tau."""
+        """Declare the inputs l, e, A, or l, e, v, A, tau, and return what they make."""
         shape = (self.element.n_vectors, self.element.dim)
         about = {"e": ("m, 1", "nodal vectors e, eq 1"), "v": ("m/s, 1/s", "rates of the nodal vectors")}
         length = program.input("l", (), "m", "length of the element")
@@ -49,7 +51,8 @@ class Kernels:
     def _tau(self, program: Program) -> sp.Symbol:
         return program.input("tau", (), "s", "retardation time of the Kelvin-Voigt law")
 
-    def _configuration(self, program: Program, e: np.ndarray, length: sp.Symbol, shares) -> Configuration:
+    def _configuration(self, program: Program, e: np.ndarray, length: sp.Symbol,
+                       shares: Sequence[sp.Expr] | np.ndarray) -> Configuration:
         program.stage("frames, strains")
         return Configuration(self.law, program, e, program.define("w", 1 / length), shares)
 
@@ -92,7 +95,7 @@ class Kernels:
         return p
 
     def damping_force(self) -> Program:
-        """tau times the elastic law on the rates of strain."""
+        """Return the kernel of tau times the elastic law on the rates of strain."""
         p = self._program("damping_force", "minus the Kelvin-Voigt damping force Q_d")
         length, e, v, A = self._inputs(p, "e", "v")
         configuration = self._configuration(p, e, length, self._shares(A))
@@ -102,7 +105,7 @@ class Kernels:
         return p
 
     def damping_tangent(self) -> Program:
-        """df/de + rate df/dv of the damping force f."""
+        """Return the kernel of df/de + rate df/dv of the damping force f."""
         p = self._program("damping_tangent", "df/de + rate df/dv of the damping force f = -Q_d")
         length, e, v, A = self._inputs(p, "e", "v")
         tau = self._tau(p)
@@ -116,7 +119,7 @@ class Kernels:
         return p
 
     def dissipation(self) -> Program:
-        """Return the rates of strain times viscous resultants."""
+        """Return the kernel of the dissipated power: rates of strain times viscous resultants."""
         p = self._program("dissipation", "power dissipated by the damping force")
         length, e, v, A = self._inputs(p, "e", "v")
         rates = Velocity(self._configuration(p, e, length, self._shares(A)), v).strains()
@@ -125,7 +128,7 @@ class Kernels:
         return p
 
     def section_forces(self) -> Program:
-        """Return what passes through the section at x from the side of greater x."""
+        """Return the kernel of what passes through the section at x from the side of greater x."""
         p = self._program("section_forces", "force and moment resultants of a section")
         length, x = p.input("l", (), "m", "length of the element"), p.input("x", (), "m", "arc-length from its start")
         shape = (self.element.n_vectors, self.element.dim)
@@ -160,10 +163,11 @@ class Kernels:
         program.stage("stiffness of the element")
         return [program.define(f"S_{i}", scale * A[i]) for i in range(self.law.n_stiffness)]
 
-    def _elastic(self, program: Program, A: np.ndarray, stiffness, configuration: Configuration) -> list[sp.Expr]:
+    def _elastic(self, program: Program, A: np.ndarray, stiffness: Sequence[sp.Expr],
+                 configuration: Configuration) -> list[sp.Expr]:
         return self._resultants(program, stiffness, self.law.from_reference(program, A, configuration.strains))
 
-    def _resultants(self, program: Program, stiffness, strains) -> list[sp.Expr]:
+    def _resultants(self, program: Program, stiffness: Sequence[sp.Expr], strains: Sequence[sp.Expr]) -> list[sp.Expr]:
         program.stage("resultants")
         return [program.define(f"n_{name}", r)
                 for name, r in zip(self.law.names, self.law.resultants(stiffness, strains), strict=True)]

@@ -53,7 +53,7 @@ class SectionFrame:
         return along1 * t1 + along3 * t3, program.define(f"z1_{tag}", self.inverse_c * moment[1]) * t1
 
     def rates(self, spin: np.ndarray | list, dy: np.ndarray, dz: np.ndarray) -> dict[sp.Symbol, sp.Expr]:
-        """Of everything named here, when the directors move."""
+        """Return the rates of everything named here, when the directors move."""
         _, t2, t3 = self.t
         db, dc = dz.dot(t2) + self.c * spin[0], dz.dot(t3) - self.b * spin[0]
         turn = sum((spin[k] * turned(k, self.t) for k in range(3)), np.zeros((3, 3), dtype=object))

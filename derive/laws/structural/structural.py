@@ -25,7 +25,7 @@ EA, GA_y, GA_z, GJ, EI_yy, EI_zz, and stiffness against r_y.r_y, r_z.r_z, r_y.r_
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -63,7 +63,7 @@ LINEAR = sp.Matrix(2, 2, lambda i, j: _mean((1 + PLACES[2 * i] * X) * (1 + PLACE
 
 
 def arc(square: sp.Expr) -> tuple[sp.Expr, sp.Expr]:
-    """arctan(t)/t as a quotient, from t^2: Gauss's continued fraction; off by 1e-6 at 45 degrees, 2e-4 at 90."""
+    """Return arctan(t)/t as a quotient, from t^2: Gauss's continued fraction; off by 1e-6 at 45 degrees, 2e-4 at 90."""
     t2, fraction = sp.Symbol("t2"), sp.Integer(9)
     for n in (4, 3, 2, 1):
         fraction = 2 * n - 1 + n**2 * t2 / fraction
@@ -92,7 +92,7 @@ class Structural:
 
     @property
     def n_stiffness(self) -> int:
-        """S, and what the bubble takes off each shear."""
+        """Return the number of constants of S, and of what the bubble takes off each shear."""
         return self.n_section + len(self.shears)
 
     @property
@@ -102,7 +102,9 @@ class Structural:
 
     @property
     def n_strains(self) -> int:
-        """Stretch and shears at three places, curvatures, strains of the section at both nodes."""
+        """Return the number of strains: stretch and shears at three places, curvatures, strains of the section at both
+        nodes.
+        """
         return 3 * len(self.axes) + len(self.spins) + 2 * len(self.across)
 
     def section_stiffness(self, program: Program) -> np.ndarray:
@@ -143,18 +145,18 @@ class Structural:
                 for i, c in zip(self.shears, left, strict=True)]
 
     def bending(self, S: Sequence[sp.Expr] | np.ndarray, shear: int) -> sp.Expr:
-        """Stiffness of the bending that goes with a shear: about z with y, about y with z."""
+        """Return the stiffness of the bending that goes with a shear: about z with y, about y with z."""
         return S[len(self.axes) + list(self.spins).index(3 - shear)]
 
-    def _condensed(self, S, shear: int, length: sp.Expr) -> sp.Expr:
+    def _condensed(self, S: Sequence[sp.Expr] | np.ndarray, shear: int, length: sp.Expr) -> sp.Expr:
         return S[shear] ** 2 / self._bubble_stiffness(S, shear, length)
 
-    def _bubble_stiffness(self, S, shear: int, length: sp.Expr) -> sp.Expr:
-        """Of the amplitude beta, over l."""
+    def _bubble_stiffness(self, S: Sequence[sp.Expr] | np.ndarray, shear: int, length: sp.Expr) -> sp.Expr:
+        """Return the stiffness of the amplitude beta, over l."""
         return S[shear] * BUBBLE_SQUARED + self.bending(S, shear) * BUBBLE_CURVATURE / length**2
 
     def bubble(self, S: np.ndarray, shear: int, length: sp.Expr, strain: Sequence[sp.Expr]) -> sp.Expr:
-        """Amplitude beta that makes the energy least, for the shear strains at the three places."""
+        """Return the amplitude beta that makes the energy least, for the shear strains at the three places."""
         return S[shear] * _times(BUBBLE_WITH_STRAIN, strain) / self._bubble_stiffness(S, shear, length)
 
     # --- the energy, a quadratic form in the strains ----------------------------------------------------------
@@ -194,8 +196,8 @@ class Structural:
 
     def at(self, program: Program, S: np.ndarray, length: sp.Expr, at: sp.Expr,
            strains: Sequence[sp.Expr]) -> tuple[list[sp.Expr], np.ndarray]:
-        """Axial strain, shears, twist, curvatures at X, the bubble's among them, and its turn, a Gibbs vector in the
-        section's frame; zero out of the plane.
+        """Return axial strain, shears, twist, curvatures at X, the bubble's among them, and its turn, a Gibbs vector in
+        the section's frame; zero out of the plane.
         """
         n = len(self.axes)
         found, turn = [sp.S.Zero] * 6, np.full(3, sp.S.Zero)
@@ -214,18 +216,19 @@ class Structural:
         return [program.define(f"at_{'ek'[i // 3]}{i % 3 + 1}", f) for i, f in enumerate(found)], turn
 
     def spatial_stiffness(self, S: Sequence[sp.Expr] | np.ndarray) -> list[sp.Expr]:
-        """EA, GA_y, GA_z, GJ, EI_yy, EI_zz; of a planar element those that it has."""
+        """Return EA, GA_y, GA_z, GJ, EI_yy, EI_zz; of a planar element those that it has."""
         return list(S[:6]) if self.element.dim == 3 else [S[0], S[1], *[sp.S.Zero] * 3, S[2]]
 
     @property
     def director_shapes(self) -> list[sp.Expr]:
-        """Shape functions of r_y at the nodes, as they stand at r_y: linear in x."""
+        """Return the shape functions of r_y at the nodes, as they stand at r_y: linear in x."""
         return [sp.diff(N, y) for name, N in zip(self.element.names, self.element.shape_functions, strict=True)
                 if name.startswith("r_y")]
 
     @cached_property
     def half_way(self) -> list[sp.Expr]:
-        """r_x half way by the nodal vectors, positions counted in lengths: derivatives of the shape functions."""
+        """Return r_x half way by the nodal vectors, positions counted in lengths: derivatives of the shape functions.
+        """
         at = {x: l / 2, y: 0, z: 0}
         return [sp.cancel(sp.diff(N, x).subs(at) * (l if position else 1))
                 for N, position in zip(self.element.shape_functions, self.element.is_position, strict=True)]
@@ -241,7 +244,8 @@ class Configuration:
     `parts` are these scalars and the frames: a motion is known by the rates that it gives to them.
     """
 
-    def __init__(self, law: Structural, program: Program, e: np.ndarray, w: sp.Expr, shares: Sequence[sp.Expr]):
+    def __init__(self, law: Structural, program: Program, e: np.ndarray, w: sp.Expr,
+                 shares: Sequence[sp.Expr] | np.ndarray):
         self.law, self.program, self.w, self.shares = law, program, w, shares
         names = [name.partition("_")[2] for name in law.element.names]  # 1, x1, y1, z1, 2, x2, ...
         at = {name: spatial(e[k]) for k, name in enumerate(names)}
@@ -269,14 +273,14 @@ class Configuration:
         return np.array([self.program.define(f"{name}_{i + 1}", vector.dot(t)) for i, t in enumerate(frame.t)])
 
     def _gibbs(self) -> np.ndarray:
-        """tan(angle/2) times the axis of the rotation from the first frame to the second, in either."""
+        """Return tan(angle/2) times the axis of the rotation from the first frame to the second, in either."""
         turn = [[a.dot(b) for b in self.frames[1].t] for a in self.frames[0].t]
         inverse = self.program.define("inv_turn", 1 / (1 + sum(turn[i][i] for i in range(3))))
         return np.array([self.program.define(f"g{i + 1}", inverse * (turn[i - 1][i - 2] - turn[i - 2][i - 1]))
                          for i in range(3)])
 
     def _middle(self) -> list[sp.Expr]:
-        """Stretch, shears half way; curvatures.
+        """Return stretch and shears half way, and the curvatures.
 
         (t_1 + t_2)/2 is the frame of half the rotation, its part across the axis shorter by cos(angle/2).
         """
@@ -340,11 +344,13 @@ class Configuration:
         return found
 
     def _gibbs_rate(self, node: int, k: int) -> np.ndarray:
-        """From quaternions (1, g) and (1, spin/2): (+-(spin + g (g.spin)) + g x spin)/2, minus for the first node."""
+        """Return the rate of a Gibbs vector, from quaternions (1, g) and (1, spin/2): (+-(spin + g (g.spin)) + g x
+        spin)/2, minus for the first node.
+        """
         g, sign = self.gibbs, 2 * node - 1
         unit = np.array([sp.Integer(i == k) for i in range(3)])
         rate = (sign * (unit + g[k] * g) + turned(k, g)) / 2
         return np.array([self.program.define(f"dg{i + 1}_{node + 1}{k + 1}", r) for i, r in enumerate(rate)])
 
-    def _complete(self, rates) -> dict[sp.Symbol, sp.Expr]:
+    def _complete(self, rates: Iterable[tuple[sp.Symbol, sp.Expr]]) -> dict[sp.Symbol, sp.Expr]:
         return dict.fromkeys(self.parts, sp.S.Zero) | {s: v for s, v in rates if sp.sympify(s).is_Symbol}

@@ -68,7 +68,9 @@ class Tangent(Forces):
         return np.array([*of_mean, *(motion[g] for g in configuration.gibbs if g.is_Symbol)])
 
     def _mirror(self) -> None:
-        """Motions commute but for the spins of one frame, of which (k, l) and (l, k) differ by the third."""
+        """Fill the half below the diagonal: motions commute but for the spins of one frame, of which (k, l) and (l, k)
+        differ by the third.
+        """
         for row in range(len(self.parts)):
             for column in range(row + 1, len(self.parts)):
                 self.parts[column, row] = self.parts[row, column]
@@ -81,7 +83,7 @@ class Tangent(Forces):
 
     def add_material(self, stiffness: Sequence[sp.Expr], velocity: Velocity | None = None,
                      rate: sp.Expr = None) -> None:
-        """Stages: what the resultants change by, for the elastic law, or the viscous one at a velocity."""
+        """Add the stages of what the resultants change by, for the elastic law, or the viscous one at a velocity."""
         self.program.stage("strains by motions of the parts")
         B = self._strain_motions()
         moved = B
@@ -96,8 +98,8 @@ class Tangent(Forces):
         self.velocity = velocity
         self._add_across(stiffness, velocity, rate)
 
-    def _add_across(self, stiffness: Sequence[sp.Expr], velocity: Velocity | None, rate) -> None:
-        """The strains of the section, which only directors move."""
+    def _add_across(self, stiffness: Sequence[sp.Expr], velocity: Velocity | None, rate: sp.Expr | None) -> None:
+        """Add the strains of the section, which only directors move."""
         terms, dim, directors = across(self.configuration), self.law.element.dim, self.configuration.directors
         for q, own in terms.items():
             resultants = self.law.resultants(stiffness, [sp.Integer(i == q) for i in range(self.law.n_strains)])
@@ -114,8 +116,9 @@ class Tangent(Forces):
     def _add(self, of: Slot, to: Slot, block: np.ndarray) -> None:
         self.across[of, to] = self.across.get((of, to), 0) + block
 
-    def _add_form(self, K: np.ndarray, B: np.ndarray, stiffness, columns: np.ndarray, name: str) -> np.ndarray:
-        """K + B' C columns, entry by entry; B' C B is symmetric."""
+    def _add_form(self, K: np.ndarray, B: np.ndarray, stiffness: Sequence[sp.Expr], columns: np.ndarray,
+                  name: str) -> np.ndarray:
+        """Return K + B' C columns, named entry by entry; B' C B is symmetric."""
         C = np.array([[self.program.define("C", r) for r in self.law.resultants(stiffness, column)]
                       for column in columns.T]).T
         form = np.full(K.shape, ZERO, dtype=object)

@@ -13,7 +13,9 @@ from .measures import Invariance
 
 
 def frame(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance]:
-    """Orthonormal, right-handed; a turn of both vectors turns the frame; length does not matter."""
+    """Yield that the frame is orthonormal and right-handed, that a turn of both vectors turns it, and that length does
+    not matter.
+    """
     out = k("axes", s)
     A, T = out["A"], out["T"]
     off = np.abs(A.T @ A - np.eye(len(A))).max()

@@ -26,7 +26,7 @@ def law(family: LawFamily, k: Numbers, s: State) -> Iterator[Invariance]:
 
 
 def _rigid_motion(family: LawFamily, k: Numbers, s: State) -> Iterator[Invariance]:
-    """Moved without strain: coordinates of size c hold chords, in lengths, to eps (1 + |c|/l)."""
+    """Yield that rigid motion makes no strain: coordinates of size c keep chords, in lengths, to eps (1 + |c|/l)."""
     spec, random = family.element, np.random.default_rng(1)
     stiff = _stiffness(family, s)
     for far, where in ((0.0, ""), (1e4, " at 10⁴ lengths")):
@@ -42,7 +42,7 @@ def _rigid_motion(family: LawFamily, k: Numbers, s: State) -> Iterator[Invarianc
 
 
 def _stiffness(family: LawFamily, s: State) -> float:
-    """Energy of a strain of order one."""
+    """Return the energy of a strain of order one."""
     if family.traits.kind == "continuum" and not family.traits.straight:
         return float(np.max(np.abs(s["A"])))
     if family.traits.kind == "continuum":
@@ -55,7 +55,7 @@ def _stiffness(family: LawFamily, s: State) -> float:
 
 
 def _moment(e: np.ndarray, f: np.ndarray, positions: np.ndarray) -> np.ndarray:
-    """Moment of generalised forces about the first node: skew part of sum d (x) f."""
+    """Return the moment of generalised forces about the first node: skew part of sum d (x) f."""
     d = e - np.outer(positions, e[0])
     product = d.T @ f
     return product - product.T

@@ -12,7 +12,7 @@ from .measures import Invariance
 
 
 def resistance(family: CouplingFamily, k: Numbers, s: State) -> Iterator[Invariance]:
-    """Friction against the motion, as large as the normal force makes it; a buffer of its own."""
+    """Yield that friction acts against the motion, as large as the normal force makes it, and what a buffer does."""
     i = s["t"] / np.linalg.norm(s["t"])
     length, v = np.linalg.norm(s["t"]), i @ s["u"]
     N = np.linalg.norm(s["f"] - (s["f"] @ i) * i)

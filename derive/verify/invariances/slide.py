@@ -29,7 +29,7 @@ def slide(family: SlideFamily, k: Numbers, s: State) -> Iterator[Invariance]:
 
 
 def _kept(family: SlideFamily, k: Numbers, s: State, n_e: int) -> Iterator[Invariance]:
-    """On the joint, any velocity of the cable, any turning, any speed of sliding: H has to be blind to it."""
+    """Yield that H is blind to any velocity of the cable, any turning and any speed of sliding on the joint."""
     gap = k("residual", s)["phi"]
     b = s["b"].copy()
     b[: len(gap)] += gap  # the rider's origin comes first in every rider's configuration
@@ -87,7 +87,7 @@ def _frame(family: SlideFamily, k: Numbers, s: State, out: dict, n_e: int) -> It
 
 
 def _step(family: SlideFamily, k: Numbers, s: State, n_e: int) -> Iterator[Invariance]:
-    """Momenta over a step: what the joint's force does to cable and rider, about the rider's mean place."""
+    """Yield the momenta over a step: what the joint's force does to cable and rider, about the rider's mean place."""
     element, rider = family.element, RIDERS[family.rider]
     dim, positions = element.dim, np.array(element.is_position, dtype=float)
     forces = k("discrete_gradient", s)["G"].T @ s["f"]

@@ -24,7 +24,7 @@ mp = mpmath.mp
 
 
 def energy(element: Element, law: str, s: Any) -> Any:
-    """1/2 EA strain^2 + 1/2 EI curvature^2 along the axis; strain and curvature from the stress-free shape's."""
+    """Return 1/2 EA strain^2 + 1/2 EI curvature^2 along the axis; strain and curvature from the stress-free shape's."""
     traits, kernels = TRAITS[law], LAWS[law](Gram(element))
     strain, curvature = traits.strain, traits.curvature
     EA, EI = s["S"][:2]
@@ -48,7 +48,9 @@ def energy(element: Element, law: str, s: Any) -> Any:
 
 
 def axial_points(element: Element, law: str) -> int:
-    """Gauss points of the membrane; two more than the kernels take, where their number is claimed to be exact."""
+    """Return the number of Gauss points of the membrane; two more than the kernels take, where their number is claimed
+    to be exact.
+    """
     kernels, traits = LAWS[law](Gram(element)), TRAITS[law]
     n, degree = len(kernels.axial_points), kernels.degree
     exact = (3 * degree - 1) // 2 if traits.membrane == "assumed" else 2 * degree - 1
@@ -78,7 +80,7 @@ def strain_modes(element: Element, law: str, s: Any) -> list[tuple]:
 
 
 def dissipation(element: Element, law: str, s: Any) -> Any:
-    """EA tau strain'^2 + EI tau |D_t r''|^2, D_t the rate as seen from a frame that turns with the tangent."""
+    """Return EA tau strain'^2 + EI tau |D_t r''|^2, D_t the rate as seen from a frame that turns with the tangent."""
     strain = TRAITS[law].strain
     EA, EI = s["S"][:2]
     degree = max(p[0] for p in Shape(element, s["l"].item()).powers)
@@ -93,7 +95,7 @@ def dissipation(element: Element, law: str, s: Any) -> Any:
 
 
 def turning(element: Element, law: str, s: Any) -> Any:
-    """EA |dr'|^2/8 over N' N'; of an assumed strain by its modes."""
+    """Return EA |dr'|^2/8 over N' N'; of an assumed strain by its modes."""
     shape, half = Shape(element, s["l"].item()), s["l"].item() / 2
     degree = max(p[0] for p in shape.powers)
     assumed = TRAITS[law].membrane == "assumed"
@@ -114,7 +116,7 @@ def turning(element: Element, law: str, s: Any) -> Any:
 
 
 def _along(element: Element, s, n: int) -> Iterator[tuple]:
-    """At n Gauss points of the axis: weight, r', r'' and their rates, all in three dimensions."""
+    """Yield, at n Gauss points of the axis, weight, r', r'' and their rates, all in three dimensions."""
     shape, half = Shape(element, s["l"].item()), s["l"].item() / 2
     for t, weight in gauss(n):
         at = (half * (1 + t), 0, 0)

@@ -25,7 +25,7 @@ def energy(element: Element, law: str, s: Any) -> Any:
 
 
 def dissipation(element: Element, law: str, s: Any) -> Any:
-    """Power of the viscous stress tau D dE/dt by quadrature."""
+    """Return the power of the viscous stress tau D dE/dt by quadrature."""
     total = mp.mpf(0)
     for N, weight, D in _material_points(element, s):
         F, rate = s["e"].T.dot(N), s["v"].T.dot(N)
@@ -34,7 +34,8 @@ def dissipation(element: Element, law: str, s: Any) -> Any:
 
 
 def _material_points(element: Element, s) -> Iterator[tuple]:
-    """Gradient of the shape functions, weight and elastic constants: D over the volume, D_axis on the axis alone."""
+    """Yield gradient of the shape functions, weight and elastic constants: D over the volume, D_axis on the axis alone.
+    """
     shape = Shape(element, s["l"].item())
     height, width = s["rectangle"]
     for at, weight in shape.points(height, width):

@@ -14,7 +14,8 @@ mp = mpmath.mp
 
 
 def measures(strain: str, r: Any, r0: Any) -> tuple:
-    """Strain, and what the curvature has more than the stress-free one, both by the stress-free arc-length."""
+    """Return the strain, and what the curvature has more than the stress-free one, both by the stress-free arc-length.
+    """
     stretch = mp.sqrt(r[0].dot(r[0]) / r0[0].dot(r0[0]))
     change = _curvature(strain, r, r0) - _curvature("", r0, r0)
     return (stretch**2 - 1) / 2 if strain == "green" else stretch - 1, change
@@ -27,8 +28,8 @@ def _curvature(strain: str, r, r0):
 
 
 def density(strain: str, r: Any, r0: Any, EA: Any, EI: Any, l: Any) -> Any:
-    """Energy per x; kappa and kappa0 are rounded to sqrt(kappa^2 + 1e-6 kappa0^2 + floor), floor = (2e-6/l)^2, and a
-    kappa0^2 below the floor is none.
+    """Return energy per x; kappa and kappa0 are rounded to sqrt(kappa^2 + 1e-6 kappa0^2 + floor), floor = (2e-6/l)^2,
+    and a kappa0^2 below the floor is none.
     """
     eps, _ = measures(strain, r, r0)
     kappa, kappa0, floor = _curvature(strain, r, r0), _curvature("", r0, r0), 4 / mp.mpf(10) ** 12 / mp.mpf(l) ** 2
@@ -40,7 +41,7 @@ def density(strain: str, r: Any, r0: Any, EA: Any, EI: Any, l: Any) -> Any:
 
 
 def energy(element: Element, strain: str, s: Any, n: int) -> Any:
-    """By n Gauss points."""
+    """Return the energy by n Gauss points."""
     shape, half, total = Shape(element, s["l"].item()), mp.mpf(s["l"].item()) / 2, mp.mpf(0)
     EA, EI = s["S"]
     for t, weight in gauss(n):

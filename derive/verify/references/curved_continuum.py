@@ -70,7 +70,7 @@ def energy(element: Element, law: str, s: Any) -> Any:
 
 
 def density_at(element: Element, s: Any) -> Any:
-    """Energy that the point `at` adds with the elastic constants D."""
+    """Return the energy that the point `at` adds with the elastic constants D."""
     body = Body(element, s)
     return body.volume(s["at"]) * density(s["D"], body.strain(s["at"]))
 

@@ -55,12 +55,12 @@ class Shape:
                 yield self.l * int(ratio.p) / int(ratio.q), by
 
     def __call__(self, at: Any, by: tuple[int, int, int] = (0, 0, 0)) -> np.ndarray:
-        """N at a point, or the derivative `by` times in x, y, z."""
+        """Return N at a point, or the derivative `by` times in x, y, z."""
         basis = mp.matrix([[_monomial(p, by, at) for p in self.powers]])
         return np.array(list(basis * self._coefficients), dtype=object)
 
     def gradient(self, at: Any) -> np.ndarray:
-        """dN_k/dx_i -> (vectors, dim)."""
+        """Return dN_k/dx_i, (vectors, dim)."""
         return np.stack([self(at, by) for by in np.eye(3, dtype=int)[: self.element.dim].tolist()], axis=1)
 
     def points(self, height: Any, width: Any) -> list[tuple[tuple, object]]:
@@ -101,7 +101,7 @@ def gravity(element: Element, s: Any) -> np.ndarray:
 
 
 def density(D: np.ndarray, E: np.ndarray) -> Any:
-    """Strain energy density of the orthotropic law: 1/2 sum D_ij E_ii E_jj + 1/2 sum G (2 E_ij)^2."""
+    """Return the strain energy density of the orthotropic law: 1/2 sum D_ij E_ii E_jj + 1/2 sum G (2 E_ij)^2."""
     dim = len(E)
     off = [(i, j) for i in range(dim) for j in range(i + 1, dim)]
     normal, cross, shear = D[:dim], D[dim : dim + len(off)], D[dim + len(off) :]
@@ -126,7 +126,7 @@ def stress(D: np.ndarray, E: np.ndarray) -> np.ndarray:
 
 
 def section_points(s: Any) -> Iterator[tuple]:
-    """y, z, area and elastic constants of the sample's section: D all over it, D_axis on the axis alone."""
+    """Yield y, z, area and elastic constants of the sample's section: D all over it, D_axis on the axis alone."""
     height, width = (mp.mpf(v) for v in s["rectangle"])
     for (a, p), (b, q) in product(gauss(3), gauss(3)):
         yield a * height / 2, b * width / 2, p * q * height * width / 4, s["D"]

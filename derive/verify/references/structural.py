@@ -29,7 +29,7 @@ def energy(element: Element, law: str, s: Any) -> Any:
 
 
 def dissipation(element: Element, law: str, s: Any) -> Any:
-    """Power: the law on the rates of strain, times tau."""
+    """Return the power: the law on the rates of strain, times tau."""
     strains = partial(_strains, element, s["S"], s["l"].item())
     after, before = strains(s["e"] + STEP * s["v"]), strains(s["e"] - STEP * s["v"])
     rates = {name: (after[name] - before[name]) / (2 * STEP) for name in after}
@@ -60,7 +60,8 @@ def section(element: Element, law: str, s: Any) -> dict[str, np.ndarray]:
 
 
 def _strains(element: Element, S: np.ndarray, l, e: np.ndarray) -> dict[str, np.ndarray]:
-    """Stretch and shears at nodes and half way (3, 3), curvatures (3,), strains of the section at nodes (2, 3)."""
+    """Return stretch and shears at nodes and half way (3, 3), curvatures (3,), strains of the section at nodes (2, 3).
+    """
     shape = Shape(element, l)
     gradients = [_spatial(e.T.dot(shape.gradient((x, 0, 0)))) for x in (0, l / 2, l)]
     frames = [_frame(gradients[k][:, 1], gradients[k][:, 2]) for k in (0, 2)]
@@ -76,7 +77,7 @@ def _strains(element: Element, S: np.ndarray, l, e: np.ndarray) -> dict[str, np.
 
 
 def _half_way(r: np.ndarray, S: np.ndarray, l) -> np.ndarray:
-    """Stretch and shears of r_x half way, its components in a frame that the bubble does not turn.
+    """Return stretch and shears of r_x half way, its components in a frame that the bubble does not turn.
 
     What the bubble leaves of each shear, the others zero, is not stretch; the rest is that of a parabola with the
     bubble's zeros and the mean of the bubble's square. Shears go with twice the tangent of half an angle for its sine.
@@ -94,7 +95,7 @@ def _half_way(r: np.ndarray, S: np.ndarray, l) -> np.ndarray:
 
 
 def _spatial_stiffness(S: np.ndarray):
-    """A planar section leaves the third direction at rest."""
+    """Return the stiffness in space; a planar section leaves the third direction at rest."""
     if len(S) == 9:
         return S
     EA, GAy, EIzz, thickness = S
@@ -116,13 +117,14 @@ def _form(S: np.ndarray, l, strains: dict[str, np.ndarray]):
 
 
 def _with_bubble(gamma: Callable, kappa, shear, bending, sign: int, l) -> Callable:
-    """shear (gamma - sign theta)^2 + bending (kappa + theta')^2 with theta = beta (1 - t^2), a parabola in beta."""
+    """Return shear (gamma - sign theta)^2 + bending (kappa + theta')^2 with theta = beta (1 - t^2), a parabola in beta.
+    """
     return lambda beta: (shear * _square(lambda t: gamma(t) - sign * beta * (1 - t * t))
                          + bending * _square(lambda t: kappa - beta * 2 * t * 2 / l))
 
 
 def _least(parabola: Callable):
-    """Where it is least; 0 where it is flat."""
+    """Return where a parabola is least; 0 where it is flat."""
     below, here, above = (parabola(mp.mpf(beta)) for beta in (-1, 0, 1))
     curvature = above - 2 * here + below
     return mp.mpf(0) if curvature == 0 else (below - above) / (2 * curvature)
@@ -134,7 +136,7 @@ def _interpolated(at: np.ndarray) -> Callable:
 
 
 def _square(f: Callable):
-    """Mean of f^2 over [-1, 1]."""
+    """Return the mean of f^2 over [-1, 1]."""
     return sum(weight * f(t) ** 2 for t, weight in gauss(5)) / 2
 
 
@@ -170,5 +172,5 @@ def _rotation(vector: np.ndarray) -> np.ndarray:
 
 
 def _arc(square):
-    """The law's arctan(t)/t: Gauss's continued fraction, cut after four steps."""
+    """Return the law's arctan(t)/t: Gauss's continued fraction, cut after four steps."""
     return 1 / (1 + square / (3 + 4 * square / (5 + 9 * square / (7 + 16 * square / 9))))

@@ -29,14 +29,14 @@ def body(family: BodyFamily) -> list[Relation]:
         return out["p_q"].T.dot(s["f"])
 
     def momentum(k, s, t, j):
-        """In the axes of t = 0: mass velocity, A J omega about the axes of rotation."""
+        """Return momenta in the axes of t = 0: mass velocity, A J omega about the axes of rotation."""
         velocity = s["w"] + t * s["a"]
         turn = exponential(k, t * spin(s["w"], dim))
         return np.concatenate([s["mass"] * velocity[:dim],
                                turned(turn, s["J"].dot(spin(velocity, dim)))[dim - n:]])
 
     def kinetic_energy(k, s, t, j):
-        """Of point masses with the same inertia: J = sum m (p.p I - p p')."""
+        """Return the kinetic energy of point masses with the same inertia: J = sum m (p.p I - p p')."""
         spread = (s["J"].trace() / 2) * np.eye(3, dtype=int) - s["J"]
         return sum(s["mass"] * s["w"][i] ** 2 for i in range(dim)) / 2 + _spinning(spread, spin(s["w"], dim))
 
@@ -67,7 +67,7 @@ def body(family: BodyFamily) -> list[Relation]:
 
 
 def _spinning(spread: np.ndarray, omega: np.ndarray):
-    """Kinetic energy of rotation, from S = sum m p p': each column p of a root of S moves with omega x p."""
+    """Return the kinetic energy of rotation, from S = sum m p p': each column p of a root of S moves with omega x p."""
     columns = np.stack([cross(omega, c) for c in spread.T], axis=1)  # omega~ S, and T = -1/2 tr(omega~ omega~ S)
     return -sum(cross(omega, columns[:, i])[i] for i in range(3)) / 2
 

@@ -15,7 +15,7 @@ def frame(family: CouplingFamily) -> list[Relation]:
     dim = family.dim
 
     def moved(s, t, j):
-        """Entry j of (a, b) moved by t."""
+        """Return the state with entry j of (a, b) moved by t."""
         motion = t * np.eye(2 * dim, dtype=int)[j]
         return {"a": s["a"] + motion[:dim], "b": s["b"] + motion[dim:]}
 

@@ -70,8 +70,8 @@ def law(family: LawFamily) -> list[Relation]:
 
 
 def _step_stiffness(family: LawFamily) -> Relation:
-    """Of a quadratic form the derivative of the discrete force with both ends moved alike is the tangent half-way with
-    the mean stress; cables take its axial part alone, at unit stretch.
+    """Return the relation of step_stiffness: of a quadratic form the derivative of the discrete force with both ends
+    moved alike is the tangent half-way with the mean stress; cables take its axial part alone, at unit stretch.
     """
     spec = family.element
     eye = np.eye(spec.dim, dtype=int)
@@ -103,7 +103,7 @@ def _stiffness_at(spec: Element) -> list[Relation]:
         return [curved_continuum.density_at(spec, s | {"e": e}) for e in near(s)]
 
     def near(s):
-        """So many that no other quadratic form in their Gram products gives these energies."""
+        """Return so many states that no other quadratic form in their Gram products gives these energies."""
         moves = np.random.default_rng(1).normal(size=(450, *s["e"].shape))
         return [s["e"] + move for move in moves]
 

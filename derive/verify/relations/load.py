@@ -27,7 +27,7 @@ def loads(spec: Element) -> list[Relation]:
         return np.outer(shape(s), frame(k, tangent, director).dot(s["c"]))
 
     def moment(s):
-        """M . omega of the rotation that each coordinate's rate is."""
+        """Return M . omega of the rotation that each coordinate's rate is."""
         weights = [shape(s, c) for c in turning_slopes(spec)]
         slopes = [w.dot(s["e"]) for w in weights]
         unit = np.eye(spec.dim, dtype=int)

@@ -16,7 +16,7 @@ from ..samples.modal import MODES, RATES, integrals
 
 
 def unit(n: int, j: int) -> np.ndarray:
-    """Zeros with a one at entry j."""
+    """Return zeros with a one at entry j."""
     return np.array([int(i == j) for i in range(n)])
 
 
@@ -38,21 +38,21 @@ class Paths:
         return s["w"][: self.dim] + self.axes(s["b"]).dot(swung(omega, u) + u1)
 
     def falling(self, k: Numbers, s: State, t: Any, j: int = 0) -> np.ndarray:
-        """Mass points along the motion with all accelerations, seen from the falling ground."""
+        """Return mass points along the motion with all accelerations, seen from the falling ground."""
         b = self.rider.moved(k, s["b"], t * s["w"] + t * t * s["a"] / 2)
         eta = s["eta"] + t * s["eta1"] + t * t * s["eta2"] / 2
         at = s["points"] + np.tensordot(eta, s["modes"], 1)
         return np.array([self.rider.point(b, u) for u in at]) - t * t * s["g"] / 2
 
     def work(self, k: Numbers, s: State, t: Any, j: int = 0) -> np.ndarray:
-        """Masses times the places, along what the frame's coordinates move."""
+        """Return the masses times the places, along what the frame's coordinates move."""
         moved, A = self.falling(k, s, t), self.axes(s["b"])
         at = s["points"] + np.tensordot(s["eta"], s["modes"], 1)
         rho = s["masses"]
         return np.concatenate([rho.dot(moved), axial((rho[:, None] * at).T.dot(moved.dot(A)))])
 
     def work_of_mode(self, k: Numbers, s: State, t: Any, j: int = 0) -> Any:
-        """The same along a mode."""
+        """Return the same along a mode."""
         return (s["masses"][:, None] * s["modes"][0].dot(self.axes(s["b"]).T) * self.falling(k, s, t)).sum()
 
     def attached(self, k: Numbers, s: State, motion: np.ndarray, eta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -233,6 +233,6 @@ def _of_attachment(p: Paths) -> list[Relation]:
 
 
 def _swung(theta: np.ndarray, axes: np.ndarray) -> np.ndarray:
-    """theta x each column."""
+    """Return theta x each column."""
     spatial = np.concatenate([[0 * theta[0]] * (3 - len(theta)), theta])
     return np.stack([swung(spatial, column) for column in axes.T], axis=1)

@@ -15,7 +15,7 @@ def moves(rider) -> list[Relation]:
     turns = n - dim
 
     def stepped(kernel):
-        """The turn that a change of the step's turn j makes, in body axes."""
+        """Return the turn that a change of the step's turn j makes, in body axes."""
         def path(k, s, t, j):
             change = t * np.eye(n, dtype=int)[dim + j]
             at, then = (moved[kernel](k, s["b"], step) for step in (s["step"], s["step"] + change))
@@ -29,7 +29,7 @@ def moves(rider) -> list[Relation]:
         return k("increment", s, change=k("rate", s)["b_rate"])["step"]
 
     def increment(k, s, t, j):
-        """Of the part of the change that turns: the rest of it makes the attitude longer."""
+        """Return the increment of the part of the change that turns: the rest of it makes the attitude longer."""
         attitude, change = s["b"][dim:], s["change"][dim:]
         along = change - attitude * (attitude.dot(change) / attitude.dot(attitude))
         return k("increment", s, change=np.concatenate([s["change"][:dim], along]))["step"]
@@ -53,7 +53,7 @@ def moves(rider) -> list[Relation]:
 
 
 def _cayley(rider, b: np.ndarray, step: np.ndarray) -> np.ndarray:
-    """b moved by a Cayley vector, its attitude not of unit size."""
+    """Return b moved by a Cayley vector, its attitude not of unit size."""
     still, half = np.concatenate([0 * b[: rider.dim], b[rider.dim :]]), step[rider.dim :] / 2
     size = half.dot(half)
     if rider.dim == 2:

@@ -8,7 +8,7 @@ import numpy as np
 
 
 def unit(like: np.ndarray, j: int) -> np.ndarray:
-    """Zeros with a one at entry j."""
+    """Return zeros with a one at entry j."""
     zeros = np.zeros(like.size, dtype=int)
     zeros[j] = 1
     return zeros.reshape(like.shape)
@@ -22,7 +22,7 @@ def from_kernel(kernel: str, output: str, **directions: Callable) -> Callable:
 
 
 def entry(name: str) -> Callable:
-    """Direction: entry j of an input."""
+    """Return the direction of entry j of an input."""
     return lambda s, j: unit(s[name], j)
 
 

@@ -29,7 +29,7 @@ def at_rest(family: BodyFamily, exact: Numbers, first: State) -> State:
 
 
 def _points(random: np.random.Generator, dim: int) -> State:
-    """Mass points, modes and their coordinates; the modes at one more point, which an attachment takes."""
+    """Return mass points, modes and their coordinates; the modes at one more point, which an attachment takes."""
     turns = 1 if dim == 2 else 3
     made = {"points": random.normal(size=(POINTS, dim)), "modes": random.normal(size=(MODES, POINTS, dim)) / 2,
             "masses": random.uniform(0.5, 1.5, POINTS), "g": random.normal(size=dim),
@@ -49,7 +49,7 @@ def integrals(s: State, **moved: np.ndarray) -> State:
               *(np.tensordot(s[name], s["modes"], 1) for name in RATES[1:])]
     mode, other = s["modes"]
 
-    def second(a, b):
+    def second(a: np.ndarray, b: np.ndarray) -> np.ndarray:
         return (rho[:, None] * a).T.dot(b)
 
     made = {"mass": rho.sum(), "s": rho.dot(mode), "X_kl": second(mode, other),

@@ -46,7 +46,7 @@ def section(height: float = HEIGHT, width: float = WIDTH) -> np.ndarray:
 
 
 def on_axis(element: Element, state: State, order: int = 0) -> np.ndarray:
-    """Point of the centreline at the state's x, or a derivative there."""
+    """Return the point of the centreline at the state's x, or a derivative there."""
     return Shape(element, state["l"])((state["x"], 0, 0), (order, 0, 0)).astype(float) @ state["e"]
 
 

@@ -178,19 +178,19 @@ static void add_mass(const fu_cable *cable, double mass, double *K)
 /* Adds K over n dofs from `first` on to a system. */
 static void add_matrix(const fu_model *model, int first, int n, const double *K, fu_system *system)
 {
-    const int rows = FU_BAND_ROWS(system->width), diagonal = FU_BAND_DIAGONAL(system->width), *place = model->place + first;
-    int elsewhere = 0;
-    for (int j = 0; j < n; ++j) elsewhere |= place[j] <= FU_COMBINED || place[j] >= system->n;
-    if (elsewhere) {
+    const int rows = FU_BAND_ROWS(system->width), diagonal = FU_BAND_DIAGONAL(system->width), *unknown = model->unknown_of_dof + first;
+    int outside_band = 0;
+    for (int j = 0; j < n; ++j) outside_band |= unknown[j] <= FU_COMBINED || unknown[j] >= system->n;
+    if (outside_band) {
         for (int i = 0; i < n; ++i)
             for (int j = 0; j < n; ++j) fu_add(model, system, first + i, first + j, K[i * n + j]);
         return;
     }
     for (int j = 0; j < n; ++j) {
-        if (place[j] < 0) continue;
-        double *column = system->K + (long)place[j] * rows + diagonal - place[j];
+        if (unknown[j] < 0) continue;
+        double *column = system->K + (long)unknown[j] * rows + diagonal - unknown[j];
         for (int i = 0; i < n; ++i)
-            if (place[i] >= 0) column[place[i]] += K[i * n + j];
+            if (unknown[i] >= 0) column[unknown[i]] += K[i * n + j];
     }
 }
 

@@ -5,12 +5,12 @@
 
 enum { RATES = 3 }; /* u, u', u'' */
 
-/* Moments of the fields u, u', u''; Y[r] + k dim^2: of mode k with them, k = 0 the undeformed place */
+/* Moments of the fields u, u', u''. Y[r] + k dim^2 are those of mode k with them; k = 0 is the undeformed position. */
 typedef struct {
     double S[RATES][FU_SPACE], X[RATES][FU_MATRIX_ENTRIES], *Y[RATES];
 } moments;
 
-/* Sums over the coefficients c = (1, eta), c' = (0, eta'), c'' = (0, eta''); null: zero. */
+/* Fills the moments: sums over the coefficients c = (1, eta), c' = (0, eta'), c'' = (0, eta''); null stands for zero. */
 static moments sum_of(const fu_body *body, const double *eta, const double *rate, const double *acceleration)
 {
     const fu_shape *shape = body->shape;
@@ -187,26 +187,26 @@ const fu_matter fu_modal_matter = {0,       mass_times,     forces,         mass
                                    kinetic_energy, elastic_energy, potential_energy, dissipation};
 
 /* Makes displacement and turn of a point from its modes, or their rates. */
-static void point_of(const fu_body *body, const fu_modal_attachment *spot, const double *c, int is_rate, double u[FU_SPACE], double theta[FU_SPACE])
+static void point_of(const fu_body *body, const fu_modal_attachment *attachment, const double *c, int is_rate, double u[FU_SPACE], double theta[FU_SPACE])
 {
     const int dim = body->kernel->dim, turns = body->kernel->velocity - dim;
-    for (int d = 0; d < dim; ++d) u[d] = is_rate ? 0.0 : spot->x[d];
+    for (int d = 0; d < dim; ++d) u[d] = is_rate ? 0.0 : attachment->x[d];
     for (int d = 0; d < turns; ++d) theta[d] = 0.0;
     for (int k = 0; k < body->modes; ++k) {
-        for (int d = 0; d < dim; ++d) u[d] += c[k] * spot->phi[k * dim + d];
-        for (int d = 0; d < turns; ++d) theta[d] += c[k] * spot->psi[k * turns + d];
+        for (int d = 0; d < dim; ++d) u[d] += c[k] * attachment->phi[k * dim + d];
+        for (int d = 0; d < turns; ++d) theta[d] += c[k] * attachment->psi[k * turns + d];
     }
 }
 
-/* A point of a modal body with its axes: P (dim x n) and T (turns x n) over all its dofs. */
-void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *spot, const double *b, const double *w, fu_modal_point *out,
-                     double *P, double *T)
+/* Computes the state of a point of a modal body with its axes: P (dim x n) and T (turns x n) are over all its dofs. */
+void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *attachment, const double *b, const double *w,
+                               fu_modal_point *out, double *P, double *T)
 {
     const fu_modal_kernels *kernel = body->shape->kernel;
     const int dim = body->kernel->dim, frame = body->kernel->velocity, turns = frame - dim, n = fu_body_dofs(body);
     double u[FU_SPACE], u1[3], theta[FU_SPACE], theta1[3], frame_P[18], frame_T[18], column[3], turn[3];
-    point_of(body, spot, eta_of(body, b), 0, u, theta);
-    point_of(body, spot, rate_of(body, w), 1, u1, theta1);
+    point_of(body, attachment, eta_of(body, b), 0, u, theta);
+    point_of(body, attachment, rate_of(body, w), 1, u1, theta1);
     kernel->attachment(b, u, theta, w, u1, theta1, out->p, out->axes, frame_P, frame_T, out->velocity, out->omega, out->bias,
                    out->omega_bias);
     for (int j = 0; j < frame; ++j) {
@@ -214,57 +214,57 @@ void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *s
         for (int d = 0; d < turns; ++d) T[d * n + j] = frame_T[d * frame + j];
     }
     for (int k = 0; k < body->modes; ++k) {
-        kernel->attachment_mode(b, u, theta, spot->phi + k * dim, spot->psi + k * turns, column, turn);
+        kernel->attachment_mode(b, u, theta, attachment->phi + k * dim, attachment->psi + k * turns, column, turn);
         for (int d = 0; d < dim; ++d) P[d * n + frame + k] = column[d];
         for (int d = 0; d < turns; ++d) T[d * n + frame + k] = turn[d];
     }
 }
 
-/* K (n x n): derivative by its dofs of P' f + T' m at fixed f, m */
-void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *spot, const double *b, const double *f, const double *m,
-                           double *K)
+/* Computes K (n x n), the derivative by the body's dofs of P' f + T' m at fixed f and m. */
+void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *attachment, const double *b, const double *f,
+                               const double *m, double *K)
 {
     const fu_modal_kernels *kernel = body->shape->kernel;
     const int dim = body->kernel->dim, frame = body->kernel->velocity, turns = frame - dim, n = fu_body_dofs(body);
     double u[FU_SPACE], theta[FU_SPACE], of_frame[FU_FRAME_DOFS * FU_FRAME_DOFS], row[FU_FRAME_DOFS], column[FU_FRAME_DOFS];
-    point_of(body, spot, eta_of(body, b), 0, u, theta);
+    point_of(body, attachment, eta_of(body, b), 0, u, theta);
     kernel->attachment_force(b, u, theta, f, m, of_frame);
     for (int i = 0; i < frame; ++i)
         for (int j = 0; j < frame; ++j) K[i * n + j] = of_frame[i * frame + j];
     for (int k = 0; k < body->modes; ++k) {
-        const double *phi = spot->phi + k * dim, *psi = spot->psi + k * turns;
+        const double *phi = attachment->phi + k * dim, *psi = attachment->psi + k * turns;
         kernel->attachment_mode_force(b, u, theta, phi, psi, f, m, row, column);
         for (int i = 0; i < frame; ++i) {
             K[(frame + k) * n + i] = row[i];
             K[i * n + frame + k] = column[i];
         }
         for (int l = 0; l < body->modes; ++l)
-            kernel->attachment_pair_force(b, u, theta, phi, psi, spot->phi + l * dim, spot->psi + l * turns, f, m,
+            kernel->attachment_pair_force(b, u, theta, phi, psi, attachment->phi + l * dim, attachment->psi + l * turns, f, m,
                                       K + (frame + k) * n + frame + l);
     }
 }
 
-/* A force c along the axes of the section at a point, with which it turns: g its generalised force, K (n x n) the
- * derivative of g by the body's dofs. The row of a mode does not see the frame's motion. */
-void fu_modal_attachment_follower(const fu_body *body, const fu_modal_attachment *spot, const double *b, const double *c,
+/* Computes the generalised force g of a force c along the axes of the section at a point, with which it turns, and K (n x
+ * n), the derivative of g by the body's dofs. The frame's motion does not change the row of a mode. */
+void fu_modal_attachment_follower(const fu_body *body, const fu_modal_attachment *attachment, const double *b, const double *c,
                                   double *g, double *K)
 {
     const fu_modal_kernels *kernel = body->shape->kernel;
     const int dim = body->kernel->dim, frame = body->kernel->velocity, turns = frame - dim, n = fu_body_dofs(body);
     double u[FU_SPACE], theta[FU_SPACE], of_frame[FU_FRAME_DOFS * FU_FRAME_DOFS], column[FU_FRAME_DOFS];
-    point_of(body, spot, eta_of(body, b), 0, u, theta);
+    point_of(body, attachment, eta_of(body, b), 0, u, theta);
     kernel->attachment_follower(b, u, theta, c, g, of_frame);
     for (int i = 0; i < frame; ++i)
         for (int j = 0; j < frame; ++j) K[i * n + j] = of_frame[i * frame + j];
     for (int k = 0; k < body->modes; ++k) {
-        const double *phi = spot->phi + k * dim, *psi = spot->psi + k * turns;
+        const double *phi = attachment->phi + k * dim, *psi = attachment->psi + k * turns;
         kernel->attachment_mode_follower(b, u, theta, phi, psi, c, g + frame + k, column);
         for (int i = 0; i < frame; ++i) {
             K[(frame + k) * n + i] = 0.0;
             K[i * n + frame + k] = column[i];
         }
         for (int l = 0; l < body->modes; ++l)
-            kernel->attachment_pair_follower(b, u, theta, phi, psi, spot->phi + l * dim, spot->psi + l * turns, c,
+            kernel->attachment_pair_follower(b, u, theta, phi, psi, attachment->phi + l * dim, attachment->psi + l * turns, c,
                                          K + (frame + k) * n + frame + l);
     }
 }

@@ -1,7 +1,7 @@
 /* Signals, and the dofs that follow them. */
 #include "engine.h"
 
-/* f(t); its two derivatives where asked for */
+/* Returns f(t), and its two derivatives where they are asked for. */
 double fu_signal_at(const fu_signal *signal, double t, double *rate, double *second)
 {
     double f = 0.0, f1 = 0.0, f2 = 0.0;
@@ -31,7 +31,7 @@ double fu_signal_at(const fu_signal *signal, double t, double *rate, double *sec
     return f;
 }
 
-/* Position, velocity and acceleration of the prescribed dofs at state->t; several motions of one dof add up. */
+/* Sets position, velocity and acceleration of the prescribed dofs at state->t; several motions of one dof add up. */
 void fu_prescribe(const fu_model *model, fu_state *state)
 {
     for (int k = 0; k < model->n_motions; ++k) {

@@ -149,7 +149,7 @@ static void of_modes(const fu_model *model, const fu_attachment *on, const fu_st
     const fu_body *body = &model->bodies[on->body];
     const int dim = model->dim;
     fu_modal_point at;
-    fu_modal_attachment_state(body, &on->spot, state->q + body->configuration, state->v + body->dof, &at, out->P, out->T);
+    fu_modal_attachment_state(body, &on->modal, state->q + body->configuration, state->v + body->dof, &at, out->P, out->T);
     memset(out->p, 0, sizeof out->p);
     memset(out->v, 0, sizeof out->v);
     memset(out->bias, 0, sizeof out->bias);
@@ -182,7 +182,7 @@ static void add_stiffness_of_body(const fu_model *model, const fu_attachment *on
     const double *b = state->q + body->configuration, none[3] = {0.0};
     double p[3], A[9], P[18], part[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
     if (body->modes) {
-        fu_modal_attachment_force(body, &on->spot, b, f ? f : none, m ? m : none, part);
+        fu_modal_attachment_force(body, &on->modal, b, f ? f : none, m ? m : none, part);
         for (int i = 0; i < n * n; ++i) K[i] += part[i];
         return;
     }

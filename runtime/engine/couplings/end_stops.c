@@ -175,7 +175,7 @@ int fu_reach_end(fu_run *run, const fu_coupling *coupling, int side, const char 
         return FU_RUNNING;
     }
     if (kind != FU_END_IS_HARD || slide->drive >= 0) {
-        run->stopped_joint = j;
+        run->stopped_slide = j;
         return FU_END_OF_CABLE;
     }
     const int last = is_at_rest(run, j) || slide->stops[side > 0].restitution > 0.0, status = strike(run, j, side);

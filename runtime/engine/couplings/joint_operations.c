@@ -39,7 +39,7 @@ static void unit_rows(const fu_model *model, const fu_joint *joint, int which, d
 static void turn_ends(const fu_model *model, const fu_joint *joint, const double *psi, double *rows, int n_rows, int n,
                       int n_first)
 {
-    for (int e = 0; e < 2; ++e) fu_turn_attachment(model, &joint->ends[e], psi, rows, n_rows, n, e ? n_first : 0);
+    for (int e = 0; e < 2; ++e) fu_turn_attachment(model, &joint->attachments[e], psi, rows, n_rows, n, e ? n_first : 0);
 }
 
 static void tangent(const fu_model *model, const fu_coupling *coupling, const fu_equations *equations, fu_system *system)
@@ -55,7 +55,7 @@ static void tangent(const fu_model *model, const fu_coupling *coupling, const fu
         return;
     }
     const int n = fu_joint_tangent(model, joint, next, at, J, K);
-    const int n_first = fu_attachment_coordinates(model, &joint->ends[0], next, unused);
+    const int n_first = fu_attachment_coordinates(model, &joint->attachments[0], next, unused);
     for (int r = 0; r < rows; ++r)
         if (joint->redundant_rows >> r & 1) memset(J + r * n, 0, sizeof(double) * (size_t)n);
     unit_rows(model, joint, joint->redundant_rows, w.inertia, system);
@@ -107,7 +107,7 @@ static void outputs(const fu_model *model, const fu_coupling *coupling, const fu
 
 static const fu_field fields[] = {
     FU_FIELD(fu_joint, kernel, FU_KERNELS, 0),
-    FU_FIELD_ARRAY(fu_joint, ends, FU_ATTACHMENT),
+    FU_FIELD_ARRAY(fu_joint, attachments, FU_ATTACHMENT),
     FU_FIELD_AS("drive", fu_joint, signal, FU_INTEGER),
     FU_FIELD_AS("base", fu_joint, c0, FU_REAL),
     {0},

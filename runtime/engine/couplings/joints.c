@@ -20,7 +20,7 @@ static void look(const fu_model *model, const fu_joint *joint, const fu_state *s
 {
     const int dim = model->dim, turns = dim == 3 ? 3 : 1;
     for (int e = 0; e < 2; ++e)
-        fu_attachment_at(model, &joint->ends[e], state, s_rate ? s_rate[e] : 0.0, FU_POINT | FU_AXES, &view->at[e]);
+        fu_attachment_at(model, &joint->attachments[e], state, s_rate ? s_rate[e] : 0.0, FU_POINT | FU_AXES, &view->at[e]);
     const fu_attachment_state *one = &view->at[0], *two = &view->at[1];
     const int n1 = one->n, n2 = two->n, n = n1 + n2;
     view->n = n;
@@ -67,7 +67,7 @@ static int coordinates(const joint_view *view, int *at)
 int fu_joint_is_inactive(const fu_model *model, const fu_joint *joint, const fu_state *state)
 {
     for (int e = 0; e < 2; ++e) {
-        const int slide = joint->ends[e].slide;
+        const int slide = joint->attachments[e].slide;
         if (slide >= 0 && fu_slide_flags_of(model, state, slide)->mode == FU_LEFT) return 1;
     }
     return 0;
@@ -93,7 +93,7 @@ int fu_ties_a_frame(const fu_model *model, int which)
         if (model->couplings[k]->type != &fu_joint_type) continue;
         const fu_joint *joint = (const fu_joint *)model->couplings[k];
         for (int e = 0; e < 2; ++e) {
-            const int slide = joint->ends[e].slide;
+            const int slide = joint->attachments[e].slide;
             if (slide >= 0 && (which < 0 || slide == which)) return 1;
         }
     }
@@ -103,7 +103,7 @@ int fu_ties_a_frame(const fu_model *model, int which)
 /* Returns whether a joint is between two cables. */
 int fu_between_cables(const fu_joint *joint)
 {
-    return joint->ends[0].cable >= 0 && joint->ends[1].cable >= 0;
+    return joint->attachments[0].cable >= 0 && joint->attachments[1].cable >= 0;
 }
 
 /* Makes J, and K, the derivative of J' multipliers, over the joint's coordinates, with their numbers; returns how many they are. */
@@ -131,7 +131,7 @@ int fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_stat
         const int m = view.at[e].n, from = e ? n1 : 0;
         for (int d = 0; d < dim; ++d) pull[d] = e ? g[d] : -g[d];
         memset(part, 0, sizeof(double) * (size_t)(m * m));
-        fu_geometric_stiffness(model, &joint->ends[e], state, pull, g + dim + e * turns, m, part);
+        fu_geometric_stiffness(model, &joint->attachments[e], state, pull, g + dim + e * turns, m, part);
         for (int i = 0; i < m; ++i)
             for (int j = 0; j < m; ++j) K[(from + i) * n + from + j] += part[i * m + j];
     }
@@ -140,7 +140,7 @@ int fu_joint_tangent(const fu_model *model, const fu_joint *joint, const fu_stat
 
 static const fu_rows *rows_of_slide(const fu_model *model, const fu_joint *joint, int e, const fu_accelerator *work)
 {
-    return &work->rows[model->slides[joint->ends[e].slide].base.row];
+    return &work->rows[model->slides[joint->attachments[e].slide].base.row];
 }
 
 /* Makes H and W over the joint's coordinates those over the dofs: s of an attachment on a slide follows (eq 24, 31, 37). */
@@ -157,11 +157,11 @@ static void replace_s(const fu_model *model, const fu_joint *joint, const joint_
         }
     rows->n = n;
     for (int e = 0; e < 2; ++e)
-        if (joint->ends[e].slide >= 0) rows->n += rows_of_slide(model, joint, e, work)->n;
+        if (joint->attachments[e].slide >= 0) rows->n += rows_of_slide(model, joint, e, work)->n;
     for (int r = 0; r < m; ++r)
         for (int i = 0; i < n; ++i) rows->H[r * rows->n + i] = J[r * view->n + column[i]];
     for (int e = 0, to = n; e < 2; ++e) {
-        const int slide = joint->ends[e].slide;
+        const int slide = joint->attachments[e].slide;
         if (slide < 0) continue;
         const fu_rows *of = rows_of_slide(model, joint, e, work);
         const fu_slide_state *slide_state = fu_slide_state_of(model, work, slide);
@@ -192,7 +192,7 @@ void fu_joint_rows(const fu_model *model, const fu_coupling *coupling, const fu_
         return;
     }
     for (int e = 0; e < 2; ++e) {
-        const int slide = joint->ends[e].slide;
+        const int slide = joint->attachments[e].slide;
         s_rate[e] = slide >= 0 ? fu_slide_state_of(model, work, slide)->s_rate : 0.0;
     }
     look(model, joint, state, s_rate, &view);
@@ -228,7 +228,7 @@ void fu_joint_rows(const fu_model *model, const fu_coupling *coupling, const fu_
 int fu_joint_moves(const fu_model *model, const fu_joint *joint, const fu_state *state, int at)
 {
     for (int e = 0; e < 2 && at >= model->n_dof; ++e) {
-        const int slide = joint->ends[e].slide;
+        const int slide = joint->attachments[e].slide;
         if (slide >= 0 && fu_extra(model, model->slides[slide].base.unknown) == at)
             return fu_slide_flags_of(model, state, slide)->mode == FU_SLIDES;
     }

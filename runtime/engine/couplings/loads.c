@@ -18,10 +18,10 @@ static int on_modes(const fu_model *model, const fu_load *load, const double *c,
     double P[3 * FU_ATTACHMENT_COORDINATES], T[3 * FU_ATTACHMENT_COORDINATES], f[3] = {0.0}, m[3] = {0.0};
     fu_modal_point at;
     if (load->kind == FU_BODY_FOLLOWER) {
-        fu_modal_attachment_follower(body, &load->spot, b, c, g, K);
+        fu_modal_attachment_follower(body, &load->modal, b, c, g, K);
         return n;
     }
-    fu_modal_attachment_state(body, &load->spot, b, model->zero, &at, P, T);
+    fu_modal_attachment_state(body, &load->modal, b, model->zero, &at, P, T);
     if (load->kind == FU_BODY_MOMENT) memcpy(m, c + (dim == 2 ? 2 : 0), sizeof(double) * (size_t)turns);
     else memcpy(f, c, sizeof(double) * (size_t)dim);
     for (int i = 0; i < n; ++i) {
@@ -29,7 +29,7 @@ static int on_modes(const fu_model *model, const fu_load *load, const double *c,
         for (int d = 0; d < dim; ++d) g[i] += P[d * n + i] * f[d];
         for (int d = 0; d < turns; ++d) g[i] += T[d * n + i] * m[d];
     }
-    fu_modal_attachment_force(body, &load->spot, b, f, m, K);
+    fu_modal_attachment_force(body, &load->modal, b, f, m, K);
     return n;
 }
 
@@ -122,7 +122,7 @@ static const fu_field fields[] = {
     FU_FIELD(fu_load, x, FU_REAL, 0),
     FU_FIELD_ARRAY(fu_load, u, FU_REAL),
     FU_FIELD_ARRAY(fu_load, c, FU_REAL),
-    FU_FIELD(fu_load, spot, FU_MODAL_POINT, 0),
+    FU_FIELD(fu_load, modal, FU_MODAL_POINT, 0),
     {0},
 };
 

@@ -18,7 +18,7 @@ static void gap_of(const fu_model *model, const fu_point_force *between, const d
                    double rate[3])
 {
     fu_attachment_state at[2];
-    for (int e = 0; e < 2; ++e) point(model, &between->ends[e], q, v, &at[e]);
+    for (int e = 0; e < 2; ++e) point(model, &between->attachments[e], q, v, &at[e]);
     for (int d = 0; d < 3; ++d) {
         gap[d] = at[1].p[d] - at[0].p[d];
         rate[d] = at[1].v[d] - at[0].v[d];
@@ -57,7 +57,7 @@ static void add_forces(const fu_model *model, const fu_point_force *between, con
 {
     for (int e = 0; e < 2; ++e) {
         fu_attachment_state at;
-        const int first = point(model, &between->ends[e], q, model->zero, &at);
+        const int first = point(model, &between->attachments[e], q, model->zero, &at);
         add_force(between->dim, first, e, &at, force, f);
     }
 }
@@ -67,7 +67,7 @@ static void add_step_forces(const fu_model *model, const fu_point_force *between
                             const double *force, double *f)
 {
     for (int e = 0; e < 2; ++e) {
-        const fu_attachment *on = &between->ends[e];
+        const fu_attachment *on = &between->attachments[e];
         fu_attachment_state at;
         const int first = point(model, on, step->now->q, model->zero, &at);
         if (on->body >= 0) {
@@ -142,13 +142,13 @@ static void matrix(const fu_model *model, const fu_coupling *coupling, const fu_
     for (int e = 0; e < 2; ++e) {
         fu_attachment_state at;
         double turned[3 * FU_ATTACHMENT_COORDINATES], by_place[3 * FU_ATTACHMENT_COORDINATES];
-        const int first = point(model, &between->ends[e], state->q, state->v, &at), n = at.n;
+        const int first = point(model, &between->attachments[e], state->q, state->v, &at), n = at.n;
         const double sign = e ? 1.0 : -1.0, *P = at.P;
         memcpy(turned, P, sizeof turned);
         for (int i = 0; i < dim * n; ++i) by_place[i] = 0.0;
-        if (between->ends[e].body >= 0) {
+        if (between->attachments[e].body >= 0) {
             double K[FU_ATTACHMENT_COORDINATES * FU_ATTACHMENT_COORDINATES];
-            turning(model, &between->ends[e], state, own, psi, &at, turned, by_place, K);
+            turning(model, &between->attachments[e], state, own, psi, &at, turned, by_place, K);
             for (int i = 0; i < n; ++i)
                 for (int j = 0; j < n; ++j) fu_add(model, system, first + i, first + j, sign * stiffness * K[i * n + j]);
         }
@@ -226,7 +226,7 @@ static const char *const role[] = {"point_law", 0};
 static const fu_field fields[] = {
     FU_FIELD(fu_point_force, law, FU_KERNELS, role),
     FU_FIELD(fu_point_force, parameters, FU_REALS, 0),
-    FU_FIELD_ARRAY(fu_point_force, ends, FU_ATTACHMENT),
+    FU_FIELD_ARRAY(fu_point_force, attachments, FU_ATTACHMENT),
     FU_FIELD(fu_point_force, dim, FU_INTEGER, 0),
     {0},
 };

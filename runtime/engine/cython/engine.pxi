@@ -35,7 +35,7 @@ cdef extern from "blocks.h" nogil:
 cdef extern from "engine.h" nogil:
     int FU_MAX_COORDINATES, FU_MAX_RATES, FU_ATTACHMENT_COORDINATES
     int FU_RUNNING, FU_DONE, FU_END_OF_CABLE, FU_NO_CONVERGENCE, FU_SINGULAR, FU_EVENT, FU_UNSTABLE
-    int FU_NO_FAILURE, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE, FU_JAM
+    int FU_NO_FAILURE, FU_ITERATION, FU_MATRIX, FU_ERROR, FU_LOST_RIDER, FU_NOT_FINITE, FU_SELF_LOCKING
     int FU_WATCH_Q, FU_WATCH_V, FU_WATCH_S, FU_WATCH_RATE, FU_WATCH_OUTPUT, FU_WATCH_CALL, FU_ACTED
     int FU_INTEGER, FU_REAL, FU_WORD, FU_KERNELS, FU_ATTACHMENT, FU_MODAL_POINT, FU_INTEGERS, FU_REALS
     int FU_SIGNAL_TERMS, FU_BAND_GROUP
@@ -83,7 +83,7 @@ cdef extern from "engine.h" nogil:
         double S[64]
         double up[3]
         double axes[9]
-        fu_modal_attachment spot
+        fu_modal_attachment modal
     ctypedef struct fu_modal_point:
         double p[3]
         double axes[9]
@@ -92,9 +92,9 @@ cdef extern from "engine.h" nogil:
         double bias[3]
         double omega_bias[3]
     int fu_body_dofs(const fu_body *body)
-    void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *spot, const double *b, const double *w,
+    void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *attachment, const double *b, const double *w,
                          fu_modal_point *out, double *P, double *T)
-    void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *spot, const double *b, const double *f,
+    void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *attachment, const double *b, const double *f,
                                const double *m, double *K)
     ctypedef struct fu_field:
         const char *name
@@ -114,7 +114,7 @@ cdef extern from "engine.h" nogil:
     const fu_coupling_type *fu_coupling_type_of(const char *name)
     ctypedef struct fu_joint:
         fu_coupling base
-        fu_attachment ends[2]
+        fu_attachment attachments[2]
         int redundant_rows
     ctypedef struct fu_signal:
         int n
@@ -128,15 +128,9 @@ cdef extern from "engine.h" nogil:
         int dof, signal, first
         double base, linear, cosine, sine
     ctypedef struct fu_lapack:
-        void *dgbtrf
-        void *dgbtrs
-        void *dpbtrf
-        void *dgetrf
-        void *dgetrs
-        void *zgbtrf
-        void *zgbtrs
-        void *zgetrf
-        void *zgetrs
+        pass
+    const char *fu_lapack_name(int k)
+    void fu_lapack_attach(fu_lapack *lapack, int k, const void *function)
     ctypedef struct fu_span:
         int first, end
     ctypedef struct fu_piece:
@@ -167,9 +161,9 @@ cdef extern from "engine.h" nogil:
         const fu_signal *signals
         int n_q, n_dof, n_band, n_border_dof, n_dissipation_state, n_extra, n_multipliers
         int n_coordinates, n_forces, n_rows, n_outputs, n_scratch
-        const int *place
+        const int *unknown_of_dof
         const int *combination_start
-        const int *combination_place
+        const int *combination_unknown
         const double *combination_value
         const double *weight
         const double *gravity
@@ -202,7 +196,7 @@ cdef extern from "engine.h" nogil:
         double *work
         double *prescribed
         double *multipliers
-        int jammed
+        int self_locking
         long evaluated
     ctypedef struct fu_joint_output:
         double residual
@@ -257,7 +251,7 @@ cdef extern from "engine.h" nogil:
         double *first
         double *s_slope
         double h, h_factored, contraction, motion, extent, closed
-        int factored, stopped_joint, rest_start
+        int factored, stopped_slide, rest_start
         fu_failure failure
         fu_energy_balance balance
     ctypedef struct fu_integrator:

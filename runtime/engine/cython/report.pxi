@@ -103,9 +103,9 @@ cdef class Report(Statics):
         return CAUSES[f.cause], f.dof, f.coupling if f.cause != FU_NO_FAILURE and f.coupling >= 0 else None
 
     @property
-    def jammed(self):
+    def self_locking(self):
         """Number of the coupling whose friction has no solution, -1."""
-        return self.run.accelerator.jammed
+        return self.run.accelerator.self_locking
 
     @property
     def balance(self):
@@ -133,11 +133,11 @@ cdef class Report(Statics):
         return self._snapshot(&self.run.now)
 
     @property
-    def stopped_joint(self):
+    def stopped_slide(self):
         """Index of the slide that ran off its cable."""
-        return self.run.stopped_joint
+        return self.run.stopped_slide
 
     @property
     def stopped_s(self):
         """Arc-length of that slide, m."""
-        return self._view(&self.run.now, "s")[self.run.stopped_joint]
+        return self._view(&self.run.now, "s")[self.run.stopped_slide]

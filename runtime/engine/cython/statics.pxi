@@ -59,7 +59,7 @@ cdef class Statics(Translation):
         fu_system_solve(&self.run.newton, &LAPACK, self.run.rhs)
         return np.array([self.run.rhs[i] for i in range(total)]), bool(self.run.newton.definite)
 
-    def place(self, double t=0.0, q=None, s=None, force=None, multipliers=None, point_force=None):
+    def set_state(self, double t=0.0, q=None, s=None, force=None, multipliers=None, point_force=None):
         """Set the static state: time, configuration (n_q,), arc-lengths, forces of slides (n, 3), multipliers of joints
         (n, 6), forces between points (n, 3); None: as built.
 
@@ -87,8 +87,8 @@ cdef class Statics(Translation):
         self._view(state, "v")[:] = 0.0
         self._view(state, "acceleration")[:] = 0.0
 
-    def placed(self):
-        """The static state as the arguments of `place` (but t)."""
+    def state(self):
+        """The static state as the arguments of `set_state` (but t)."""
         cdef fu_state *state = &self.run.next
         forces = self._view(state, "forces")
         return {"q": self._view(state, "q").copy(), "s": self._view(state, "s").copy(),
@@ -105,7 +105,7 @@ cdef class Statics(Translation):
         return np.array(found).reshape(-1, width)
 
     def load(self, double fraction, gravity=True):
-        """Apply this fraction of all loads at `place`d states; gravity: of the weight, too, which else stays whole.
+        """Apply this fraction of all loads at states that `set_state` set; gravity: of the weight, too, which else stays whole.
 
         Loads are forces and moments on cables and bodies. Prescribed motions, springs and stresses at rest are none.
         """
@@ -171,7 +171,7 @@ cdef class Statics(Translation):
             joint = <fu_joint *>self.couplings[k]
             if not fu_between_cables(joint):
                 continue
-            first = fu_attachment_coordinates(&self.model, &joint.ends[0], &self.run.next, &at[0])
+            first = fu_attachment_coordinates(&self.model, &joint.attachments[0], &self.run.next, &at[0])
             n = fu_joint_tangent(&self.model, joint, &self.run.next, &at[0], &J[0], &K[0])
             block = np.array(K[:n * n]).reshape(n, n)
             block[:first, :first] = block[first:, first:] = 0

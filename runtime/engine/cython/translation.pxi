@@ -50,9 +50,9 @@ cdef class Translation(Arrays):
         self._couplings(model, tables)
         m.n_band, m.n_border_dof = model.n_band, model.n_border_dof
         m.n_extra, m.n_multipliers = model.n_extra, model.n_multipliers
-        m.place, m.weight, m.lapack = self._ints(model.place), self._doubles(model.weight), &LAPACK
+        m.unknown_of_dof, m.weight, m.lapack = self._ints(model.unknown_of_dof), self._doubles(model.weight), &LAPACK
         m.combination_start = self._ints(model.combinations.indptr)
-        m.combination_place = self._ints(model.combinations.indices)
+        m.combination_unknown = self._ints(model.combinations.indices)
         m.combination_value = self._doubles(model.combinations.data)
         m.threads, m.parts = 1, NULL
         m.gravity, m.zero = self._doubles(model.gravity), self._doubles(np.zeros(model.n_dof))
@@ -103,28 +103,28 @@ cdef class Translation(Arrays):
             h.g[k] = shape.gravity[k]
         return 0
 
-    def anchor(self, int index, x, phi, psi, b, w, f, m):
+    def modal_attachment(self, int index, x, phi, psi, b, w, f, m):
         """A point of modal body `index` with its axes, as engine/bodies/modal.c has it; for tests.
 
         x (dim,), phi (modes, dim), psi (modes, turns); b, w: the body's entries of q and v. Returns what `fu_modal_point`
         holds, P, T, and K for a force f and a moment m on the point.
         """
         cdef fu_body *r = &self.bodies[index]
-        cdef fu_modal_attachment spot
+        cdef fu_modal_attachment modal
         cdef fu_modal_point out
         cdef int n = fu_body_dofs(r), dim = r.kernel.dim, turns = r.kernel.velocity - r.kernel.dim
-        spot.x, spot.phi, spot.psi = self._doubles(x), self._doubles(phi), self._doubles(psi)
+        modal.x, modal.phi, modal.psi = self._doubles(x), self._doubles(phi), self._doubles(psi)
         P, T, K = np.zeros((dim, n)), np.zeros((turns, n)), np.zeros((n, n))
         cdef double[:, ::1] P_view = P, T_view = T, K_view = K
-        fu_modal_attachment_state(r, &spot, self._doubles(b), self._doubles(w), &out, &P_view[0, 0], &T_view[0, 0])
-        fu_modal_attachment_force(r, &spot, self._doubles(b), self._doubles(f), self._doubles(m), &K_view[0, 0])
+        fu_modal_attachment_state(r, &modal, self._doubles(b), self._doubles(w), &out, &P_view[0, 0], &T_view[0, 0])
+        fu_modal_attachment_force(r, &modal, self._doubles(b), self._doubles(f), self._doubles(m), &K_view[0, 0])
         return {"p": np.array(out.p)[:dim], "axes": np.array(out.axes)[:dim * dim].reshape(dim, dim), "P": P, "T": T, "K": K,
                 "velocity": np.array(out.velocity)[:dim], "omega": np.array(out.omega)[:turns],
                 "bias": np.array(out.bias)[:dim], "omega_bias": np.array(out.omega_bias)[:turns]}
 
-    cdef int _spot(self, fu_modal_attachment *to, spot) except -1:
-        to.x, to.phi, to.psi = self._doubles(spot[0]), self._doubles(spot[1]), self._doubles(spot[2])
-        if len(spot[1]) + (6 if self.model.dim == 3 else 3) > FU_ATTACHMENT_COORDINATES:
+    cdef int _modal_attachment(self, fu_modal_attachment *to, modal) except -1:
+        to.x, to.phi, to.psi = self._doubles(modal[0]), self._doubles(modal[1]), self._doubles(modal[2])
+        if len(modal[1]) + (6 if self.model.dim == 3 else 3) > FU_ATTACHMENT_COORDINATES:
             raise ValueError(f"more modes than the engine's {FU_ATTACHMENT_COORDINATES - 6}")
         return 0
 
@@ -136,8 +136,8 @@ cdef class Translation(Arrays):
             to.u[k] = end.u[k]
         for k in range(len(end.N)):
             to.N[k] = end.N[k]
-        if end.spot is not None:
-            self._spot(&to.spot, end.spot)
+        if end.modal is not None:
+            self._modal_attachment(&to.modal, end.modal)
         if end.axes is None:
             return 0
         if end.frame:
@@ -210,7 +210,7 @@ cdef class Translation(Arrays):
             self._end(<fu_attachment *>to, value, tables)
         elif field.kind == FU_MODAL_POINT:
             if value is not None:
-                self._spot(<fu_modal_attachment *>to, value)
+                self._modal_attachment(<fu_modal_attachment *>to, value)
         elif field.kind == FU_KERNELS:
             role = type if field.words == NULL else field.words[0].decode()
             (<const void **>to)[0] = _found(tables, role, value) if value else NULL
@@ -305,7 +305,7 @@ cdef class Translation(Arrays):
         a.rows = <fu_rows *>self._zeros(self.model.n_rows * sizeof(fu_rows) // sizeof(double) + 1)
         a.scratch = self._zeros(self.model.n_scratch)
         a.multipliers = self._zeros(model.n_multipliers)
-        a.jammed = -1
+        a.self_locking = -1
         a.force, a.work = self._doubles(np.zeros(n_dof)), self._doubles(np.zeros(n_dof))
         a.prescribed = self._doubles(np.zeros(n_dof))
         run.rhs = self._zeros(unknowns + model.n_extra + FU_BAND_BEYOND(width))

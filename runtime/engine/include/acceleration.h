@@ -15,7 +15,7 @@ struct fu_accelerator {
     double *scratch;  /* of couplings, from `scratch` of each on: what its type keeps from rows to outputs */
     double *force, *work, *prescribed; /* n_dof */
     double *multipliers; /* as eq 38 gives them */
-    int jammed;       /* coupling whose reaction to the multipliers was not found, by its number; -1 */
+    int self_locking;       /* coupling whose reaction to the multipliers was not found, by its number; -1 */
     long evaluated;   /* how often it was */
 };
 int fu_accelerator_prepare(const fu_model *model, fu_accelerator *work);

@@ -16,7 +16,7 @@ typedef struct {
     double S[2 * FU_MAX_COORDINATES]; /* derivatives of the shape functions for both, unless on a slide */
     double up[3];
     double axes[9]; /* in those of what carries it, by columns */
-    fu_modal_attachment spot;   /* the point of a modal body, instead of u */
+    fu_modal_attachment modal;   /* the point of a modal body, instead of u */
 } fu_attachment;
 
 /* State of an attachment, and how it moves with its n coordinates (numbers for fu_add in `at`): dp = P dq, and axes turn

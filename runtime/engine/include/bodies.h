@@ -66,11 +66,11 @@ double fu_bodies_potential_energy(const fu_model *model, const double *q);
 double fu_bodies_dissipation(const fu_model *model, const double *q, const double *v);
 
 /* modal.c: points */
-void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *spot, const double *b, const double *w, fu_modal_point *out,
-                     double *P, double *T);
-void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *spot, const double *b, const double *f, const double *m,
-                           double *K);
-void fu_modal_attachment_follower(const fu_body *body, const fu_modal_attachment *spot, const double *b, const double *c,
+void fu_modal_attachment_state(const fu_body *body, const fu_modal_attachment *attachment, const double *b, const double *w,
+                               fu_modal_point *out, double *P, double *T);
+void fu_modal_attachment_force(const fu_body *body, const fu_modal_attachment *attachment, const double *b, const double *f,
+                               const double *m, double *K);
+void fu_modal_attachment_follower(const fu_body *body, const fu_modal_attachment *attachment, const double *b, const double *c,
                                   double *g, double *K);
 
 #endif

@@ -5,9 +5,10 @@
  * of freedom (dof): the cables' as in q, then the bodies' (translation; rotation about body axes; modes).
  *
  * Unknowns of a linear system: the free coordinates of the cables ("band"), then the border: those of nodes where cables
- * meet, if that is cheaper (model/unknowns.py), those of the bodies, then what each joint and spring adds. Supports make dofs
- * linear in the unknowns, dofs = T unknowns + what motions prescribe; place[dof] is the place of the unknown that the dof
- * is, -1 where it is held or prescribed, -2 - k where it is the k-th combination of unknowns (linear/unknowns.c).
+ * meet, if that is cheaper (model/numbering.py), those of the bodies, then what each joint and spring adds. Supports make
+ * dofs linear in the unknowns, dofs = T unknowns + what motions prescribe; unknown_of_dof[dof] is the number of the unknown
+ * that the dof is, -1 where it is fixed or prescribed, -2 - k where it is the k-th combination of unknowns
+ * (linear/unknowns.c).
  *
  * Every array belongs to the caller; nothing here allocates.
  */

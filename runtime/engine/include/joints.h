@@ -9,7 +9,7 @@
 typedef struct {
     fu_coupling base;   /* as many forces, multipliers, as equations */
     const fu_joint_kernels *kernel;
-    fu_attachment ends[2];
+    fu_attachment attachments[2];
     int signal;
     int redundant_rows; /* bits of the rows that other joints' imply: their multipliers are nil */
     double c0;          /* m or rad: c without the signal */

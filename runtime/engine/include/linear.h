@@ -4,18 +4,25 @@
 
 #include "common.h"
 
-/* LAPACK, as scipy hands it out. */
+/* The functions of LAPACK that the engine calls, with their arguments; linear/lapack.c. */
+#define FU_LAPACK_FUNCTIONS(LAPACK)                                                                                    \
+    LAPACK(dgbtrf, int *, int *, int *, int *, double *, int *, int *, int *)                                          \
+    LAPACK(dgbtrs, char *, int *, int *, int *, int *, double *, int *, int *, double *, int *, int *)                 \
+    LAPACK(dpbtrf, char *, int *, int *, double *, int *, int *)                                                       \
+    LAPACK(dgetrf, int *, int *, double *, int *, int *, int *)                                                        \
+    LAPACK(zgbtrf, int *, int *, int *, int *, void *, int *, int *, int *)                                            \
+    LAPACK(zgbtrs, char *, int *, int *, int *, int *, void *, int *, int *, void *, int *, int *)                     \
+    LAPACK(zgetrf, int *, int *, void *, int *, int *, int *)                                                          \
+    LAPACK(zgetrs, char *, int *, int *, void *, int *, int *, void *, int *, int *)                                   \
+    LAPACK(dgetrs, char *, int *, int *, double *, int *, int *, double *, int *, int *)
+#define MEMBER(name, ...) void (*name)(__VA_ARGS__);
 typedef struct {
-    void (*dgbtrf)(int *, int *, int *, int *, double *, int *, int *, int *);
-    void (*dgbtrs)(char *, int *, int *, int *, int *, double *, int *, int *, double *, int *, int *);
-    void (*dpbtrf)(char *, int *, int *, double *, int *, int *);
-    void (*dgetrf)(int *, int *, double *, int *, int *, int *);
-    void (*zgbtrf)(int *, int *, int *, int *, void *, int *, int *, int *);
-    void (*zgbtrs)(char *, int *, int *, int *, int *, void *, int *, int *, void *, int *, int *);
-    void (*zgetrf)(int *, int *, void *, int *, int *, int *);
-    void (*zgetrs)(char *, int *, int *, void *, int *, int *, void *, int *, int *);
-    void (*dgetrs)(char *, int *, int *, double *, int *, int *, double *, int *, int *);
+    FU_LAPACK_FUNCTIONS(MEMBER)
 } fu_lapack;
+#undef MEMBER
+
+const char *fu_lapack_name(int k);
+void fu_lapack_attach(fu_lapack *lapack, int k, const void *function);
 
 /* band.c eliminates so many columns at once (a band is one less wide at least), and touches so many numbers beyond the
  * end of a column of n. */

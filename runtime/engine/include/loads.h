@@ -22,7 +22,7 @@ typedef struct {
     int kind, signal, on; /* `on`: the cable or the body */
     int element;
     double x, u[3], c[3]; /* c: components, N or N m */
-    fu_modal_attachment spot;
+    fu_modal_attachment modal;
 } fu_load;
 extern const fu_coupling_type fu_load_type;
 

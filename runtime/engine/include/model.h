@@ -25,8 +25,8 @@ struct fu_model {
     int n_coordinates, n_forces, n_rows, n_outputs, n_numbers, n_flags, n_scratch, n_reacting, n_external, n_driven, n_damped;
     int n_dissipation_state; /* zero without algorithmic dissipation */
     int n_extra, n_multipliers; /* unknowns of couplings in a Newton system, and in eq 38 */
-    const int *place;
-    const int *combination_start, *combination_place; /* combinations, row by row */
+    const int *unknown_of_dof;
+    const int *combination_start, *combination_unknown; /* combinations, row by row */
     const double *combination_value;
     const double *weight;  /* length that a unit of each dof moves a point by: makes norms of increments metres */
     const double *gravity; /* generalised force on each dof */

@@ -10,7 +10,7 @@ typedef struct {
     fu_coupling base;
     const fu_point_law_kernels *law;
     const double *parameters;
-    fu_attachment ends[2];
+    fu_attachment attachments[2];
     int dim;
 } fu_point_force;
 

@@ -63,7 +63,7 @@ struct fu_run {
     double ceiling; /* s: that steps stay below, after one that failed */
     double newton_tolerance, round_off; /* of increments, m: where Newton may stop, and where it cannot go on */
     double acted; /* s: when a coupling has last changed by itself */
-    int factored, stopped_joint, turned, acts;
+    int factored, stopped_slide, turned, acts;
     int keep_pieces; /* couplings keep their pieces in a step, which ends where one of them leaves its piece */
     int net_rejections; /* steps rejected of late, less those taken */
     fu_failure failure; /* of the last step that failed */

@@ -4,7 +4,7 @@
 
 #include "linear.h"
 
-/* Entries of model->place: the place of the unknown that a dof is; that it is fixed; from FU_COMBINED on downwards, the number of
+/* Entries of model->unknown_of_dof: the place of the unknown that a dof is; that it is fixed; from FU_COMBINED on downwards, the number of
  * the combination of unknowns that it is. */
 enum { FU_FIXED = -1, FU_COMBINED = -2 };
 

@@ -31,7 +31,7 @@
 
 static const double none[FU_MAX_RATES];
 
-/* A cable in motion, and the turn that is taken off it. */
+/* A cable in motion, and the turn that is subtracted from its motion. */
 typedef struct {
     const fu_cable *cable;
     const double *q, *v;
@@ -137,7 +137,7 @@ static void solve(double N[9], double b[3], double x[3])
 
 typedef void (*stress_of)(const fu_run *run, const fu_cable *cable, int k, double *relaxed);
 
-/* `relaxed`, the part of dE that makes no stress, of the whole stress, of its second part, of none */
+/* Kinds of `relaxed`, the part of dE that makes no stress: of the whole stress, of its second part, of none. */
 static void of_both(const fu_run *run, const fu_cable *cable, int k, double *relaxed)
 {
     const fu_algorithmic *a = fu_algorithmic_of(run);
@@ -158,7 +158,7 @@ static void of_none(const fu_run *run, const fu_cable *cable, int k, double *rel
     memset(relaxed, 0, sizeof(double) * (size_t)cable->law->rates);
 }
 
-/* the cable, with the turn that leaves the forces of D (weight dE - relaxed) without a moment */
+/* Returns the cable, with the turn that leaves the forces of D (weight dE - relaxed) without a moment. */
 static moving without_turn(const fu_run *run, const fu_cable *cable, const double *q, const double *v, double weight,
                            stress_of stress)
 {

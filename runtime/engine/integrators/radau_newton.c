@@ -72,7 +72,7 @@ void fu_radau_right_side(fu_run *run, const double *r, double *unknowns)
     const fu_model *model = run->model;
     const int beyond = model->n_band + model->n_border_dof;
     for (int i = 0; i < model->n_dof; ++i)
-        if (model->place[i] >= 0) unknowns[model->place[i]] = r[i];
+        if (model->unknown_of_dof[i] >= 0) unknowns[model->unknown_of_dof[i]] = r[i];
     for (int i = 0; i < model->n_dof; ++i) run->work[i] = r[i];
     for (int k = 0; k < model->n_motions; ++k) run->work[model->motions[k].dof] = 0.0;
     fu_mass_times(model, run->next.q, run->work, run->psi);

@@ -6,18 +6,18 @@ enum { MAXIMA = 4 }; /* of dofs, found side by side: a processor does not wait f
 /* A row of T: the places of n unknowns, and their values. */
 typedef struct {
     int n;
-    const int *place;
+    const int *unknown;
     const double *value;
 } row;
 
-/* Returns the row of T of a dof with this entry of model->place. */
-static row row_of(const fu_model *model, const int *place)
+/* Returns the row of T of a dof with this entry of model->unknown_of_dof. */
+static row row_of(const fu_model *model, const int *unknown)
 {
     static const double one = 1.0;
-    if (*place >= 0) return (row){1, place, &one};
-    if (*place == FU_FIXED) return (row){0, 0, 0};
-    const int *start = model->combination_start + FU_COMBINED - *place;
-    return (row){start[1] - start[0], model->combination_place + start[0], model->combination_value + start[0]};
+    if (*unknown >= 0) return (row){1, unknown, &one};
+    if (*unknown == FU_FIXED) return (row){0, 0, 0};
+    const int *start = model->combination_start + FU_COMBINED - *unknown;
+    return (row){start[1] - start[0], model->combination_unknown + start[0], model->combination_value + start[0]};
 }
 
 /* Makes x = T' force, over the band and the border's dofs. */
@@ -25,11 +25,11 @@ void fu_gather(const fu_model *model, const double *force, double *x)
 {
     for (int i = 0; i < model->n_band + model->n_border_dof; ++i) x[i] = 0.0;
     for (int i = 0; i < model->n_dof; ++i) {
-        const int place = model->place[i];
-        if (place >= 0) x[place] += force[i];
-        else if (place <= FU_COMBINED) {
-            const row r = row_of(model, &place);
-            for (int k = 0; k < r.n; ++k) x[r.place[k]] += r.value[k] * force[i];
+        const int unknown = model->unknown_of_dof[i];
+        if (unknown >= 0) x[unknown] += force[i];
+        else if (unknown <= FU_COMBINED) {
+            const row r = row_of(model, &unknown);
+            for (int k = 0; k < r.n; ++k) x[r.unknown[k]] += r.value[k] * force[i];
         }
     }
 }
@@ -38,11 +38,11 @@ void fu_gather(const fu_model *model, const double *force, double *x)
 void fu_spread(const fu_model *model, const double *x, double *dofs)
 {
     for (int i = 0; i < model->n_dof; ++i) {
-        const int place = model->place[i];
-        dofs[i] = place >= 0 ? x[place] : 0.0;
-        if (place <= FU_COMBINED) {
-            const row r = row_of(model, &place);
-            for (int k = 0; k < r.n; ++k) dofs[i] += r.value[k] * x[r.place[k]];
+        const int unknown = model->unknown_of_dof[i];
+        dofs[i] = unknown >= 0 ? x[unknown] : 0.0;
+        if (unknown <= FU_COMBINED) {
+            const row r = row_of(model, &unknown);
+            for (int k = 0; k < r.n; ++k) dofs[i] += r.value[k] * x[r.unknown[k]];
         }
     }
 }
@@ -83,16 +83,16 @@ void fu_add(const fu_model *model, fu_system *system, int i, int j, double value
 {
     if (!system) return;
     const int beyond = model->n_band + model->n_border_dof - model->n_dof;
-    const int place_i = i < model->n_dof ? model->place[i] : beyond + i;
-    const int place_j = j < model->n_dof ? model->place[j] : beyond + j;
-    if (place_i >= FU_FIXED && place_j >= FU_FIXED) {
-        add(system, place_i, place_j, value);
+    const int unknown_i = i < model->n_dof ? model->unknown_of_dof[i] : beyond + i;
+    const int unknown_j = j < model->n_dof ? model->unknown_of_dof[j] : beyond + j;
+    if (unknown_i >= FU_FIXED && unknown_j >= FU_FIXED) {
+        add(system, unknown_i, unknown_j, value);
         return;
     }
-    const row a = row_of(model, &place_i), b = row_of(model, &place_j);
+    const row a = row_of(model, &unknown_i), b = row_of(model, &unknown_j);
     for (int k = 0; k < a.n; ++k)
         for (int m = 0; m < b.n; ++m)
-            add(system, a.place[k], b.place[m], value * a.value[k] * b.value[m]);
+            add(system, a.unknown[k], b.unknown[m], value * a.value[k] * b.value[m]);
 }
 
 /* Returns the largest of what the dofs move points by, as a length, m; not a number where one is none. */

@@ -96,7 +96,7 @@ static double minus_H(const fu_rows *rows, int c, const double *x)
 }
 
 /* Adds the forces that depend on these multipliers to work->work; null: on those of the state. Returns the largest change over the
- * force, of the coupling that work->jammed tells. */
+ * force, of the coupling that work->self_locking tells. */
 static double react(const fu_model *model, const fu_state *state, fu_accelerator *work, const double *lambda)
 {
     double largest = 0.0;
@@ -106,7 +106,7 @@ static double react(const fu_model *model, const fu_state *state, fu_accelerator
         const double size = c->type->react(model, c, state, lambda, work);
         if (size == 0.0 || size <= largest) continue;
         largest = size;
-        work->jammed = c->number;
+        work->self_locking = c->number;
     }
     return largest;
 }
@@ -138,7 +138,7 @@ static int solve_friction(const fu_model *model, const fu_state *state, fu_accel
         if (!(change < DIVERGED) || sweep == MOST_SWEEPS) return 1;
         last = change;
     }
-    work->jammed = -1;
+    work->self_locking = -1;
     return 0;
 }
 
@@ -190,7 +190,7 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
                      double *reaction)
 {
     double *lambda = work->rhs + model->n_band + model->n_border_dof, *prescribed = work->prescribed;
-    work->jammed = -1;
+    work->self_locking = -1;
     evaluate(model, state, work);
     const int info = factor_border(model, state, work);
     if (info) return info;
@@ -211,7 +211,7 @@ int fu_accelerations(const fu_model *model, const fu_state *state, fu_accelerato
     return 0;
 }
 
-/* A constraint that has been struck: the rate at which it opens again. */
+/* A constraint that has been struck, and the rate at which it opens again. */
 typedef struct {
     int row, constraint;
     double rate;

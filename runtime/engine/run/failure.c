@@ -25,7 +25,7 @@ int fu_fail_at(fu_run *run, int cause, int unknown)
     const int extra = unknown - model->n_band - model->n_border_dof;
     run->failure = (fu_failure){cause, 0, -1};
     for (int i = 0; i < model->n_dof; ++i)
-        if (model->place[i] == unknown) run->failure.dof = i;
+        if (model->unknown_of_dof[i] == unknown) run->failure.dof = i;
     const fu_coupling *owner = extra >= 0 ? fu_owner(model, extra) : 0;
     if (owner && owner->n_coordinates) run->failure.coupling = owner->number;
     return 1;
@@ -34,6 +34,6 @@ int fu_fail_at(fu_run *run, int cause, int unknown)
 /* Does the same where eq 38 has no solution: by friction that jams, or by its matrix. */
 int fu_fail_eq38(fu_run *run)
 {
-    const int jammed = run->accelerator.jammed;
-    return fu_fail(run, jammed >= 0 ? FU_JAM : FU_MATRIX, run->next.v, jammed);
+    const int self_locking = run->accelerator.self_locking;
+    return fu_fail(run, self_locking >= 0 ? FU_SELF_LOCKING : FU_MATRIX, run->next.v, self_locking);
 }

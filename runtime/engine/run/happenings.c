@@ -12,7 +12,7 @@ static int acted(fu_run *run, const fu_coupling *coupling, const char *what)
     run->acts = run->now.t - run->acted <= AT_ONE_INSTANT * run->duration ? run->acts + 1 : 0;
     run->acted = run->now.t;
     if (run->acts > MOST_ACTS) {
-        fu_fail(run, FU_JAM, run->now.v, coupling->number);
+        fu_fail(run, FU_SELF_LOCKING, run->now.v, coupling->number);
         return FU_NO_CONVERGENCE;
     }
     fu_watch_anew(run, coupling->number);

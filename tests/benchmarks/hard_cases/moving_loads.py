@@ -70,7 +70,7 @@ def arc(degrees: float, period: float):
                            material=Material(youngs_modulus=E, poisson_ratio=0.0, density=DENSITY), rest="straight",
                            up=(0, 0, 1))
         for s in wire.node_s:
-            scene.clamp(wire, s=s, hold="all")
+            scene.clamp(wire, s=s, fix="all")
         s = wire.length * (0.5 + np.radians(degrees) / (2 * reach))
         scene.rigid_body("A", mass=1.0, inertia=(1e-3,) * 3, position=wire.point(s))
         scene.slide("A", along=wire, s=s)

@@ -23,7 +23,7 @@ def ends_of(scene: SceneData, tie: Tie) -> tuple[Node, Node]:
 
 
 def joined(scene: SceneData, node: Node, without: Tie | None = None) -> set[Node]:
-    """All nodes that ties, but for ``without``, join to ``node``, itself included."""
+    """Return all nodes that ties, but for ``without``, join to ``node``, itself included."""
     found, new = {node}, [node]
     while new:
         at = new.pop()

@@ -1,0 +1,44 @@
+"""`funicular derive` starts where generated/ is missing or broken, and mends it."""
+
+import shutil
+import subprocess
+import sys
+
+import pytest
+from import_contracts import TOP, installed_tree
+
+DERIVE = "import sys; from funicular.derive.pipeline import main; sys.exit(main(['joint_spherical']))"
+
+
+@pytest.fixture
+def installed(tmp_path):
+    """The package's Python files and templates as they stand once it is installed, with generated/ beside derive/."""
+    installed_tree(tmp_path)
+    templates = "derive/codegen/templates"
+    shutil.copytree(TOP / templates, tmp_path / "funicular" / templates, dirs_exist_ok=True)
+    return tmp_path / "funicular" / "generated"
+
+
+def missing(generated):
+    shutil.rmtree(generated)
+
+
+def syntax_error(generated):
+    (generated / "__init__.py").write_text("def described(")
+
+
+def no_manifest_of_ours(generated):
+    (generated / "manifest.json").write_text('["tools"]')
+
+
+def half_a_manifest(generated):
+    (generated / "manifest.json").write_text((TOP / "generated" / "manifest.json").read_text(encoding="utf-8")[:1000])
+
+
+@pytest.mark.parametrize("broken", [missing, syntax_error, no_manifest_of_ours, half_a_manifest])
+def test_derive_mends_what_is_generated(installed, broken):
+    broken(installed)
+    made = subprocess.run([sys.executable, "-c", DERIVE], cwd=installed.parents[1], capture_output=True, text=True)
+    assert made.returncode == 0, made.stderr
+    for name in ("__init__.py", "joint_spherical.c"):
+        assert (installed / name).read_bytes() == (TOP / "generated" / name).read_bytes()
