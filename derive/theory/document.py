@@ -16,10 +16,12 @@ from .notation.jet import plain
 from .notation.latex import latex
 from .notation.parse import FormulaError, parse
 from .notation.tree import Equation, Name, Node
-from .printed import PRINTERS
+from .printed import PRINTERS as GENERAL
+from .printed_laws import LAW_PRINTERS
 from .proofs import PROOFS, Proof
 from .scopes import Scope, compiled, programs_of, scope
 
+PRINTERS = GENERAL | LAW_PRINTERS
 DERIVE = Path(__file__).parents[1]
 
 
@@ -104,11 +106,11 @@ class Composer:
             item.opens_scope = True
         elif block.kind == "formula":
             item.formulas = [self._formula(expanded(line, self._scope)) for line in block.lines]
-        elif block.kind == "print":
+        elif block.kind in ("print", "print-folded"):
             assert self._scope is not None
             name, *number = block.about.split()
             item.formulas = [self._formula(line) for line in PRINTERS[name](self._scope)]
-            item.block = Block("formula", about=" ".join(number))
+            item.block = Block(block.kind.replace("print", "formula"), about=" ".join(number))
         elif block.kind == "proof":
             item.proof = PROOFS[block.about]()
         self.document.items.append(item)

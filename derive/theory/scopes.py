@@ -17,6 +17,7 @@ from ..codegen.family import Family
 from ..codegen.program import Program
 from ..verify import numbers as verify_numbers
 from ..verify.samples import states
+from ..verify.samples.shapes import reference
 from .notation.evaluate import Definitions, Evaluation
 from .notation.parse import parse
 from .notation.tree import Name
@@ -189,7 +190,10 @@ def law_scope(name: str) -> Scope:
 
 
 def _of_law(scope: Scope, state: State) -> dict[str, Any]:
-    return _counts(scope, state) | {"y": 0.0, "z": 0.0}
+    element = scope.family.element
+    assert element is not None
+    straight = column(reference(element, float(state["l"])))
+    return _counts(scope, state) | {"y": 0.0, "z": 0.0, r"\mathbf{e}_{0}": straight}
 
 
 def slide_scope(name: str) -> Scope:
