@@ -17,11 +17,12 @@ from .notation.latex import latex
 from .notation.parse import FormulaError, parse
 from .notation.tree import Equation, Name, Node
 from .printed import PRINTERS as GENERAL
+from .printed_bodies import BODY_PRINTERS
 from .printed_laws import LAW_PRINTERS
 from .proofs import PROOFS, Proof
 from .scopes import Scope, compiled, programs_of, scope
 
-PRINTERS = GENERAL | LAW_PRINTERS
+PRINTERS = GENERAL | LAW_PRINTERS | BODY_PRINTERS
 DERIVE = Path(__file__).parents[1]
 
 

@@ -31,7 +31,7 @@ def equation(left: Node, right: Node) -> str:
 
 
 def coordinates(scope: Scope) -> list[Line]:
-    """Return the nodal vectors one below the other, by their names and by their numbers (eq 1)."""
+    """Return the nodal vectors one below the other, by their names and by their numbers, eq 1."""
     element = _element(scope)
     named = [Name("r", bold=True, sub=(*_slopes(v), str(node + 1))) for node in range(len(element.nodes))
              for v in element.nodal_vectors]
@@ -167,7 +167,7 @@ def tangent_frame(scope: Scope) -> list[Line]:
 
 
 def parted(scope: Scope) -> list[Line]:
-    """Return C_L and C_M (eq 21)."""
+    """Return C_L and C_M, eq 21."""
     across = ["j"] if scope.family.facts["dim"] == 2 else ["j", "k"]
     rows = r" \\ ".join(rf"\mathbf{{{a}}} \cdot \boldsymbol{{\Phi}}" for a in across)
     return [Line(r"C_{L} = \mathbf{i} \cdot \boldsymbol{\Phi}"),
@@ -217,3 +217,13 @@ def slide_tangent(scope: Scope) -> list[Line]:
 
 
 PRINTERS |= {"velocities": velocities, "motion": motion, "parted_bias": parted_bias, "slide_tangent": slide_tangent}
+
+
+def normal(scope: Scope) -> list[Line]:
+    """Return where the frame takes its normal from."""
+    element = _element(scope)
+    return [Line(rf"\mathbf{{n}} = \frac{{\partial \mathbf{{r}}}}{{\partial {element.director[-1]}}}" if element.director
+                 else r"\mathbf{n} = \mathbf{d}")]
+
+
+PRINTERS |= {"normal": normal}

@@ -18,3 +18,4 @@ class Proof:
 
 PROOFS: dict[str, Callable[[], Proof]] = {}
 PROOFS["sign_of_34"] = lambda: Proof("", [], [], "")
+PROOFS["axial_mass"] = PROOFS["length_of_16"] = PROOFS["sign_of_34"]

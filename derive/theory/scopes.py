@@ -230,13 +230,17 @@ def body_scope(name: str) -> Scope:
     """Return the scope of a rigid body."""
     family = families()[name]
     dim = family.facts["dim"]
-    return Scope(family, (Symbol("m", "mass", number), Symbol(r"\mathbf{J}", "J", matrix),
+    return Scope(family, (Symbol("m", "mass", number), *_inertia(dim),
                           Symbol(r"\mathbf{R}", "b", entries(0, dim)), *_attitude(family),
                           Symbol(r"\mathbf{u}", "u", column), Symbol(r"\dot{\mathbf{R}}", "w", entries(0, dim)),
                           Symbol(r"\boldsymbol{\omega}", "w", entries(dim, 6)),
                           Symbol(r"\ddot{\mathbf{R}}", "a", entries(0, dim)),
                           Symbol(r"\dot{\boldsymbol{\omega}}", "a", entries(dim, 6)),
                           Symbol(r"\mathbf{f}", "f", column)), constants=_at_rest)
+
+
+def _inertia(dim: int) -> tuple[Symbol, ...]:
+    return (Symbol(r"\mathbf{J}", "J", matrix),) if dim == 3 else (Symbol("J", "J", entry(2, 2)),)
 
 
 def modal_scope(name: str) -> Scope:
@@ -256,11 +260,10 @@ def modal_scope(name: str) -> Scope:
 def joint_scope(name: str) -> Scope:
     """Return the scope of a joint between two frames."""
     family = families()[name]
-    axes = [Symbol(rf"\mathbf{{{a}}}_{{{n}}}", f"A{n}", lambda v, k=k: column(np.asarray(v)[:, k]))
+    axes = [Symbol(rf"\mathbf{{{a}}}_{{{n}}}^{{0}}", f"A{n}", lambda v, k=k: column(np.asarray(v)[:, k]))
             for n in (1, 2) for k, a in enumerate("xyz"[: family.dim])]
-    return Scope(family, (Symbol(r"\mathbf{d}", "gap", column), Symbol(r"\mathbf{A}_{1}", "A1", matrix),
-                          Symbol(r"\mathbf{A}_{2}", "A2", matrix), *axes, Symbol("c", "c", entry(0)),
-                          Symbol(r"c_{c}", "c", entry(1)), Symbol(r"c_{s}", "c", entry(2)),
+    return Scope(family, (Symbol(r"\mathbf{gap}", "gap", column), *axes,
+                          *(Symbol(f"c_{{{k}}}", "c", entry(k)) for k in range(3)),
                           Symbol(r"\mathbf{f}", "f", column)), constants=_no_turn)
 
 
@@ -272,8 +275,8 @@ def _no_turn(scope: Scope, state: State) -> dict[str, Any]:
 def spring_scope(name: str) -> Scope:
     """Return the scope of a spring with a damper."""
     return Scope(families()[name], (Symbol("k", "stiffness", number), Symbol("c", "damping", number),
-                                    Symbol("L", "rest_length", number), Symbol(r"\mathbf{d}", "gap", column),
-                                    Symbol(r"\dot{\mathbf{d}}", "gap_rate", column)))
+                                    Symbol("L", "rest_length", number), Symbol(r"\mathbf{gap}", "gap", column),
+                                    Symbol(r"\dot{\mathbf{gap}}", "gap_rate", column)))
 
 
 def resistance_scope(name: str) -> Scope:

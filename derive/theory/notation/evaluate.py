@@ -34,6 +34,7 @@ from .tree import (
     Transpose,
 )
 
+AXES = "xyz"
 Value = Any
 """A number, or a matrix (2-D array); vectors are columns."""
 POINTS = {"x": 6, "y": 3, "z": 3}
@@ -107,6 +108,9 @@ class Evaluation:
         if name.sub and name.sub[-1].isdigit() and whole.key in self.definitions.blocks:
             size, k = self.definitions.blocks[whole.key], int(name.sub[-1])
             return self.name(whole)[size * (k - 1): size * k]
+        if name.sub and name.sub[-1] in AXES and not name.bold:  # a component of a vector
+            vector = Name(name.base, True, name.accent, name.sub[:-1], name.primes, name.above)
+            return self.name(vector)[AXES.index(name.sub[-1]), 0]
         for member, index, value in self.definitions.families:
             found = _index_of(member, name, index)
             if found is not None:
@@ -278,10 +282,10 @@ def skew(v: Value) -> np.ndarray:
 
 
 def _axial(m: np.ndarray) -> Value:
-    """Return the sum of e_k x (M' e_k): of u v' it is v x u; in the plane a number."""
+    """Return the vector that is a x b of a b', and linear in the matrix; in the plane a number."""
     if m.shape == (2, 2):
-        return m[1, 0] - m[0, 1]
-    return np.array([[m[2, 1] - m[1, 2]], [m[0, 2] - m[2, 0]], [m[1, 0] - m[0, 1]]], dtype=object)
+        return m[0, 1] - m[1, 0]
+    return np.array([[m[1, 2] - m[2, 1]], [m[2, 0] - m[0, 2]], [m[0, 1] - m[1, 0]]], dtype=object)
 
 
 def _trace(m: Value) -> Value:
