@@ -21,6 +21,7 @@ from .printed_bodies import BODY_PRINTERS
 from .printed_laws import LAW_PRINTERS
 from .proofs import PROOFS, Proof
 from .scopes import Scope, compiled, programs_of, scope
+from .staged import staged_scope
 
 PRINTERS = GENERAL | LAW_PRINTERS | BODY_PRINTERS
 DERIVE = Path(__file__).parents[1]
@@ -112,9 +113,21 @@ class Composer:
             name, *number = block.about.split()
             item.formulas = [self._formula(line) for line in PRINTERS[name](self._scope)]
             item.block = Block(block.kind.replace("print", "formula"), about=" ".join(number))
+        elif block.kind == "staged":
+            self._staged(block)
+            return
         elif block.kind == "proof":
             item.proof = PROOFS[block.about]()
         self.document.items.append(item)
+
+    def _staged(self, block: Block) -> None:
+        """Append a kernel stage by stage, in a scope of its own names."""
+        assert self._scope is not None
+        kernel, *outputs = block.about.split()
+        own, stages = staged_scope(self._scope, kernel, tuple(outputs))
+        for k, (title, lines) in enumerate(stages):
+            item = Item(Block("stage", title), own, [self._formula(line) for line in lines], opens_scope=k == 0)
+            self.document.items.append(item)
 
     def _formula(self, line: Line) -> Formula:
         self._count += 1

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..catalogue import families
 from ..codegen.family import Family
-from ..codegen.program import Program
+from ..codegen.program import Argument, Program
 from ..verify import numbers as verify_numbers
 from ..verify.samples import states
 from ..verify.samples.shapes import reference
@@ -119,6 +119,11 @@ class Scope:
         """Return the sample states, the ordinary ones."""
         return [self.adapted(self, dict(state)) for state in samples_of(self.family.name)[:2]]
 
+    @cached_property
+    def arguments(self) -> dict[str, Argument]:
+        """Return what the programs of the family say of their inputs, by name."""
+        return {a.name: a for p in programs_of(self.family.name).values() for a in p.inputs}
+
     def definitions(self) -> Definitions:
         """Return the place for definitions, with what of the inputs has blocks."""
         return Definitions(blocks={s.name.key: s.blocks for s in self.symbols if s.blocks})
@@ -178,6 +183,8 @@ def law_scope(name: str) -> Scope:
         own = [Symbol(r"\mathrm{EA}", "S", entry(0)), Symbol(r"\mathrm{EI}", "S", entry(1))]
         if traits.membrane == "assumed":
             own.append(Symbol(r"\mathrm{EA}_{u}", "S", entry(2)))
+    elif traits.kind == "structural":
+        return Scope(family, (*common, Symbol("x", "x", number)), constants=_of_law)
     else:
         axes = range(1, dim + 1)
         pairs = [(i, j) for i in axes for j in axes if i < j]

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
+
 from .tree import (
     At,
     Binary,
@@ -66,6 +69,41 @@ def latex(node: Node) -> str:
             return _large(node)
 
 
+WIDTH = 110
+"""Rough width of a line, in letters, above which a sum goes on below."""
+
+
+def display(node: Node) -> str:
+    """Return the LaTeX of a displayed formula: a long sum on its right goes over several lines (macros is and wrap)."""
+    rows = wrapped(node)
+    if rows is None:
+        return latex(node)
+    assert isinstance(node, Equation)
+    text = r" \wrap ".join(_terms(row, begins=k == 0) for k, row in enumerate(rows))
+    return rf"\begin{{aligned}} {latex(node.sides[0])} \is {text} \end{{aligned}}"
+
+
+def wrapped(node: Node) -> list[list[tuple[int, Node]]] | None:
+    """Return the terms of an equation's right side line by line; None where one line holds them."""
+    if not (isinstance(node, Equation) and len(node.sides) == 2 and isinstance(node.sides[1], Sum)):
+        return None
+    rows: list[list[tuple[int, Node]]] = [[]]
+    width = _width(node.sides[0])
+    for sign, term in node.sides[1].terms:
+        if width + _width(term) > WIDTH and rows[-1]:
+            rows.append([])
+            width = 0
+        rows[-1].append((sign, term))
+        width += _width(term) + 3
+    return rows if len(rows) > 1 else None
+
+
+def _width(node: Node) -> int:
+    """Return roughly how many letters wide a formula is."""
+    text = re.sub(r"\\(mathbf|mathrm|boldsymbol|left|right|widetilde|dot|operatorname|mathsf)|[{}_^ ]", "", latex(node))
+    return len(re.sub(r"\\[a-zA-Z]+", "x", text))
+
+
 def _large(node: Node) -> str:
     match node:
         case Matrix():
@@ -123,11 +161,16 @@ def subscript(text: str) -> str:
 
 
 def _sum(node: Sum) -> str:
+    return _terms(node.terms)
+
+
+def _terms(terms: Sequence[tuple[int, Node]], begins: bool = True) -> str:
     text = ""
-    for k, (sign, term) in enumerate(node.terms):
+    for k, (sign, term) in enumerate(terms):
         inner = bracket(latex(term)) if isinstance(term, Sum) else latex(term)
-        text += ("-" if sign < 0 else "") + inner if k == 0 else f" {'-' if sign < 0 else '+'} {inner}"
-    return text
+        first = begins and k == 0
+        text += ("-" if sign < 0 else "") + inner if first else f" {'-' if sign < 0 else '+'} {inner}"
+    return text.strip()
 
 
 def _factor(node: Node, first: bool = False, last: bool = False) -> str:

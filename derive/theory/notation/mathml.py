@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from xml.etree import ElementTree
 from xml.sax.saxutils import escape
 
-from .latex import GREEK, TRANSPOSE, bracket
+from .latex import GREEK, TRANSPOSE, bracket, wrapped
 from .tree import (
     At,
     Binary,
@@ -39,6 +40,13 @@ def mathml(node: Node, display: bool = True, identifier: str = "") -> str:
     """Return a formula as a <math> element."""
     block = ' display="block"' if display else ""
     name = f' id="{identifier}"' if identifier else ""
+    rows = wrapped(node) if display else None
+    if rows is not None:
+        assert isinstance(node, Equation)
+        lines = [_terms(row, begins=k == 0) for k, row in enumerate(rows)]
+        lines[0] = f"{_of(node.sides[0])}{_operator('=')}{lines[0]}"
+        table = "".join(f"<mtr><mtd>{_row(line)}</mtd></mtr>" for line in lines)
+        return f'<math{name}{block}><mtable class="lines" columnalign="left">{table}</mtable></math>'
     return f"<math{name}{block}><mrow>{_of(node)}</mrow></math>"
 
 
@@ -170,10 +178,16 @@ def _raised(base: Node, exponent: str) -> str:
 
 
 def _sum(node: Sum) -> str:
+    return _terms(node.terms)
+
+
+def _terms(terms: Sequence[tuple[int, Node]], begins: bool = True) -> str:
     text = ""
-    for k, (sign, term) in enumerate(node.terms):
+    for k, (sign, term) in enumerate(terms):
         inner = _brackets(_of(term)) if isinstance(term, Sum) else _of(term)
-        operator = _operator(MINUS if sign < 0 else "+") if k or sign < 0 else ""
+        first = begins and k == 0
+        attributes = ' form="prefix"' if first else ' form="infix"'
+        operator = _operator(MINUS if sign < 0 else "+", attributes) if not first or sign < 0 else ""
         text += operator + inner
     return text
 
@@ -211,6 +225,8 @@ def _back(element: ElementTree.Element) -> str:
     match element.tag:
         case "math":
             return _children(element)
+        case "mtable":  # a long sum: its lines
+            return "".join(_children(cell) for row in element for cell in row)
         case "mrow":
             return _back_row(element)
         case "mn":

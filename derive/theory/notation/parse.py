@@ -57,7 +57,8 @@ class _Parser:
 
     def __init__(self, text: str):
         self.text = text
-        self.tokens = TOKEN.findall(re.sub(r"\\(quad|qquad|;|!)(?![a-zA-Z])", " ", text))
+        plain = re.sub(r"\\(begin|end)\{aligned\}|\\wrap\b", " ", text)  # of long sums, see latex.display
+        self.tokens = TOKEN.findall(re.sub(r"\\is\b", "=", plain))
         self.at = 0
 
     def peek(self, ahead: int = 0) -> str:

@@ -1,0 +1,214 @@
+"""The document as one HTML file: MathML, one stylesheet inlined, no script, nothing from the network."""
+
+from __future__ import annotations
+
+import re
+from html import escape
+from pathlib import Path
+
+from .document import Document, Formula, Item
+from .markdown import inline
+from .notation.mathml import mathml
+from .notation.parse import parse
+from .provenance import kernel, tagged
+
+STYLE = Path(__file__).with_name("style.css")
+
+
+def html(document: Document) -> str:
+    """Return the page."""
+    body = "\n".join(_Writer(document).items())
+    contents = _contents(document)
+    return f"""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<title>{escape(document.title)}</title>
+<style>
+{STYLE.read_text(encoding="utf-8")}</style>
+</head>
+<body>
+<nav aria-label="Contents"><p class="title"><a href="#top">{escape(document.title)}</a></p>
+{contents}
+</nav>
+<main id="top">
+<h1>{escape(document.title)}</h1>
+<p class="lead">{text(document.lead)}</p>
+{body}
+</main>
+</body>
+</html>
+"""
+
+
+def anchor(title: str) -> str:
+    """Return the identifier of a heading."""
+    return re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")
+
+
+def text(words: str) -> str:
+    """Return a paragraph's inside."""
+    parts = []
+    for kind, part in inline(words):
+        if kind == "code":
+            parts.append(f"<code>{escape(part)}</code>")
+        elif kind == "math":
+            parts.append(mathml(parse(part), display=False))
+        elif kind == "stress":
+            parts.append(f"<em>{escape(part)}</em>")
+        elif kind == "link":
+            label, _, address = part.partition("](")
+            parts.append(f'<a href="{escape(address)}">{escape(label)}</a>')
+        else:
+            parts.append(escape(part))
+    return "".join(parts)
+
+
+def _contents(document: Document) -> str:
+    """Return the table of contents: chapters, sections, and the numbers of the paper's equations in each chapter."""
+    lines, chapter = ["<ul>"], ""
+    for item in document.items:
+        block = item.block
+        if block.kind == "heading" and block.level <= 2:
+            if block.level == 1:
+                chapter = block.text
+                lines.append(f'<li class="chapter"><a href="#{anchor(chapter)}">{escape(chapter)}</a>'
+                             f'{_equations(document, chapter)}</li>')
+            else:
+                name = anchor(f"{chapter} {block.text}")
+                lines.append(f'<li><a href="#{name}">{escape(block.text)}</a></li>')
+    return "\n".join([*lines, "</ul>"])
+
+
+def _equations(document: Document, chapter: str) -> str:
+    """Return the range of the paper's equations in a chapter."""
+    numbers, here = [], False
+    for item in document.items:
+        if item.block.kind == "heading" and item.block.level == 1:
+            here = item.block.text == chapter
+        elif here and item.block.kind.startswith("formula") and item.block.about.isdigit():
+            numbers.append(int(item.block.about))
+    if not numbers:
+        return ""
+    first, last = min(numbers), max(numbers)
+    return f' <span class="range">{first}</span>' if first == last else f' <span class="range">{first}–{last}</span>'
+
+
+class _Writer:
+    """Writes the items of a document; knows the chapter, and which equation numbers have an anchor already."""
+
+    def __init__(self, document: Document):
+        self.document, self.chapter, self.section = document, "", ""
+        self._numbered: set[str] = set()
+
+    def items(self):
+        """Yield the text of each item."""
+        staged = False
+        for item in self.document.items:
+            inside = item.block.kind == "stage"
+            if inside and not staged:
+                yield '<details class="staged"><summary>Every stage of the kernel</summary>'
+            elif staged and not inside:
+                yield "</details>"
+            staged = inside
+            yield getattr(self, "_" + item.block.kind.replace("-", "_"))(item)
+        if staged:
+            yield "</details>"
+
+    def _heading(self, item: Item) -> str:
+        title, level = item.block.text, item.block.level
+        if level == 1:
+            self.chapter = title
+        name = anchor(title if level == 1 else f"{self.chapter} {title}")
+        return f'<h{level + 1} id="{name}"><a href="#{name}">{escape(title)}</a></h{level + 1}>'
+
+    def _paragraph(self, item: Item) -> str:
+        return f"<p>{text(item.block.text)}</p>"
+
+    def _list(self, item: Item) -> str:
+        return "<ul>" + "".join(f"<li>{text(words)}</li>" for words in item.block.items) + "</ul>"
+
+    def _table(self, item: Item) -> str:
+        head, *rows = item.block.rows
+        return _table(head, rows)
+
+    def _misprint(self, item: Item) -> str:
+        number = item.block.about
+        title = f"Eq {number} in print" if number.isdigit() else "In print"
+        return f'<aside class="misprint"><p><strong>{title}.</strong> {text(item.block.text)}</p></aside>'
+
+    def _proof(self, item: Item) -> str:
+        proof = item.proof
+        assert proof is not None
+        return (f'<aside class="proof"><p><strong>In numbers.</strong> {text(proof.done)}</p>'
+                f"{_table(proof.head, proof.rows)}<p>{text(proof.follows)}</p></aside>")
+
+    def _scope(self, item: Item) -> str:
+        assert item.scope is not None
+        rows = []
+        programs = item.scope.arguments
+        for symbol in item.scope.symbols:
+            argument = programs.get(symbol.argument)
+            doc, unit = (argument.doc, argument.unit) if argument else ("height and width of the rectangle", "m")
+            rows.append([f"${symbol.latex}$", f"`{symbol.argument}`", doc, unit])
+        name = item.scope.family.name
+        return (f'<details class="symbols"><summary>Symbols of this chapter, arguments of the kernels '
+                f"<code>{escape(name)}_…</code></summary>{_table(['symbol', 'argument', 'is', 'unit'], rows)}</details>")
+
+    def _stage(self, item: Item) -> str:
+        return (f'<h5>{escape(item.block.text)}</h5>\n<div class="equation"><div class="lines">'
+                + "\n".join(self._line(f) for f in item.formulas) + "</div></div>\n" + self._trace(item))
+
+    def _formula_folded(self, item: Item) -> str:
+        return (f'<details class="folded"><summary>{len(item.formulas)} formulas</summary>'
+                f"{self._formula(item)}</details>")
+
+    def _formula(self, item: Item) -> str:
+        number = item.block.about
+        label, name = "", ""
+        if number:
+            if number not in self._numbered:
+                self._numbered.add(number)
+                name = f' id="eq-{number}"'
+            label = f'<span class="number">({number})</span>'
+        lines = "\n".join(self._line(f) for f in item.formulas)
+        return (f'<div class="equation"{name}><div class="lines">\n{lines}\n</div>{label}</div>\n'
+                f"{self._trace(item)}")
+
+    def _line(self, formula: Formula) -> str:
+        index = (f' <span class="for">for each {mathml(parse(formula.line.index), display=False)}</span>'
+                 if formula.line.index else "")
+        return f'<div class="line">{mathml(formula.tree, identifier=formula.identifier)}{index}</div>'
+
+    def _trace(self, item: Item) -> str:
+        """Return where the formulas of a block went, and where their equation stands in the sources."""
+        rows = []
+        for formula in item.formulas:
+            if formula.kernel and formula.deviation is not None:
+                assert item.scope is not None
+                k = kernel(item.scope.family.name, *formula.kernel)
+                verified = f'; verified as <q>{escape(k.verified)}</q>' if k.verified else ""
+                rows.append(f"<code>{k.name}</code> → <code>{k.output}</code> [{escape(k.unit)}], "
+                            f'<span class="place">{k.file}:{k.line}</span>, {k.operations} operations{verified}; '
+                            f'<strong class="deviation">{_power(formula.deviation)}</strong>')
+            elif formula.deviation is not None:
+                rows.append(f'both sides agree: <strong class="deviation">{_power(formula.deviation)}</strong>')
+        number = item.block.about
+        if item.block.kind.startswith("formula") and number.isdigit() and int(number) in tagged():
+            rows.append(f'eq {number} is at <span class="place">{tagged()[int(number)]}</span>')
+        return "".join(f'<p class="trace">{row}</p>' for row in rows)
+
+
+def _power(value: float) -> str:
+    if value == 0:
+        return "0"
+    digits, _, power = f"{value:.1e}".partition("e")
+    return f"{digits} · 10<sup>{int(power)}</sup>".replace("<sup>-", "<sup>−")
+
+
+def _table(head: list[str], rows: list[list[str]]) -> str:
+    top = "".join(f"<th>{text(cell)}</th>" for cell in head)
+    body = "\n".join("<tr>" + "".join(f"<td>{text(cell)}</td>" for cell in row) + "</tr>" for row in rows)
+    return f'<div class="wide"><table><thead><tr>{top}</tr></thead><tbody>\n{body}\n</tbody></table></div>'
