@@ -13,7 +13,7 @@ from ..spec import Element, l, x
 from .markdown import Line
 from .notation.from_sympy import formula, plain_names, signed_sum
 from .notation.latex import latex
-from .notation.tree import Equation, Matrix, Name, Node, Number, Product
+from .notation.tree import Equation, Matrix, Name, Node, Number, Product, Transpose
 from .scopes import Scope, programs_of
 
 XI = sp.Symbol("xi", positive=True)
@@ -39,10 +39,10 @@ def coordinates(scope: Scope) -> list[Line]:
     e = Name("e", bold=True)
 
     def stack(vectors: list[Name]) -> Node:
-        return Matrix(tuple((v,) for v in vectors))
+        return Transpose(Matrix((tuple(Transpose(v) for v in vectors),)))
 
-    return [Line(latex(Equation((e, stack(named)))), kind="shown"), Line(latex(Equation((e, stack(numbered)))),
-                                                                          kind="holds")]
+    return [Line(latex(Equation((e, stack(named)))), kind="shown"),
+            Line(latex(Equation((e, stack(numbered)))), kind="holds")]
 
 
 def _slopes(vector: str) -> tuple[str, ...]:
@@ -62,7 +62,7 @@ def shape_functions(scope: Scope) -> list[Line]:
             scale = Name("l") if power == 1 else formula(l**power, plain_names(TABLE))
             right = Product((scale, right))
         lines.append(Line(equation(Name("N", sub=(str(k + 1),)), right)))
-    column = Matrix(tuple((Name("N", sub=(str(k + 1),)),) for k in range(element.n_vectors)))
+    column = Transpose(Matrix((tuple(Name("N", sub=(str(k + 1),)) for k in range(element.n_vectors)),)))
     lines.append(Line(equation(Name("N", bold=True), column),
                       output="position.N" if scope.family.role == "element" else ""))
     return lines
