@@ -162,7 +162,17 @@ def evaluate(document: Document, trees: dict[str, Node] | None = None) -> dict[s
 
     trees takes the place of the document's own formulas: those that were read back from its emitted text.
     """
+    return _evaluated(document, trees)[0]
+
+
+def unused(document: Document) -> list[str]:
+    """Return the formulas that no comparison with a kernel depends on, so that nothing checks them."""
+    return _evaluated(document, None)[1]
+
+
+def _evaluated(document: Document, trees: dict[str, Node] | None) -> tuple[dict[str, float], list[str]]:
     found: dict[str, float] = {}
+    idle: list[str] = []
     for items in _by_scope(document):
         here = items[0].scope
         if here is None:
@@ -180,7 +190,10 @@ def evaluate(document: Document, trees: dict[str, Node] | None = None) -> dict[s
                 deviation = _deviation(f, tree[f.identifier], value, here, state)
                 if deviation is not None:
                     found[f.identifier] = max(found.get(f.identifier, 0.0), deviation)
-    return found
+        idle += [f.line.latex for f in formulas if f.identifier not in found
+                 and not (isinstance(t := tree[f.identifier], Equation) and isinstance(t.sides[0], Name)
+                          and t.sides[0].key in definitions.used)]
+    return found, idle
 
 
 def _by_scope(document: Document) -> Iterator[list[Item]]:

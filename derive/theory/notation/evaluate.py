@@ -48,11 +48,15 @@ class UndefinedError(LookupError):
 
 @dataclass
 class Definitions:
-    """What each name stands for: formulas by key, families of them by an index, inputs that are made of blocks."""
+    """What each name stands for: formulas by key, families of them by an index, inputs that are made of blocks.
+
+    `used` fills with the keys of what an evaluation has asked for.
+    """
 
     by_key: dict[str, Node] = field(default_factory=dict)
     families: list[tuple[Name, str, Node]] = field(default_factory=list)
     blocks: dict[str, int] = field(default_factory=dict)
+    used: set[str] = field(default_factory=set)
 
     def add(self, equation: Equation, index: str = "") -> None:
         """Take an equation as the definition of its left side; with an index, for each of its values."""
@@ -103,6 +107,7 @@ class Evaluation:
 
     def _found(self, name: Name) -> Value:
         if name.key in self.definitions.by_key:
+            self.definitions.used.add(name.key)
             return self.with_indices({})(self.definitions.by_key[name.key])
         whole = Name(name.base, name.bold, name.accent, name.sub[:-1], name.primes, name.above)
         if name.sub and name.sub[-1].isdigit() and whole.key in self.definitions.blocks:
@@ -114,6 +119,7 @@ class Evaluation:
         for member, index, value in self.definitions.families:
             found = _index_of(member, name, index)
             if found is not None:
+                self.definitions.used.add(member.key)
                 return self.with_indices({index: found})(value)
         raise UndefinedError(f"nothing defines {name.key}")
 
