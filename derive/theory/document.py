@@ -45,8 +45,13 @@ class Formula:
         """Return kernel and output, without the family's name."""
         if not self.line.output:
             return None
-        kernel, _, output = self.line.output.partition(".")
+        kernel, _, output = self.line.output.removeprefix("-").partition(".")
         return kernel, output
+
+    @property
+    def sign(self) -> int:
+        """Return -1 where the kernel gives minus what the formula says."""
+        return -1 if self.line.output.startswith("-") else 1
 
 
 @dataclass
@@ -211,7 +216,7 @@ def _deviation(formula: Formula, tree: Node, value, here: Scope, state) -> float
     if formula.kernel and formula.kernel[0] in programs_of(here.family.name):
         sides = tree.sides if isinstance(tree, Equation) else (tree,)
         kernel, output = formula.kernel
-        expected = compiled(here.family.name, kernel, state)[output]
+        expected = formula.sign * compiled(here.family.name, kernel, state)[output]
         return max(difference(floats(value(side)), expected) for side in sides[-1:])
     if formula.line.kind == "holds":
         assert isinstance(tree, Equation)

@@ -7,11 +7,15 @@ from html import escape
 from pathlib import Path
 
 from .document import Document, Formula, Item
-from .markdown import inline
+from .markdown import Block, inline
+from .notation.latex import latex, width
 from .notation.mathml import mathml
 from .notation.parse import parse
+from .notation.tree import Node
 from .provenance import kernel, tagged
 
+NARROW = 34
+"""Width in letters up to which the formulas of a long run stand side by side."""
 STYLE = Path(__file__).with_name("style.css")
 
 
@@ -37,10 +41,16 @@ def html(document: Document) -> str:
 <h1>{escape(document.title)}</h1>
 <p class="lead">{text(document.lead)}</p>
 {body}
+{_index(document)}
 </main>
 </body>
 </html>
 """
+
+
+def narrow(tree: Node) -> bool:
+    """Return whether a formula takes no more than half of a line."""
+    return "begin{bmatrix}" not in latex(tree) and width(tree) < NARROW
 
 
 def anchor(title: str) -> str:
@@ -79,6 +89,8 @@ def _contents(document: Document) -> str:
             else:
                 name = anchor(f"{chapter} {block.text}")
                 lines.append(f'<li><a href="#{name}">{escape(block.text)}</a></li>')
+    if len(equations(document)) >= len(tagged()):
+        lines.append('<li class="chapter"><a href="#index-of-equations">Index of equations</a></li>')
     return "\n".join([*lines, "</ul>"])
 
 
@@ -94,6 +106,35 @@ def _equations(document: Document, chapter: str) -> str:
         return ""
     first, last = min(numbers), max(numbers)
     return f' <span class="range">{first}</span>' if first == last else f' <span class="range">{first}–{last}</span>'
+
+
+def equations(document: Document) -> dict[int, list[Item]]:
+    """Return the blocks of formulas by the number of the paper's equation that they are, in order of the numbers."""
+    found: dict[int, list[Item]] = {}
+    for item in document.items:
+        if item.block.kind.startswith("formula") and item.block.about.isdigit():
+            found.setdefault(int(item.block.about), []).append(item)
+    return dict(sorted(found.items()))
+
+
+def _index(document: Document) -> str:
+    """Return the table of the paper's equations: where each is in the sources, and the kernels that it went into."""
+    rows = []
+    for number, items in equations(document).items():
+        kernels = {}
+        for item in items:
+            for f in item.formulas:
+                if f.kernel and f.deviation is not None and item.scope is not None:
+                    k = kernel(item.scope.family.name, *f.kernel)
+                    kernels[k.name, k.output] = (f"<code>{k.name}</code> → <code>{k.output}</code> "
+                                                 f'<span class="place">{k.file}:{k.line}</span>')
+        rows.append(f'<tr><td><a href="#eq-{number}">{number}</a></td><td><code>{tagged().get(number, "")}</code></td>'
+                    f"<td>{'<br>'.join(kernels.values()) or 'assembled by the engine'}</td></tr>")
+    if len(rows) < len(tagged()):
+        return ""  # a page of one subject
+    return ('<h2 id="index-of-equations"><a href="#index-of-equations">Index of equations</a></h2>\n<div class="wide">'
+            "<table><thead><tr><th>eq</th><th>in the sources</th><th>generated functions</th></tr></thead><tbody>\n"
+            + "\n".join(rows) + "\n</tbody></table></div>")
 
 
 class _Writer:
@@ -158,8 +199,7 @@ class _Writer:
                 f"<code>{escape(name)}_…</code></summary>{_table(['symbol', 'argument', 'is', 'unit'], rows)}</details>")
 
     def _stage(self, item: Item) -> str:
-        return (f'<h5>{escape(item.block.text)}</h5>\n<div class="equation"><div class="lines">'
-                + "\n".join(self._line(f) for f in item.formulas) + "</div></div>\n" + self._trace(item))
+        return f"<h5>{escape(item.block.text)}</h5>\n{self._formula(Item(Block('formula'), item.scope, item.formulas))}"
 
     def _formula_folded(self, item: Item) -> str:
         return (f'<details class="folded"><summary>{len(item.formulas)} formulas</summary>'
@@ -174,13 +214,15 @@ class _Writer:
                 name = f' id="eq-{number}"'
             label = f'<span class="number">({number})</span>'
         lines = "\n".join(self._line(f) for f in item.formulas)
-        return (f'<div class="equation"{name}><div class="lines">\n{lines}\n</div>{label}</div>\n'
+        many = " many" if sum(narrow(f.tree) for f in item.formulas) > 5 else ""
+        return (f'<div class="equation"{name}><div class="lines{many}">\n{lines}\n</div>{label}</div>\n'
                 f"{self._trace(item)}")
 
     def _line(self, formula: Formula) -> str:
         index = (f' <span class="for">for each {mathml(parse(formula.line.index), display=False)}</span>'
                  if formula.line.index else "")
-        return f'<div class="line">{mathml(formula.tree, identifier=formula.identifier)}{index}</div>'
+        wide = "" if narrow(formula.tree) else " wide"
+        return f'<div class="line{wide}">{mathml(formula.tree, identifier=formula.identifier)}{index}</div>'
 
     def _trace(self, item: Item) -> str:
         """Return where the formulas of a block went, and where their equation stands in the sources."""
@@ -190,7 +232,8 @@ class _Writer:
                 assert item.scope is not None
                 k = kernel(item.scope.family.name, *formula.kernel)
                 verified = f'; verified as <q>{escape(k.verified)}</q>' if k.verified else ""
-                rows.append(f"<code>{k.name}</code> → <code>{k.output}</code> [{escape(k.unit)}], "
+                minus = "minus " if formula.sign < 0 else ""
+                rows.append(f"{minus}<code>{k.name}</code> → <code>{k.output}</code> [{escape(k.unit)}], "
                             f'<span class="place">{k.file}:{k.line}</span>, {k.operations} operations{verified}; '
                             f'<strong class="deviation">{_power(formula.deviation)}</strong>')
             elif formula.deviation is not None:

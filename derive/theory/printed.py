@@ -62,6 +62,8 @@ def shape_functions(scope: Scope) -> list[Line]:
             scale = Name("l") if power == 1 else formula(l**power, plain_names(TABLE))
             right = Product((scale, right))
         lines.append(Line(equation(Name("N", sub=(str(k + 1),)), right)))
+    if scope.family.role == "slide" or (scope.family.traits and scope.family.traits.kind == "cable"):
+        return lines
     column = Transpose(Matrix((tuple(Name("N", sub=(str(k + 1),)) for k in range(element.n_vectors)),)))
     lines.append(Line(equation(Name("N", bold=True), column),
                       output="position.N" if scope.family.role == "element" else ""))

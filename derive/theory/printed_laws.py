@@ -12,7 +12,7 @@ from ..laws import law_class
 from .markdown import Line
 from .notation.from_sympy import formula, plain_names, signed_sum
 from .notation.latex import latex
-from .notation.tree import Binary, Equation, Matrix, Name, Node, Number, Product
+from .notation.tree import Binary, Equation, Matrix, Name, Node, Number, Product, Transpose
 from .printed import _element, equation, shape_functions
 from .scopes import Scope
 
@@ -43,14 +43,14 @@ def voigt(scope: Scope) -> list[Line]:
     """Return the strain as a vector and the matrix of elastic constants."""
     dim = _element(scope).dim
     pairs = [(i, j) for i in range(1, dim + 1) for j in range(i + 1, dim + 1)]
-    units = [Matrix(tuple((Number(str(int(k == i))),) for k in range(dim))) for i in range(dim)]
-    lines = [Line(equation(Name("d", bold=True, sub=(str(i + 1),)), Product((Name("D", bold=True), unit))))
-             for i, unit in enumerate(units)]
-    normal = [rf"\frac{{1}}{{2}} \left( \mathbf{{d}}_{{{i}}} \cdot \mathbf{{d}}_{{{i}}} - 1 \right)"
-              for i in range(1, dim + 1)]
-    shear = [rf"\mathbf{{d}}_{{{i}}} \cdot \mathbf{{d}}_{{{j}}}" for i, j in pairs]
-    column = r" \\ ".join([*normal, *shear])
-    lines.append(Line(rf"\boldsymbol{{\varepsilon}} = \begin{{bmatrix}} {column} \end{{bmatrix}}"))
+    units = [Matrix((tuple(Number(str(int(k == i))) for k in range(dim)),)) for i in range(dim)]
+    names = [Name("u", bold=True, sub=(str(i + 1),)) for i in range(dim)]
+    lines = [Line(equation(name, Transpose(unit))) for name, unit in zip(names, units, strict=True)]
+    entries = {(i, j): rf"\varepsilon_{{{i}{j}}}" for i, j in [*((i, i) for i in range(1, dim + 1)), *pairs]}
+    lines += [Line(rf"{name} = \mathbf{{u}}_{{{i}}}^{{\mathsf{{T}}}} \boldsymbol{{\varepsilon}}_{{m}} "
+                   rf"\mathbf{{u}}_{{{j}}}") for (i, j), name in entries.items()]
+    row = " & ".join(name if i == j else f"2 {name}" for (i, j), name in entries.items())
+    lines.append(Line(rf"\boldsymbol{{\varepsilon}} = \begin{{bmatrix}} {row} \end{{bmatrix}}^{{\mathsf{{T}}}}"))
     size = dim + len(pairs)
     rows = [["0"] * size for _ in range(size)]
     for i in range(dim):
@@ -96,7 +96,7 @@ def elastic_constants(scope: Scope) -> list[Line]:
         value = sum(sp.Rational(int(c.numerator), int(c.denominator)) * sp.Symbol(f"S_{k}_{m}")
                     * sp.Symbol("l")**power for (k, m, power), c in entry)
         lines.append(Line(equation(Name("a", sub=(str(i + 1),)), formula(value, plain_names(names)))))
-    column = Matrix(tuple((Name("a", sub=(str(i + 1),)),) for i in range(len(form.constants))))
+    column = Transpose(Matrix((tuple(Name("a", sub=(str(i + 1),)) for i in range(len(form.constants))),)))
     return [*lines, Line(equation(Name("a", bold=True), column), output="stiffness.A")]
 
 
@@ -213,9 +213,7 @@ def cable_damping(scope: Scope) -> list[Line]:
     own = not traits.damped_like
     lines.append(Line(rf"P = \tau \left( {power} \right)", output="dissipation.P" if own else ""))
     lines.append(Line(r"\mathbf{Q}_{d} = -\frac{1}{2} \left( \frac{\partial P}{\partial \dot{\mathbf{e}}} "
-                      r"\right)^{\mathsf{T}}"))
-    if own:
-        lines.append(Line(r"-\mathbf{Q}_{d}", output="damping_force.f"))
+                      r"\right)^{\mathsf{T}}", output="-damping_force.f" if own else ""))
     return lines
 
 

@@ -88,17 +88,17 @@ def wrapped(node: Node) -> list[list[tuple[int, Node]]] | None:
     if not (isinstance(node, Equation) and len(node.sides) == 2 and isinstance(node.sides[1], Sum)):
         return None
     rows: list[list[tuple[int, Node]]] = [[]]
-    width = _width(node.sides[0])
+    taken = width(node.sides[0])
     for sign, term in node.sides[1].terms:
-        if width + _width(term) > WIDTH and rows[-1]:
+        if taken + width(term) > WIDTH and rows[-1]:
             rows.append([])
-            width = 0
+            taken = 0
         rows[-1].append((sign, term))
-        width += _width(term) + 3
+        taken += width(term) + 3
     return rows if len(rows) > 1 else None
 
 
-def _width(node: Node) -> int:
+def width(node: Node) -> int:
     """Return roughly how many letters wide a formula is."""
     text = re.sub(r"\\(mathbf|mathrm|boldsymbol|left|right|widetilde|dot|operatorname|mathsf)|[{}_^ ]", "", latex(node))
     return len(re.sub(r"\\[a-zA-Z]+", "x", text))

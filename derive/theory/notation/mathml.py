@@ -100,7 +100,8 @@ def _large(node: Node) -> str:
     match node:
         case Matrix():
             rows = "".join(f"<mtr>{''.join(f'<mtd>{_of(entry)}</mtd>' for entry in row)}</mtr>" for row in node.rows)
-            return _row(f"{_operator('[')}<mtable>{rows}</mtable>{_operator(']')}")
+            large = ' displaystyle="true"' if any(isinstance(e, Derivative) for row in node.rows for e in row) else ""
+            return _row(f"{_operator('[')}<mtable{large}>{rows}</mtable>{_operator(']')}")
         case Cases():
             where = f"{_of(node.left)}{_operator('<')}{_of(node.right)}"
             return (f'<mrow class="cases">{_operator("{")}<mtable><mtr><mtd>{_of(node.below)}</mtd><mtd>{where}</mtd>'
@@ -136,8 +137,26 @@ def _derivative(node: Derivative) -> str:
     return f"<mfrac>{_row(d + of)}{_row(d + by)}</mfrac>"
 
 
+def _bold(text: str) -> str:
+    """Return the bold form of a letter that mathematical fonts have; of a word, the word."""
+    if len(text) == 1 and text.isascii() and text.isalpha():
+        return chr((0x1D400 if text.isupper() else 0x1D41A - 32) + ord(text) - ord("A"))
+    if text in _GREEK_BOLD:
+        return _GREEK_BOLD[text]
+    return text
+
+
+_GREEK_BOLD = {letter: chr(0x1D6A8 + ord(letter) - ord("Α")) for letter in "ΓΔΘΛΞΠΣΦΨΩ"}
+_GREEK_BOLD |= {letter: chr(0x1D6C2 + ord(letter) - ord("α")) for letter in "αβγδεζηθκλμνξπρστφχψω"}
+_GREEK_BOLD["ϕ"] = chr(0x1D6DF)
+_PLAIN = {_bold(letter): letter for letter in (*"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz",
+                                               *LETTERS.values())}
+
+
 def _letter(base: str, bold: bool) -> str:
     text = LETTERS.get(base, base)
+    if bold and _bold(text) != text:
+        return f"<mi>{_bold(text)}</mi>"
     if bold:
         return f'<mi mathvariant="normal" class="b">{text}</mi>'
     return f"<mi>{text}</mi>"
@@ -260,6 +279,9 @@ def _back(element: ElementTree.Element) -> str:
 
 
 def _back_letter(element: ElementTree.Element, text: str) -> str:
+    if text in _PLAIN:
+        letter = _PLAIN[text]
+        return f"\\boldsymbol{{{_FROM[letter]}}}" if letter in _FROM else f"\\mathbf{{{letter}}}"
     match element.get("class"):
         case "b":
             return f"\\boldsymbol{{{_FROM[text]}}}" if text in _FROM else f"\\mathbf{{{text}}}"
